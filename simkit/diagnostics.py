@@ -1,0 +1,107 @@
+"""What loading found: one record per problem, collected in one pass."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from simkit.errors import LoadError
+
+Severity = Literal["error", "warning", "note"]
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A place in an input file; `file` is None for XML given as text."""
+
+    file: str | None = None
+    line: int | None = None
+
+    def __str__(self) -> str:
+        return f"{self.file or '<text>'}:{self.line}" if self.line else (self.file or "<text>")
+
+
+NOWHERE = Where()
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One problem of an input.
+
+    Attributes:
+        code: `SK-AREA-NNN`; never renumbered.
+        severity: "error" stops the load, "warning" may change the meaning, "note" is a standing conversion.
+        message: what was found and what is allowed.
+        hint: what helps; may be empty.
+    """
+
+    code: str
+    severity: Severity
+    message: str
+    file: str | None = None
+    line: int | None = None
+    hint: str = ""
+
+    def __str__(self) -> str:
+        text = f"{Where(self.file, self.line)}: {self.severity} {self.code}: {self.message}"
+        return f"{text}\n    help: {self.hint}" if self.hint else text
+
+    def as_dict(self) -> dict[str, Any]:
+        """The record as plain data, as `inspect --json` prints it."""
+        return asdict(self)
+
+
+class Diagnostics:
+    """Collects diagnostics in order; a repeated identical one is kept once."""
+
+    def __init__(self, items: Iterable[Diagnostic] = ()) -> None:
+        self._items: dict[Diagnostic, None] = dict.fromkeys(items)
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    @property
+    def has_errors(self) -> bool:
+        return any(d.severity == "error" for d in self._items)
+
+    def add(self, severity: Severity, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        self._items.setdefault(Diagnostic(code, severity, message, where.file, where.line, hint))
+
+    def error(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        self.add("error", code, message, where, hint)
+
+    def warning(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        self.add("warning", code, message, where, hint)
+
+    def note(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
+        self.add("note", code, message, where, hint)
+
+    def extend(self, items: Iterable[Diagnostic]) -> None:
+        for item in items:
+            self._items.setdefault(item)
+
+    def raise_if_errors(self, strict: bool = False) -> None:
+        """Raises LoadError with everything found so far; `strict` counts warnings as errors."""
+        if self.has_errors or (strict and any(d.severity == "warning" for d in self._items)):
+            raise LoadError(tuple(self._items))
+
+
+def closest(name: str, allowed: Iterable[str]) -> str | None:
+    """The known name most like `name`, or None when none is near."""
+    names = sorted(set(allowed))
+    found = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    if not found:
+        folded = {n.lower(): n for n in names}
+        found = [folded[m] for m in difflib.get_close_matches(name.lower(), list(folded), n=1, cutoff=0.6)]
+    return found[0] if found else None
+
+
+def did_you_mean(name: str, allowed: Iterable[str]) -> str:
+    """`did you mean 'x'?`, or an empty text."""
+    near = closest(name, allowed)
+    return f"did you mean {near!r}?" if near else ""

@@ -1,0 +1,278 @@
+"""Typed reading of a block of parameters that came from a file.
+
+A `Params` is a tree of elements without any XML library behind it. It remembers what was read, so that whatever
+nobody read can be reported, and it records a bad value as a diagnostic instead of raising: all problems in one pass.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar
+
+from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.pose import IDENTITY, Pose
+
+T = TypeVar("T")
+_TRUE, _FALSE = {"true", "1"}, {"false", "0"}
+
+
+class Params:
+    """One element: its name, text, attributes and children, each with its place in the file.
+
+    Args:
+        name: element name, without a namespace prefix's URI (`gz:type` stays `gz:type`).
+        text: the element's own text, stripped.
+        attributes: attribute name -> text.
+        children: child elements in document order.
+        where: file and line.
+        diagnostics: where problems go; children share it.
+    """
+
+    def __init__(
+        self,
+        name: str = "",
+        text: str = "",
+        attributes: dict[str, str] | None = None,
+        children: Sequence[Params] = (),
+        where: Where = NOWHERE,
+        diagnostics: Diagnostics | None = None,
+    ) -> None:
+        self.name, self.value, self.where = name, text, where
+        self.attributes = dict(attributes or {})
+        self.children = list(children)
+        self.diagnostics = diagnostics if diagnostics is not None else Diagnostics()
+        self._asked: set[str] = set()
+        self._read = False
+
+    @classmethod
+    def from_dict(cls, values: dict[str, Any], name: str = "plugin") -> Params:
+        """A block made in Python: nested dicts are elements, lists are repeated elements."""
+        root = cls(name)
+
+        def fill(node: Params, items: dict[str, Any]) -> None:
+            for key, value in items.items():
+                for one in value if isinstance(value, list) else [value]:
+                    child = cls(key, diagnostics=root.diagnostics)
+                    if isinstance(one, dict):
+                        fill(child, one)
+                    elif isinstance(one, bool):
+                        child.value = str(one).lower()
+                    elif isinstance(one, (tuple, list)):
+                        child.value = " ".join(str(v) for v in one)
+                    else:
+                        child.value = str(one)
+                    node.children.append(child)
+
+        fill(root, values)
+        return root
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Params:
+        return self
+
+    # ------------------------------------------------------------------ structure
+
+    def child(self, name: str) -> Params | None:
+        """The first child of that name, marked as read; None when absent."""
+        self._asked.add(name)
+        for c in self.children:
+            if c.name == name:
+                c._read = True
+                return c
+        return None
+
+    def block(self, name: str) -> Params:
+        """The first child of that name, or an empty block, so that its defaults can be read."""
+        return self.child(name) or Params(name, where=self.where, diagnostics=self.diagnostics)
+
+    def all(self, name: str) -> list[Params]:
+        """All children of that name in document order, marked as read."""
+        self._asked.add(name)
+        found = [c for c in self.children if c.name == name]
+        for c in found:
+            c._read = True
+        return found
+
+    def has(self, name: str) -> bool:
+        """Whether a child of that name is there (does not count as reading it)."""
+        self._asked.add(name)
+        return any(c.name == name for c in self.children)
+
+    def mark_all_read(self) -> None:
+        """Says that this whole block is understood elsewhere."""
+        self._read = True
+        for c in self.children:
+            c.mark_all_read()
+
+    # ------------------------------------------------------------------ values of children
+
+    def text(self, name: str, default: str | None = None, required: bool = False) -> str:
+        """Text of a child, stripped."""
+        return self._value(name, default, "", required, lambda p: p.value, "a text")
+
+    def number(
+        self,
+        name: str,
+        default: float | None = None,
+        required: bool = False,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        finite: bool = True,
+    ) -> float:
+        """A number; out of `minimum`..`maximum`, NaN, or infinite where `finite`, is an error."""
+        allowed = "a number" + _range_text(minimum, maximum)
+        return self._value(name, default, 0.0, required, lambda p: _number(p.value, minimum, maximum, finite), allowed)
+
+    def integer(
+        self,
+        name: str,
+        default: int | None = None,
+        required: bool = False,
+        minimum: int | None = None,
+        maximum: int | None = None,
+    ) -> int:
+        """A whole number (a text such as `360.0` is taken too)."""
+
+        def parse(p: Params) -> int:
+            number = _number(p.value, minimum, maximum, True)
+            if number != int(number):
+                raise ValueError
+            return int(number)
+
+        return self._value(name, default, 0, required, parse, "a whole number" + _range_text(minimum, maximum))
+
+    def boolean(self, name: str, default: bool | None = None, required: bool = False) -> bool:
+        """true, false, 1 or 0."""
+        return self._value(name, default, False, required, lambda p: _boolean(p.value), "true, false, 1 or 0")
+
+    def vector(self, name: str, size: int, default: Sequence[float] | None = None, required: bool = False) -> tuple[float, ...]:
+        """`size` finite numbers separated by white space."""
+
+        def parse(p: Params) -> tuple[float, ...]:
+            parts = p.value.split()
+            if len(parts) != size:
+                raise ValueError
+            return tuple(_number(v, None, None, True) for v in parts)
+
+        fallback = None if default is None else tuple(float(v) for v in default)
+        return self._value(name, fallback, (0.0,) * size, required, parse, f"{size} numbers")
+
+    def vector3(self, name: str, default: Sequence[float] | None = None, required: bool = False) -> tuple[float, float, float]:
+        x, y, z = self.vector(name, 3, default, required)
+        return (x, y, z)
+
+    def pose(self, name: str, default: Pose = IDENTITY) -> Pose:
+        """`x y z roll pitch yaw` [m, rad]; `degrees="true"` and `rotation_format` are honoured."""
+        return self._value(name, default, IDENTITY, False, lambda p: p.as_pose(), "x y z roll pitch yaw")
+
+    def choice(self, name: str, allowed: Sequence[str], default: str | None = None, required: bool = False) -> str:
+        """One of a few words."""
+
+        def parse(p: Params) -> str:
+            if p.value not in allowed:
+                raise ValueError
+            return p.value
+
+        return self._value(name, default, allowed[0], required, parse, "one of " + ", ".join(allowed))
+
+    # ------------------------------------------------------------------ attributes
+
+    def attribute(self, name: str, default: str = "") -> str:
+        return self.attributes.get(name, default)
+
+    def attribute_number(self, name: str, default: float) -> float:
+        if name not in self.attributes:
+            return default
+        try:
+            return _number(self.attributes[name], None, None, True)
+        except ValueError:
+            self._bad(f"{name}={self.attributes[name]!r}", "a number", self.where)
+            return default
+
+    # ------------------------------------------------------------------ this element's own text
+
+    def as_pose(self) -> Pose:
+        """This element's text as a pose; raises ValueError."""
+        numbers = [_number(v, None, None, True) for v in self.value.split()]
+        if not numbers:
+            return IDENTITY
+        if self.attributes.get("rotation_format") == "quat_xyzw":
+            if len(numbers) != 7:
+                raise ValueError
+            x, y, z, qx, qy, qz, qw = numbers
+            return Pose((x, y, z), (qw, qx, qy, qz))
+        if len(numbers) != 6:
+            raise ValueError
+        angles = numbers[3:]
+        if self.attributes.get("degrees", "false") in _TRUE:
+            angles = [math.radians(a) for a in angles]
+        return Pose.from_rpy(*numbers[:3], *angles)
+
+    # ------------------------------------------------------------------ reports
+
+    def error(self, code: str, message: str, hint: str = "") -> None:
+        """Records an error at this element's line."""
+        self.diagnostics.error(code, message, self.where, hint)
+
+    def unread(self) -> Iterator[tuple[Params, str]]:
+        """Each element nobody read, with the closest name that its reader asked for."""
+        for c in self.children:
+            if ":" in c.name:
+                continue
+            if not c._read:
+                yield c, did_you_mean(c.name, self._asked)
+            else:
+                yield from c.unread()
+
+    def report_unread(self, code: str, owner: str) -> None:
+        """Warns about each element that nobody read."""
+        for element, suggestion in self.unread():
+            self.diagnostics.warning(code, f"{owner}: <{element.name}> is not used", element.where, suggestion)
+
+    def _value(
+        self, name: str, default: T | None, fallback: T, required: bool, parse: Callable[[Params], T], allowed: str
+    ) -> T:
+        found = self.child(name)
+        if found is None:
+            if required:
+                self.diagnostics.error(
+                    "SK-PARAM-001", f"<{self.name}> needs <{name}>: {allowed}", self.where, self._near(name)
+                )
+            return fallback if default is None else default
+        try:
+            return parse(found)
+        except ValueError:
+            self._bad(f"<{name}>{found.value}</{name}>", allowed, found.where)
+            return fallback if default is None else default
+
+    def _near(self, name: str) -> str:
+        return did_you_mean(name, [c.name for c in self.children])
+
+    def _bad(self, found: str, allowed: str, where: Where) -> None:
+        self.diagnostics.error("SK-PARAM-002", f"found {found}, allowed is {allowed}", where)
+
+
+def _range_text(minimum: float | None, maximum: float | None) -> str:
+    if minimum is not None and maximum is not None:
+        return f" from {minimum:g} to {maximum:g}"
+    if minimum is not None:
+        return f" of at least {minimum:g}"
+    return f" of at most {maximum:g}" if maximum is not None else ""
+
+
+def _number(text: str, minimum: float | None, maximum: float | None, finite: bool) -> float:
+    value = float(text)
+    if "_" in text or math.isnan(value) or (finite and math.isinf(value)):
+        raise ValueError(text)
+    if (minimum is not None and value < minimum) or (maximum is not None and value > maximum):
+        raise ValueError(text)
+    return value
+
+
+def _boolean(text: str) -> bool:
+    folded = text.strip().lower()
+    if folded in _TRUE:
+        return True
+    if folded in _FALSE:
+        return False
+    raise ValueError(text)

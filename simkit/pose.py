@@ -1,0 +1,169 @@
+"""Rigid poses. Quaternions are (w, x, y, z); angles rad; lengths m."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+
+
+def quat_multiply(a: Sequence[float] | Vector, b: Sequence[float] | Vector) -> Vector:
+    """Hamilton product of two (w, x, y, z) quaternions."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return np.array(
+        (
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        )
+    )
+
+
+def quat_conjugate(q: Sequence[float] | Vector) -> Vector:
+    return np.array((q[0], -q[1], -q[2], -q[3]))
+
+
+def quat_rotate(q: Sequence[float] | Vector, v: Sequence[float] | Vector) -> Vector:
+    """The vector `v` turned by the unit quaternion `q`."""
+    w, x, y, z = (float(c) for c in q)
+    vx, vy, vz = (float(c) for c in v)
+    tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
+    return np.array((vx + w * tx + y * tz - z * ty, vy + w * ty + z * tx - x * tz, vz + w * tz + x * ty - y * tx))
+
+
+def quat_from_rpy(roll: float, pitch: float, yaw: float) -> Vector:
+    """Rz(yaw)·Ry(pitch)·Rx(roll): the order of SDF, URDF and ROS."""
+    cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+    cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+    cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+    return np.array(
+        (
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+    )
+
+
+def rpy_from_quat(q: Sequence[float] | Vector) -> Vector:
+    """Roll, pitch, yaw [rad] of a unit quaternion."""
+    w, x, y, z = (float(c) for c in q)
+    sin_pitch = max(-1.0, min(1.0, 2 * (w * y - z * x)))
+    return np.array(
+        (
+            math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+            math.asin(sin_pitch),
+            math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
+        )
+    )
+
+
+def quat_to_matrix(q: Sequence[float] | Vector) -> Vector:
+    """The 3×3 rotation matrix of a unit quaternion."""
+    w, x, y, z = (float(c) for c in q)
+    return np.array(
+        (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+        )
+    )
+
+
+class Pose:
+    """An immutable rigid pose: `a @ b` is b expressed through a (a's parent ← b's frame).
+
+    Attributes:
+        position: shape (3,) [m].
+        quaternion: shape (4,), unit, (w, x, y, z).
+    """
+
+    __slots__ = ("position", "quaternion")
+    position: Vector
+    quaternion: Vector
+
+    def __init__(
+        self,
+        position: Sequence[float] | Vector = (0.0, 0.0, 0.0),
+        quaternion: Sequence[float] | Vector = (1.0, 0.0, 0.0, 0.0),
+    ) -> None:
+        p = np.array(position, dtype=np.float64)
+        q = np.array(quaternion, dtype=np.float64)
+        if p.shape != (3,) or q.shape != (4,):
+            raise ValueError(f"Pose needs a position of 3 and a quaternion (w, x, y, z) of 4, got {p.shape}, {q.shape}")
+        norm = math.sqrt(float(q @ q))
+        if not (math.isfinite(norm) and norm > 1e-12 and np.isfinite(p).all()):
+            raise ValueError(f"Pose needs finite numbers and a quaternion that is not zero, got {p}, {q}")
+        if abs(norm - 1.0) > 1e-15:
+            q = q / norm
+        p.flags.writeable = q.flags.writeable = False
+        object.__setattr__(self, "position", p)
+        object.__setattr__(self, "quaternion", q)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError("a Pose cannot be changed; make a new one")
+
+    @classmethod
+    def from_rpy(cls, x: float, y: float, z: float, roll: float, pitch: float, yaw: float) -> Pose:
+        """Position [m] and fixed-axis roll, pitch, yaw [rad]."""
+        return cls((x, y, z), quat_from_rpy(roll, pitch, yaw))
+
+    @property
+    def rpy(self) -> Vector:
+        """Roll, pitch, yaw [rad], shape (3,)."""
+        return rpy_from_quat(self.quaternion)
+
+    @property
+    def matrix(self) -> Vector:
+        """Rotation matrix, shape (3, 3)."""
+        return quat_to_matrix(self.quaternion)
+
+    def __matmul__(self, other: Pose) -> Pose:
+        return Pose(
+            self.position + quat_rotate(self.quaternion, other.position),
+            quat_multiply(self.quaternion, other.quaternion),
+        )
+
+    def inverse(self) -> Pose:
+        q = quat_conjugate(self.quaternion)
+        return Pose(-quat_rotate(q, self.position), q)
+
+    def rotate(self, vector: Sequence[float] | Vector) -> Vector:
+        """A free vector of this frame, in the parent's axes."""
+        return quat_rotate(self.quaternion, vector)
+
+    def transform(self, point: Sequence[float] | Vector) -> Vector:
+        """A point of this frame, in the parent's frame."""
+        return self.position + quat_rotate(self.quaternion, point)
+
+    def as_list(self) -> list[float]:
+        """[x, y, z, qw, qx, qy, qz]."""
+        return [float(v) for v in (*self.position, *self.quaternion)]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Pose):
+            return NotImplemented
+        return bool((self.position == other.position).all() and (self.quaternion == other.quaternion).all())
+
+    def __hash__(self) -> int:
+        return hash((*self.position.tolist(), *self.quaternion.tolist()))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Pose:
+        return self
+
+    def __reduce__(self) -> tuple[type[Pose], tuple[list[float], list[float]]]:
+        return (Pose, (self.position.tolist(), self.quaternion.tolist()))
+
+    def __repr__(self) -> str:
+        return f"Pose(position={tuple(self.position.tolist())}, quaternion={tuple(self.quaternion.tolist())})"
+
+
+IDENTITY = Pose()

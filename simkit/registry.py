@@ -1,0 +1,45 @@
+"""Registries computed from a package's modules and from entry points: one file per addition, a duplicate is an error."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Callable, Iterable, Mapping
+from importlib.metadata import entry_points
+from types import MappingProxyType
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+def discover(package: str, group: str, base: type[T], names: Callable[[type[T]], Iterable[str]]) -> Mapping[str, type[T]]:
+    """Every class under `package` and in the entry points `group` that is a `base`, by each name it answers to.
+
+    Args:
+        package: dotted name of the package whose modules (and sub-packages' modules) are read.
+        group: entry-point group.
+        base: classes must derive from it; abstract and nameless ones are passed over.
+        names: gives the names that a class answers to.
+
+    Raises:
+        RuntimeError: two classes answer to one name.
+    """
+    classes: dict[type[T], None] = {}
+    root = importlib.import_module(package)
+    for info in pkgutil.walk_packages(root.__path__, package + "."):
+        module = importlib.import_module(info.name)
+        for _, cls in inspect.getmembers(module, inspect.isclass):
+            if issubclass(cls, base) and cls.__module__ == module.__name__ and not inspect.isabstract(cls):
+                classes[cls] = None
+    for point in sorted(entry_points(group=group), key=lambda p: (p.name, p.value)):
+        loaded = point.load()
+        if inspect.isclass(loaded) and issubclass(loaded, base):
+            classes[loaded] = None
+    table: dict[str, type[T]] = {}
+    for cls in classes:
+        for name in names(cls):
+            if name in table and table[name] is not cls:
+                raise RuntimeError(f"{name!r} is claimed by {table[name].__module__} and by {cls.__module__}")
+            table[name] = cls
+    return MappingProxyType(dict(sorted(table.items())))

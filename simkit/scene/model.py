@@ -1,0 +1,290 @@
+"""Models and what is in them. Poses: `pose_world` at load time; `pose_link` in the link frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from simkit.diagnostics import NOWHERE, Where
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.scene.geometry import Geometry, Vec3
+
+Colour = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass [kg] and inertia [kg·m²] about the centre of mass.
+
+    Attributes:
+        com: centre of mass in the link frame [m].
+        inertia: ixx, iyy, izz, ixy, ixz, iyz in **link axes**.
+        given: False where the file has no inertial and the format's default stands.
+    """
+
+    mass: float = 1.0
+    com: Vec3 = (0.0, 0.0, 0.0)
+    inertia: tuple[float, float, float, float, float, float] = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
+    given: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """Contact properties; None where the file says nothing (the engine's world-wide setting stands).
+
+    Attributes:
+        mu, mu2: sliding friction along and across `fdir1`.
+        torsional: torsional friction coefficient; None where not given.
+        kp, kd: contact stiffness [N/m] and damping [N·s/m].
+    """
+
+    mu: float = 1.0
+    mu2: float = 1.0
+    fdir1: Vec3 = (0.0, 0.0, 0.0)
+    slip1: float = 0.0
+    slip2: float = 0.0
+    torsional: float | None = None
+    kp: float | None = None
+    kd: float | None = None
+    soft_cfm: float | None = None
+    soft_erp: float | None = None
+    min_depth: float | None = None
+    max_vel: float | None = None
+    restitution: float = 0.0
+    restitution_threshold: float = 1e5
+    collide_bitmask: int = 0xFFFF
+    category_bitmask: int = 0xFFFF
+    collide_without_contact: bool = False
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """How a visual looks; colours RGBA from 0 to 1."""
+
+    ambient: Colour = (1.0, 1.0, 1.0, 1.0)
+    diffuse: Colour = (1.0, 1.0, 1.0, 1.0)
+    specular: Colour = (0.0, 0.0, 0.0, 1.0)
+    emissive: Colour = (0.0, 0.0, 0.0, 1.0)
+    texture: Path | None = None
+    script: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneCollision:
+    name: str
+    scoped: str
+    pose_link: Pose
+    geometry: Geometry
+    surface: Surface = Surface()
+    laser_retro: float = 0.0
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class SceneVisual:
+    """`material` is None where the file names none (a mesh then keeps its own)."""
+
+    name: str
+    scoped: str
+    pose_link: Pose
+    geometry: Geometry
+    material: Material | None = None
+    transparency: float = 0.0
+    cast_shadows: bool = True
+    visibility_flags: int = 0xFFFFFFFF
+    laser_retro: float = 0.0
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class ScenePlugin:
+    """A plugin as named in the file; `scoped` is the entity it hangs on (empty for the world)."""
+
+    name: str
+    filename: str
+    scoped: str
+    params: Params
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class SceneSensor:
+    """A sensor as named in the file; its kind's own module reads `params` (the whole `<sensor>` element).
+
+    Attributes:
+        kind: the file's type, as written (`imu`, `ray`, `camera`, ...); for `custom` its `gz:type`.
+        parent: scoped name of the link or joint it hangs on.
+        on_joint: whether `parent` is a joint.
+        pose_link: in the link frame (for a joint: in its child link's frame).
+        rate: update rate [Hz]; 0 is every step.
+        topic: as given, or empty.
+    """
+
+    name: str
+    scoped: str
+    kind: str
+    parent: str
+    on_joint: bool
+    pose_link: Pose
+    pose_world: Pose
+    rate: float
+    topic: str
+    params: Params
+    plugins: tuple[ScenePlugin, ...] = ()
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class SceneLink:
+    name: str
+    scoped: str
+    pose_world: Pose
+    inertial: Inertial = Inertial()
+    gravity: bool = True
+    kinematic: bool = False
+    self_collide: bool = False
+    collisions: tuple[SceneCollision, ...] = ()
+    visuals: tuple[SceneVisual, ...] = ()
+    sensors: tuple[SceneSensor, ...] = ()
+    lights: tuple[SceneLight, ...] = ()
+    plugins: tuple[ScenePlugin, ...] = ()
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """position = multiplier · (leader − reference) + offset."""
+
+    joint: str
+    axis: int = 0
+    multiplier: float = 1.0
+    offset: float = 0.0
+    reference: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One degree of freedom; limits in rad or m (inf where none), effort N·m or N, velocity rad/s or m/s.
+
+    Attributes:
+        xyz_world: unit axis in the world at load time.
+        xyz_joint: unit axis in the joint frame.
+    """
+
+    xyz_world: Vec3
+    xyz_joint: Vec3
+    lower: float = -math.inf
+    upper: float = math.inf
+    effort: float = math.inf
+    velocity: float = math.inf
+    damping: float = 0.0
+    friction: float = 0.0
+    stiffness: float = 0.0
+    spring_ref: float = 0.0
+    mimic: Mimic | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SceneJoint:
+    """A joint between two resolved links.
+
+    Attributes:
+        type: revolute, continuous, prismatic, fixed, ball, universal, revolute2, screw, gearbox, floating, planar.
+        parent_link, child_link: scoped link names; the parent may be `world`.
+        thread_pitch: screw: metres per turn (gz convention of the file already applied).
+        gearbox_ratio, gearbox_reference: gearbox only; the reference is a scoped link name.
+    """
+
+    name: str
+    scoped: str
+    type: str
+    parent_link: str
+    child_link: str
+    pose_world: Pose
+    axes: tuple[Axis, ...] = ()
+    thread_pitch: float = 0.0
+    gearbox_ratio: float = 1.0
+    gearbox_reference: str = ""
+    sensors: tuple[SceneSensor, ...] = ()
+    plugins: tuple[ScenePlugin, ...] = ()
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class SceneFrame:
+    name: str
+    scoped: str
+    pose_world: Pose
+    attached_to: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneModel:
+    """A model with its links, joints and nested models.
+
+    Attributes:
+        scoped: name from the world down, joined with `::`.
+        canonical_link: scoped name of the link whose motion is the model's; empty where there is none.
+        base: "auto" (floating unless joined to the world), "fixed" or "floating".
+    """
+
+    name: str
+    scoped: str
+    pose_world: Pose
+    static: bool = False
+    self_collide: bool = False
+    canonical_link: str = ""
+    base: str = "auto"
+    links: tuple[SceneLink, ...] = ()
+    joints: tuple[SceneJoint, ...] = ()
+    frames: tuple[SceneFrame, ...] = ()
+    models: tuple[SceneModel, ...] = ()
+    plugins: tuple[ScenePlugin, ...] = ()
+    where: Where = NOWHERE
+
+    def all_models(self) -> list[SceneModel]:
+        """This model and all nested ones, outermost first, in document order."""
+        return [self, *(m for nested in self.models for m in nested.all_models())]
+
+    def all_links(self) -> list[SceneLink]:
+        return [link for m in self.all_models() for link in m.links]
+
+    def all_joints(self) -> list[SceneJoint]:
+        return [joint for m in self.all_models() for joint in m.joints]
+
+    def all_sensors(self) -> list[SceneSensor]:
+        """Every sensor on links and joints, in document order of the models."""
+        return [s for m in self.all_models() for owner in (*m.links, *m.joints) for s in owner.sensors]
+
+
+@dataclass(frozen=True, slots=True)
+class SceneLight:
+    """A light.
+
+    Attributes:
+        type: directional, point or spot.
+        pose_world: at load time; `link` names the link that carries it, or is empty.
+        direction: unit vector in the light's own frame.
+        direction_world: the same in the world at load time.
+        attenuation: range [m], constant, linear [1/m], quadratic [1/m²].
+        spot: inner angle [rad], outer angle [rad], falloff.
+    """
+
+    name: str
+    scoped: str
+    type: str
+    pose_world: Pose = IDENTITY
+    direction: Vec3 = (0.0, 0.0, -1.0)
+    direction_world: Vec3 = (0.0, 0.0, -1.0)
+    link: str = ""
+    diffuse: Colour = (1.0, 1.0, 1.0, 1.0)
+    specular: Colour = (0.1, 0.1, 0.1, 1.0)
+    intensity: float = 1.0
+    attenuation: tuple[float, float, float, float] = (10.0, 1.0, 1.0, 0.0)
+    spot: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    cast_shadows: bool = False
+    on: bool = True
+    where: Where = field(default=NOWHERE)
