@@ -98,6 +98,16 @@ class Params:
         self._asked.add(name)
         return any(c.name == name for c in self.children)
 
+    @property
+    def was_read(self) -> bool:
+        """Whether its parent's reader asked for it."""
+        return self._read
+
+    @property
+    def asked(self) -> set[str]:
+        """Names of children that a reader has asked for, present or not."""
+        return set(self._asked)
+
     def mark_all_read(self) -> None:
         """Says that this whole block is understood elsewhere."""
         self._read = True

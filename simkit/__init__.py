@@ -1,0 +1,82 @@
+"""simkit: opens the Gazebo worlds and robots people have, steps them with MuJoCo, answers with ROS 2 messages.
+
+    import simkit
+
+    with simkit.load("turtlebot3_world", seed=0) as sim:
+        scans = sim.subscribe("/scan")
+        sim.publish("/cmd_vel", {"linear": {"x": 0.2}})
+        sim.run(2.0)
+        print(scans.latest.ranges.min())
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from simkit.diagnostics import Diagnostic
+from simkit.errors import (
+    InputError,
+    LoadError,
+    MessageError,
+    PluginError,
+    RenderError,
+    SimkitError,
+    SimulationDiverged,
+)
+from simkit.params import Params
+from simkit.pose import Pose
+
+if TYPE_CHECKING:
+    from simkit.build import describe, load
+    from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
+    from simkit.runtime import Simulation
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Diagnostic",
+    "InputError",
+    "LoadError",
+    "MessageError",
+    "ModelPlugin",
+    "Params",
+    "Plugin",
+    "PluginError",
+    "Pose",
+    "RenderError",
+    "SensorPlugin",
+    "SimkitError",
+    "Simulation",
+    "SimulationDiverged",
+    "VisualPlugin",
+    "WorldPlugin",
+    "__version__",
+    "describe",
+    "load",
+]
+
+# loaded when first asked for: the engine alone takes most of what an import may cost
+_LAZY = {
+    "load": "simkit.build",
+    "describe": "simkit.build",
+    "Simulation": "simkit.runtime",
+    "Plugin": "simkit.plugins.base",
+    "WorldPlugin": "simkit.plugins.base",
+    "ModelPlugin": "simkit.plugins.base",
+    "SensorPlugin": "simkit.plugins.base",
+    "VisualPlugin": "simkit.plugins.base",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LAZY:
+        raise AttributeError(f"module 'simkit' has no attribute {name!r}")
+    import importlib
+
+    value = getattr(importlib.import_module(_LAZY[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_LAZY})

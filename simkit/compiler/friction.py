@@ -1,0 +1,156 @@
+"""Contact properties of a surface: friction by rank, softness, bounce, masks.
+
+Of two surfaces Gazebo's engines take the smaller friction coefficient, MuJoCo the larger, unless their `priority`
+differs: then the higher one's. So the priority rises as the coefficient falls. It is a fixed function of the
+coefficient, so a model that is spawned changes no other's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from simkit.compiler.options import CONTACT_SOLIMP, contact_time_constant
+from simkit.diagnostics import Diagnostics
+from simkit.scene import Surface
+
+MU_MOST: Final = 10.0
+"""Larger coefficients (people write 100000 for "never slips") are taken as this; more only hurts the solver."""
+
+STIFF_KP: Final = 1e5
+"""From this stiffness [N/m] on a contact counts as rigid: the world-wide softness stands."""
+
+_ALL_BITS: Final = 0xFFFF
+_TORSION, _ROLL = 0.005, 0.0001
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """What MuJoCo's geom gets."""
+
+    friction: tuple[float, float, float]
+    condim: int
+    priority: int
+    solref: tuple[float, float]
+    solimp: tuple[float, float, float, float, float]
+    contype: int
+    conaffinity: int
+
+
+def priority_of(mu: float) -> int:
+    """A rank that rises strictly as `mu` [0, 10] falls: the order of float32 numbers is that of their bits."""
+    return int(np.float32(MU_MOST).view(np.int32)) - int(np.float32(max(0.0, min(mu, MU_MOST))).view(np.int32))
+
+
+def contact_of(surface: Surface, timestep: float, mass: float, diagnostics: Diagnostics) -> Contact:
+    """MuJoCo's contact properties of one collision.
+
+    Args:
+        timestep: [s].
+        mass: of the moving tree that carries the collision [kg]; 0 for a static one.
+        diagnostics: gets a note for each thing that MuJoCo has not.
+    """
+    mu = _sliding(surface, diagnostics)
+    solref = _softness(surface, timestep, mass, diagnostics)
+    contype, conaffinity = masks_of(surface)
+    if surface.collide_without_contact:
+        diagnostics.warning("SK-PHYS-014", "collide_without_contact: the collision is left out of all contacts", surface.where)
+        contype = conaffinity = 0
+    return Contact(
+        friction=(mu, _TORSION, _ROLL),
+        condim=3 if mu > 0.0 else 1,
+        priority=priority_of(mu),
+        solref=solref,
+        solimp=CONTACT_SOLIMP,
+        contype=contype,
+        conaffinity=conaffinity,
+    )
+
+
+def masks_of(surface: Surface) -> tuple[int, int]:
+    """contype and conaffinity: two surfaces touch when their bit masks share a bit."""
+    collide = _int32(surface.collide_bitmask)
+    if surface.category_bitmask == _ALL_BITS:
+        return collide, collide
+    return _int32(surface.category_bitmask), collide
+
+
+def _int32(bits: int) -> int:
+    bits &= 0xFFFFFFFF
+    return bits - (1 << 32) if bits >= 1 << 31 else bits
+
+
+def _sliding(surface: Surface, diagnostics: Diagnostics) -> float:
+    mu, mu2 = (max(0.0, m) if math.isfinite(m) else MU_MOST for m in (surface.mu, surface.mu2))
+    if mu > MU_MOST or mu2 > MU_MOST:
+        diagnostics.note("SK-PHYS-002", f"friction coefficient {max(mu, mu2):g} is taken as {MU_MOST:g}", surface.where)
+        mu, mu2 = min(mu, MU_MOST), min(mu2, MU_MOST)
+    if mu != mu2:
+        diagnostics.warning(
+            "SK-PHYS-005",
+            f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways",
+            surface.where,
+        )
+    if surface.slip1 or surface.slip2:
+        diagnostics.warning("SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip in proportion to force", surface.where)
+    if surface.torsional:
+        diagnostics.note("SK-PHYS-007", "torsional friction is not used: contacts resist sliding only", surface.where)
+    return min(mu, mu2)
+
+
+def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagnostics) -> tuple[float, float]:
+    world = contact_time_constant(timestep)
+    if surface.restitution > 0.0:
+        diagnostics.note(
+            "SK-PHYS-003",
+            f"restitution {surface.restitution:g} is approximated by a contact with less damping, at any speed",
+            surface.where,
+        )
+        return bouncing(surface.restitution, timestep)
+    if surface.kp is None or surface.kp >= STIFF_KP or surface.kp <= 0.0:
+        if surface.kp is not None and surface.kp != 1e12:
+            diagnostics.note(
+                "SK-PHYS-004",
+                f"contact stiffness {surface.kp:g} N/m counts as rigid: time constant {world * 1e3:g} ms, critically damped",
+                surface.where,
+            )
+        return world, 1.0
+    if mass <= 0.0:
+        diagnostics.note(
+            "SK-PHYS-004", f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is", surface.where
+        )
+        return world, 1.0
+    omega = math.sqrt(surface.kp / mass)
+    damping = max(1.0, (surface.kd or 0.0) / (2.0 * mass * omega))
+    constant = max(world, 1.0 / (damping * omega))
+    diagnostics.note(
+        "SK-PHYS-004",
+        f"contact stiffness {surface.kp:g} N/m carries {mass:g} kg with a time constant of {constant * 1e3:.3g} ms",
+        surface.where,
+    )
+    return constant, damping
+
+
+def bouncing(restitution: float, timestep: float) -> tuple[float, float]:
+    """Direct stiffness and damping (negative solref) of a contact that rebounds at `restitution` times the speed.
+
+    A spring-dashpot that only pushes lets go after an angle of pi − atan2(2ζs, 1 − 2ζ²), s = sqrt(1 − ζ²), of its
+    swing (Schwager and Pöschel 2007): e = exp(−ζ/s · angle), solved for ζ by bisection.
+    """
+    omega = 1.0 / contact_time_constant(timestep)
+    low, high = 0.0, 0.999
+    for _ in range(60):
+        middle = (low + high) / 2
+        if _rebound(middle) > min(restitution, 1.0):
+            low = middle
+        else:
+            high = middle
+    return -omega * omega, -2.0 * low * omega
+
+
+def _rebound(zeta: float) -> float:
+    s = math.sqrt(1.0 - zeta * zeta)
+    return math.exp(-zeta / s * (math.pi - math.atan2(2.0 * zeta * s, 1.0 - 2.0 * zeta * zeta)))

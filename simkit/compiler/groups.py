@@ -1,0 +1,17 @@
+"""Geom groups: who sees what. Cameras see VISUAL; rays against collisions see COLLISION and COLLISION_RAY."""
+
+from __future__ import annotations
+
+from typing import Final
+
+VISUAL: Final = 2
+"""Drawn, never collides."""
+
+COLLISION: Final = 3
+"""Collides, and is seen by rays against collisions."""
+
+COLLISION_RAY: Final = 4
+"""The exact copy of a non-convex static mesh: seen by rays against collisions, never collides."""
+
+COLLISION_CONTACT: Final = 5
+"""The convex pieces that collide in place of such a mesh; seen by no ray."""

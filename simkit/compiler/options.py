@@ -1,0 +1,83 @@
+"""World-wide settings of the engine: step, gravity, integrator, contact softness, memory."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import mujoco
+import numpy as np
+
+from simkit.diagnostics import Diagnostics
+from simkit.scene import SceneWorld
+
+CONTACT_SOLIMP: Final = (0.95, 0.99, 0.001, 0.5, 2.0)
+"""Impedance of contacts and limits: high, so that a heavy weight settles exactly and friction creeps little."""
+
+_MEMORY_BASE: Final = 32 << 20
+_MEMORY_PER_GEOM: Final = 64 << 10
+_MEMORY_MOST: Final = 4 << 30
+
+
+def contact_time_constant(timestep: float) -> float:
+    """Time constant [s] of the one world-wide contact softness."""
+    return max(0.004, 2.0 * timestep)
+
+
+def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnostics) -> None:
+    """Sets step, gravity, integrator, solver flags, compiler conventions and the surroundings' light."""
+    step = world.physics.max_step_size
+    if not (math.isfinite(step) and step > 0.0):
+        diagnostics.error("SK-PHYS-015", f"max_step_size is {step}; a positive number of seconds is needed", world.physics.where)
+        step = 0.001
+    option = spec.option
+    option.timestep = step
+    option.gravity = world.gravity
+    option.magnetic = world.magnetic_field
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    compiler = spec.compiler
+    compiler.degree = False
+    compiler.autolimits = False
+    compiler.alignfree = False
+    compiler.fusestatic = False
+    compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    head = spec.visual.headlight
+    head.ambient = world.surroundings.ambient[:3]
+    head.diffuse = head.specular = (0.0, 0.0, 0.0)
+
+
+def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:
+    """Arena memory for contacts, by the number of geoms that collide (only what is used is ever touched)."""
+    wanted = min(_MEMORY_MOST, _MEMORY_BASE + _MEMORY_PER_GEOM * colliding_geoms)
+    if int(spec.memory) < wanted:
+        spec.memory = wanted
+
+
+def choose_islands(spec: mujoco.MjSpec, trees: int) -> None:
+    """Constraint islands cost a single robot 8 % and pay only where several trees move."""
+    if trees < 2:
+        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+
+
+def set_extent(model: mujoco.MjModel) -> None:
+    """Centre and size of the scene from its bounded geoms alone; planes, far lights and outliers count for nothing.
+
+    They scale the clip planes and the shadow map of whoever draws with MuJoCo's defaults.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    bounded = model.geom_rbound > 0.0
+    if not bounded.any():
+        model.stat.center[:] = 0.0
+        model.stat.extent = 1.0
+        return
+    centres, radii = data.geom_xpos[bounded], model.geom_rbound[bounded]
+    middle = np.median(centres, axis=0)
+    distance = np.linalg.norm(centres - middle, axis=1) + radii
+    near = distance <= 20.0 * max(float(np.median(distance)), 0.5)
+    low = (centres - radii[:, None])[near].min(axis=0)
+    high = (centres + radii[:, None])[near].max(axis=0)
+    model.stat.center[:] = (low + high) / 2
+    model.stat.extent = float(np.clip(np.linalg.norm(high - low) / 2, 0.5, 1000.0))

@@ -1,0 +1,80 @@
+"""Files into a `Scene`: XML ends in this package."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+
+from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.loaders.base import Loader, LoadRequest
+from simkit.loaders.resolver import Resolver
+from simkit.loaders.xml import Document, parse_file, parse_text
+from simkit.pose import Pose
+from simkit.registry import discover
+from simkit.scene import Scene
+
+__all__ = ["Document", "LoadRequest", "Loader", "Resolver", "load_scene", "loader_kinds"]
+
+
+@lru_cache(maxsize=1)
+def loader_kinds() -> Mapping[str, type[Loader]]:
+    """Every loader by the root element it reads."""
+    return discover("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots)
+
+
+def load_scene(
+    source: str | os.PathLike[str],
+    *,
+    resolver: Resolver,
+    diagnostics: Diagnostics,
+    xacro_args: Mapping[str, str] | None = None,
+    base: str = "auto",
+    name: str | None = None,
+    pose: Pose | None = None,
+) -> Scene:
+    """Reads a file, or XML text, into a scene.
+
+    Args:
+        source: a path, the name of a bundled model or world, or XML text (it contains `<`).
+        resolver: finds what the file names.
+        diagnostics: receives every problem; a user's mistake never raises.
+        xacro_args: arguments of a xacro file.
+        base: "auto", "fixed" or "floating", for a bare model.
+        name: replaces the name of a bare model.
+        pose: replaces the pose of a bare model [m], in the world.
+
+    Returns:
+        What could be read; an empty scene when nothing could.
+    """
+    document = _document(source, resolver, diagnostics)
+    if document is None:
+        return Scene()
+    root = document.root
+    kinds = loader_kinds()
+    if root.name not in kinds:
+        known = ", ".join(f"<{kind}>" for kind in kinds)
+        hint = did_you_mean(root.name, kinds) or "a world or model file begins with <sdf version='...'>"
+        diagnostics.error("SK-LOAD-003", f"the root element is <{root.name}>, known are {known}", root.where, hint)
+        return Scene()
+    request = LoadRequest(resolver, diagnostics, dict(xacro_args or {}), base, name, pose)
+    return kinds[root.name]().load(document, request)
+
+
+def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
+    if isinstance(source, str) and "<" in source:
+        root = parse_text(source, diagnostics)
+        return None if root is None else Document(root, None, source.encode())
+    path = Path(source)
+    if path.is_dir():
+        model = resolver.model_file(path, Where(str(path)), diagnostics)
+        return None if model is None else parse_file(model, diagnostics)
+    if not path.exists():
+        bundled = resolver.find_world(str(source)) or resolver.find_model(str(source))
+        if bundled is None:
+            near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
+            diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), did_you_mean(path.name, near))
+            return None
+        path = bundled
+    return parse_file(path, diagnostics)

@@ -1,0 +1,164 @@
+"""`<geometry>`: primitives, meshes, height maps and outlines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.params import Params
+from simkit.scene import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Empty,
+    Geometry,
+    Heightmap,
+    Mesh,
+    Plane,
+    Polyline,
+    Sphere,
+)
+from simkit.scene.geometry import Vec3
+
+_Reader = Callable[[Params, SdfFile, Workspace], Geometry | None]
+
+
+def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str) -> Geometry | None:
+    """The shape of a collision or visual; None, with an error recorded, where there is no usable one."""
+    block = owner.child("geometry")
+    if block is None:
+        workspace.diagnostics.error("SK-SDF-009", f"{what} needs <geometry>", owner.where)
+        return None
+    shapes = [c for c in block.children if ":" not in c.name]
+    if not shapes:
+        return Empty()
+    for shape in shapes:
+        reader = _READERS.get(shape.name)
+        if reader is not None:
+            block.child(shape.name)
+            return reader(shape, file, workspace)
+    for name in _READERS:
+        block.has(name)
+    if shapes[0].name == "image":
+        block.child("image")
+        shapes[0].mark_all_read()
+        workspace.diagnostics.warning("SK-SDF-012", f"{what}: <image> as a shape is not simulated", shapes[0].where)
+    return Empty()
+
+
+def _positive(element: Params, name: str, default: float) -> float:
+    value = element.number(name, default)
+    if value <= 0:
+        found = element.child(name) or element
+        found.error("SK-SDF-009", f"<{element.name}> has {name} {value:g}, it must be positive")
+        return default
+    return value
+
+
+def _sizes(element: Params, name: str, default: Vec3, minimum: float = 0.0) -> Vec3:
+    values = element.vector3(name, default)
+    if any(v <= minimum for v in values):
+        found = element.child(name) or element
+        text = " ".join(f"{v:g}" for v in values)
+        found.error("SK-SDF-009", f"<{element.name}> has {name} {text}, each must be positive")
+        return default
+    return values
+
+
+def _box(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+    return Box(_sizes(element, "size", (1.0, 1.0, 1.0)))
+
+
+def _sphere(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+    return Sphere(_positive(element, "radius", 1.0))
+
+
+def _cylinder(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+    return Cylinder(_positive(element, "radius", 1.0), _positive(element, "length", 1.0))
+
+
+def _capsule(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+    return Capsule(_positive(element, "radius", 0.5), _positive(element, "length", 1.0))
+
+
+def _cone(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+    return Cone(_positive(element, "radius", 0.5), _positive(element, "length", 1.0))
+
+
+def _ellipsoid(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+    return Ellipsoid(_sizes(element, "radii", (1.0, 1.0, 1.0)))
+
+
+def _plane(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
+    normal = element.vector3("normal", (0.0, 0.0, 1.0))
+    length = math.sqrt(sum(v * v for v in normal))
+    if length < 1e-12:
+        element.error("SK-SDF-009", "<plane> has a normal of length zero")
+        return Plane()
+    width, depth = element.vector("size", 2, (1.0, 1.0))
+    return Plane((normal[0] / length, normal[1] / length, normal[2] / length), (width, depth))
+
+
+def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | None:
+    uri = element.text("uri", required=True)
+    scale = element.vector3("scale", (1.0, 1.0, 1.0))
+    if any(v == 0 for v in scale):
+        element.error("SK-SDF-009", f"<mesh> {uri} has a scale of zero")
+        scale = (1.0, 1.0, 1.0)
+    part = element.block("submesh")
+    name, center = part.text("name", ""), part.boolean("center", False)
+    if not uri:
+        return None
+    place = element.child("uri") or element
+    path = workspace.resolver.resolve(uri, place.where, workspace.diagnostics, file.folder)
+    if path is None:
+        return None
+    if path.is_dir():
+        workspace.diagnostics.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", place.where)
+        return None
+    return Mesh(path.absolute(), uri, scale, name, center)
+
+
+def _heightmap(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | None:
+    uri = element.text("uri", required=True)
+    size = _sizes(element, "size", (1.0, 1.0, 1.0))
+    position = element.vector3("pos", (0.0, 0.0, 0.0))
+    if not uri:
+        return None
+    place = element.child("uri") or element
+    path = workspace.resolver.resolve(uri, place.where, workspace.diagnostics, file.folder)
+    return None if path is None else Heightmap(path.absolute(), uri, size, position)
+
+
+def _polyline(element: Params, _file: SdfFile, workspace: Workspace) -> Geometry | None:
+    height = _positive(element, "height", 1.0)
+    points: list[tuple[float, float]] = []
+    for point in element.all("point"):
+        try:
+            x, y = (float(v) for v in point.value.split())
+        except ValueError:
+            point.error("SK-PARAM-002", f"found <point>{point.value}</point>, allowed is 2 numbers")
+            continue
+        points.append((x, y))
+    if len(points) < 3:
+        element.error("SK-SDF-009", f"<polyline> has {len(points)} points, it needs at least 3")
+        return None
+    return Polyline((tuple(points),), height)
+
+
+_READERS: dict[str, _Reader] = {
+    "box": _box,
+    "sphere": _sphere,
+    "cylinder": _cylinder,
+    "capsule": _capsule,
+    "cone": _cone,
+    "ellipsoid": _ellipsoid,
+    "plane": _plane,
+    "mesh": _mesh,
+    "heightmap": _heightmap,
+    "polyline": _polyline,
+    "empty": lambda _element, _file, _workspace: Empty(),
+}

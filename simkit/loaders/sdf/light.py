@@ -1,0 +1,62 @@
+"""`<light>` of a world or a link."""
+
+from __future__ import annotations
+
+import math
+
+from simkit.diagnostics import Diagnostics, closest
+from simkit.loaders.sdf.material import read_colour
+from simkit.params import Params
+from simkit.pose import Pose
+from simkit.scene import SceneLight
+from simkit.scene.geometry import Vec3
+
+_TYPES = ("point", "spot", "directional")
+
+
+def read_light(element: Params, name: str, scoped: str, pose_world: Pose, link: str, diagnostics: Diagnostics) -> SceneLight:
+    """A light whose pose is resolved already."""
+    kind = element.attribute("type", "point") or "point"
+    if kind not in _TYPES:
+        near = closest(kind, _TYPES)
+        diagnostics.error(
+            "SK-SDF-025", f"light {name!r} has type {kind!r}, known are {', '.join(_TYPES)}", element.where,
+            f"did you mean {near!r}?" if near else "",
+        )
+        kind = "point"
+    element.child("pose")
+    direction = _direction(element, name, diagnostics)
+    fade, spot = element.block("attenuation"), element.block("spot")
+    turned = pose_world.rotate(direction)
+    element.child("visualize")
+    return SceneLight(
+        name=name,
+        scoped=scoped,
+        type=kind,
+        pose_world=pose_world,
+        direction=direction,
+        direction_world=(float(turned[0]), float(turned[1]), float(turned[2])),
+        link=link,
+        diffuse=read_colour(element, "diffuse", (1.0, 1.0, 1.0, 1.0)),
+        specular=read_colour(element, "specular", (0.1, 0.1, 0.1, 1.0)),
+        intensity=element.number("intensity", 1.0, minimum=0),
+        attenuation=(
+            fade.number("range", 10.0, finite=False),
+            fade.number("constant", 1.0),
+            fade.number("linear", 1.0),
+            fade.number("quadratic", 0.0),
+        ),
+        spot=(spot.number("inner_angle", 0.0), spot.number("outer_angle", 0.0), spot.number("falloff", 0.0)),
+        cast_shadows=element.boolean("cast_shadows", False),
+        on=element.boolean("light_on", True),
+        where=element.where,
+    )
+
+
+def _direction(element: Params, name: str, diagnostics: Diagnostics) -> Vec3:
+    x, y, z = element.vector3("direction", (0.0, 0.0, -1.0))
+    length = math.sqrt(x * x + y * y + z * z)
+    if length < 1e-12:
+        diagnostics.error("SK-SDF-025", f"light {name!r} has a direction of length zero", element.where)
+        return (0.0, 0.0, -1.0)
+    return (x / length, y / length, z / length)

@@ -1,0 +1,20 @@
+"""`<plugin>`: name, file name and the block of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from simkit.params import Params
+from simkit.scene import ScenePlugin
+
+
+def read_plugins(elements: Sequence[Params], scoped: str) -> tuple[ScenePlugin, ...]:
+    """Plugins in document order; one without a file name is an error."""
+    plugins = []
+    for element in elements:
+        filename = element.attribute("filename").strip()
+        if not filename:
+            element.error("SK-SDF-026", f"<plugin name={element.attribute('name')!r}> needs filename=")
+            continue
+        plugins.append(ScenePlugin(element.attribute("name"), filename, scoped, element, element.where))
+    return tuple(plugins)

@@ -1,0 +1,58 @@
+"""`<surface>`: friction, bounce, contact stiffness and masks."""
+
+from __future__ import annotations
+
+from simkit.params import Params
+from simkit.scene import Surface
+
+
+def read_surface(collision: Params) -> Surface:
+    """The contact properties of a collision; the format's defaults where it has no `<surface>`."""
+    block = collision.child("surface")
+    if block is None:
+        return Surface()
+    friction, contact, bounce = block.block("friction"), block.block("contact"), block.block("bounce")
+    ode, bullet = friction.block("ode"), friction.block("bullet")
+    mu = ode.number("mu", bullet.number("friction", 1.0, minimum=0), minimum=0, finite=False)
+    mu2 = ode.number("mu2", bullet.number("friction2", mu if not ode.has("mu") else 1.0, minimum=0), minimum=0, finite=False)
+    soft = contact.child("ode")
+    twist = friction.block("torsional")
+    return Surface(
+        mu=mu,
+        mu2=mu2,
+        fdir1=ode.vector3("fdir1", bullet.vector3("fdir1", (0.0, 0.0, 0.0))),
+        slip1=ode.number("slip1", 0.0),
+        slip2=ode.number("slip2", 0.0),
+        torsional=twist.number("coefficient", 1.0, minimum=0) if twist.has("coefficient") else None,
+        kp=_given(soft, "kp"),
+        kd=_given(soft, "kd"),
+        soft_cfm=_given(soft, "soft_cfm"),
+        soft_erp=_given(soft, "soft_erp"),
+        min_depth=_given(soft, "min_depth"),
+        max_vel=_given(soft, "max_vel"),
+        restitution=bounce.number("restitution_coefficient", 0.0, minimum=0),
+        restitution_threshold=bounce.number("threshold", 1e5, finite=False),
+        collide_bitmask=_mask(contact, "collide_bitmask"),
+        category_bitmask=_mask(contact, "category_bitmask"),
+        collide_without_contact=contact.boolean("collide_without_contact", False),
+        where=block.where,
+    )
+
+
+def _given(block: Params | None, name: str) -> float | None:
+    """A number where the file gives one."""
+    if block is None or not block.has(name):
+        return None
+    return block.number(name, 0.0, finite=False)
+
+
+def _mask(contact: Params, name: str) -> int:
+    """A 16-bit mask, decimal or 0x..; all ones where not given."""
+    found = contact.child(name)
+    if found is None:
+        return 0xFFFF
+    try:
+        return int(found.value, 0) & 0xFFFFFFFF
+    except ValueError:
+        found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>, allowed is a whole number")
+        return 0xFFFF

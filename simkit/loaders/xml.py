@@ -1,0 +1,145 @@
+"""XML into `Params`: without entities, external references or network, within bounds, with the line of every element.
+
+Names keep their prefix as written (`gz:type`), declared or not, because the files of Gazebo use undeclared ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from xml.parsers import expat
+
+from simkit.diagnostics import Diagnostics, Where
+from simkit.params import Params
+
+MAX_BYTES = 256 * 1024 * 1024
+MAX_DEPTH = 200
+MAX_ELEMENTS = 3_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """One parsed file.
+
+    Attributes:
+        root: the outermost element.
+        path: the file, or None for XML given as text.
+        text: the bytes as read.
+    """
+
+    root: Params
+    path: Path | None
+    text: bytes
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder that relative URIs of this file start from."""
+        return None if self.path is None else self.path.parent
+
+
+class _Refused(Exception):
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class _Open:
+    """An element whose end tag has not come yet."""
+
+    __slots__ = ("attributes", "children", "line", "name", "text")
+
+    def __init__(self, name: str, attributes: dict[str, str], line: int) -> None:
+        self.name, self.attributes, self.line = name, attributes, line
+        self.children: list[Params] = []
+        self.text: list[str] = []
+
+
+class _Reader:
+    """Builds the tree from expat's events and keeps the bounds."""
+
+    def __init__(self, file: str | None, first_line: int, diagnostics: Diagnostics) -> None:
+        self.file, self.offset, self.diagnostics = file, first_line, diagnostics
+        self.parser = expat.ParserCreate()
+        self.parser.buffer_text = True
+        self.parser.StartElementHandler = self.start
+        self.parser.EndElementHandler = self.end
+        self.parser.CharacterDataHandler = self.characters
+        self.parser.EntityDeclHandler = self.entity
+        self.stack: list[_Open] = []
+        self.root: Params | None = None
+        self.count = 0
+
+    @property
+    def line(self) -> int:
+        return self.parser.CurrentLineNumber + self.offset
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        self.count += 1
+        if self.count > MAX_ELEMENTS:
+            raise _Refused("SK-XML-002", f"more than {MAX_ELEMENTS} elements")
+        if len(self.stack) >= MAX_DEPTH:
+            raise _Refused("SK-XML-002", f"elements nested deeper than {MAX_DEPTH}")
+        self.stack.append(_Open(name, attributes, self.line))
+
+    def characters(self, text: str) -> None:
+        if self.stack:
+            self.stack[-1].text.append(text)
+
+    def end(self, _name: str) -> None:
+        done = self.stack.pop()
+        where = Where(self.file, done.line)
+        element = Params(done.name, "".join(done.text).strip(), done.attributes, done.children, where, self.diagnostics)
+        if self.stack:
+            self.stack[-1].children.append(element)
+        else:
+            self.root = element
+
+    def entity(self, name: str, *_rest: object) -> None:
+        raise _Refused("SK-XML-003", f"the file declares the entity {name!r}; entities are not read")
+
+
+def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = None) -> Params | None:
+    """The root element of an XML text; None, with an error recorded, when it cannot be read.
+
+    Args:
+        text: XML; bytes may be in any encoding that their declaration names.
+        diagnostics: where problems go.
+        file: name for `file:line`; None for text that came from no file.
+    """
+    data = text.encode() if isinstance(text, str) else text
+    if len(data) > MAX_BYTES:
+        diagnostics.error("SK-XML-002", f"the file has {len(data)} bytes, allowed are {MAX_BYTES}", Where(file))
+        return None
+    if isinstance(text, str) and data.lstrip().startswith(b"<?xml"):
+        declaration, _, rest = data.lstrip().partition(b"?>")
+        data = data[: len(data) - len(data.lstrip())] + b"<?xml version='1.0'?>" + b"\n" * declaration.count(b"\n") + rest
+    body = data.lstrip() if not data.startswith((b"\xff\xfe", b"\xfe\xff")) else data
+    reader = _Reader(file, data[: len(data) - len(body)].count(b"\n"), diagnostics)
+    try:
+        reader.parser.Parse(body, True)
+    except expat.ExpatError as error:
+        where = Where(file, error.lineno + reader.offset)
+        opened = f" (inside <{reader.stack[-1].name}> of line {reader.stack[-1].line})" if reader.stack else ""
+        diagnostics.error("SK-XML-001", f"broken XML: {expat.ErrorString(error.code)}{opened}", where)
+        return None
+    except _Refused as refused:
+        diagnostics.error(refused.code, str(refused), Where(file, reader.line))
+        return None
+    except (LookupError, ValueError) as error:
+        diagnostics.error("SK-XML-001", f"broken XML: {error}", Where(file, reader.line))
+        return None
+    return reader.root
+
+
+def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
+    """Reads one XML file; None, with an error recorded, when it cannot be read."""
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            diagnostics.error("SK-XML-002", f"the file is larger than {MAX_BYTES} bytes", Where(str(path)))
+            return None
+        text = path.read_bytes()
+    except OSError as error:
+        diagnostics.error("SK-LOAD-002", f"cannot read the file: {error.strerror or error}", Where(str(path)))
+        return None
+    root = parse_text(text, diagnostics, str(path))
+    return None if root is None else Document(root, path, text)

@@ -1,0 +1,114 @@
+"""ROS 2 messages: dataclasses that rosbags makes, filled from plain values and written as CDR.
+
+    msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
+    msgs.type_of("sensor_msgs/msg/Imu")          # the class itself, for the fast path
+    msgs.header(sim.time_ns, "imu_link")
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any
+
+from simkit.errors import MessageError
+from simkit.msgs.forms import form_of
+from simkit.msgs.store import definition, full_name, rihs, type_of, type_store
+
+__all__ = [
+    "definition",
+    "deserialize",
+    "duration",
+    "from_dict",
+    "full_name",
+    "header",
+    "make",
+    "rihs",
+    "serialize",
+    "stamp_ns",
+    "time",
+    "type_name",
+    "type_of",
+    "type_store",
+]
+
+_NS = 1_000_000_000
+
+
+def make(type_name: str, /, **fields: Any) -> Any:
+    """A message; fields left out are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
+
+    Raises:
+        MessageError: an unknown type or field (the closest is named), or a value that does not fit.
+    """
+    return form_of(type_name).build(fields)
+
+
+def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
+    """A message of the first type that the values fit.
+
+    Raises:
+        MessageError: they fit none; says why for the first type, and which others were tried.
+    """
+    first: MessageError | None = None
+    for name in type_names:
+        try:
+            return form_of(name).build(values)
+        except MessageError as error:
+            first = first or error
+    if first is None:
+        raise MessageError("no message type is taken here")
+    others = f" (nor does it fit {', '.join(type_names[1:])})" if len(type_names) > 1 else ""
+    raise MessageError(f"{first}{others}")
+
+
+def type_name(message: Any) -> str:
+    """The ROS type name of a message object, such as `sensor_msgs/msg/Imu`.
+
+    Raises:
+        MessageError: the object is no message.
+    """
+    name = getattr(message, "__msgtype__", None)
+    if not isinstance(name, str):
+        raise MessageError(f"{type(message).__name__} is not a message; use simkit.msgs.make(...) or a dict of its fields")
+    return name
+
+
+@cache
+def _stamp_types() -> tuple[type[Any], type[Any], type[Any]]:
+    return (
+        type_of("builtin_interfaces/msg/Time"),
+        type_of("builtin_interfaces/msg/Duration"),
+        type_of("std_msgs/msg/Header"),
+    )
+
+
+def time(ns: int) -> Any:
+    """A `builtin_interfaces/msg/Time` of `ns` nanoseconds."""
+    return _stamp_types()[0](*divmod(ns, _NS))
+
+
+def duration(ns: int) -> Any:
+    """A `builtin_interfaces/msg/Duration` of `ns` nanoseconds."""
+    return _stamp_types()[1](*divmod(ns, _NS))
+
+
+def header(time_ns: int, frame_id: str) -> Any:
+    """A `std_msgs/msg/Header` stamped with `time_ns` [ns]."""
+    types = _stamp_types()
+    return types[2](types[0](*divmod(time_ns, _NS)), frame_id)
+
+
+def stamp_ns(stamp: Any) -> int:
+    """The nanoseconds of a Time or Duration message."""
+    return int(stamp.sec) * _NS + int(stamp.nanosec)
+
+
+def serialize(message: Any) -> bytes:
+    """The message as CDR, little-endian, as ROS 2 sends it."""
+    return bytes(type_store().serialize_cdr(message, type_name(message), little_endian=True))
+
+
+def deserialize(data: bytes | memoryview, type_name: str) -> Any:
+    """The message that `serialize` wrote."""
+    return type_store().deserialize_cdr(data, full_name(type_name))

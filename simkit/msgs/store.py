@@ -1,0 +1,61 @@
+"""The one type store: ROS 2 Jazzy from rosbags plus our extras, made at the first use."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import MessageError
+from simkit.msgs.extras import DEFINITIONS
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+
+@cache
+def type_store() -> Typestore:
+    """The type store with every message type that simkit knows."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    extras: dict[str, Any] = {}
+    for name, text in DEFINITIONS.items():
+        extras.update(get_types_from_msg(text, name))
+    store.register(extras)
+    return store
+
+
+def full_name(type_name: str) -> str:
+    """`sensor_msgs/Imu` and `sensor_msgs/msg/Imu` are the same type.
+
+    Raises:
+        MessageError: no such type is known; names the closest.
+    """
+    store = type_store()
+    if type_name in store.fielddefs:
+        return type_name
+    package, _, rest = type_name.partition("/")
+    long = f"{package}/msg/{rest}"
+    if long in store.fielddefs:
+        return long
+    hint = did_you_mean(type_name if "/msg/" in type_name else long, store.fielddefs)
+    raise MessageError(f"no message type {type_name!r} is known; {hint}".rstrip("; "))
+
+
+@cache
+def type_of(type_name: str) -> type[Any]:
+    """The dataclass of a message type; construct it directly where every microsecond counts."""
+    return type_store().types[full_name(type_name)]
+
+
+@cache
+def definition(type_name: str) -> str:
+    """The `ros2msg` text of a type, with those of all types it uses."""
+    return type_store().generate_msgdef(full_name(type_name), ros_version=2)[0]
+
+
+@cache
+def rihs(type_name: str) -> str:
+    """The type hash as ROS 2 writes it (`RIHS01_…`)."""
+    return type_store().hash_rihs01(full_name(type_name))

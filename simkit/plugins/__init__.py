@@ -1,0 +1,103 @@
+"""Plugins: base classes, the kinds that come with simkit, and how a name in a file finds its class."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from simkit.diagnostics import Diagnostics, closest
+from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
+from simkit.plugins.ros_names import RosNames
+from simkit.registry import discover
+from simkit.scene import ScenePlugin
+
+__all__ = [
+    "ModelPlugin",
+    "Plugin",
+    "RosNames",
+    "SensorPlugin",
+    "VisualPlugin",
+    "WorldPlugin",
+    "find_plugin",
+    "normalise",
+    "plugin_kinds",
+]
+
+GROUP = "simkit.plugins"
+
+
+def normalise(name: str) -> str:
+    """One spelling for the many of one plugin: `libignition-gazebo6-imu-system.so` is `gz-sim-imu-system`.
+
+    Folder, `lib` and the library's ending go; Ignition's names and version numbers become gz-sim's.
+    """
+    stem = name.strip().replace("\\", "/").rsplit("/", 1)[-1]
+    stem = re.sub(r"\.(so|dylib|dll)(\.\d+)*$", "", stem)
+    stem = stem.removeprefix("lib")
+    stem = re.sub(r"^(ignition-gazebo|gz-sim)\d*(-|$)", r"gz-sim\2", stem)
+    return re.sub(r"^(ignition::gazebo|gz::sim)::(v\d+::)?", "gz::sim::", stem)
+
+
+@functools.cache
+def plugin_kinds() -> Mapping[str, type[Plugin]]:
+    """Every known plugin class by each normalised name it answers to; computed once, read-only."""
+    return discover(
+        "simkit.plugins", GROUP, Plugin, lambda cls: dict.fromkeys(map(normalise, (*cls.filenames, *cls.names)))
+    )
+
+
+def find_plugin(
+    plugin: ScenePlugin, plugin_paths: Sequence[Path] = (), diagnostics: Diagnostics | None = None
+) -> type[Plugin] | None:
+    """The class behind a plugin of a file, or None after a diagnostic that says why.
+
+    A file can name only what is installed or allowed: kinds of simkit, classes of entry points in the group
+    `simkit.plugins` (by alias or as `module:Class`), and modules that lie in a folder of `plugin_paths`.
+
+    Args:
+        plugin: as read from the file.
+        plugin_paths: folders whose modules the user allows (`--plugin-path`).
+        diagnostics: where problems go; the file's own where not given.
+    """
+    found = diagnostics if diagnostics is not None else plugin.params.diagnostics
+    kinds = plugin_kinds()
+    cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
+    if cls is None:
+        from simkit.plugins.user_code import find_user_plugin
+
+        said = len(found)
+        cls = find_user_plugin(plugin, plugin_paths, found)
+        if cls is None and len(found) == said:
+            _report_unknown(plugin, found)
+    return cls
+
+
+def aliases(plugin: ScenePlugin) -> list[str]:
+    """The normalised names a plugin of a file may be known by: its library, then its gz class.
+
+    A name without `::` is only what the file's author called it.
+    """
+    names = [plugin.filename, plugin.name if "::" in plugin.name else ""]
+    return [normalise(name) for name in names if name]
+
+
+def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
+    from simkit.plugins.gazebo_names import KNOWN
+
+    names = aliases(plugin)
+    if KNOWN.intersection(names):
+        message = f"plugin {plugin.filename!r} (name {plugin.name!r}) is a Gazebo plugin that simkit does not have; it is left out"
+        diagnostics.warning("SK-PLUGIN-002", message, plugin.where, "write it in Python: docs/writing_a_plugin.md")
+        return
+    spelled = {normalise(f): f for cls in dict.fromkeys(plugin_kinds().values()) for f in (*cls.filenames, *cls.names)}
+    near = next(filter(None, (closest(name, spelled) for name in names)), None)
+    if near:
+        hint = f"did you mean {spelled[near]!r}?"
+    else:
+        nearest = difflib.get_close_matches(names[0] if names else "", sorted(spelled), n=1, cutoff=0.0)
+        hint = f"no name is near; the closest known one is {spelled[nearest[0]]!r}" if nearest else ""
+    message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is left out"
+    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)

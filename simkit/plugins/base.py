@@ -1,0 +1,210 @@
+"""What a plugin is: Python that hangs on a world, a model, a sensor or a visual and is called as the run goes.
+
+Write a class with a `load` method; everything else is optional:
+
+    class Hello(WorldPlugin):
+        filenames = ("libhello.so",)
+
+        def load(self, parent, params):
+            self.log.info("hello")
+"""
+
+from __future__ import annotations
+
+import abc
+import copy
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from simkit.diagnostics import NOWHERE, Diagnostics, Where
+from simkit.params import Params
+from simkit.plugins.ros_names import RosNames
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Simulation
+    from simkit.scene import ScenePlugin
+
+Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
+ParentKind = Literal["world", "model", "sensor", "visual"]
+
+
+class Plugin(abc.ABC):
+    """Base of all plugins; derive from `WorldPlugin`, `ModelPlugin`, `SensorPlugin` or `VisualPlugin`.
+
+    A hook that a class does not override costs nothing. Hooks run on the grid of simulated time: with a rate of
+    r Hz at the first step at or after k/r, k = 1, 2, …; with None or 0 at every step.
+
+    Attributes:
+        filenames: library names in files that stand for this class (`libgazebo_ros_diff_drive.so`).
+        names: gz class names that do (`gz::sim::systems::DiffDrive`).
+        before_step_rate, after_step_rate: [Hz]; set in the class, or on the instance in `load`.
+        sim: the simulation.
+        name: the plugin's name in the file.
+        scoped: the entity it hangs on (empty for the world).
+        params: its parameters.
+        where: file and line.
+        ros: topic names after `<namespace>` and `<remapping>`.
+        log: a logger below `simkit`.
+    """
+
+    filenames: ClassVar[tuple[str, ...]] = ()
+    names: ClassVar[tuple[str, ...]] = ()
+    parent_kind: ClassVar[ParentKind]
+
+    before_step_rate: float | None = None
+    after_step_rate: float | None = None
+
+    sim: Simulation
+    name: str = ""
+    scoped: str = ""
+    params: Params
+    where: Where = NOWHERE
+    ros: RosNames
+    log: logging.Logger
+
+    # ------------------------------------------------------------------ what a user writes
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        """Before the model is compiled: check names, add actuators and sites through `builder`.
+
+        Args:
+            scene: the resolved entity: `SceneWorld`, `SceneModel` or `SceneSensor`.
+            params: the plugin's parameters; problems recorded here stop the load like any other.
+            builder: the door to the MuJoCo spec.
+        """
+
+    @abc.abstractmethod
+    def load(self, parent: Any, params: Params) -> None:
+        """Once, when everything is built: read parameters, open topics, find links and joints.
+
+        Args:
+            parent: the `Simulation`, `Model` or `Sensor` it hangs on.
+            params: the plugin's parameters, to be read by type and default.
+        """
+
+    def reset(self) -> None:
+        """Back at t = 0; the plugin's attributes are already what they were after `load`."""
+
+    def before_step(self) -> None:
+        """Before a physics step: commands."""
+
+    def after_step(self) -> None:
+        """After a physics step: readings."""
+
+    def close(self) -> None:
+        """When the plugin leaves: the run ends or its model is removed."""
+
+    # ------------------------------------------------------------------ what a user calls
+
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Any:
+        """A publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
+        return self.sim.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
+
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Any:
+        """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
+        return self.sim.bus.listen(self.ros.topic(topic), (types,) if isinstance(types, str) else types, callback)
+
+    def random(self, channel: str, width: int = 1) -> Any:
+        """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""
+        owner = f"{self.scoped}::{self.name}" if self.scoped else self.name
+        return self.sim.streams.stream(owner, channel, width)
+
+    @property
+    def period(self) -> float:
+        """Step of the physics [s]."""
+        return float(self.sim.timestep)
+
+    # ------------------------------------------------------------------ what the simulation calls
+
+    def _setup(self, sim: Simulation, plugin: ScenePlugin | None = None) -> None:
+        """Ties the instance to its simulation and to its place in the file (None: made in Python)."""
+        self.sim = sim
+        self.name = plugin.name if plugin else (self.name or type(self).__name__)
+        self.scoped = plugin.scoped if plugin else ""
+        self.params = plugin.params if plugin else Params("plugin")
+        self.where = plugin.where if plugin else NOWHERE
+        self.ros = RosNames.from_params(self.params, self.name)
+        self.log = logging.getLogger(f"simkit.plugins.{self.name}")
+        self.diagnostics: Diagnostics = self.params.diagnostics
+
+    @classmethod
+    def has_hook(cls, hook: Hook) -> bool:
+        """Whether the class overrides an optional hook."""
+        return getattr(cls, hook) is not getattr(Plugin, hook)
+
+    def get_state(self) -> dict[str, Any]:
+        """A copy of every attribute the plugin gave itself; handles and publishers stand for themselves.
+
+        An attribute that cannot be copied is left out and reported once (SK-PLUGIN-006); override this method and
+        `set_state` to keep it.
+        """
+        own = {k: v for k, v in vars(self).items() if k not in _OWNED}
+        memo: dict[int, Any] = {id(self): self}
+        try:
+            return copy.deepcopy(own, memo)
+        except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
+            return self._state_by_attribute(own)
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Back to a state from `get_state`; attributes made since are dropped, uncopied ones stay as they are."""
+        uncopied = vars(self).get("_uncopied", set())
+        for key in [k for k in vars(self) if k not in _OWNED and k not in state and k not in uncopied]:
+            delattr(self, key)
+        vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
+
+    def _state_by_attribute(self, own: dict[str, Any]) -> dict[str, Any]:
+        memo: dict[int, Any] = {id(self): self}
+        state, uncopied = {}, set()
+        for key, value in own.items():
+            try:
+                state[key] = copy.deepcopy(value, memo)
+            except Exception as error:  # noqa: BLE001 - as above
+                uncopied.add(key)
+                if key not in vars(self).get("_uncopied", set()):
+                    message = f"plugin {self.name!r}: attribute {key!r} cannot be copied, snapshots and reset leave it: {error}"
+                    self.diagnostics.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
+        self._uncopied = uncopied
+        return state
+
+    def _remember_loaded(self) -> None:
+        """Keeps what `load` made, for `_back_to_loaded`."""
+        self._loaded_state = self.get_state()
+
+    def _back_to_loaded(self) -> None:
+        """The default reset: attributes as after `load`, then the `reset` hook."""
+        self.set_state(self._loaded_state)
+        self.reset()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Plugin:
+        return self
+
+
+_OWNED = frozenset(
+    ("sim", "name", "scoped", "params", "where", "ros", "log", "diagnostics", "_uncopied", "_loaded_state")
+)
+
+
+class WorldPlugin(Plugin):
+    """Hangs on the world; `load` gets the `Simulation`, `prepare` the `SceneWorld`."""
+
+    parent_kind = "world"
+
+
+class ModelPlugin(Plugin):
+    """Hangs on a model; `load` gets the `Model`, `prepare` the `SceneModel`."""
+
+    parent_kind = "model"
+
+
+class SensorPlugin(Plugin):
+    """Hangs on a sensor; `load` gets the `Sensor`, `prepare` the `SceneSensor`."""
+
+    parent_kind = "sensor"
+
+
+class VisualPlugin(Plugin):
+    """Hangs on a visual; `load` gets the `Link` that shows it, `prepare` the `SceneVisual`."""
+
+    parent_kind = "visual"

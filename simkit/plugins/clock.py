@@ -1,0 +1,22 @@
+"""`/clock`: simulated time for whoever runs on it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+
+
+class ClockPublisher(WorldPlugin):
+    """Publishes `rosgraph_msgs/msg/Clock` on `/clock` at 100 Hz of simulated time; part of every world."""
+
+    after_step_rate = 100.0
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._clock = self.advertise("/clock", "rosgraph_msgs/msg/Clock")
+
+    def after_step(self) -> None:
+        if self._clock.wanted:
+            self._clock.publish(msgs.make("rosgraph_msgs/msg/Clock", clock=msgs.time(self.sim.time_ns)))

@@ -1,0 +1,91 @@
+"""Joint states: `libgazebo_ros_joint_state_publisher.so` and gz's JointStatePublisher."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_joint
+from simkit.plugins.ros_names import valid_topic
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneJoint, SceneModel
+
+JOINT_STATE = "sensor_msgs/msg/JointState"
+
+
+def joint_state(time_ns: int, joints: list[Any]) -> Any:
+    """A `sensor_msgs/msg/JointState` of joints in their order; efforts are those applied [N·m or N].
+
+    A joint of several degrees of freedom gives `name[0]`, `name[1]`, …; one of none gives one zero.
+    """
+    names: list[str] = []
+    columns: tuple[list[float], list[float], list[float]] = ([], [], [])
+    for joint in joints:
+        read = [np.atleast_1d(v).astype(float).tolist() for v in (joint.position, joint.velocity, joint.effort)]
+        count = len(read[0])
+        names += [joint.name] if count < 2 else [f"{joint.name}[{i}]" for i in range(count)]
+        for column, values in zip(columns, read, strict=True):
+            column += values or [0.0]
+    position, velocity, effort = (np.array(column) for column in columns)
+    header = msgs.header(time_ns, "")
+    return msgs.make(JOINT_STATE, header=header, name=names, position=position, velocity=velocity, effort=effort)
+
+
+class _JointStates(ModelPlugin):
+    """Publishes the chosen joints after a step; a kind says which they are and where they go."""
+
+    _joints: list[str]
+    _topic: str
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._handles = [self.sim.joint(name) for name in self._joints]
+        self._states = self.advertise(self._topic, JOINT_STATE)
+
+    def after_step(self) -> None:
+        if self._states.wanted:
+            self._states.publish(joint_state(self.sim.time_ns, self._handles))
+
+
+class GazeboRosJointStatePublisher(_JointStates):
+    """Gazebo Classic's publisher: the listed joints, in that order, on `joint_states`.
+
+    ROS 1 lists them in `<jointName>`, separated by commas.
+    """
+
+    filenames = ("libgazebo_ros_joint_state_publisher.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        names = [c.value for c in params.all("joint_name")]
+        names += [name for c in params.all("jointName") for name in c.value.replace(",", " ").split()]
+        if not names:
+            params.text("joint_name", required=True)
+        found = [find_joint(scene, name, params) for name in names]
+        self._joints = [joint.scoped for joint in found if joint is not None]
+        self._topic = "joint_states"
+        rate = "updateRate" if params.has("updateRate") else "update_rate"
+        self.after_step_rate = params.number(rate, 100.0, minimum=0)
+
+
+class JointStatePublisher(_JointStates):
+    """gz's publisher: the listed joints, or all of the model, on `/world/<world>/model/<model>/joint_state`."""
+
+    filenames = ("gz-sim-joint-state-publisher-system",)
+    names = ("gz::sim::systems::JointStatePublisher",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        names = [c.value for c in params.all("joint_name")]
+        found: list[SceneJoint | None] = [find_joint(scene, name, params) for name in names]
+        self._joints = [joint.scoped for joint in (found if names else scene.joints) if joint is not None]
+        self._given = params.text("topic", "")
+        self._path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
+        self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._topic = valid_topic(self._given or f"/world/{self.sim.world_name}{self._path}/joint_state")
+        super().load(parent, params)

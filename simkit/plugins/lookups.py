@@ -1,0 +1,75 @@
+"""Finding what a plugin's parameters name, with a report that says what there is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, TypeVar
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.scene import SceneJoint, SceneLink, SceneModel
+
+T = TypeVar("T")
+
+if TYPE_CHECKING:
+    from simkit.runtime import Light, Simulation
+
+
+def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
+    """A joint of the model by its name (scoped below the model, or plain), or None after an error."""
+    joints = scene.all_joints()
+    found = _below(scene.scoped, name, {j.scoped: j for j in joints})
+    if found is None:
+        _unknown("joint", name, scene, (j.name for j in joints), params)
+    return found
+
+
+def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
+    """A link of the model by its name (scoped below the model, or plain), or None after an error."""
+    links = scene.all_links()
+    found = _below(scene.scoped, name, {link.scoped: link for link in links})
+    if found is None:
+        _unknown("link", name, scene, (link.name for link in links), params)
+    return found
+
+
+def find_light(sim: Simulation, name: str, params: Params) -> Light | None:
+    """A light of the world by its scoped name, or None after an error that lists the lights."""
+    lights = sim.lights
+    if name in lights:
+        return lights[name]
+    listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
+    params.error("SK-PLUGIN-003", f"there is no light {name!r}; lights are: {listed}", did_you_mean(name, lights))
+    return None
+
+
+def _below(scope: str, name: str, table: dict[str, T]) -> T | None:
+    if f"{scope}::{name}" in table:
+        return table[f"{scope}::{name}"]
+    nested = [value for scoped, value in table.items() if scoped.endswith("::" + name)]
+    return nested[0] if nested else None
+
+
+def _unknown(what: str, name: str, scene: SceneModel, names: Iterable[str], params: Params) -> None:
+    listed = sorted(set(names))
+    shown = ", ".join(repr(n) for n in listed[:12]) + (", …" if len(listed) > 12 else "")
+    message = f"model {scene.scoped!r} has no {what} {name!r}; it has: {shown or 'none'}"
+    params.error("SK-PLUGIN-003", message, did_you_mean(name, listed))
+
+
+def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
+    """A joint of one degree of freedom, or None after an error."""
+    joint = find_joint(scene, name, params)
+    if joint is not None and len(joint.axes) != 1:
+        message = f"joint {name!r} is {joint.type}; a joint with one axis is needed"
+        params.error("SK-PLUGIN-003", message)
+        return None
+    return joint
+
+
+def numbers(params: Params, name: str, minimum: float | None = None) -> list[float]:
+    """The numbers of all elements of that name, in document order."""
+    one_each = (
+        Params(params.name, children=(c,), where=c.where, diagnostics=params.diagnostics) for c in params.all(name)
+    )
+    return [element.number(name, minimum=minimum) for element in one_each]

@@ -1,0 +1,71 @@
+"""Topic names as a ROS node sees them: namespace, remapping, `~/private` names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from simkit.params import Params
+
+_RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
+
+
+class RosNames:
+    """Names of one node.
+
+    Args:
+        node: node name; `~/x` is `<namespace>/<node>/x`.
+        namespace: `tb3`, `/tb3` or empty.
+        remappings: from -> to; both sides are expanded before they are compared.
+    """
+
+    def __init__(self, node: str, namespace: str = "", remappings: Mapping[str, str] = MappingProxyType({})) -> None:
+        self.node = node
+        self.namespace = "/" + namespace.strip("/") if namespace.strip("/") else ""
+        self._rules = {self._expand(a): self._expand(b) for a, b in remappings.items()}
+
+    @classmethod
+    def from_params(cls, params: Params, node: str) -> RosNames:
+        """Reads the `<ros>` block of ROS 2 plugins, or `<robotNamespace>` of ROS 1 plugins."""
+        remappings: dict[str, str] = {}
+        namespace = params.text("robotNamespace", "")
+        ros = params.child("ros")
+        if ros is None:
+            return cls(node, namespace)
+        namespace = ros.text("namespace", namespace)
+        for element in ros.all("remapping") + ros.all("argument"):
+            for word in element.value.split():
+                rule = _RULE.match(word)
+                if rule is None:
+                    if word not in {"--ros-args", "-r", "--remap"}:
+                        allowed = "from:=to" if element.name == "remapping" else "a remapping from:=to"
+                        element.error(
+                            "SK-PARAM-002", f"found <{element.name}>{word}</{element.name}>, allowed is {allowed}"
+                        )
+                    continue
+                source, target = rule["from"], rule["to"]
+                if source in {"__ns", "__node", "__name"}:
+                    namespace, node = (target, node) if source == "__ns" else (namespace, target)
+                else:
+                    remappings[source.removeprefix(node + ":")] = target
+        return cls(node, namespace, remappings)
+
+    def topic(self, name: str) -> str:
+        """The absolute topic behind `name` (`odom`, `/odom` or `~/odom`), remapped."""
+        full = self._expand(name)
+        return self._rules.get(full, full)
+
+    def _expand(self, name: str) -> str:
+        if name == "~" or name.startswith("~/"):
+            return f"{self.namespace}/{self.node}{name[1:]}"
+        return name if name.startswith("/") else f"{self.namespace}/{name}"
+
+    def __deepcopy__(self, memo: dict[int, object]) -> RosNames:
+        return self
+
+
+def valid_topic(name: str) -> str:
+    """`name` as an absolute topic the way gz-transport makes one: spaces become `_`, other bad characters go."""
+    kept = re.sub(r"[^A-Za-z0-9_/.:-]|~|@|:=", "", name.replace(" ", "_"))
+    return "/" + kept.strip("/")

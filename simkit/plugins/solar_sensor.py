@@ -1,0 +1,103 @@
+"""The robotics course's solar sensor: `libsolar_sensor.so`, a model plugin that tells where a light stands."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_light, find_link
+from simkit.pose import quat_from_rpy, quat_multiply
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Light, Simulation
+    from simkit.scene import SceneModel
+
+IMU = "sensor_msgs/msg/Imu"
+
+
+class SolarSensor(ModelPlugin):
+    """Publishes the direction of a light, seen from a link, as the orientation of an `Imu` on `sunloin_imu`.
+
+    The unit vector from the link's origin to the light, in the link's axes, plus `<xyz_offset>`, gives
+    pitch = asin(-z) and yaw = atan2(y, x): the x axis of that orientation points at the light. `<rpy_offset>` turns
+    the result afterwards.
+
+    `<frame_name>` names the link and is the message's frame; `<body_name>` names the link where the frame is another;
+    with neither it is the model's canonical link. `<gaussian_noise>` [rad] is the standard deviation of independent
+    noise on roll, pitch and yaw, and its square stands on the diagonal of the covariance. `<update_rate>` [Hz], 0 is
+    every step.
+    """
+
+    filenames = ("libsolar_sensor.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        frame, body = params.text("frame_name", ""), params.text("body_name", "")
+        wanted = body or frame
+        link = find_link(scene, wanted, params) if wanted else None
+        self._link_name = link.scoped if link else scene.canonical_link
+        self._frame = frame or self._link_name.rsplit("::", 1)[-1]
+        self._xyz = _offset(params, "xyz_offset")
+        self._rpy = _offset(params, "rpy_offset")
+        self._noise = params.number("gaussian_noise", 0.0, minimum=0)
+        self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._light = _light(self.sim, params)
+        self._link = self.sim.link(self._link_name)
+        self._turn = quat_from_rpy(*self._rpy)
+        self._covariance = np.eye(3).reshape(9) * self._noise**2
+        self._stream = self.random("gaussian_noise", 3) if self._noise > 0 else None
+        self._index = 0
+        self._readings = self.advertise("sunloin_imu", IMU)
+
+    def after_step(self) -> None:
+        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        if self._light is None or not self._readings.wanted:
+            return
+        pitch, yaw = self._angles()
+        angles = np.array((0.0, pitch, yaw))
+        if self._stream is not None:
+            angles += self._noise * self._stream.normal(self._index)
+        w, x, y, z = (float(v) for v in quat_multiply(self._turn, quat_from_rpy(*angles)))
+        message = msgs.make(
+            IMU,
+            header=msgs.header(self.sim.time_ns, self._frame),
+            orientation={"x": x, "y": y, "z": z, "w": w},
+            orientation_covariance=self._covariance.copy(),
+        )
+        self._readings.publish(message)
+
+    def _angles(self) -> tuple[float, float]:
+        """Pitch and yaw [rad] of the light in the link's axes."""
+        assert self._light is not None
+        pose = self._link.pose
+        towards = self._light.pose.position - pose.position
+        distance = float(np.linalg.norm(towards))
+        unit = towards / distance if distance > 0 else towards
+        x, y, z = pose.inverse().rotate(unit) + self._xyz
+        return math.asin(-max(-1.0, min(1.0, float(z)))), math.atan2(float(y), float(x))
+
+
+def _light(sim: Simulation, params: Params) -> Light | None:
+    """The light that `<light_name>` names, or None after an error that lists the lights."""
+    name = params.text("light_name", "")
+    if name:
+        return find_light(sim, name, params)
+    listed = ", ".join(repr(n) for n in sorted(sim.lights)) or "none"
+    params.error("SK-PARAM-001", f"<{params.name}> needs <light_name>: the name of a light", f"lights are: {listed}")
+    return None
+
+
+def _offset(params: Params, name: str) -> tuple[float, float, float]:
+    """`name`, or its older spelling with an s, which is said."""
+    older = params.child(name + "s")
+    if older is None or params.has(name):
+        return params.vector3(name, (0.0, 0.0, 0.0))
+    params.diagnostics.warning("SK-PARAM-004", f"<{older.name}> is an older spelling", older.where, f"write <{name}>")
+    return params.vector3(name + "s", (0.0, 0.0, 0.0))

@@ -1,0 +1,130 @@
+"""Plugins that a user wrote: found only in entry points and in folders that the user allows."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import inspect
+import re
+import sys
+from collections.abc import Sequence
+from importlib.metadata import entry_points
+from pathlib import Path
+
+from simkit.diagnostics import Diagnostics
+from simkit.plugins import GROUP, aliases, normalise
+from simkit.plugins.base import Plugin
+from simkit.scene import ScenePlugin
+
+_CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
+
+
+def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    """The class that `module:Class`, `file.py` or a library alias stands for, if it is installed or allowed."""
+    if _CLASS.match(plugin.filename):
+        return _by_class_name(plugin, paths, diagnostics)
+    if plugin.filename.endswith(".py"):
+        return _by_file(plugin, paths, diagnostics)
+    return _by_alias(plugin, paths, diagnostics)
+
+
+def _by_class_name(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    match = _CLASS.match(plugin.filename)
+    assert match is not None
+    for point in entry_points(group=GROUP):
+        if point.value.replace(" ", "") == plugin.filename:
+            return _checked(point.load(), plugin, diagnostics)
+    relative = Path(*match["module"].split("."))
+    for folder in paths:
+        for file in (folder / relative.with_suffix(".py"), folder / relative / "__init__.py"):
+            if _inside(file, folder):
+                module = _import_file(match["module"], file, plugin, diagnostics)
+                return _checked(getattr(module, match["name"], None), plugin, diagnostics) if module else None
+    message = f"plugin {plugin.filename!r}: no module {match['module']!r} in an entry point or under the plugin paths"
+    diagnostics.warning("SK-PLUGIN-001", f"{message}; it is left out", plugin.where, _allow_hint(paths))
+    return None
+
+
+def _by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    for folder in paths:
+        file = folder / plugin.filename
+        if _inside(file, folder):
+            module = _import_file(file.stem, file, plugin, diagnostics)
+            if module is None:
+                return None
+            classes = _classes_of(module)
+            wanted = [c for c in classes if c.__name__ == plugin.name] or classes
+            if len(wanted) == 1:
+                return wanted[0]
+            listed = ", ".join(c.__name__ for c in classes) or "none"
+            message = f"{plugin.filename!r} must have one plugin class, or one called {plugin.name!r}; it has: {listed}"
+            diagnostics.error("SK-PLUGIN-008", message, plugin.where)
+            return None
+    message = f"plugin file {plugin.filename!r} is not under a plugin path; it is left out"
+    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, _allow_hint(paths))
+    return None
+
+
+def _by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    """Looks for `filenames`/`names` of the classes in modules that lie directly in the allowed folders."""
+    wanted = set(aliases(plugin))
+    for folder in paths:
+        for file in sorted(folder.glob("*.py")):
+            if not _inside(file, folder) or not wanted & _texts_in(file):
+                continue  # only what claims the name is run
+            module = _import_file(file.stem, file, plugin, diagnostics)
+            for cls in _classes_of(module) if module else ():
+                if wanted & set(map(normalise, (*cls.filenames, *cls.names))):
+                    return cls
+    return None
+
+
+def _texts_in(file: Path) -> set[str]:
+    """Every text literal of a Python file as a normalised plugin name; the file is read, not run."""
+    try:
+        tree = ast.parse(file.read_bytes(), str(file))
+    except (SyntaxError, ValueError):
+        return set()
+    texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    return {normalise(text) for text in texts if isinstance(text, str) and len(text) < 200}
+
+
+def _inside(file: Path, folder: Path) -> bool:
+    return file.is_file() and file.resolve().is_relative_to(folder.resolve())
+
+
+def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> object | None:
+    """The module at `file`, under a name of its own so that it shadows nothing."""
+    key = f"simkit_user_plugins.{file.resolve()}"
+    if key in sys.modules:
+        return sys.modules[key]
+    spec = importlib.util.spec_from_file_location(key, file)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[key] = module
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
+        del sys.modules[key]
+        message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed: {type(error).__name__}: {error}"
+        diagnostics.error("SK-PLUGIN-008", message, plugin.where)
+        return None
+    return module
+
+
+def _classes_of(module: object) -> list[type[Plugin]]:
+    own = (c for _, c in inspect.getmembers(module, inspect.isclass) if issubclass(c, Plugin))
+    return [c for c in own if c.__module__ == getattr(module, "__name__", "") and not inspect.isabstract(c)]
+
+
+def _checked(found: object, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
+    if inspect.isclass(found) and issubclass(found, Plugin) and not inspect.isabstract(found):
+        return found
+    message = f"{plugin.filename!r} is no class derived from simkit's Plugin with a load method"
+    diagnostics.error("SK-PLUGIN-008", message, plugin.where)
+    return None
+
+
+def _allow_hint(paths: Sequence[Path]) -> str:
+    searched = ", ".join(str(p) for p in paths)
+    return f"searched: {searched}" if searched else "allow its folder with --plugin-path or plugin_paths"

@@ -1,0 +1,125 @@
+"""The handles of everything in a simulation, by scoped name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+
+from simkit.pose import Pose
+from simkit.runtime.handles import look_up
+from simkit.runtime.joint import Joint
+from simkit.runtime.light import Light
+from simkit.runtime.link import Link
+from simkit.runtime.model import Model
+from simkit.runtime.parts import Structure
+from simkit.scene import SceneLight, SceneLink, SceneModel, SceneWorld
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+_FAR = 1e4  # [m]; lights beyond are drawn from here, in the same direction
+_PREFIX = {
+    "geom": mujoco.mjtObj.mjOBJ_GEOM,
+    "body": mujoco.mjtObj.mjOBJ_BODY,
+    "jnt": mujoco.mjtObj.mjOBJ_JOINT,
+    "light": mujoco.mjtObj.mjOBJ_LIGHT,
+}
+
+
+class Entities:
+    """Handles made once per entity of the file and bound anew to each structure."""
+
+    def __init__(self, sim: Simulation, world: SceneWorld) -> None:
+        self._sim, self._world = sim, world
+        self._made: dict[int, tuple[Any, Model, dict[str, Light]]] = {}
+        self._world_lights: dict[str, Light] | None = None
+        self._world_joints: dict[str, Joint] | None = None
+        self.models: dict[str, Model] = {}
+        self.tables: dict[str, dict[str, Any]] = {}
+
+    def bind(self, structure: Structure) -> None:
+        """Binds every handle of what is there now; the others say that they were removed."""
+        if self._world_joints is None:
+            self._world_joints = {j.name: Joint(self._sim, j) for j in self._world.joints}
+        for _, model, lights in self._made.values():
+            for handle in (*model.everything(), *lights.values()):
+                handle._there = False
+        self.models = {name: self._handles(scene)[0] for name, scene in structure.models.items()}
+        tables: dict[str, dict[str, Any]] = {k: {} for k in ("model", "link", "joint", "light", "sensor")}
+        names = structure.compiled.names
+        for model in self.models.values():
+            for handle in model.everything():
+                handle._there = True
+                if isinstance(handle, (Link, Joint)):
+                    handle._bind(names)
+                tables[type(handle).__name__.lower()][handle.scoped] = handle
+        for name, joint in self._world_joints.items():
+            joint._bind(names)
+            tables["joint"][name] = joint
+        tables["sensor"] = {s.scoped: s for s in structure.all_sensors()}
+        self.tables = tables
+        if self._world_lights is None:
+            self._world_lights = {li.name: Light(self._sim, li) for li in self._world.lights}
+        tables["light"].update(self._world_lights)
+        for scene in structure.models.values():
+            lights = self._lights(scene)
+            for light in lights.values():
+                light._there = True
+            tables["light"].update(lights)
+
+    def _handles(self, scene: SceneModel) -> tuple[Model, dict[str, Light]]:
+        if id(scene) not in self._made:
+            self._made[id(scene)] = (scene, Model(self._sim, scene), {})
+        return self._made[id(scene)][1:]
+
+    def _lights(self, scene: SceneModel) -> dict[str, Light]:
+        model, lights = self._handles(scene)
+        if not lights:
+            lights.update({li.scoped: Light(self._sim, li) for link in scene.all_links() for li in link.lights})
+        return lights
+
+    def find(self, what: str, name: str) -> Any:
+        """A handle by scoped name; KeyError names the closest."""
+        return look_up(self.tables[what], name, what)
+
+    def scene_link(self, scoped: str) -> SceneLink:
+        """A link of the file by scoped name."""
+        link: SceneLink = self.find("link", scoped).scene
+        return link
+
+    def scene_light(self, name: str) -> SceneLight:
+        light: SceneLight = self.find("light", name).scene
+        return light
+
+    def stateful(self) -> list[Any]:
+        """Handles with a state of their own."""
+        return [*self.tables["joint"].values(), *self.tables["light"].values()]
+
+
+def place_light(model: Any, light: Light, scoped: str, pose_in_body: Pose, touch: Any) -> None:
+    """Puts the drawn light where the handle says; one at an astronomical distance is drawn from nearer."""
+    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_LIGHT, scoped)
+    if index < 0:
+        return
+    position = np.array(pose_in_body.position)
+    distance = float(np.linalg.norm(position))
+    if distance > _FAR:
+        position *= _FAR / distance
+    touch("light_pos")[index] = position
+    touch("light_dir")[index] = pose_in_body.rotate(light.scene.direction)
+
+
+def carry_fields(old: Any, new: Any, fields: Mapping[str, Any]) -> list[str]:
+    """Copies changed model fields to a recompiled model, element by element by name; returns their names."""
+    for field in fields:
+        kind = _PREFIX[field.split("_")[0]]
+        source, target = getattr(old, field), getattr(new, field)
+        for i in range(len(source)):
+            name = mujoco.mj_id2name(old, kind, i)
+            j = mujoco.mj_name2id(new, kind, name) if name else -1
+            if j >= 0:
+                target[j] = source[i]
+    return list(fields)

@@ -1,0 +1,115 @@
+"""Handle of a link."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+
+from simkit.pose import IDENTITY, Pose, Vector
+from simkit.runtime.handles import Handle
+from simkit.runtime.physics import CONTROL, STALE
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+    from simkit.scene import SceneLink
+
+_BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
+
+
+class Link(Handle):
+    """A link of a model. Poses and velocities are those of the link frame's origin, in the world frame."""
+
+    def __init__(self, sim: Simulation, scene: SceneLink) -> None:
+        super().__init__(sim, scene.name, scene.scoped)
+        self.scene = scene
+
+    def _bind(self, names: Any) -> None:
+        binding = names.link(self.scoped)
+        self._binding, self._body = binding, int(binding.body)
+        self._offset: Pose | None = None if binding.offset == IDENTITY else binding.offset
+
+    # ------------------------------------------------------------------ readings
+
+    @property
+    def pose(self) -> Pose:
+        """Pose of the link frame in the world."""
+        self._check()
+        data = self._sim.physics.fresh()
+        pose = Pose(data.xpos[self._body], data.xquat[self._body])
+        return pose @ self._offset if self._offset is not None else pose
+
+    def _velocity(self) -> Vector:
+        """Angular and linear velocity of the link origin in the world, shape (6,)."""
+        self._check()
+        data = self._sim.physics.fresh()
+        out = np.zeros(6)
+        if self._body:
+            mujoco.mj_objectVelocity(self._sim.mj_model, data, _BODY, self._body, out, 0)
+        return out
+
+    @property
+    def linear_velocity(self) -> Vector:
+        """Of the link origin [m/s], world frame, shape (3,)."""
+        return self._velocity()[3:]
+
+    @property
+    def angular_velocity(self) -> Vector:
+        """[rad/s], world frame, shape (3,)."""
+        return self._velocity()[:3]
+
+    @property
+    def linear_acceleration(self) -> Vector:
+        """Of the link origin [m/s²], world frame, gravity not included (0 at rest), shape (3,)."""
+        self._check()
+        data = self._sim.physics.fresh_accelerations()
+        out = np.zeros(6)
+        if not self._body:
+            return out[3:]
+        mujoco.mj_objectAcceleration(self._sim.mj_model, data, _BODY, self._body, out, 0)
+        linear: Vector = out[3:] + self._sim.mj_model.opt.gravity
+        return linear
+
+    @property
+    def mass(self) -> float:
+        """[kg]"""
+        return float(self.scene.inertial.mass)
+
+    # ------------------------------------------------------------------ commands
+
+    def apply_wrench(self, force: Sequence[float] | Vector, torque: Sequence[float] | Vector = (0.0, 0.0, 0.0)) -> None:
+        """Force [N] and torque [N·m], world frame, at the centre of mass, for the next step; several add up."""
+        self._check()
+        if not self._body:
+            return
+        physics = self._sim.physics
+        row = physics.data.xfrc_applied[self._body]
+        row[:3] += force
+        row[3:] += torque
+        physics.one_shot = True
+        physics.changed(CONTROL)
+
+    @property
+    def collisions_enabled(self) -> bool:
+        """Whether the link's collisions make contacts; settable."""
+        model = self._sim.mj_model
+        return any(model.geom_contype[g] or model.geom_conaffinity[g] for g in self._binding.geoms)
+
+    @collisions_enabled.setter
+    def collisions_enabled(self, enabled: bool) -> None:
+        self._check()
+        for field in ("geom_contype", "geom_conaffinity"):
+            values = self._sim.touch(field)
+            original = self._sim.original(field)
+            for g in self._binding.geoms:
+                values[g] = original[g] if enabled else 0
+        self._sim.physics.changed(STALE)
+
+    # ------------------------------------------------------------------ what hangs on it
+
+    @property
+    def sensors(self) -> dict[str, Any]:
+        """Its sensors by name."""
+        return {s.name: self._sim.sensor(s.scoped) for s in self.scene.sensors if self._sim.has_sensor(s.scoped)}

@@ -1,0 +1,79 @@
+"""What the loop needs of a sensor and of a plugin; their classes live in rooms that this one does not know."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from simkit.scene import SceneModel
+
+
+class SensorPart(Protocol):
+    """A sensor as the loop sees it."""
+
+    name: str
+    scoped: str
+    update_rate: float
+
+    def attach(self, sim: Any) -> None: ...
+    def bind(self, compiled: Any) -> None: ...
+    def build(self, builder: Any) -> None: ...
+    def sample(self, tick: int) -> None: ...
+    def reset(self) -> None: ...
+    def get_state(self) -> Any: ...
+    def set_state(self, state: Any) -> None: ...
+    def close(self) -> None: ...
+
+
+class PluginPart(Protocol):
+    """A plugin as the loop sees it."""
+
+    name: str
+    before_step_rate: float | None
+    after_step_rate: float | None
+
+    def load(self, parent: Any, params: Any) -> None: ...
+    def before_step(self) -> None: ...
+    def after_step(self) -> None: ...
+    def reset(self) -> None: ...
+    def close(self) -> None: ...
+    def get_state(self) -> Any: ...
+    def set_state(self, state: Any) -> None: ...
+
+
+@dataclass
+class Parts:
+    """The sensors and plugins of one model (or of the world), in document order.
+
+    Attributes:
+        plugins: each with a function that gives its parent once the handles exist.
+    """
+
+    sensors: list[Any] = field(default_factory=list)
+    plugins: list[tuple[Any, Callable[[Any], Any]]] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What is in the world at one time; a spawn or a removal makes another, snapshots keep theirs.
+
+    Attributes:
+        builder: the spec it was compiled from (not changed any more).
+        compiled: engine objects and names.
+        models: top-level models by name, in order.
+        movable: names of the static models that were made movable.
+        parts: sensors and plugins by the name of their top-level model; the world's under the empty name.
+    """
+
+    builder: Any
+    compiled: Any
+    models: Mapping[str, SceneModel]
+    movable: frozenset[str]
+    parts: Mapping[str, Parts]
+
+    def all_sensors(self) -> list[Any]:
+        return [s for p in self.parts.values() for s in p.sensors]
+
+    def all_plugins(self) -> list[Any]:
+        return [plugin for p in self.parts.values() for plugin, _ in p.plugins]

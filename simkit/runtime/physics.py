@@ -1,0 +1,196 @@
+"""The engine's state between two steps, and how it advances.
+
+After `mj_step` the positions are one step ahead of everything computed from them, so whoever reads first makes the
+forward pass again. To go on from there the engine need not repeat it: integrating the forward that is there, then
+stepping k-1 times, gives the bits of k steps.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.errors import SimulationDiverged
+from simkit.runtime.clock import Clock
+
+FRESH, CONTROL, VELOCITY, STALE = range(4)
+"""How much of the forward pass is out of date: nothing, accelerations, velocities on, all."""
+
+_SKIP = {CONTROL: mujoco.mjtStage.mjSTAGE_VEL, VELOCITY: mujoco.mjtStage.mjSTAGE_POS}
+_INTEGRATORS = {
+    int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST): mujoco.mj_implicit,
+    int(mujoco.mjtIntegrator.mjINT_IMPLICIT): mujoco.mj_implicit,
+    int(mujoco.mjtIntegrator.mjINT_EULER): mujoco.mj_Euler,
+}
+_BAD = [int(w) for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)]
+_HELD = mujoco.mjtState.mjSTATE_INTEGRATION
+_WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is heard
+
+_engine_texts: list[str] = []
+
+
+def _hear_engine(text: str) -> None:
+    # an exception here would kill the interpreter, so the text is only kept
+    if len(_engine_texts) < 8:
+        _engine_texts.append(text)
+
+
+class HeldState:
+    """The physics state of one tick, kept so that a reading can be made of it later."""
+
+    __slots__ = ("model", "tick", "values")
+
+    def __init__(self, tick: int, model: Any, values: npt.NDArray[np.float64]) -> None:
+        self.tick, self.model, self.values = tick, model, values
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
+        return self
+
+
+class Physics:
+    """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date."""
+
+    def __init__(self, model: Any, data: Any, clock: Clock) -> None:
+        mujoco.set_mju_user_warning(_hear_engine)
+        self.clock = clock
+        self.tick = 0
+        self._chunk = 256
+        self.rebind(model, data)
+
+    def rebind(self, model: Any, data: Any) -> None:
+        """Other engine objects (after a spawn, a removal, a restore)."""
+        self.model, self.data = model, data
+        self.stage = STALE
+        self.one_shot = False
+        self.last_applied = np.zeros(model.nv)
+        self._accelerations_tick = -1
+        self._held: HeldState | None = None
+        self._second: Any = None
+        self._second_of: HeldState | None = None
+        self._warnings = data.warning.number
+        self._integrate = _INTEGRATORS.get(int(model.opt.integrator))
+
+    # ------------------------------------------------------------------ writing
+
+    def changed(self, stage: int) -> None:
+        """Says that controls or forces (CONTROL), velocities (VELOCITY) or positions (STALE) were written."""
+        self.stage = max(self.stage, stage)
+        self._held = None
+        self._accelerations_tick = -1
+
+    # ------------------------------------------------------------------ reading
+
+    def fresh(self) -> Any:
+        """The data with a forward pass of the state at this tick."""
+        stage = self.stage
+        if stage == STALE:
+            mujoco.mj_forward(self.model, self.data)
+        elif stage:
+            mujoco.mj_forwardSkip(self.model, self.data, _SKIP[stage], 1)
+        self.stage = FRESH
+        return self.data
+
+    def fresh_accelerations(self) -> Any:
+        """The same, with body accelerations and the forces between bodies."""
+        data = self.fresh()
+        if self._accelerations_tick != self.tick:
+            mujoco.mj_rnePostConstraint(self.model, data)
+            self._accelerations_tick = self.tick
+        return data
+
+    def hold(self) -> HeldState:
+        """The state of this tick, shared by all who ask at it."""
+        if self._held is None or self._held.tick != self.tick:
+            values = np.empty(mujoco.mj_stateSize(self.model, _HELD))
+            mujoco.mj_getState(self.model, self.data, values, _HELD)
+            self._held = HeldState(self.tick, self.model, values)
+        return self._held
+
+    def data_of(self, held: HeldState) -> Any:
+        """A second `MjData` with forward pass and accelerations of a held state."""
+        if self._second is None or (self._second_of is not None and self._second_of.model is not held.model):
+            self._second = mujoco.MjData(held.model)
+            self._second_of = None
+        if self._second_of is not held:
+            mujoco.mj_setState(held.model, self._second, held.values, _HELD)
+            mujoco.mj_forward(held.model, self._second)
+            mujoco.mj_rnePostConstraint(held.model, self._second)
+            self._second_of = held
+        return self._second
+
+    # ------------------------------------------------------------------ advancing
+
+    def advance(self, count: int) -> None:
+        """`count` steps; forces that hold for one step only are gone after the first."""
+        if self.one_shot and count > 0:
+            self._run(1)
+            self._clear_one_shot()
+            count -= 1
+        while count > 0:
+            chunk = min(count, self._chunk)
+            before = time.perf_counter()
+            self._run(chunk)
+            self._tune(chunk, time.perf_counter() - before)
+            count -= chunk
+
+    def _run(self, count: int) -> None:
+        model, data = self.model, self.data
+        if self.stage != STALE and self._integrate is not None:
+            if self.stage:
+                mujoco.mj_forwardSkip(model, data, _SKIP[self.stage], 1)
+            mujoco.mj_checkAcc(model, data)
+            self._integrate(model, data)
+            if count > 1:
+                mujoco.mj_step(model, data, count - 1)
+        else:
+            mujoco.mj_step(model, data, count)
+        self.stage = STALE
+        self.tick += count
+
+    def _clear_one_shot(self) -> None:
+        self.last_applied[:] = self.data.qfrc_applied
+        self.data.qfrc_applied[:] = 0
+        self.data.xfrc_applied[:] = 0
+        self.one_shot = False
+
+    def _tune(self, chunk: int, wall: float) -> None:
+        if wall > _WALL_LIMIT and chunk > 1:
+            self._chunk = max(1, chunk // 2)
+        elif chunk == self._chunk and wall < _WALL_LIMIT / 4:
+            self._chunk = min(1 << 16, chunk * 2)
+
+    def check(self) -> None:
+        """Raises SimulationDiverged where the engine met a bad number since the last reset of its counters."""
+        data = self.data
+        mujoco.mj_checkPos(self.model, data)
+        mujoco.mj_checkVel(self.model, data)
+        counts = self._warnings
+        if counts[_BAD[0]] or counts[_BAD[1]] or counts[_BAD[2]]:
+            self._diverged()
+
+    def _diverged(self) -> None:
+        model, data = self.model, self.data
+        bad = max(int(self._warnings[w]) for w in _BAD)
+        first = max(0, self.tick - bad)
+        dof = next((int(i) for a in (data.qvel, data.qacc) for i in np.flatnonzero(~(np.abs(a) < 1e10))), None)
+        if dof is None:
+            info = next(int(data.warning[w].lastinfo) for w in _BAD if self._warnings[w])
+            dof = min(info, model.nv - 1)
+        joint = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, int(model.dof_jntid[dof])) or f"dof {dof}"
+        text = _engine_texts[0] if _engine_texts else ""
+        _engine_texts.clear()
+        step = self.clock.timestep
+        hint = (
+            f"a gain, a force or a stiffness is too large for the step of {step:g} s; "
+            "try a smaller max_step_size, a smaller gain or command, or a larger inertia"
+        )
+        raise SimulationDiverged(joint.split("#")[0], self.clock.time(first), hint, text)
+
+    def clear_warnings(self) -> None:
+        """Forgets what the engine warned of (a restored state is sound)."""
+        self._warnings[:] = 0
+        _engine_texts.clear()

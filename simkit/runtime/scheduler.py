@@ -1,0 +1,77 @@
+"""Who is due when. Due ticks follow from the rate alone, so nothing here needs saving or restoring."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable
+from typing import Literal
+
+from simkit.runtime.clock import Clock, Grid
+
+Phase = Literal["before", "sense", "after"]
+Task = Callable[[int], None]
+NEVER = 1 << 62
+
+
+class Agenda:
+    """The tasks of one phase, in the order they were added.
+
+    Attributes:
+        every: tasks of every step.
+        next: the next tick at which a periodic task is due.
+    """
+
+    def __init__(self) -> None:
+        self._tasks: list[tuple[Task, Grid | None]] = []
+        self.every: list[Task] = []
+        self._heap: list[tuple[int, int]] = []
+        self.next = NEVER
+
+    def add(self, task: Task, grid: Grid | None) -> None:
+        self._tasks.append((task, grid))
+
+    def rewind(self, tick: int) -> None:
+        """What is due after `tick`."""
+        self.every = [task for task, grid in self._tasks if grid is None]
+        self._heap = [(grid.next(tick), order) for order, (_, grid) in enumerate(self._tasks) if grid is not None]
+        heapq.heapify(self._heap)
+        self.next = self._heap[0][0] if self._heap else NEVER
+
+    def due(self, tick: int) -> list[Task]:
+        """Every task due at `tick`, in order of addition; periodic ones move on to their next tick."""
+        if self.next > tick:
+            return self.every
+        orders: list[int] = []
+        heap = self._heap
+        while heap and heap[0][0] <= tick:
+            order = heap[0][1]
+            grid = self._tasks[order][1]
+            assert grid is not None
+            heapq.heapreplace(heap, (grid.next(tick), order))
+            orders.append(order)
+        self.next = heap[0][0]
+        if self.every:
+            orders += [i for i, (_, grid) in enumerate(self._tasks) if grid is None]
+            orders.sort()
+        return [self._tasks[i][0] for i in orders]
+
+
+class Scheduler:
+    """Tasks before a step, and sensors and hooks after it."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.clear()
+
+    def clear(self) -> None:
+        self.before, self.sense, self.after = Agenda(), Agenda(), Agenda()
+
+    def every(self, rate: float | None, task: Task, phase: Phase) -> None:
+        """Calls `task(tick)` at `rate` [Hz] (None or 0: at every step); takes effect at the next `rewind`."""
+        getattr(self, phase).add(task, self.clock.grid(rate or 0.0))
+
+    def rewind(self, tick: int) -> None:
+        """Says that the readings of `tick` have been dealt with, the commands before its step have not."""
+        self.before.rewind(max(tick - 1, 0))
+        self.sense.rewind(tick)
+        self.after.rewind(tick)

@@ -1,0 +1,205 @@
+"""The arithmetic of the drives, without physics: parameters, ramps, limits, dead reckoning."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.gazebo_ros_diff_drive import GazeboRosDiffDrive, read_options
+from simkit.plugins.gz_diff_drive import SpeedLimiter
+from simkit.plugins.odometry import DeadReckoning, command_of, planar_covariance
+
+WHEELS = {"left_joint": "l", "right_joint": "r"}
+
+
+def options(**values: Any) -> Any:
+    return read_options(Params.from_dict({**WHEELS, **values}))
+
+
+def test_what_a_ros_2_file_leaves_out_is_gazebos_default() -> None:
+    found = options()
+    (pair,) = found.pairs
+    assert (pair.left, pair.right, pair.separation, pair.radius) == ("l", "r", 0.34, 0.075)
+    assert (found.update_rate, found.max_torque, found.max_acceleration) == (100.0, 5.0, 0.0)
+    assert not (found.publish_odom or found.publish_odom_tf or found.publish_wheel_tf or found.from_encoders)
+    assert (found.odometry_frame, found.base_frame, found.covariance) == ("odom", "base_footprint", (1e-5, 1e-5, 1e-3))
+
+
+def test_what_a_ros_1_file_leaves_out_is_gazebos_default() -> None:
+    found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b"}))
+    (pair,) = found.pairs
+    assert (pair.left, pair.right, pair.separation, pair.radius) == ("a", "b", 0.34, 0.075)
+    assert found.publish_odom and found.publish_odom_tf and not found.from_encoders
+
+
+def test_ros_1_names_topics_and_source() -> None:
+    found = read_options(
+        Params.from_dict(
+            {"commandTopic": "go", "odometryTopic": "where", "odometrySource": "encoder", "wheelTorque": 2}
+        )
+    )
+    assert (found.command_topic, found.odometry_topic, found.from_encoders, found.max_torque) == (
+        "go",
+        "where",
+        True,
+        2,
+    )
+
+
+def test_a_topic_element_that_only_repeats_the_name_is_no_loss_and_another_is_reported() -> None:
+    params = Params.from_dict({**WHEELS, "command_topic": "cmd_vel", "odometry_topic": "position"})
+    assert read_options(params).odometry_topic == "odom"
+    assert [element.name for element, _ in params.unread()] == ["odometry_topic"]
+
+
+def test_each_pair_of_wheels_has_its_own_geometry_and_the_default_stands_for_the_rest() -> None:
+    found = options(
+        num_wheel_pairs=2,
+        left_joint=["a", "c"],
+        right_joint=["b", "d"],
+        wheel_separation=[0.4, 0.5],
+        wheel_diameter=[0.2],
+    )
+    assert [(p.left, p.right, p.separation, p.radius) for p in found.pairs] == [
+        ("a", "b", 0.4, 0.1),
+        ("c", "d", 0.5, 0.075),
+    ]
+
+
+def test_a_missing_wheel_is_an_error() -> None:
+    params = Params.from_dict({"left_joint": "l"})
+    read_options(params)
+    assert [(d.code, d.severity) for d in params.diagnostics] == [("SK-PARAM-001", "error")]
+
+
+def test_a_wrong_number_of_wheels_is_an_error() -> None:
+    params = Params.from_dict({**WHEELS, "num_wheel_pairs": 2})
+    read_options(params)
+    assert [d.code for d in params.diagnostics] == ["SK-PARAM-002"]
+
+
+# ------------------------------------------------------------------ the Classic ramp
+
+
+def driven(rate: float = 50.0, **values: Any) -> tuple[GazeboRosDiffDrive, dict[int, float], SimpleNamespace]:
+    """A drive without a simulation, its wheel commands, and the clock."""
+    plugin = GazeboRosDiffDrive()
+    controls: dict[int, float] = {}
+    plugin.sim = sim = SimpleNamespace(time_ns=0, set_control=controls.__setitem__)  # type: ignore[assignment]
+    plugin.options = options(update_rate=rate, wheel_separation=0.5, wheel_diameter=0.2, **values)
+    plugin._servos, plugin._rims, plugin._last_ns = [0, 1], [0.0, 0.0], 0
+    plugin._command = (0.0, 0.0)
+    return plugin, controls, sim
+
+
+def test_without_a_limit_wheels_get_their_speed_at_once() -> None:
+    plugin, controls, sim = driven()
+    plugin._command = (0.3, 0.4)
+    sim.time_ns = 20_000_000
+    plugin.before_step()
+    assert controls == pytest.approx({0: (0.3 - 0.4 * 0.25) / 0.1, 1: (0.3 + 0.4 * 0.25) / 0.1})
+
+
+def test_the_rim_speed_climbs_by_the_acceleration_limit() -> None:
+    plugin, controls, sim = driven(max_wheel_acceleration=1.0)
+    plugin._command = (0.1, 0.0)
+    speeds = []
+    for update in range(1, 8):
+        sim.time_ns = update * 20_000_000
+        plugin.before_step()
+        speeds.append(controls[0] * 0.1)
+    np.testing.assert_allclose(speeds, [0.02, 0.04, 0.06, 0.08, 0.1, 0.1, 0.1], atol=1e-12)
+
+
+def test_a_target_nearer_than_a_centimetre_a_second_is_taken_at_once() -> None:
+    plugin, controls, sim = driven(max_wheel_acceleration=0.1)
+    plugin._command = (-0.009, 0.0)
+    sim.time_ns = 20_000_000
+    plugin.before_step()
+    assert controls[0] == pytest.approx(-0.09)
+
+
+def test_the_limit_holds_when_braking_too() -> None:
+    plugin, controls, sim = driven(max_wheel_acceleration=1.0)
+    plugin._rims = [0.5, 0.5]
+    sim.time_ns = 100_000_000
+    plugin.before_step()
+    assert controls[0] * 0.1 == pytest.approx(0.4)
+
+
+# ------------------------------------------------------------------ gz's limiter
+
+
+def test_without_bounds_the_target_is_taken() -> None:
+    assert SpeedLimiter().limit(3.7, 0.0, 0.0, 0.001) == 3.7
+
+
+def test_acceleration_and_speed_are_bounded() -> None:
+    limiter = SpeedLimiter(velocity=(-0.5, 0.5), acceleration=(-1.0, 1.0))
+    speed, last = 0.0, 0.0
+    track = []
+    for _ in range(700):
+        speed, last = limiter.limit(2.0, speed, last, 0.001), speed
+        track.append(speed)
+    assert track[99] == pytest.approx(0.1)
+    assert track[-1] == 0.5
+
+
+def test_jerk_bounds_how_fast_acceleration_grows() -> None:
+    limiter = SpeedLimiter(jerk=(-10.0, 10.0))
+    speed, last = 0.0, 0.0
+    for _ in range(100):
+        speed, last = limiter.limit(1.0, speed, last, 0.001), speed
+    # half of jerk times time squared, in steps
+    assert speed == pytest.approx(10.0 * 0.001**2 * 100 * 101 / 2)
+
+
+def test_direction_bounds_win_over_general_ones() -> None:
+    params = Params.from_dict({"max_velocity": 1.0, "max_angular_velocity": 3.0, "min_velocity": -1.0})
+    assert SpeedLimiter.from_params(params, "linear").velocity == (-1.0, 1.0)
+    assert SpeedLimiter.from_params(params, "angular").velocity == (-1.0, 3.0)
+
+
+def test_bounds_the_wrong_way_round_are_an_error() -> None:
+    params = Params.from_dict({"max_velocity": -1.0, "min_velocity": 1.0})
+    SpeedLimiter.from_params(params, "linear")
+    assert [d.code for d in params.diagnostics] == ["SK-PARAM-002"]
+
+
+# ------------------------------------------------------------------ dead reckoning
+
+
+def test_a_quarter_circle_is_exact_in_one_stride() -> None:
+    base = DeadReckoning()
+    # radius 1 to the left, wheels 0.4 apart
+    base.advance(0.8 * math.pi / 2, 1.2 * math.pi / 2, 0.4)
+    assert (base.x, base.y, base.yaw) == pytest.approx((1.0, 1.0, math.pi / 2))
+
+
+def test_a_long_way_in_small_strides_ends_where_the_arc_does() -> None:
+    base = DeadReckoning()
+    for _ in range(10_000):
+        base.advance(1e-5, 1.0001e-5, 0.3)
+    turn = 10_000 * 1e-9 / 0.3
+    radius = 1.00005e-5 * 10_000 / turn
+    assert base.x == pytest.approx(radius * math.sin(turn), rel=1e-9)
+    assert base.y == pytest.approx(radius * (1 - math.cos(turn)), rel=1e-6)
+
+
+def test_both_kinds_of_command_are_understood() -> None:
+    twist = {"linear": {"x": 0.2}, "angular": {"z": 0.3}}
+    assert command_of(msgs.make("geometry_msgs/msg/Twist", **twist)) == (0.2, 0.3)
+    assert command_of(msgs.make("geometry_msgs/msg/TwistStamped", twist=twist)) == (0.2, 0.3)
+    assert command_of(msgs.make("geometry_msgs/msg/Twist", linear={"x": math.nan})) is None
+
+
+def test_a_planar_base_does_not_vouch_for_height_roll_and_pitch() -> None:
+    np.testing.assert_array_equal(
+        np.diag(planar_covariance(1.0, 2.0, 3.0).reshape(6, 6)), [1.0, 2.0, 1e12, 1e12, 1e12, 3.0]
+    )

@@ -1,0 +1,177 @@
+"""How a name in a file finds its plugin class, and what is said when it does not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from simkit.params import Params
+from simkit.plugins import ModelPlugin, Plugin, SensorPlugin, WorldPlugin, find_plugin, normalise, plugin_kinds
+from simkit.scene import ScenePlugin
+
+HELLO = """
+from simkit.plugins import WorldPlugin
+
+class Hello(WorldPlugin):
+    filenames = ("libmy_hello.so",)
+
+    def load(self, parent, params):
+        pass
+"""
+
+
+def named(filename: str, name: str = "p") -> ScenePlugin:
+    return ScenePlugin(name, filename, "", Params("plugin"))
+
+
+def said(plugin: ScenePlugin) -> list[tuple[str, str]]:
+    return [(d.code, d.severity) for d in plugin.params.diagnostics]
+
+
+@pytest.mark.parametrize(
+    "spelling",
+    [
+        "gz-sim-diff-drive-system",
+        "libgz-sim-diff-drive-system.so",
+        "libgz-sim8-diff-drive-system.so",
+        "ignition-gazebo-diff-drive-system",
+        "libignition-gazebo6-diff-drive-system.so.6",
+        "/opt/plugins/libgz-sim-diff-drive-system.so",
+    ],
+)
+def test_all_spellings_of_a_library_are_one_name(spelling: str) -> None:
+    assert normalise(spelling) == "gz-sim-diff-drive-system"
+
+
+def test_the_names_of_classes_lose_ignition_and_versions() -> None:
+    assert normalise("ignition::gazebo::systems::DiffDrive") == "gz::sim::systems::DiffDrive"
+    assert normalise("gz::sim::v8::systems::DiffDrive") == "gz::sim::systems::DiffDrive"
+
+
+def test_a_plugin_is_found_by_library_or_by_class_name() -> None:
+    by_file = find_plugin(named("libgazebo_ros_diff_drive.so"))
+    assert by_file is not None and by_file.__name__ == "GazeboRosDiffDrive"
+    by_class = find_plugin(named("libmine.so", "ignition::gazebo::systems::DiffDrive"))
+    assert by_class is not None and by_class.__name__ == "DiffDrive"
+
+
+def test_what_an_author_calls_a_plugin_does_not_choose_it() -> None:
+    assert find_plugin(named("libmine.so", "solar_sensor")) is None
+
+
+def test_every_kind_derives_from_one_of_the_parents_and_writes_load() -> None:
+    for name, cls in plugin_kinds().items():
+        assert cls.parent_kind in {"world", "model", "sensor", "visual"}, name
+        assert name in {normalise(n) for n in (*cls.filenames, *cls.names)}
+        assert cls.load is not Plugin.load
+
+
+def test_the_table_cannot_be_changed() -> None:
+    with pytest.raises(TypeError):
+        plugin_kinds()["mine"] = WorldPlugin  # type: ignore[index]
+
+
+def test_an_unknown_plugin_is_a_warning_with_the_closest_known_name() -> None:
+    plugin = named("libgazebo_ros_dif_drive.so")
+    assert find_plugin(plugin) is None
+    (found,) = plugin.params.diagnostics
+    assert (found.code, found.severity) == ("SK-PLUGIN-001", "warning")
+    assert "libgazebo_ros_dif_drive.so" in found.message
+    assert "'libgazebo_ros_diff_drive.so'" in found.hint
+
+
+def test_a_name_far_from_all_still_gets_the_closest() -> None:
+    plugin = named("libgazebo_tutorials.so")
+    assert find_plugin(plugin) is None
+    (found,) = plugin.params.diagnostics
+    assert "libgazebo_tutorials.so" in found.message and "closest known one" in found.hint
+
+
+def test_a_plugin_of_gazebo_that_is_missing_here_is_called_so() -> None:
+    plugin = named("gz-sim-thruster-system", "gz::sim::systems::Thruster")
+    assert find_plugin(plugin) is None
+    assert said(plugin) == [("SK-PLUGIN-002", "warning")]
+
+
+# ------------------------------------------------------------------ a user's own Python
+
+
+def test_a_file_runs_only_from_an_allowed_folder(tmp_path: Path) -> None:
+    (tmp_path / "hello.py").write_text(HELLO)
+    refused = named("hello.py")
+    assert find_plugin(refused) is None
+    assert said(refused) == [("SK-PLUGIN-001", "warning")]
+    found = find_plugin(named("hello.py"), [tmp_path])
+    assert found is not None and found.__name__ == "Hello"
+
+
+def test_a_file_cannot_climb_out_of_the_allowed_folder(tmp_path: Path) -> None:
+    (tmp_path / "allowed").mkdir()
+    (tmp_path / "outside.py").write_text("raise SystemExit('was run')")
+    assert find_plugin(named("../outside.py"), [tmp_path / "allowed"]) is None
+    assert find_plugin(named(str(tmp_path / "outside.py")), [tmp_path / "allowed"]) is None
+
+
+def test_a_link_out_of_the_allowed_folder_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "allowed").mkdir()
+    (tmp_path / "outside.py").write_text("raise SystemExit('was run')")
+    (tmp_path / "allowed" / "inside.py").symlink_to(tmp_path / "outside.py")
+    assert find_plugin(named("inside.py"), [tmp_path / "allowed"]) is None
+    assert find_plugin(named("libwas.so"), [tmp_path / "allowed"]) is None
+
+
+def test_a_module_and_class_run_only_from_an_allowed_folder(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "hello.py").write_text(HELLO)
+    refused = named("mine.hello:Hello")
+    assert find_plugin(refused) is None
+    assert said(refused) == [("SK-PLUGIN-001", "warning")]
+    found = find_plugin(named("mine.hello:Hello"), [tmp_path])
+    assert found is not None and found.__name__ == "Hello"
+
+
+def test_an_importable_module_is_not_run_because_a_file_names_it() -> None:
+    plugin = named("antigravity:Plugin")
+    assert find_plugin(plugin) is None
+    assert said(plugin) == [("SK-PLUGIN-001", "warning")]
+
+
+def test_an_alias_is_looked_for_in_allowed_folders(tmp_path: Path) -> None:
+    (tmp_path / "hello.py").write_text(HELLO)
+    (tmp_path / "other.py").write_text("raise SystemExit('was run')")
+    found = find_plugin(named("libmy_hello.so"), [tmp_path])
+    assert found is not None and found.__name__ == "Hello"
+
+
+def test_a_module_that_raises_on_import_is_an_error_with_its_reason(tmp_path: Path) -> None:
+    (tmp_path / "broken.py").write_text("1 / 0")
+    plugin = named("broken.py")
+    assert find_plugin(plugin, [tmp_path]) is None
+    (found,) = plugin.params.diagnostics
+    assert (found.code, found.severity) == ("SK-PLUGIN-008", "error")
+    assert "ZeroDivisionError" in found.message
+
+
+def test_a_class_that_is_no_plugin_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text("class Thing: pass")
+    plugin = named("mine:Thing")
+    assert find_plugin(plugin, [tmp_path]) is None
+    assert said(plugin) == [("SK-PLUGIN-008", "error")]
+
+
+# ------------------------------------------------------------------ the base class
+
+
+def test_a_hook_that_is_not_written_is_not_there() -> None:
+    class Reader(ModelPlugin):
+        def load(self, parent: object, params: Params) -> None: ...
+        def after_step(self) -> None: ...
+
+    assert Reader.has_hook("after_step")
+    assert not any(Reader.has_hook(hook) for hook in ("before_step", "prepare", "reset", "close"))
+
+
+def test_a_plugin_needs_a_load_method() -> None:
+    with pytest.raises(TypeError, match="load"):
+        SensorPlugin()  # type: ignore[abstract]

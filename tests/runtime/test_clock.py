@@ -1,0 +1,41 @@
+"""Simulated time is an exact grid."""
+
+import pytest
+
+from simkit.runtime.clock import Clock
+
+
+def test_thirty_hertz_at_a_millisecond_gives_thirty_samples_in_every_second():
+    clock = Clock(0.001)
+    grid = clock.grid(30.0)
+    assert grid is not None
+    ticks = [grid.tick(k) for k in range(1, 3001)]
+    assert ticks[:3] == [34, 67, 100]
+    for second in range(100):
+        assert sum(second * 1000 < t <= (second + 1) * 1000 for t in ticks) == 30
+
+
+@pytest.mark.parametrize("rate", [200.0, 62.5, 30.0, 7.0, 0.3])
+def test_next_walks_the_same_ticks_as_counting(rate):
+    grid = Clock(0.002).grid(rate)
+    assert grid is not None
+    tick, walked = 0, []
+    for _ in range(50):
+        tick = grid.next(tick)
+        walked.append(tick)
+    assert walked == [grid.tick(k) for k in range(1, 51)]
+    assert [grid.index(t) for t in walked] == list(range(1, 51))
+    assert grid.index(walked[7] - 1) == 7
+
+
+def test_a_rate_at_or_above_the_step_rate_means_every_step():
+    assert Clock(0.001).grid(1000.0) is None
+    assert Clock(0.001).grid(5000.0) is None
+    assert Clock(0.001).grid(0.0) is None
+
+
+def test_time_does_not_drift_over_hours():
+    clock = Clock(0.001)
+    assert clock.time_ns(3_600_000_000) == 3_600_000_000_000_000
+    assert clock.time(3600) == 3.6
+    assert Clock(1 / 240).time_ns(240) == pytest.approx(1e9, abs=1)

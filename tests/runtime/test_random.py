@@ -1,0 +1,45 @@
+"""A draw depends on the seed, the name, the channel and the sample's index, and on nothing else."""
+
+import numpy as np
+
+from simkit.runtime.random import RandomStreams
+
+
+def draws(stream, indices):
+    return np.array([stream.normal(i).copy() for i in indices])
+
+
+def test_a_skipped_sample_shifts_nothing():
+    every = draws(RandomStreams(3).stream("m::l::s", "noise", 6), range(1000))
+    some = draws(RandomStreams(3).stream("m::l::s", "noise", 6), [0, 999, 500, 7])
+    np.testing.assert_array_equal(some, every[[0, 999, 500, 7]])
+
+
+def test_streams_of_other_names_channels_and_seeds_differ():
+    base = draws(RandomStreams(1).stream("a", "x", 4), range(50))
+    for other in (RandomStreams(1).stream("b", "x", 4), RandomStreams(1).stream("a", "y", 4), RandomStreams(2).stream("a", "x", 4), RandomStreams(-1).stream("a", "x", 4)):
+        assert np.abs(draws(other, range(50)) - base).min() > 1e-9
+
+
+def test_another_stream_leaves_the_first_one_alone():
+    streams = RandomStreams(1)
+    first = streams.stream("a", "x", 4)
+    before = first.normal(0).copy()
+    streams.stream("b", "x", 4).normal(0)
+    np.testing.assert_array_equal(first.normal(1), RandomStreams(1).stream("a", "x", 4).normal(1))
+    np.testing.assert_array_equal(first.normal(0), before)
+
+
+def test_normal_draws_have_mean_zero_and_deviation_one_and_do_not_repeat():
+    values = draws(RandomStreams(0).stream("a", "x", 3), range(20000))
+    assert np.abs(values.mean(axis=0)).max() < 5 / np.sqrt(20000)
+    np.testing.assert_allclose(values.std(axis=0), 1.0, atol=0.02)
+    assert len(np.unique(values)) == values.size
+
+
+def test_reseeding_reaches_streams_that_are_already_out():
+    streams = RandomStreams(1)
+    stream = streams.stream("a", "x", 2)
+    stream.normal(0)
+    streams.reseed(9)
+    np.testing.assert_array_equal(stream.normal(0), RandomStreams(9).stream("a", "x", 2).normal(0))

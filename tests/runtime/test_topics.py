@@ -1,0 +1,67 @@
+"""Readings go out at once; commands wait for the next step."""
+
+import pytest
+
+from simkit import msgs
+from simkit.errors import MessageError
+from simkit.runtime.topics import TopicBus
+
+
+def test_a_subscriber_may_come_before_the_publisher():
+    bus = TopicBus()
+    subscription = bus.subscribe("chatter")
+    publisher = bus.advertise("/chatter", "std_msgs/msg/Float64")
+    assert publisher.wanted
+    publisher.publish(msgs.make("std_msgs/msg/Float64", data=2.0))
+    assert subscription.latest.data == 2.0
+    subscription.close()
+    assert not publisher.wanted
+
+
+def test_keep_bounds_what_a_subscription_remembers():
+    bus = TopicBus()
+    publisher = bus.advertise("/x", "std_msgs/msg/Float64")
+    subscription = bus.subscribe("/x", keep=3)
+    for i in range(10):
+        publisher.publish(msgs.make("std_msgs/msg/Float64", data=float(i)))
+    assert [m.data for m in subscription.messages] == [7.0, 8.0, 9.0]
+
+
+def test_a_latched_topic_gives_its_last_message_to_who_comes_late():
+    bus = TopicBus()
+    bus.advertise("/x", "std_msgs/msg/Float64", latched=True).publish(msgs.make("std_msgs/msg/Float64", data=4.0))
+    assert bus.subscribe("/x").latest.data == 4.0
+
+
+def test_commands_arrive_in_order_and_only_when_delivered():
+    bus, got = TopicBus(), []
+    bus.listen("/cmd", ["std_msgs/msg/Float64"], lambda m: got.append(m.data))
+    bus.publish("/cmd", {"data": 1.0})
+    bus.publish("/cmd", {"data": 2.0})
+    assert got == []
+    bus.deliver_inputs()
+    assert got == [1.0, 2.0]
+
+
+def test_a_dict_takes_the_type_whose_fields_fit():
+    bus, got = TopicBus(), []
+    bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"], got.append)
+    bus.publish("/cmd_vel", {"linear": {"x": 0.2}})
+    bus.publish("/cmd_vel", {"twist": {"linear": {"x": 0.3}}})
+    bus.deliver_inputs()
+    assert [msgs.type_name(m) for m in got] == ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
+    assert bus.topics() == {"/cmd_vel": "geometry_msgs/msg/Twist"}
+
+
+def test_an_unknown_topic_names_the_closest_one():
+    bus = TopicBus()
+    bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist"], lambda m: None)
+    with pytest.raises(MessageError, match="/cmd_vel"):
+        bus.publish("/cmd_vl", {"linear": {"x": 1.0}})
+
+
+def test_a_message_of_another_type_is_refused():
+    bus = TopicBus()
+    bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist"], lambda m: None)
+    with pytest.raises(MessageError, match="Float64"):
+        bus.publish("/cmd_vel", msgs.make("std_msgs/msg/Float64", data=1.0))

@@ -1,0 +1,87 @@
+"""The documents say what the code does: every diagnostic code, every link, no path of somebody's machine."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+CODE = re.compile(r"\bSK-[A-Z]+-\d{3}\b")
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "benchmarks").glob("*.md")])
+TEXTS = [
+    path
+    for folder in ("simkit", "docs", "worlds", "assets", "examples", "benchmarks", "tests")
+    for path in sorted((ROOT / folder).rglob("*"))
+    if path.suffix in {".py", ".md", ".sdf", ".yaml", ".config", ".obj", ".world"}
+]
+
+
+def codes_in(text: str) -> set[str]:
+    return set(CODE.findall(text))
+
+
+def codes_in_source() -> set[str]:
+    return set().union(*(codes_in(p.read_text(encoding="utf-8")) for p in (ROOT / "simkit").rglob("*.py")))
+
+
+def codes_in_table() -> list[str]:
+    """The codes that have a row of their own."""
+    table = (ROOT / "docs" / "diagnostics.md").read_text(encoding="utf-8")
+    return re.findall(r"^\| `(SK-[A-Z]+-\d{3})` \|", table, flags=re.MULTILINE)
+
+
+def test_every_code_in_the_source_is_explained() -> None:
+    assert codes_in_source() - set(codes_in_table()) == set()
+
+
+def test_every_explained_code_is_in_the_source() -> None:
+    assert set(codes_in_table()) - codes_in_source() == set()
+
+
+def test_a_code_is_explained_once() -> None:
+    rows = codes_in_table()
+    assert len(rows) == len(set(rows))
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda p: str(p.relative_to(ROOT)))
+def test_links_lead_somewhere(path: Path) -> None:
+    text = re.sub(r"```.*?```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+    missing = []
+    for target in LINK.findall(text):
+        if re.match(r"[a-z]+:", target) or target.startswith("#"):
+            continue
+        if not (path.parent / target.split("#")[0]).exists():
+            missing.append(target)
+    assert not missing
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda p: str(p.relative_to(ROOT)))
+def test_links_to_headings_lead_to_one(path: Path) -> None:
+    wrong = []
+    for target in LINK.findall(path.read_text(encoding="utf-8")):
+        name, _, anchor = target.partition("#")
+        if not anchor or re.match(r"[a-z]+:", target):
+            continue
+        page = (path.parent / name) if name else path
+        headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+        anchors = {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}
+        if anchor not in anchors:
+            wrong.append(target)
+    assert not wrong
+
+
+def test_no_file_holds_a_path_of_somebodys_machine() -> None:
+    foreign = re.compile(r"(?<![\w.:])/(home|Users|root|work)/|\b[A-Z]:\\Users")
+    holders = [str(p.relative_to(ROOT)) for p in TEXTS if foreign.search(p.read_text(encoding="utf-8"))]
+    assert not holders
+
+
+def test_every_command_has_its_page() -> None:
+    """One page for each file of the command line, named alike."""
+    commands = {p.stem for p in (ROOT / "simkit" / "cli").glob("*.py") if not p.stem.startswith("_")}
+    pages = {p.stem for p in (ROOT / "docs" / "commands").glob("*.md")}
+    assert pages, "docs/commands has no page"
+    assert {c for c in commands if c in pages} == pages, f"pages without a command: {sorted(pages - commands)}"
