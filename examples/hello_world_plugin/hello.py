@@ -5,9 +5,7 @@ simkit run examples/hello_world_plugin/world.sdf --plugin-path examples/hello_wo
 
 from __future__ import annotations
 
-from simkit.params import Params
-from simkit.plugins import WorldPlugin
-from simkit.runtime import Simulation
+from simkit import Params, Simulation, WorldPlugin
 
 
 class Hello(WorldPlugin):

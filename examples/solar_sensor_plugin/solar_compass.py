@@ -12,10 +12,7 @@ import math
 
 import numpy as np
 
-from simkit import msgs
-from simkit.params import Params
-from simkit.plugins import ModelPlugin
-from simkit.pose import Pose, quat_from_rpy
+from simkit import ModelPlugin, Params, Pose, msgs
 from simkit.runtime import Model
 
 
@@ -51,7 +48,7 @@ class SolarCompass(ModelPlugin):
             first, second = self.draws.normal(self.readings)
             elevation, azimuth = elevation + self.noise * first, azimuth + self.noise * second
         # to look up is to pitch backwards
-        qw, qx, qy, qz = quat_from_rpy(0.0, -elevation, azimuth)
+        qw, qx, qy, qz = Pose.from_rpy(0, 0, 0, 0, -elevation, azimuth).quaternion
         message = msgs.make(
             "sensor_msgs/msg/Imu",
             header=msgs.header(self.sim.time_ns, self.mast.name),

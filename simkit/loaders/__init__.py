@@ -21,7 +21,7 @@ __all__ = ["Document", "LoadRequest", "Loader", "Resolver", "load_scene", "loade
 @lru_cache(maxsize=1)
 def loader_kinds() -> Mapping[str, type[Loader]]:
     """Every loader by the root element it reads."""
-    return discover("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots)
+    return discover("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots)  # type: ignore[type-abstract]
 
 
 def load_scene(
@@ -67,6 +67,9 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         root = parse_text(source, diagnostics)
         return None if root is None else Document(root, None, source.encode())
     path = Path(source)
+    if not str(source):
+        diagnostics.error("SK-LOAD-002", "the source is empty; it is a path or XML text")
+        return None
     if path.is_dir():
         model = resolver.model_file(path, Where(str(path)), diagnostics)
         return None if model is None else parse_file(model, diagnostics)

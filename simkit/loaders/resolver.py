@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -29,16 +30,32 @@ class Resolver:
     Args:
         paths: folders for `model://`, `package://` and relative URIs, searched before those of the environment.
         base: the folder of the file being loaded; searched last.
+        missing_meshes: whether a mesh that is not found is only a warning (to inspect a file without its meshes).
         anywhere: lets absolute paths and `..` leave the folders named above.
     """
 
-    def __init__(self, paths: Sequence[str | os.PathLike[str]] = (), *, base: Path | None = None, anywhere: bool = False) -> None:
-        self.base, self.anywhere = base, anywhere
+    def __init__(
+        self,
+        paths: Sequence[str | os.PathLike[str]] = (),
+        *,
+        base: Path | None = None,
+        missing_meshes: bool = False,
+        anywhere: bool = False,
+    ) -> None:
+        self.base, self.missing_meshes, self.anywhere = base, missing_meshes, anywhere
         found = [Path(p).expanduser() for p in paths]
         for variable in _SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
         found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
         self.paths: tuple[Path, ...] = tuple(dict.fromkeys(_normal(p) for p in found))
+
+    def around(self, folder: Path | None) -> Resolver:
+        """The same, with the folder of the file being loaded where none was given."""
+        if self.base is not None or folder is None:
+            return self
+        near = copy(self)
+        near.base = folder
+        return near
 
     # ------------------------------------------------------------------ URIs
 
@@ -58,14 +75,20 @@ class Resolver:
         if uri.startswith(("http://", "https://")):
             looked = _listed(places)
             diagnostics.error(
-                "SK-URI-002", f"{uri} is not on this machine and nothing is downloaded{looked}", where,
+                "SK-URI-002",
+                f"{uri} is not on this machine and nothing is downloaded{looked}",
+                where,
                 f"fetch it once with Gazebo (its cache is read), or {_PATH_HINT}",
             )
         elif places is None:
             diagnostics.error("SK-URI-003", f"{uri} leaves the folders it may use", where, _PATH_HINT)
         elif "://" in uri and scheme not in ("model", "package", "file"):
-            diagnostics.error("SK-URI-004", f"{uri}: schemes known are model, package, file, https", where,
-                              did_you_mean(scheme, ("model", "package", "file", "https")))
+            diagnostics.error(
+                "SK-URI-004",
+                f"{uri}: schemes known are model, package, file, https",
+                where,
+                did_you_mean(scheme, ("model", "package", "file", "https")),
+            )
         else:
             name = rest.split("/")[0]
             near = did_you_mean(name, self._siblings(relative_to)) if scheme in ("model", "package") else ""
@@ -141,7 +164,9 @@ class Resolver:
         inside = Path(*tail[2:]) if len(tail) > 2 and tail[1] == "files" else Path()
         for cache in _fuel_caches():
             for folder in (cache / server / owner / kind / name, cache / server / owner.lower() / kind / name.lower()):
-                versions = sorted((p for p in folder.glob("*") if p.name.isdigit()), key=lambda p: int(p.name), reverse=True)
+                versions = sorted(
+                    (p for p in folder.glob("*") if p.name.isdigit()), key=lambda p: int(p.name), reverse=True
+                )
                 yield from (v / inside for v in versions if version in ("tip", v.name))
                 if not versions:
                     yield folder / version / inside
@@ -156,7 +181,7 @@ class Resolver:
     # ------------------------------------------------------------------ models
 
     def model_file(self, folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
-        """The SDF file of a model folder: the highest version up to 1.12 that its `model.config` lists, else `model.sdf`."""
+        """The SDF file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`."""
         from simkit.loaders.xml import parse_file
 
         for manifest in (folder / "model.config", folder / "manifest.xml"):

@@ -5,6 +5,7 @@ Names keep their prefix as written (`gz:type`), declared or not, because the fil
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from xml.parsers import expat
@@ -15,6 +16,8 @@ from simkit.params import Params
 MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 200
 MAX_ELEMENTS = 3_000_000
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+_DECLARATION = re.compile(rb"<\?xml\b[^?]*\?>")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +60,8 @@ class _Open:
 class _Reader:
     """Builds the tree from expat's events and keeps the bounds."""
 
-    def __init__(self, file: str | None, first_line: int, diagnostics: Diagnostics) -> None:
-        self.file, self.offset, self.diagnostics = file, first_line, diagnostics
+    def __init__(self, file: str | None, diagnostics: Diagnostics) -> None:
+        self.file, self.offset, self.diagnostics = file, 0, diagnostics
         self.parser = expat.ParserCreate()
         self.parser.buffer_text = True
         self.parser.StartElementHandler = self.start
@@ -68,6 +71,17 @@ class _Reader:
         self.stack: list[_Open] = []
         self.root: Params | None = None
         self.count = 0
+
+    def read(self, data: bytes) -> Params | None:
+        """Parses the whole text; white space before the declaration is passed over."""
+        body = data if data.startswith((b"\xff\xfe", b"\xfe\xff")) else data.lstrip()
+        self.offset = data[: len(data) - len(body)].count(b"\n")
+        self.parser.Parse(body, True)
+        return self.root
+
+    def at(self, error: expat.ExpatError) -> int:
+        """The line of an error."""
+        return error.lineno + self.offset
 
     @property
     def line(self) -> int:
@@ -112,23 +126,44 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
         return None
     if isinstance(text, str) and data.lstrip().startswith(b"<?xml"):
         declaration, _, rest = data.lstrip().partition(b"?>")
-        data = data[: len(data) - len(data.lstrip())] + b"<?xml version='1.0'?>" + b"\n" * declaration.count(b"\n") + rest
-    body = data.lstrip() if not data.startswith((b"\xff\xfe", b"\xfe\xff")) else data
-    reader = _Reader(file, data[: len(data) - len(body)].count(b"\n"), diagnostics)
+        data = (
+            data[: len(data) - len(data.lstrip())] + b"<?xml version='1.0'?>" + b"\n" * declaration.count(b"\n") + rest
+        )
+    reader = _Reader(file, diagnostics)
     try:
-        reader.parser.Parse(body, True)
+        return reader.read(data)
     except expat.ExpatError as error:
-        where = Where(file, error.lineno + reader.offset)
+        mended = _mended(data)
+        root = None if mended is None else _second_try(mended, file, diagnostics)
+        if root is not None:
+            text_of = expat.ErrorString(error.code)
+            diagnostics.warning(
+                "SK-XML-004", f"not strictly XML, read all the same: {text_of}", Where(file, reader.at(error))
+            )
+            return root
         opened = f" (inside <{reader.stack[-1].name}> of line {reader.stack[-1].line})" if reader.stack else ""
-        diagnostics.error("SK-XML-001", f"broken XML: {expat.ErrorString(error.code)}{opened}", where)
-        return None
+        diagnostics.error(
+            "SK-XML-001", f"broken XML: {expat.ErrorString(error.code)}{opened}", Where(file, reader.at(error))
+        )
     except _Refused as refused:
         diagnostics.error(refused.code, str(refused), Where(file, reader.line))
-        return None
     except (LookupError, ValueError) as error:
         diagnostics.error("SK-XML-001", f"broken XML: {error}", Where(file, reader.line))
+    return None
+
+
+def _mended(data: bytes) -> bytes | None:
+    """The text without comments and declaration, as lenient readers take it; None where it has neither."""
+    plain = _COMMENT.sub(lambda m: b"\n" * m.group().count(b"\n"), data)
+    plain = _DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), plain)
+    return plain if plain != data else None
+
+
+def _second_try(data: bytes, file: str | None, diagnostics: Diagnostics) -> Params | None:
+    try:
+        return _Reader(file, diagnostics).read(data)
+    except (expat.ExpatError, _Refused, LookupError, ValueError):
         return None
-    return reader.root
 
 
 def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:

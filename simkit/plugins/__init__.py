@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, closest
-from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
+from simkit.plugins.base import ModelPlugin, ParentKind, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
 from simkit.plugins.ros_names import RosNames
 from simkit.registry import discover
 from simkit.scene import ScenePlugin
@@ -44,13 +44,18 @@ def normalise(name: str) -> str:
 @functools.cache
 def plugin_kinds() -> Mapping[str, type[Plugin]]:
     """Every known plugin class by each normalised name it answers to; computed once, read-only."""
-    return discover(
-        "simkit.plugins", GROUP, Plugin, lambda cls: dict.fromkeys(map(normalise, (*cls.filenames, *cls.names)))
-    )
+
+    def names(cls: type[Plugin]) -> list[str]:
+        return [normalise(name) for name in (*cls.filenames, *cls.names)]
+
+    return discover("simkit.plugins", GROUP, Plugin, names)  # type: ignore[type-abstract]
 
 
 def find_plugin(
-    plugin: ScenePlugin, plugin_paths: Sequence[Path] = (), diagnostics: Diagnostics | None = None
+    plugin: ScenePlugin,
+    plugin_paths: Sequence[Path] = (),
+    diagnostics: Diagnostics | None = None,
+    parent: ParentKind = "any",
 ) -> type[Plugin] | None:
     """The class behind a plugin of a file, or None after a diagnostic that says why.
 
@@ -61,6 +66,8 @@ def find_plugin(
         plugin: as read from the file.
         plugin_paths: folders whose modules the user allows (`--plugin-path`).
         diagnostics: where problems go; the file's own where not given.
+        parent: what the plugin hangs on; a class for another kind of parent is left out. "any": a plugin that is
+            scoped to nothing hangs on the world, of others nothing is known.
     """
     found = diagnostics if diagnostics is not None else plugin.params.diagnostics
     kinds = plugin_kinds()
@@ -72,6 +79,10 @@ def find_plugin(
         cls = find_user_plugin(plugin, plugin_paths, found)
         if cls is None and len(found) == said:
             _report_unknown(plugin, found)
+    if parent == "any" and not plugin.scoped:
+        parent = "world"
+    if cls is not None and not _fits(cls, plugin, parent, found):
+        return None
     return cls
 
 
@@ -82,6 +93,18 @@ def aliases(plugin: ScenePlugin) -> list[str]:
     """
     names = [plugin.filename, plugin.name if "::" in plugin.name else ""]
     return [normalise(name) for name in names if name]
+
+
+def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostics: Diagnostics) -> bool:
+    """Whether the class may hang where the file puts it; a warning says where it belongs."""
+    if "any" in {cls.parent_kind, parent} or cls.parent_kind == parent:
+        return True
+    message = (
+        f"plugin {plugin.filename!r} belongs on a {cls.parent_kind}, the file puts it on a {parent}; it is left out"
+    )
+    hint = f"move it into the <{cls.parent_kind}> that it is for"
+    diagnostics.warning("SK-PLUGIN-007", message, plugin.where, hint)
+    return False
 
 
 def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:

@@ -17,7 +17,7 @@ import logging
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from simkit.diagnostics import NOWHERE, Diagnostics, Where
+from simkit.diagnostics import NOWHERE, Where
 from simkit.params import Params
 from simkit.plugins.ros_names import RosNames
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from simkit.scene import ScenePlugin
 
 Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
-ParentKind = Literal["world", "model", "sensor", "visual"]
+ParentKind = Literal["world", "model", "sensor", "visual", "any"]
 
 
 class Plugin(abc.ABC):
@@ -39,6 +39,7 @@ class Plugin(abc.ABC):
     Attributes:
         filenames: library names in files that stand for this class (`libgazebo_ros_diff_drive.so`).
         names: gz class names that do (`gz::sim::systems::DiffDrive`).
+        parent_kind: what it may hang on; the four base classes set it.
         before_step_rate, after_step_rate: [Hz]; set in the class, or on the instance in `load`.
         sim: the simulation.
         name: the plugin's name in the file.
@@ -56,6 +57,7 @@ class Plugin(abc.ABC):
     before_step_rate: float | None = None
     after_step_rate: float | None = None
 
+    _source: ScenePlugin | None = None
     sim: Simulation
     name: str = ""
     scoped: str = ""
@@ -118,16 +120,27 @@ class Plugin(abc.ABC):
 
     # ------------------------------------------------------------------ what the simulation calls
 
-    def _setup(self, sim: Simulation, plugin: ScenePlugin | None = None) -> None:
-        """Ties the instance to its simulation and to its place in the file (None: made in Python)."""
-        self.sim = sim
+    @property
+    def source(self) -> ScenePlugin | None:
+        """The plugin as the file has it; None for one made in Python."""
+        return self._source
+
+    @source.setter
+    def source(self, plugin: ScenePlugin | None) -> None:
+        """Gives the instance its name, place and parameters; done before `prepare`."""
+        self._source = plugin
         self.name = plugin.name if plugin else (self.name or type(self).__name__)
         self.scoped = plugin.scoped if plugin else ""
         self.params = plugin.params if plugin else Params("plugin")
         self.where = plugin.where if plugin else NOWHERE
         self.ros = RosNames.from_params(self.params, self.name)
         self.log = logging.getLogger(f"simkit.plugins.{self.name}")
-        self.diagnostics: Diagnostics = self.params.diagnostics
+
+    def _setup(self, sim: Simulation, source: ScenePlugin | None = None) -> None:
+        """Ties the instance to its simulation; done before `load`."""
+        self.sim = sim
+        if source is not None or not hasattr(self, "params"):
+            self.source = source
 
     @classmethod
     def has_hook(cls, hook: Hook) -> bool:
@@ -164,26 +177,19 @@ class Plugin(abc.ABC):
                 uncopied.add(key)
                 if key not in vars(self).get("_uncopied", set()):
                     message = f"plugin {self.name!r}: attribute {key!r} cannot be copied, snapshots and reset leave it: {error}"
-                    self.diagnostics.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
+                    self.sim.reports.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
         self._uncopied = uncopied
         return state
 
     def _remember_loaded(self) -> None:
-        """Keeps what `load` made, for `_back_to_loaded`."""
-        self._loaded_state = self.get_state()
-
-    def _back_to_loaded(self) -> None:
-        """The default reset: attributes as after `load`, then the `reset` hook."""
-        self.set_state(self._loaded_state)
-        self.reset()
+        """After `load`: an attribute that cannot be copied is reported now and not at the first snapshot."""
+        self.get_state()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Plugin:
         return self
 
 
-_OWNED = frozenset(
-    ("sim", "name", "scoped", "params", "where", "ros", "log", "diagnostics", "_uncopied", "_loaded_state")
-)
+_OWNED = frozenset(("sim", "name", "scoped", "params", "where", "ros", "log", "_source", "_uncopied"))
 
 
 class WorldPlugin(Plugin):

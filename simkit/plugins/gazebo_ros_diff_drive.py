@@ -23,6 +23,7 @@ from simkit.plugins.odometry import (
     command_of,
     odometry_message,
     planar_covariance,
+    rolling_twist,
     transform,
     transforms,
     true_state,
@@ -245,9 +246,7 @@ class GazeboRosDiffDrive(ModelPlugin):
         if not self.options.from_encoders:
             return true_state(self._model, self._base)
         pair = self.options.pairs[0]
-        left, right = (wheel.velocity * pair.radius for wheel in self._wheels[:2])
-        twist = BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / pair.separation))
-        return self._reckoning.pose, twist
+        return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
 
     def _advance(self) -> None:
         pair = self.options.pairs[0]

@@ -13,10 +13,10 @@ from simkit.plugins.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
     TRANSFORMS,
-    BodyTwist,
     DeadReckoning,
     command_of,
     odometry_message,
+    rolling_twist,
     transform,
     transforms,
     true_state,
@@ -169,8 +169,7 @@ class DiffDrive(ModelPlugin):
         self._advance()
         pose = self._reckoning.pose
         if self._odom.wanted:
-            left, right = (joint.velocity * self._radius for joint in self._pair)
-            twist = BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / self._separation))
+            twist = rolling_twist(self._pair, self._radius, self._separation)
             self._odom.publish(odometry_message(now, self._frame, self._child, pose, twist))
         if self._tf.wanted:
             self._tf.publish(transforms(transform(now, self._frame, self._child, pose)))

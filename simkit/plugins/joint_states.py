@@ -87,5 +87,5 @@ class JointStatePublisher(_JointStates):
         self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
 
     def load(self, parent: Any, params: Params) -> None:
-        self._topic = valid_topic(self._given or f"/world/{self.sim.world_name}{self._path}/joint_state")
+        self._topic = valid_topic(self._given or f"/world/{self.sim.world.name}{self._path}/joint_state")
         super().load(parent, params)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from simkit import msgs
-from simkit.pose import Pose, quat_from_rpy
+from simkit.pose import Pose, Vector, quat_from_rpy
+
+if TYPE_CHECKING:
+    from simkit.runtime import Joint, Link, Model
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
@@ -50,8 +53,14 @@ class DeadReckoning:
 class BodyTwist:
     """Velocities in the body's own axes: linear [m/s] and angular [rad/s], each (x, y, z)."""
 
-    linear: Sequence[float] = (0.0, 0.0, 0.0)
-    angular: Sequence[float] = (0.0, 0.0, 0.0)
+    linear: Sequence[float] | Vector = (0.0, 0.0, 0.0)
+    angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
+
+
+def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> BodyTwist:
+    """What the turning of the first two wheels, left and right, says of the body between them; lengths m."""
+    left, right = (float(wheel.velocity) * radius for wheel in wheels[:2])
+    return BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / separation))
 
 
 def command_of(message: Any) -> tuple[float, float] | None:
@@ -61,7 +70,7 @@ def command_of(message: Any) -> tuple[float, float] | None:
     return (forward, turn) if math.isfinite(forward) and math.isfinite(turn) else None
 
 
-def true_state(model: Any, canonical: Any) -> tuple[Pose, BodyTwist]:
+def true_state(model: Model, canonical: Link) -> tuple[Pose, BodyTwist]:
     """World pose of a model's frame, and that frame's velocity in its own axes.
 
     Args:
@@ -75,7 +84,7 @@ def true_state(model: Any, canonical: Any) -> tuple[Pose, BodyTwist]:
     return pose, BodyTwist(back.rotate(moving), back.rotate(turning))
 
 
-def planar_covariance(x: float, y: float, yaw: float) -> np.ndarray[Any, np.dtype[np.float64]]:
+def planar_covariance(x: float, y: float, yaw: float) -> Vector:
     """6×6 row-major covariance, shape (36,): the three planar variances, and a huge one for the rest."""
     return np.diag((x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw)).reshape(36)
 
@@ -86,7 +95,7 @@ def odometry_message(
     child: str,
     pose: Pose,
     twist: BodyTwist,
-    covariance: np.ndarray[Any, np.dtype[np.float64]] | None = None,
+    covariance: Vector | None = None,
 ) -> Any:
     """A `nav_msgs/msg/Odometry`: pose of `child` in `frame`, twist in `child`'s axes."""
     matrix = np.zeros(36) if covariance is None else covariance
@@ -114,7 +123,7 @@ def transforms(*items: Any) -> Any:
     return msgs.make(TRANSFORMS, transforms=list(items))
 
 
-def _xyz(vector: Sequence[float] | np.ndarray[Any, np.dtype[np.float64]]) -> dict[str, float]:
+def _xyz(vector: Sequence[float] | Vector) -> dict[str, float]:
     return {"x": float(vector[0]), "y": float(vector[1]), "z": float(vector[2])}
 
 

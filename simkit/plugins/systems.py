@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
-from simkit.plugins.base import Plugin, WorldPlugin
+from simkit.plugins.base import Plugin
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -29,12 +29,13 @@ _SYSTEMS = {
 }
 
 
-class BuiltInSystem(WorldPlugin):
+class BuiltInSystem(Plugin):
     """Stands for a system whose work simkit does whether it is named or not; says so in a note.
 
     A sensor of a kind that simkit does not have is reported at the sensor itself.
     """
 
+    parent_kind = "any"
     filenames = (
         *(f"gz-sim-{name}-system" for name in _SYSTEMS),
         "libgazebo_ros_init.so",
@@ -48,5 +49,5 @@ class BuiltInSystem(WorldPlugin):
         message = f"plugin {label!r} is not needed: simkit does what it stands for by itself; its settings are not used"
         params.diagnostics.note("SK-PLUGIN-005", message, self.where)
 
-    def load(self, parent: Plugin, params: Params) -> None:
+    def load(self, parent: Any, params: Params) -> None:
         """Nothing to do."""

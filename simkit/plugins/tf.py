@@ -68,6 +68,8 @@ class StaticTransforms(WorldPlugin):
         for sensor in scene.all_sensors():
             link = children[sensor.parent] if sensor.on_joint else sensor.parent
             own = {sensor.name, sensor.scoped} - set(frames.values())
+            if sensor.plugins:
+                continue  # a Classic plugin names a link's frame
             # a kind that simkit does not have is in the scene and not in the simulation
             frame = self.sim.sensor(sensor.scoped).frame_id if self.sim.has_sensor(sensor.scoped) else ""
             if link in frames and frame in own:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import mujoco
-import numpy as np
 
+from simkit.compiler.lights import drawn_position
 from simkit.pose import Pose
 from simkit.runtime.handles import look_up
 from simkit.runtime.joint import Joint
@@ -20,7 +20,6 @@ from simkit.scene import SceneLight, SceneLink, SceneModel, SceneWorld
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
-_FAR = 1e4  # [m]; lights beyond are drawn from here, in the same direction
 _PREFIX = {
     "geom": mujoco.mjtObj.mjOBJ_GEOM,
     "body": mujoco.mjtObj.mjOBJ_BODY,
@@ -100,15 +99,11 @@ class Entities:
 
 
 def place_light(model: Any, light: Light, scoped: str, pose_in_body: Pose, touch: Any) -> None:
-    """Puts the drawn light where the handle says; one at an astronomical distance is drawn from nearer."""
+    """Puts the drawn light where the handle says; one far away is drawn from nearer."""
     index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_LIGHT, scoped)
     if index < 0:
         return
-    position = np.array(pose_in_body.position)
-    distance = float(np.linalg.norm(position))
-    if distance > _FAR:
-        position *= _FAR / distance
-    touch("light_pos")[index] = position
+    touch("light_pos")[index] = drawn_position(light.scene, pose_in_body.position)
     touch("light_dir")[index] = pose_in_body.rotate(light.scene.direction)
 
 

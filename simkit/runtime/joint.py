@@ -40,8 +40,8 @@ class Joint(Handle):
         self._ids = [int(j) for j in binding.joint_ids]
         self._qpos = np.array(binding.qpos, dtype=int)
         self._dofs = np.array(binding.dofs, dtype=int)
-        self._is_ball = len(self._dofs) == 3 and len(self._qpos) in (1, 4) and self.type == "ball"
-        self._one_qpos = int(self._qpos[0]) if len(self._qpos) == 1 and not self._is_ball else -1
+        self._is_ball = len(self._dofs) == 3 and len(self._qpos) == 1
+        self._one_qpos = int(self._qpos[0]) if len(self._qpos) == len(self._dofs) == 1 else -1
         self._one_dof = int(self._dofs[0]) if len(self._dofs) == 1 else -1
 
     # ------------------------------------------------------------------ readings
@@ -58,7 +58,7 @@ class Joint(Handle):
 
     @property
     def position(self) -> Value:
-        """Angle [rad] or length [m]; a rotation vector (3,) for a ball joint."""
+        """Angle [rad] or length [m]; a rotation vector (3,) for a ball joint; x y z qw qx qy qz for a floating one."""
         self._check()
         qpos = self._sim.mj_data.qpos
         if self._one_qpos >= 0:
@@ -67,6 +67,8 @@ class Joint(Handle):
             out = np.zeros(3)
             mujoco.mju_quat2Vel(out, self._ball_quat(), 1.0)
             return out
+        if len(self._dofs) == 6:
+            return np.array(qpos[self._qpos[0] : self._qpos[0] + 7])
         return np.array(qpos[self._qpos])
 
     @property
@@ -95,14 +97,17 @@ class Joint(Handle):
         """
         self._check()
         data = self._sim.physics.fresh_accelerations()
-        names = self._sim.names
-        child = names.link(self.scene.child_link)
+        names, binding = self._sim.names, self._binding
+        # the body below the joint in the engine's tree carries the force; it may be the file's parent
+        sign = -1.0 if binding.is_reversed else 1.0
+        child = names.link(self.scene.parent_link if binding.is_reversed else self.scene.child_link)
         body = int(child.body)
-        if not body:
+        if not body or binding.is_loop:
             return np.zeros(3), np.zeros(3)
-        frame = Pose(data.xpos[body], data.xquat[body]) @ child.offset @ self._binding.frame
+        in_link = binding.pose_parent if binding.is_reversed else binding.pose_child
+        frame = Pose(data.xpos[body], data.xquat[body]) @ child.offset @ in_link
         com = data.subtree_com[self._sim.mj_model.body_rootid[body]]
-        wrench = data.cfrc_int[body]
+        wrench = sign * data.cfrc_int[body]
         force = wrench[3:]
         torque = wrench[:3] + np.cross(com - frame.position, force)
         back = quat_conjugate(frame.quaternion)
@@ -122,12 +127,17 @@ class Joint(Handle):
             qpos[start : start + 4] = quat
         else:
             qpos[self._qpos] = values
+        for follower in self._binding.followers:
+            qpos[follower.qpos] = self._sim.mj_model.qpos0[follower.qpos] + follower.ratio * values[0]
         self._sim.physics.changed(STALE)
 
     def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
         """Gives the joint a velocity, once."""
         self._check()
-        self._sim.mj_data.qvel[self._dofs] = self._shaped(velocity)
+        values = self._shaped(velocity)
+        self._sim.mj_data.qvel[self._dofs] = values
+        for follower in self._binding.followers:
+            self._sim.mj_data.qvel[follower.dof] = follower.ratio * values[0]
         self._sim.physics.changed(VELOCITY)
 
     def set_effort(self, effort: float | Sequence[float] | Vector) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
+from simkit.compiler import LinkBinding
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.handles import Handle, look_up
 from simkit.runtime.joint import Joint
@@ -76,20 +76,17 @@ class Model(Handle):
         if self.static:
             self._sim.make_movable(self.scoped.split("::")[0])
         shift = pose @ self.pose.inverse()
-        data, names = self._sim.mj_data, self._sim.names
+        names = self._sim.names
         for link in self.scene.all_links():
             self._shift_link(names.link(link.scoped), shift)
         for model in self.scene.all_models():
             handle = self._sim.model(model.scoped)
             handle._rest = shift @ handle._rest
-        if data.nmocap if hasattr(data, "nmocap") else self._sim.mj_model.nmocap:
-            mujoco.mj_kinematics(self._sim.mj_model, data)
         self._sim.physics.changed(STALE)
 
-    def _shift_link(self, binding: object, shift: Pose) -> None:
+    def _shift_link(self, binding: LinkBinding, shift: Pose) -> None:
         model, data = self._sim.mj_model, self._sim.mj_data
-        mocap, start = int(getattr(binding, "mocap")), int(getattr(binding, "root_joint_qpos"))
-        body = int(getattr(binding, "body"))
+        mocap, start, body = binding.mocap, binding.root_joint_qpos, binding.body
         if mocap >= 0:
             moved = shift @ Pose(data.mocap_pos[mocap], data.mocap_quat[mocap])
             data.mocap_pos[mocap], data.mocap_quat[mocap] = moved.position, moved.quaternion
@@ -112,7 +109,7 @@ class Model(Handle):
             start = int(binding.root_joint_qpos)
             if start < 0:
                 continue
-            dof = int(self._sim.mj_model.body_dofadr[binding.body])
+            dof = int(binding.root_joint_dof)
             arm = data.qpos[start : start + 3] - origin
             data.qvel[dof : dof + 3] = linear + np.cross(angular, arm)
             data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(data.qpos[start + 3 : start + 7]), angular)

@@ -62,6 +62,7 @@ class Mesh:
         uri: as written in the file.
         submesh: name of the one sub-mesh to use, or empty for all.
         center: whether that sub-mesh is moved to the origin.
+        missing: the file is not there (only where the caller asked to read on without it).
     """
 
     file: Path
@@ -69,6 +70,7 @@ class Mesh:
     scale: Vec3 = (1.0, 1.0, 1.0)
     submesh: str = ""
     center: bool = False
+    missing: bool = False
 
 
 @dataclass(frozen=True, slots=True)

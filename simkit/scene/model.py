@@ -228,6 +228,7 @@ class SceneModel:
     Attributes:
         scoped: name from the world down, joined with `::`.
         canonical_link: scoped name of the link whose motion is the model's; empty where there is none.
+        declared_static: what the model's own element (or its include) says; `static` also follows the outer model.
         base: "auto" (floating unless joined to the world), "fixed" or "floating".
     """
 
@@ -235,6 +236,7 @@ class SceneModel:
     scoped: str
     pose_world: Pose
     static: bool = False
+    declared_static: bool = False
     self_collide: bool = False
     canonical_link: str = ""
     base: str = "auto"

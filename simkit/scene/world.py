@@ -70,15 +70,16 @@ class SceneWorld:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A loaded file: its worlds, or one bare model."""
+    """A loaded file: its worlds, or one bare model, or one bare light."""
 
     worlds: tuple[SceneWorld, ...] = ()
     model: SceneModel | None = None
     file: str | None = None
+    light: SceneLight | None = None
 
     @property
     def world(self) -> SceneWorld:
-        """The world to run: the first of the file, or an empty one around the bare model."""
+        """The world to run: the first of the file, or an empty one around the bare model or light."""
         if self.worlds:
             return self.worlds[0]
-        return SceneWorld(models=(self.model,) if self.model else ())
+        return SceneWorld(models=(self.model,) if self.model else (), lights=(self.light,) if self.light else ())

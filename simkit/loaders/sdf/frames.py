@@ -1,7 +1,7 @@
 """The frames of a file: names, poses relative to one another, and which body each is attached to.
 
 Every model (and the world) is a scope with its own names; a pose is resolved inside its scope, so that a nested model
-moves as one. Semantics: the SDFormat documentation, "Pose frame semantics" (1.7 and later; older files use the defaults).
+moves as one. Source: the SDFormat documentation, "Pose frame semantics" (1.7 and later; older files use the defaults).
 """
 
 from __future__ import annotations
@@ -56,21 +56,29 @@ class Scope:
     Attributes:
         root: its own frame: the world, `__model__`, or what stands for that of a merged model.
         names: frames by name; a merged model shares those of the model it is merged into.
+        canonical: name of the link that the root moves with.
+        world: pose of the scope's coordinates in the world at load time.
     """
 
     root: Frame
     diagnostics: Diagnostics
     names: dict[str, Frame] = field(default_factory=dict)
     canonical: str = ""
+    world: Pose = IDENTITY
 
     def chain(self, path: str) -> list[Frame] | None:
-        """The frames from this scope down to `a::b::c`; None when a name is unknown; empty for the root."""
+        """The frames from this scope down to `a::b::c`; None when a name is unknown; empty for the root.
+
+        Files before 1.8 may have `::` inside one name, so the whole path is tried first.
+        """
         scope: Scope = self
         found: list[Frame] = []
+        if path in self.names:
+            return [self.names[path]]
         parts = path.split("::")
         for position, part in enumerate(parts):
             last = position == len(parts) - 1
-            if last and part in ("", MODEL) or (last and part == WORLD and scope.root.kind == WORLD):
+            if (last and part in ("", MODEL)) or (last and part == WORLD and scope.root.kind == WORLD):
                 if scope is self and scope.root.scope is not None:
                     found.append(scope.root)  # the frame that stands for a merged model's own
                 return found
@@ -109,7 +117,9 @@ class Scope:
             return IDENTITY
         frame.busy = True
         base = frame.relative_to or frame.default_base
-        pose = frame.pose if not base and frame.scope.root.scope is None else frame.scope.pose_of(base, frame) @ frame.pose
+        pose = (
+            frame.pose if not base and frame.scope.root.scope is None else frame.scope.pose_of(base, frame) @ frame.pose
+        )
         if frame.inside is not None and frame.placement:
             pose = pose @ frame.inside.pose_of(frame.placement, None, frame.where).inverse()
         frame.busy = False
@@ -134,8 +144,6 @@ class Scope:
         if frame.inside is not None:
             return frame.inside._body_of_root(where, owner, seen)
         scope = frame.scope or self
-        if not frame.attached_to and scope.root.scope is not None and scope.root is not frame:
-            return scope.body(MODEL, where, owner, seen)
         return scope.body(frame.attached_to, frame.where, f"{frame.kind} {frame.name!r}", seen)
 
     def _body_of_root(self, where: Where, owner: str, seen: frozenset[int]) -> Frame | None:
@@ -157,6 +165,13 @@ class Scope:
         """Names that can be used here, nested ones one level down included."""
         nested = [f"{n}::{inner}" for n, f in self.names.items() if f.inside for inner in f.inside.names]
         return [*self.names, *nested]
+
+
+def world_pose(frame: Frame) -> Pose:
+    """The pose of a frame in the world at load time; its scope's place must be known."""
+    if frame.scope is None:
+        return IDENTITY
+    return frame.scope.world @ frame.scope.resolve(frame)
 
 
 def base_of(pose: Params | None) -> str:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 
+from simkit.diagnostics import Diagnostics
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
 from simkit.scene import (
@@ -39,6 +42,8 @@ def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str)
         reader = _READERS.get(shape.name)
         if reader is not None:
             block.child(shape.name)
+            if shape.name == "polyline":
+                return _polylines(block.all("polyline"))
             return reader(shape, file, workspace)
     for name in _READERS:
         block.has(name)
@@ -103,7 +108,8 @@ def _plane(element: Params, _file: SdfFile, _workspace: Workspace) -> Geometry:
 
 
 def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | None:
-    uri = element.text("uri", required=True)
+    old = element.text("filename", "")
+    uri = element.text("uri", old or None, required=not old)
     scale = element.vector3("scale", (1.0, 1.0, 1.0))
     if any(v == 0 for v in scale):
         element.error("SK-SDF-009", f"<mesh> {uri} has a scale of zero")
@@ -112,14 +118,26 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
     name, center = part.text("name", ""), part.boolean("center", False)
     if not uri:
         return None
-    place = element.child("uri") or element
-    path = workspace.resolver.resolve(uri, place.where, workspace.diagnostics, file.folder)
+    place = element.child("uri") or element.child("filename") or element
+    path = find_mesh(uri, place, file, workspace)
     if path is None:
-        return None
-    if path.is_dir():
-        workspace.diagnostics.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", place.where)
-        return None
+        missing = workspace.resolver.missing_meshes
+        return Mesh(Path(uri), uri, scale, name, center, missing=True) if missing else None
     return Mesh(path.absolute(), uri, scale, name, center)
+
+
+def find_mesh(uri: str, place: Params, file: SdfFile, workspace: Workspace) -> Path | None:
+    """The mesh file that a URI names; a missing one is an error, or a warning where the caller reads on without."""
+    resolver = workspace.resolver
+    found = Diagnostics()
+    path = resolver.resolve(uri, place.where, found, file.folder)
+    if path is not None and path.is_dir():
+        found.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", place.where)
+        path = None
+    for problem in found:
+        severity = "warning" if resolver.missing_meshes else problem.severity
+        workspace.diagnostics.extend([replace(problem, severity=severity)])
+    return path
 
 
 def _heightmap(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | None:
@@ -133,8 +151,16 @@ def _heightmap(element: Params, file: SdfFile, workspace: Workspace) -> Geometry
     return None if path is None else Heightmap(path.absolute(), uri, size, position)
 
 
-def _polyline(element: Params, _file: SdfFile, workspace: Workspace) -> Geometry | None:
-    height = _positive(element, "height", 1.0)
+def _polylines(elements: list[Params]) -> Geometry | None:
+    """Several outlines are one shape; the height is that of the first."""
+    outlines = [outline for element in elements if (outline := _outline(element)) is not None]
+    height = _positive(elements[0], "height", 1.0)
+    for element in elements[1:]:
+        element.child("height")
+    return Polyline(tuple(outlines), height) if outlines else None
+
+
+def _outline(element: Params) -> tuple[tuple[float, float], ...] | None:
     points: list[tuple[float, float]] = []
     for point in element.all("point"):
         try:
@@ -146,7 +172,7 @@ def _polyline(element: Params, _file: SdfFile, workspace: Workspace) -> Geometry
     if len(points) < 3:
         element.error("SK-SDF-009", f"<polyline> has {len(points)} points, it needs at least 3")
         return None
-    return Polyline((tuple(points),), height)
+    return tuple(points)
 
 
 _READERS: dict[str, _Reader] = {
@@ -159,6 +185,6 @@ _READERS: dict[str, _Reader] = {
     "plane": _plane,
     "mesh": _mesh,
     "heightmap": _heightmap,
-    "polyline": _polyline,
+    "polyline": lambda element, _file, _workspace: _polylines([element]),
     "empty": lambda _element, _file, _workspace: Empty(),
 }

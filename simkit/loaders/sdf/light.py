@@ -14,13 +14,17 @@ from simkit.scene.geometry import Vec3
 _TYPES = ("point", "spot", "directional")
 
 
-def read_light(element: Params, name: str, scoped: str, pose_world: Pose, link: str, diagnostics: Diagnostics) -> SceneLight:
+def read_light(
+    element: Params, name: str, scoped: str, pose_world: Pose, link: str, diagnostics: Diagnostics
+) -> SceneLight:
     """A light whose pose is resolved already."""
     kind = element.attribute("type", "point") or "point"
     if kind not in _TYPES:
         near = closest(kind, _TYPES)
         diagnostics.error(
-            "SK-SDF-025", f"light {name!r} has type {kind!r}, known are {', '.join(_TYPES)}", element.where,
+            "SK-SDF-025",
+            f"light {name!r} has type {kind!r}, known are {', '.join(_TYPES)}",
+            element.where,
             f"did you mean {near!r}?" if near else "",
         )
         kind = "point"

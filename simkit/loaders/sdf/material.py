@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from simkit.diagnostics import did_you_mean
@@ -86,30 +87,32 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
     script = block.block("script")
     name = script.text("name", "") or (script.value.split("/", 1)[1] if "/" in script.value else "")
     script.all("uri")
-    from_script = _script_colour(name, script, workspace)
-    diffuse = _colour(block, "diffuse", from_script or _WHITE)
+    from_script = _script_colour(name)
+    diffuse = read_colour(block, "diffuse", from_script or _WHITE)
     default_ambient = diffuse if from_script is None else from_script
     texture = _texture(block, file, workspace)
     if name and from_script is None and not block.has("diffuse") and texture is None:
-        workspace.diagnostics.note("SK-SDF-021", f"material {name!r} is not known and drawn white", script.where, did_you_mean(
-            name.removeprefix("Gazebo/"), GAZEBO_COLOURS))
+        _unknown(name, script, workspace)
     return Material(
-        ambient=_colour(block, "ambient", default_ambient),
+        ambient=read_colour(block, "ambient", default_ambient),
         diffuse=diffuse,
-        specular=_colour(block, "specular", (0.0, 0.0, 0.0, 1.0)),
-        emissive=_colour(block, "emissive", (*diffuse[:3], 1.0) if "Glow" in name else (0.0, 0.0, 0.0, 1.0)),
+        specular=read_colour(block, "specular", (0.0, 0.0, 0.0, 1.0)),
+        emissive=read_colour(block, "emissive", (*diffuse[:3], 1.0) if "Glow" in name else (0.0, 0.0, 0.0, 1.0)),
         texture=texture,
         script=name,
     )
 
 
-def _script_colour(name: str, script: Params, workspace: Workspace) -> Colour | None:
+def _unknown(name: str, script: Params, workspace: Workspace) -> None:
+    """One note for each name, however often it is used."""
+    if name not in workspace.unknown_materials:
+        workspace.unknown_materials.add(name)
+        hint = did_you_mean(name.removeprefix("Gazebo/"), GAZEBO_COLOURS)
+        workspace.diagnostics.note("SK-SDF-021", f"material {name!r} is not known and drawn white", script.where, hint)
+
+
+def _script_colour(name: str) -> Colour | None:
     return GAZEBO_COLOURS.get(name.removeprefix("Gazebo/")) if name else None
-
-
-def _colour(block: Params, name: str, default: Colour) -> Colour:
-    """Three or four numbers; the alpha is 1 where not given."""
-    return read_colour(block, name, default)
 
 
 def read_colour(block: Params, name: str, default: Colour) -> Colour:
@@ -121,7 +124,7 @@ def read_colour(block: Params, name: str, default: Colour) -> Colour:
         numbers = [float(v) for v in found.value.split()]
     except ValueError:
         numbers = []
-    if len(numbers) not in (3, 4) or any(v != v for v in numbers):
+    if len(numbers) not in (3, 4) or any(math.isnan(v) for v in numbers):
         found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>, allowed is red green blue [alpha]")
         return default
     r, g, b, a = (min(1.0, max(0.0, v)) for v in (*numbers, 1.0)[:4])
@@ -136,7 +139,9 @@ def _texture(block: Params, file: SdfFile, workspace: Workspace) -> Path | None:
             continue
         path, _ = workspace.resolver.search(found.value, file.folder)
         if path is None or not path.is_file():
-            workspace.diagnostics.warning("SK-URI-006", f"texture {found.value} is not found; drawn without it", found.where)
+            workspace.diagnostics.warning(
+                "SK-URI-006", f"texture {found.value} is not found; drawn without it", found.where
+            )
             continue
         return path.absolute()
     return None

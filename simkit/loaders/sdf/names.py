@@ -18,16 +18,22 @@ def read_name(element: Params, diagnostics: Diagnostics, version: tuple[int, int
         diagnostics.error("SK-SDF-001", f"<{element.name}> needs a name", element.where)
         return ""
     if name.startswith("__") and name.endswith("__"):
-        diagnostics.error("SK-SDF-003", f"<{element.name} name={name!r}>: names __like_this__ are reserved", element.where)
+        diagnostics.error(
+            "SK-SDF-003", f"<{element.name} name={name!r}>: names __like_this__ are reserved", element.where
+        )
     elif name == "world" and element.name != "world":
         say = diagnostics.error if version >= (1, 7) else diagnostics.warning
         say("SK-SDF-003", f"<{element.name} name='world'>: this name is reserved for the world", element.where)
     elif "::" in name and version >= (1, 8):
-        diagnostics.error("SK-SDF-003", f"<{element.name} name={name!r}>: '::' separates names and cannot be in one", element.where)
+        diagnostics.error(
+            "SK-SDF-003", f"<{element.name} name={name!r}>: '::' separates names and cannot be in one", element.where
+        )
     return name
 
 
-def named(elements: list[Params], owner: str, diagnostics: Diagnostics, version: tuple[int, int] = (1, 12)) -> list[tuple[str, Params]]:
+def named(
+    elements: list[Params], owner: str, diagnostics: Diagnostics, version: tuple[int, int] = (1, 12)
+) -> list[tuple[str, Params]]:
     """Elements with their names, without those that have none; two of one name are an error."""
     found: dict[str, Params] = {}
     for element in elements:

@@ -13,8 +13,8 @@ def read_surface(collision: Params) -> Surface:
         return Surface()
     friction, contact, bounce = block.block("friction"), block.block("contact"), block.block("bounce")
     ode, bullet = friction.block("ode"), friction.block("bullet")
-    mu = ode.number("mu", bullet.number("friction", 1.0, minimum=0), minimum=0, finite=False)
-    mu2 = ode.number("mu2", bullet.number("friction2", mu if not ode.has("mu") else 1.0, minimum=0), minimum=0, finite=False)
+    mu = _friction(ode, "mu", _friction(bullet, "friction", 1.0))
+    mu2 = _friction(ode, "mu2", _friction(bullet, "friction2", 1.0 if ode.has("mu") else mu))
     soft = contact.child("ode")
     twist = friction.block("torsional")
     return Surface(
@@ -37,6 +37,18 @@ def read_surface(collision: Params) -> Surface:
         collide_without_contact=contact.boolean("collide_without_contact", False),
         where=block.where,
     )
+
+
+def _friction(block: Params, name: str, default: float) -> float:
+    """A coefficient; old files write a negative one where they mean the default."""
+    value = block.number(name, default, finite=False)
+    if value >= 0:
+        return value
+    found = block.child(name) or block
+    found.diagnostics.warning(
+        "SK-SDF-030", f"<{name}> is {value:g}, it cannot be negative; {default:g} is used", found.where
+    )
+    return default
 
 
 def _given(block: Params | None, name: str) -> float | None:

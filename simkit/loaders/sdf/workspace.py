@@ -1,4 +1,4 @@
-"""What every part of one load shares: the resolver, the diagnostics, the files read so far, and the bounds on includes."""
+"""What every part of one load shares: resolver, diagnostics, the files read so far, and the bounds on includes."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.resolver import NEWEST_SDF, Resolver, sdf_version
+from simkit.loaders.sdf.old import modern
 from simkit.loaders.xml import Document, parse_file
 from simkit.params import Params
 
@@ -40,13 +41,14 @@ class Workspace:
     diagnostics: Diagnostics
     roots: dict[str, Params] = field(default_factory=dict)
     models: int = 0
+    unknown_materials: set[str] = field(default_factory=set)
     _documents: dict[Path, Document | None] = field(default_factory=dict)
 
     def open(self, path: Path, where: Where, chain: tuple[str, ...]) -> SdfFile | None:
         """Reads an included SDF file, once however often it is included; None with an error recorded."""
         key = str(path.resolve())
         if key in chain:
-            trail = " -> ".join(Path(p).name for p in (*chain[chain.index(key):], key))
+            trail = " -> ".join(Path(p).name for p in (*chain[chain.index(key) :], key))
             self.diagnostics.error("SK-SDF-016", f"the include goes round in a circle: {trail}", where)
             return None
         if len(chain) >= MAX_INCLUDE_DEPTH:
@@ -66,16 +68,22 @@ class Workspace:
 
     def file(self, root: Params, folder: Path | None, chain: tuple[str, ...]) -> SdfFile:
         """Notes a root element for the final report and reads its version."""
-        self.roots.setdefault(chain[-1] if chain else "", root)
         text = root.attribute("version")
         version = sdf_version(text)
         if version is None:
             said = f"version {text!r}" if text else "no version"
+            text = "1.6"
             self.diagnostics.warning("SK-LOAD-004", f"<{root.name}> has {said}; it is read as 1.6", root.where)
             version = (1, 6)
         elif version > NEWEST_SDF:
             newest = ".".join(str(n) for n in NEWEST_SDF)
             self.diagnostics.warning("SK-LOAD-004", f"SDF {text} is newer than {newest}, the newest known", root.where)
+        key = chain[-1] if chain else ""
+        if version < (1, 2) and key not in self.roots:
+            self.diagnostics.warning(
+                "SK-LOAD-004", f"SDF {text} is from 2012; it is read in today's spelling", root.where
+            )
+        root = self.roots.setdefault(key, modern(root, version))
         return SdfFile(root, version, folder, chain)
 
     def count_model(self, where: Where) -> bool:

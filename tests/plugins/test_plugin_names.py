@@ -22,7 +22,7 @@ class Hello(WorldPlugin):
 
 
 def named(filename: str, name: str = "p") -> ScenePlugin:
-    return ScenePlugin(name, filename, "", Params("plugin"))
+    return ScenePlugin(name, filename, "robot", Params("plugin"))
 
 
 def said(plugin: ScenePlugin) -> list[tuple[str, str]]:
@@ -62,7 +62,7 @@ def test_what_an_author_calls_a_plugin_does_not_choose_it() -> None:
 
 def test_every_kind_derives_from_one_of_the_parents_and_writes_load() -> None:
     for name, cls in plugin_kinds().items():
-        assert cls.parent_kind in {"world", "model", "sensor", "visual"}, name
+        assert cls.parent_kind in {"world", "model", "sensor", "visual", "any"}, name
         assert name in {normalise(n) for n in (*cls.filenames, *cls.names)}
         assert cls.load is not Plugin.load
 
@@ -92,6 +92,15 @@ def test_a_plugin_of_gazebo_that_is_missing_here_is_called_so() -> None:
     plugin = named("gz-sim-thruster-system", "gz::sim::systems::Thruster")
     assert find_plugin(plugin) is None
     assert said(plugin) == [("SK-PLUGIN-002", "warning")]
+
+
+def test_a_plugin_on_the_wrong_kind_of_parent_is_left_out_and_told_where_it_belongs() -> None:
+    plugin = named("gz-sim-diff-drive-system")
+    assert find_plugin(plugin, parent="world") is None
+    (found,) = plugin.params.diagnostics
+    assert (found.code, found.severity) == ("SK-PLUGIN-007", "warning")
+    assert "belongs on a model" in found.message
+    assert find_plugin(named("gz-sim-diff-drive-system"), parent="model") is not None
 
 
 # ------------------------------------------------------------------ a user's own Python

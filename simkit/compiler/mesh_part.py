@@ -1,0 +1,56 @@
+"""Triangles of one material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPart:
+    """Triangles of one material.
+
+    Attributes:
+        name: of the sub-mesh in the file.
+        vertices: shape (n, 3) [m].
+        faces: shape (m, 3), counter-clockwise seen from outside.
+        uv: shape (n, 2), v upwards, or None.
+        colour: RGBA from 0 to 1, or None where the file gives none.
+        texture: image rows from the top, shape (h, w, 3), uint8, or None.
+    """
+
+    name: str
+    vertices: Floats
+    faces: Ints
+    uv: Floats | None = None
+    colour: tuple[float, float, float, float] | None = None
+    texture: npt.NDArray[np.uint8] | None = None
+
+    def scaled(self, scale: tuple[float, float, float]) -> MeshPart:
+        """Stretched along the axes; a mirroring scale turns the faces over again."""
+        mirrored = scale[0] * scale[1] * scale[2] < 0.0
+        faces = np.ascontiguousarray(self.faces[:, ::-1]) if mirrored else self.faces
+        return replace(self, vertices=self.vertices * np.asarray(scale, float), faces=faces)
+
+    def moved(self, offset: Floats) -> MeshPart:
+        return replace(self, vertices=self.vertices + offset)
+
+
+def joined(parts: list[MeshPart]) -> tuple[Floats, Ints]:
+    """Vertices and faces of all parts as one mesh; equal vertices are one, faces without area are left out."""
+    offsets = np.cumsum([0, *(len(p.vertices) for p in parts[:-1])])
+    vertices = np.concatenate([p.vertices for p in parts])
+    faces = np.concatenate([p.faces + o for p, o in zip(parts, offsets, strict=True)])
+    size = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
+    grid: Any = np.round(vertices / max(size * 1e-7, 1e-300)).astype(np.int64)
+    _, first, inverse = np.unique(grid, axis=0, return_index=True, return_inverse=True)
+    vertices, faces = vertices[first], np.asarray(inverse).reshape(-1)[faces]
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return vertices, faces[area > (size * 1e-7) ** 2].astype(np.int32)

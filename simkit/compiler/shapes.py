@@ -1,0 +1,122 @@
+"""Shapes of the file as MuJoCo's primitives, or as points and triangles."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from simkit.compiler.mesh_part import Floats, Ints
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere
+
+_SIDES = 48
+
+
+@dataclass(frozen=True, slots=True)
+class Primitive:
+    """MuJoCo type and size, and the shape's pose in the file's shape frame."""
+
+    type: mujoco.mjtGeom
+    size: tuple[float, float, float]
+    pose: Pose = IDENTITY
+
+
+def primitive_of(shape: Geometry, is_visual: bool) -> Primitive | None:
+    """The primitive for a shape, or None when it needs a mesh."""
+    kind = mujoco.mjtGeom
+    match shape:
+        case Box(size=(x, y, z)):
+            return Primitive(kind.mjGEOM_BOX, (x / 2, y / 2, z / 2))
+        case Sphere(radius=r):
+            return Primitive(kind.mjGEOM_SPHERE, (r, 0.0, 0.0))
+        case Cylinder(radius=r, length=h):
+            return Primitive(kind.mjGEOM_CYLINDER, (r, h / 2, 0.0))
+        case Capsule(radius=r, length=h):
+            return Primitive(kind.mjGEOM_CAPSULE, (r, h / 2, 0.0))
+        case Ellipsoid(radii=(x, y, z)):
+            return Primitive(kind.mjGEOM_ELLIPSOID, (x, y, z))
+        case Plane(normal=normal, size=(x, y)):
+            half = (x / 2, y / 2) if is_visual else (0.0, 0.0)
+            return Primitive(kind.mjGEOM_PLANE, (*half, 1.0), Pose((0, 0, 0), turn_z_to(normal)))
+        case _:
+            return None
+
+
+def sizes_of(shape: Geometry) -> tuple[float, ...]:
+    """The numbers that must be positive for the shape to exist."""
+    match shape:
+        case Box(size=size):
+            return size
+        case Sphere(radius=r):
+            return (r,)
+        case Cylinder(radius=r, length=h) | Capsule(radius=r, length=h) | Cone(radius=r, length=h):
+            return (r, h)
+        case Ellipsoid(radii=radii):
+            return radii
+        case Plane(size=size):
+            return size
+        case Heightmap(size=size):
+            return size
+        case Polyline(height=h):
+            return (h,)
+        case _:
+            return (1.0,)
+
+
+def turn_z_to(normal: tuple[float, float, float]) -> tuple[float, float, float, float]:
+    """The shortest rotation (w, x, y, z) that takes +z to a direction; none for a zero vector."""
+    length = math.sqrt(sum(c * c for c in normal))
+    if length < 1e-12:
+        return 1.0, 0.0, 0.0, 0.0
+    x, y, z = (c / length for c in normal)
+    if z < -1.0 + 1e-12:
+        return 0.0, 1.0, 0.0, 0.0
+    w = math.sqrt((1.0 + z) / 2.0)
+    return w, -y / (2.0 * w), x / (2.0 * w), 0.0
+
+
+def cone(shape: Cone) -> tuple[Floats, Ints]:
+    """Triangles of a cone with 48 sides."""
+    angle = np.linspace(0.0, 2.0 * np.pi, _SIDES, endpoint=False)
+    ring = np.column_stack([shape.radius * np.cos(angle), shape.radius * np.sin(angle), np.full(_SIDES, -shape.length / 2)])
+    vertices = np.vstack([ring, [(0.0, 0.0, -shape.length / 2), (0.0, 0.0, shape.length / 2)]])
+    i = np.arange(_SIDES)
+    after = (i + 1) % _SIDES
+    sides = np.column_stack([i, after, np.full(_SIDES, _SIDES + 1)])
+    base = np.column_stack([after, i, np.full(_SIDES, _SIDES)])
+    return vertices, np.vstack([sides, base]).astype(np.int32)
+
+
+def polyline(shape: Polyline) -> tuple[Floats, Ints]:
+    """Triangles of extruded outlines; an outline inside another is a hole. Raises ValueError."""
+    import trimesh
+    from shapely.geometry import Polygon
+
+    area: Any = None
+    for outline in shape.outlines:
+        polygon = Polygon(outline).buffer(0)
+        area = polygon if area is None else area.symmetric_difference(polygon)
+    regions = [] if area is None else list(getattr(area, "geoms", [area]))
+    meshes = [trimesh.creation.extrude_polygon(r, shape.height) for r in regions if r.geom_type == "Polygon" and r.area > 0]
+    if not meshes:
+        raise ValueError("the outlines enclose no area")
+    whole = trimesh.util.concatenate(meshes)
+    return np.asarray(whole.vertices, float), np.asarray(whole.faces, np.int32)
+
+
+def heights(shape: Heightmap) -> Any:
+    """Rows from -y to +y of a grey image, scaled so that its brightest pixel is 1. Raises OSError or ValueError."""
+    from PIL import Image
+
+    with Image.open(shape.file) as image:
+        if image.width > 4097 or image.height > 4097:
+            raise ValueError(f"is {image.width}×{image.height}; at most 4097×4097 is taken")
+        grey = np.asarray(image if image.mode in ("L", "I", "I;16", "F") else image.convert("L"), np.float32)
+    if grey.shape[0] < 2 or grey.shape[1] < 2:
+        raise ValueError("is smaller than 2×2")
+    most = float(grey.max())
+    return np.ascontiguousarray(grey[::-1] / (most if most > 0.0 else 1.0))

@@ -1,0 +1,157 @@
+"""Convex pieces for the contacts of a mesh that is not convex.
+
+MuJoCo collides a mesh as its convex hull. For a moving body each connected piece gets its own hull. A static mesh is
+never its hull: a piece that is convex stays as it is; of every other, each flat convex patch becomes a thin prism
+that begins exactly on the surface and reaches inwards, so that contacts see the true surface from outside.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.compiler.mesh_part import Floats, Ints
+
+PRISMS_MOST: Final = 20_000
+"""More patches than this are thinned out first (and reported)."""
+
+HULLS_MOST: Final = 64
+THICKNESS: Final = 0.05
+_THINNEST: Final = 0.002
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexPiece:
+    """A convex body: points, shape (n, 3) [m], and whether it is an exact closed piece of the mesh."""
+
+    points: Floats
+    exact: bool
+
+
+def is_convex(vertices: Floats, faces: Ints) -> bool:
+    """Whether a mesh is closed and fills its hull to 0.1 %."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    if not mesh.is_watertight:
+        return False
+    hull = hull_volume(vertices)
+    return hull > 0.0 and bool(abs(mesh.volume) > 0.999 * hull)
+
+
+def hull_volume(vertices: Floats) -> float:
+    """Volume of the convex hull [m³]; 0 for points in a plane."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return float(ConvexHull(vertices).volume)
+    except (QhullError, ValueError):
+        return 0.0
+
+
+def split(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
+    """The connected pieces of a mesh, in the order of their first face."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    n = len(vertices)
+    row, column = faces[:, [0, 1]].reshape(-1), faces[:, [1, 2]].reshape(-1)
+    _, label = connected_components(coo_matrix((np.ones(len(row), bool), (row, column)), shape=(n, n)), directed=False)
+    of_face = label[faces[:, 0]]
+    pieces = []
+    for one in dict.fromkeys(of_face.tolist()):
+        used, inverse = np.unique(faces[of_face == one], return_inverse=True)
+        pieces.append((vertices[used], np.asarray(inverse).reshape(-1, 3).astype(np.int32)))
+    return pieces
+
+
+def hulls(vertices: Floats, faces: Ints) -> list[Floats]:
+    """Point sets whose hulls collide for a moving mesh: one for each connected piece, or one for all."""
+    pieces = split(vertices, faces)
+    if len(pieces) > HULLS_MOST:
+        return [vertices]
+    return [v for v, _ in pieces]
+
+
+def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
+    """Convex bodies that together have the surface of a static mesh."""
+    pieces: list[ConvexPiece] = []
+    for v, f in split(vertices, faces):
+        if is_convex(v, f):
+            pieces.append(ConvexPiece(v, True))
+        else:
+            pieces += [ConvexPiece(p, False) for p in prisms(v, f)]
+    return pieces
+
+
+def prisms(vertices: Floats, faces: Ints) -> list[Floats]:
+    """One prism per flat convex patch: the patch itself and its copy pushed inwards."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    patches = [_outline(mesh, patch) for patch in _patches(mesh)]
+    normals = np.array([n for _, n in patches])
+    inset = [p.mean(axis=0) + 0.9 * (p - p.mean(axis=0)) for p, _ in patches]
+    probes = [np.vstack([p.mean(axis=0), p]) for p in inset]
+    room = _room_inwards(mesh, probes, normals)
+    size = float(np.ptp(vertices, axis=0).max())
+    most = min(THICKNESS, 0.1 * size)
+    least = min(_THINNEST, most)
+    out = []
+    for (points, normal), free in zip(patches, room, strict=True):
+        out.append(np.vstack([points, points - normal * float(np.clip(0.95 * free, least, most))]))
+    return out
+
+
+def _patches(mesh: Any) -> list[Any]:
+    """Groups of face indices that lie in one plane and have a convex outline; other faces stand alone."""
+    patches: list[Any] = []
+    grouped = np.zeros(len(mesh.faces), bool)
+    for facet, boundary in zip(mesh.facets, mesh.facets_boundary, strict=True):
+        if _fills_its_hull(mesh, facet, boundary):
+            patches.append(facet)
+            grouped[facet] = True
+    patches += [np.array([i]) for i in np.flatnonzero(~grouped)]
+    return patches
+
+
+def _fills_its_hull(mesh: Any, facet: Any, boundary: Any) -> bool:
+    from scipy.spatial import ConvexHull, QhullError
+
+    points = mesh.vertices[np.unique(boundary)]
+    u, v, normal = _axes(mesh.face_normals[facet[0]])
+    if np.ptp(points @ normal) > 1e-6 * max(1.0, float(mesh.scale)):
+        return False
+    try:
+        area = ConvexHull(np.column_stack([points @ u, points @ v])).volume
+    except (QhullError, ValueError):
+        return False
+    return bool(mesh.area_faces[facet].sum() > (1.0 - 1e-6) * area)
+
+
+def _outline(mesh: Any, patch: Any) -> tuple[Floats, Floats]:
+    """Corner points and outward normal of a patch."""
+    points = mesh.vertices[np.unique(mesh.faces[patch])]
+    return np.asarray(points, float), np.asarray(mesh.face_normals[patch[0]], float)
+
+
+def _axes(normal: Any) -> tuple[Floats, Floats, Floats]:
+    helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
+    u = np.cross(normal, helper)
+    u /= np.linalg.norm(u)
+    return u, np.cross(normal, u), np.asarray(normal, float)
+
+
+def _room_inwards(mesh: Any, probes: list[Floats], normals: Floats) -> Floats:
+    """Distance [m] from each patch, along its inward normal, to the next surface; inf where there is none."""
+    counts = [len(p) for p in probes]
+    inward = -np.repeat(normals, counts, axis=0)
+    skin = 1e-5 * max(1e-3, float(mesh.scale))
+    origins = np.vstack(probes) + skin * inward
+    distance = np.full(len(origins), np.inf)
+    points, rays, _ = mesh.ray.intersects_location(origins, inward, multiple_hits=False)
+    if len(rays):
+        distance[rays] = np.einsum("ij,ij->i", points - origins[rays], inward[rays]) + skin
+    return np.minimum.reduceat(distance, np.cumsum([0, *counts[:-1]]))

@@ -1,0 +1,213 @@
+"""What a file means once resolved, as plain data: what `simkit inspect --json` prints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict, fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from simkit.diagnostics import Diagnostics
+from simkit.scene import (
+    Axis,
+    Geometry,
+    Mimic,
+    Scene,
+    SceneCollision,
+    SceneFrame,
+    SceneJoint,
+    SceneLight,
+    SceneLink,
+    SceneModel,
+    ScenePlugin,
+    SceneSensor,
+    SceneVisual,
+    SceneWorld,
+)
+
+Block = dict[str, Any]
+_SAME_KIND = {
+    "wideanglecamera": "wide_angle_camera",
+    "thermal": "thermal_camera",
+    "segmentation": "segmentation_camera",
+    "boundingbox": "boundingbox_camera",
+}
+SensorBlock = Callable[[SceneSensor, Diagnostics], Block]
+
+
+def describe_scene(scene: Scene, diagnostics: Diagnostics, sensor_block: SensorBlock | None = None) -> Block:
+    """The scene as a dict that JSON can hold.
+
+    Args:
+        scene: what was loaded.
+        diagnostics: what loading found; options of sensors that cannot be read are added.
+        sensor_block: gives the block of a sensor's own options; None for that of the registered kinds.
+    """
+    block = sensor_block or _registered_block
+    worlds = [_world(w, diagnostics, block) for w in scene.worlds]
+    model = None if scene.model is None else _model(scene.model, diagnostics, block)
+    return {
+        "worlds": worlds,
+        "model": model,
+        "totals": _totals(scene),
+        "diagnostics": [d.as_dict() for d in diagnostics],
+    }
+
+
+def _registered_block(sensor: SceneSensor, diagnostics: Diagnostics) -> Block:
+    from simkit.sensors import sensor_kinds
+
+    kind = sensor_kinds().get(sensor.kind)
+    return {} if kind is None else kind(sensor, diagnostics).describe()
+
+
+def _world(world: SceneWorld, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+    return {
+        "name": world.name,
+        "gravity": list(world.gravity),
+        "physics": {
+            "max_step_size": world.physics.max_step_size,
+            "real_time_factor": world.physics.real_time_factor,
+        },
+        "models": [_model(m, diagnostics, block) for m in world.models],
+        "lights": [_light(light) for light in world.lights],
+        "frames": [_frame(f) for f in world.frames],
+        "joints": [_joint(j, diagnostics, block) for j in world.joints],
+        "plugins": [_plugin(p) for p in world.plugins],
+    }
+
+
+def _model(model: SceneModel, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+    return {
+        "name": model.name,
+        "scoped": model.scoped,
+        "static": model.declared_static,
+        "static_effective": model.static,
+        "canonical_link_resolved": model.canonical_link.removeprefix(f"{model.scoped}::"),
+        "pose_world": model.pose_world.as_list(),
+        "links": [_link(link, diagnostics, block) for link in model.links],
+        "joints": [_joint(j, diagnostics, block) for j in model.joints],
+        "frames": [_frame(f) for f in model.frames],
+        "plugins": [_plugin(p) for p in model.plugins],
+        "models": [_model(m, diagnostics, block) for m in model.models],
+    }
+
+
+def _link(link: SceneLink, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+    return {
+        "name": link.name,
+        "pose_world": link.pose_world.as_list(),
+        "mass": link.inertial.mass,
+        "com_world": [float(v) for v in link.pose_world.transform(link.inertial.com)],
+        "inertia_com_linkframe": list(link.inertial.inertia),
+        "collisions": [_shape(c) for c in link.collisions],
+        "visuals": [_shape(v) for v in link.visuals],
+        "sensors": [_sensor(s, diagnostics, block) for s in link.sensors],
+        "lights": [_light(light) for light in link.lights],
+    }
+
+
+def _shape(shape: SceneCollision | SceneVisual) -> Block:
+    return {"name": shape.name, "pose_link": shape.pose_link.as_list(), "geom": _geometry(shape.geometry)}
+
+
+def _geometry(geometry: Geometry) -> Block:
+    if not is_dataclass(geometry):  # every shape is one
+        return {}
+    sizes = {f.name: _plain(getattr(geometry, f.name)) for f in fields(geometry)}
+    return {"type": type(geometry).__name__.lower(), **sizes}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, float):
+        return _number(value)
+    return str(value) if isinstance(value, Path) else value
+
+
+def _sensor(sensor: SceneSensor, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+    return {
+        "name": sensor.name,
+        "type": _SAME_KIND.get(sensor.kind, sensor.kind),
+        "update_rate": sensor.rate,
+        "topic": sensor.topic,
+        "pose_world": sensor.pose_world.as_list(),
+        **block(sensor, diagnostics),
+    }
+
+
+def _joint(joint: SceneJoint, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+    mimic = next((a.mimic for a in joint.axes if a.mimic is not None), None)
+    return {
+        "name": joint.name,
+        "type": joint.type,
+        "parent_link": joint.parent_link,
+        "child_link": joint.child_link,
+        "pose_world": joint.pose_world.as_list(),
+        "axes": [_axis(a) for a in joint.axes],
+        "mimic": None if mimic is None else _mimic(mimic),
+        "sensors": [_sensor(s, diagnostics, block) for s in joint.sensors],
+    }
+
+
+def _axis(axis: Axis) -> Block:
+    limits = ("lower", "upper", "effort", "velocity")
+    rest = ("damping", "friction", "stiffness", "spring_ref")
+    numbers = {name: _number(getattr(axis, name)) for name in (*limits, *rest)}
+    return {"xyz_world": list(axis.xyz_world), **numbers}
+
+
+def _mimic(mimic: Mimic) -> Block:
+    return asdict(mimic)
+
+
+def _frame(frame: SceneFrame) -> Block:
+    return {"name": frame.name, "pose_world": frame.pose_world.as_list(), "attached_to": frame.attached_to}
+
+
+def _light(light: SceneLight) -> Block:
+    return {
+        "name": light.name,
+        "type": light.type,
+        "pose_world": light.pose_world.as_list(),
+        "direction": list(light.direction),
+        "cast_shadows": light.cast_shadows,
+    }
+
+
+def _plugin(plugin: ScenePlugin) -> Block:
+    return {"name": plugin.name, "filename": plugin.filename}
+
+
+def _number(value: float) -> float | str:
+    """Infinities are the texts `inf` and `-inf`, which JSON can hold."""
+    if math.isinf(value):
+        return "inf" if value > 0 else "-inf"
+    return value
+
+
+def _totals(scene: Scene) -> Block:
+    tops = [m for w in scene.worlds for m in w.models] + ([scene.model] if scene.model is not None else [])
+    models = [m for top in tops for m in top.all_models()]
+    links = [link for m in models for link in m.links]
+    joints = [j for m in models for j in m.joints] + [j for w in scene.worlds for j in w.joints]
+    owners: list[SceneLink | SceneJoint] = [*links, *joints]
+    sensors = [s for owner in owners for s in owner.sensors]
+    lights = (
+        sum(len(w.lights) for w in scene.worlds) + (scene.light is not None) + sum(len(link.lights) for link in links)
+    )
+    carriers: list[SceneModel | SceneLink | SceneJoint | SceneSensor] = [*models, *owners, *sensors]
+    owned = [p for carrier in carriers for p in carrier.plugins]
+    return {
+        "models": len(models),
+        "links": len(links),
+        "joints": len(joints),
+        "collisions": sum(len(link.collisions) for link in links),
+        "visuals": sum(len(link.visuals) for link in links),
+        "sensors": len(sensors),
+        "lights": lights,
+        "plugins": len(owned) + sum(len(w.plugins) for w in scene.worlds),
+        "mass": math.fsum(link.inertial.mass for link in links),
+    }

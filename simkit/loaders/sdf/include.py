@@ -1,0 +1,101 @@
+"""`<include>`: another file's model or light, renamed and placed."""
+
+from __future__ import annotations
+
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.builtin import builtin_model
+from simkit.loaders.sdf.names import read_name
+from simkit.loaders.sdf.parts import Source, read_pose
+from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.xml import parse_text
+from simkit.params import Params
+
+_ENTITIES = ("model", "light", "actor")
+
+
+def written_here(element: Params, file: SdfFile, workspace: Workspace) -> Source | None:
+    """A `<model>` or `<light>` that stands in the file itself; None where it has no name."""
+    name = read_name(element, workspace.diagnostics, file.version)
+    if not name:
+        return None
+    pose, base = read_pose(element)
+    return Source(name, element, file, pose, base, placement=element.attribute("placement_frame"), where=element.where)
+
+
+def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source | None:
+    """What an `<include>` brings; None, with an error recorded, where it brings nothing usable."""
+    uri = include.text("uri", required=True)
+    name = include.text("name", "")
+    fixed = include.boolean("static", False) if include.has("static") else None
+    placement = include.text("placement_frame", "")
+    plugins = tuple(include.all("plugin"))
+    placed = include.has("pose")
+    pose, base = read_pose(include)
+    if not uri:
+        return None
+    found = _open(uri, include, file, workspace)
+    if found is None:
+        return None
+    element = _only_entity(found, uri, include, workspace)
+    if element is None:
+        return None
+    own, own_base = read_pose(element)
+    own_name = name or read_name(element, workspace.diagnostics, found.version)
+    if not own_name:
+        return None
+    if placement and not placed:
+        include.error("SK-SDF-016", "<placement_frame> of an include needs a <pose> beside it")
+    merge = include.attribute("merge", "false").lower() in ("true", "1")
+    if merge and element.name != "model":
+        include.error("SK-SDF-016", f"only a model can be merged, {uri} holds a <{element.name}>")
+        return None
+    return Source(
+        name=own_name,
+        element=element,
+        file=found,
+        pose=pose if placed else own,
+        relative_to=base if placed else own_base,
+        static=fixed,
+        placement=placement or element.attribute("placement_frame"),
+        plugins=plugins,
+        merge=merge,
+        where=include.where,
+    )
+
+
+def _open(uri: str, include: Params, file: SdfFile, workspace: Workspace) -> SdfFile | None:
+    resolver, diagnostics = workspace.resolver, workspace.diagnostics
+    place = include.child("uri") or include
+    path, _ = resolver.search(uri, file.folder)
+    if path is None:
+        text = builtin_model(uri)
+        if text is not None:
+            root = parse_text(text, diagnostics, uri)
+            return None if root is None else workspace.file(root, None, (*file.chain, uri))
+        path = resolver.resolve(uri, place.where, diagnostics, file.folder)
+    if path is None:
+        return None
+    if path.is_dir():
+        path = resolver.model_file(path, place.where, diagnostics)
+    return None if path is None else workspace.open(path, place.where, file.chain)
+
+
+def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace) -> Params | None:
+    """The one model, light or actor of an included file."""
+    entities = [c for name in _ENTITIES for c in file.root.all(name)]
+    if len(entities) != 1:
+        held = ", ".join(f"<{e.name}>" for e in entities) or "none"
+        has_world = "; it holds a <world>" if file.root.has("world") else ""
+        near = did_you_mean("model", [c.name for c in file.root.children]) if not entities else ""
+        workspace.diagnostics.error(
+            "SK-SDF-016",
+            f"{uri} must hold exactly one model, light or actor, it holds {held}{has_world}",
+            include.where,
+            near,
+        )
+        return None
+    if entities[0].name == "actor":
+        entities[0].mark_all_read()
+        workspace.diagnostics.warning("SK-SDF-012", f"{uri}: actors are not simulated", include.where)
+        return None
+    return entities[0]

@@ -1,0 +1,195 @@
+"""`<inertial>`: mass properties given, defaulted, or computed from the collisions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.scene import (
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Inertial,
+    Mesh,
+    Polyline,
+    SceneCollision,
+    Sphere,
+)
+
+Matrix = npt.NDArray[np.float64]
+_WATER = 1000.0
+_KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+
+
+def read_inertial(
+    link: Params,
+    name: str,
+    collisions: Sequence[SceneCollision],
+    densities: Sequence[float | None],
+    static: bool,
+    diagnostics: Diagnostics,
+) -> Inertial:
+    """The mass properties of a link in link axes, about its centre of mass.
+
+    Args:
+        densities: of each collision [kg/m³], None where not given.
+        static: faults are only warnings, because nothing static moves.
+    """
+    block = link.child("inertial")
+    if block is None:
+        return Inertial(given=False)
+    if block.attribute("auto", "false").lower() in ("true", "1"):
+        return _automatic(block, name, collisions, densities, diagnostics)
+    block.has("density")
+    mass = block.number("mass", 1.0)
+    pose = block.pose("pose")
+    values = _moments(block.block("inertia"))
+    _check(name, mass, values, block, static, diagnostics)
+    x, y, z = (float(v) for v in pose.position)
+    turn = pose.matrix
+    if pose.quaternion[0] != 1.0:
+        values = _six(turn @ _matrix(values) @ turn.T)
+    return Inertial(mass, (x, y, z), values, True)
+
+
+def _moments(block: Params) -> tuple[float, float, float, float, float, float]:
+    ixx, iyy, izz, ixy, ixz, iyz = (block.number(k, 1.0 if k[1] == k[2] else 0.0) for k in _KEYS)
+    return ixx, iyy, izz, ixy, ixz, iyz
+
+
+def _matrix(v: Sequence[float]) -> Matrix:
+    return np.array(((v[0], v[3], v[4]), (v[3], v[1], v[5]), (v[4], v[5], v[2])))
+
+
+def _six(m: Matrix) -> tuple[float, float, float, float, float, float]:
+    return float(m[0, 0]), float(m[1, 1]), float(m[2, 2]), float(m[0, 1]), float(m[0, 2]), float(m[1, 2])
+
+
+def _check(
+    name: str, mass: float, values: Sequence[float], block: Params, static: bool, diagnostics: Diagnostics
+) -> None:
+    say = diagnostics.warning if static else diagnostics.error
+    place = block.child("mass") or block
+    if mass < 0:
+        say("SK-SDF-013", f"link {name!r} has mass {mass:g} kg, it must be positive", place.where)
+    elif mass == 0:
+        diagnostics.warning(
+            "SK-SDF-029", f"link {name!r} has mass 0; nothing without mass can move by itself", place.where
+        )
+    if any(values[3:]):
+        small, middle, large = (float(v) for v in np.linalg.eigvalsh(_matrix(values)))
+    else:
+        small, middle, large = sorted(values[:3])
+    place = block.child("inertia") or block
+    if small <= 0:
+        shown = ", ".join(f"{v:.4g}" for v in (small, middle, large))
+        text = f"link {name!r} has an impossible inertia: principal moments {shown}, all must be positive"
+        # a moment left at zero is common in the wild and Gazebo runs such files; a negative one is a mistake
+        (say if small < -1e-12 * max(1.0, large) else diagnostics.warning)("SK-SDF-013", text, place.where)
+    elif small + middle < large * (1 - 1e-6):
+        shown = ", ".join(f"{v:.4g}" for v in (small, middle, large))
+        diagnostics.warning(
+            "SK-SDF-014",
+            f"link {name!r} has an inertia that no solid has: of its principal moments {shown} "
+            "two must add up to more than the third",
+            place.where,
+        )
+
+
+def _automatic(
+    block: Params,
+    name: str,
+    collisions: Sequence[SceneCollision],
+    densities: Sequence[float | None],
+    diagnostics: Diagnostics,
+) -> Inertial:
+    """Mass properties of the collision solids; a given mass scales them."""
+    common = block.number("density", _WATER, minimum=0)
+    parts = []
+    for collision, density in zip(collisions, densities, strict=True):
+        solid = _solid(collision.geometry)
+        if solid is None:
+            diagnostics.warning(
+                "SK-SDF-022",
+                f"link {name!r}: collision {collision.name!r} has no volume for automatic inertia",
+                collision.where,
+            )
+            continue
+        volume, centre, moments = solid
+        mass = volume * (common if density is None else density)
+        turn = collision.pose_link.matrix
+        parts.append((mass, collision.pose_link.transform(centre), turn @ moments @ turn.T * (mass / volume)))
+    total = sum(mass for mass, _, _ in parts)
+    if total <= 0:
+        diagnostics.warning(
+            "SK-SDF-022", f"link {name!r} has no collision to compute its inertia from; 1 kg is used", block.where
+        )
+        return Inertial()
+    com = sum((mass * at for mass, at, _ in parts), np.zeros(3)) / total
+    inertia = np.zeros((3, 3))
+    for mass, at, moments in parts:
+        d = at - com
+        inertia += moments + mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
+    given = block.number("mass", total)
+    x, y, z = (float(v) for v in com)
+    return Inertial(given, (x, y, z), _six(inertia * (given / total)), True)
+
+
+def _solid(shape: Geometry) -> tuple[float, Matrix, Matrix] | None:
+    """Volume [m³], centroid [m] and moments [m⁵] of a solid of density 1 about its centroid, in the shape's frame."""
+    centre = np.zeros(3)
+    match shape:
+        case Box(size=(x, y, z)):
+            v = x * y * z
+            return v, centre, np.diag((y * y + z * z, x * x + z * z, x * x + y * y)) * (v / 12)
+        case Sphere(radius=r):
+            v = 4 / 3 * math.pi * r**3
+            return v, centre, np.eye(3) * (0.4 * v * r * r)
+        case Ellipsoid(radii=(a, b, c)):
+            v = 4 / 3 * math.pi * a * b * c
+            return v, centre, np.diag((b * b + c * c, a * a + c * c, a * a + b * b)) * (v / 5)
+        case Cylinder(radius=r, length=h):
+            v = math.pi * r * r * h
+            side = v * (3 * r * r + h * h) / 12
+            return v, centre, np.diag((side, side, v * r * r / 2))
+        case Capsule(radius=r, length=h):
+            return _capsule(r, h)
+        case Cone(radius=r, length=h):
+            v = math.pi * r * r * h / 3
+            side = v * (3 / 20 * r * r + 3 / 80 * h * h)
+            return v, np.array((0.0, 0.0, -h / 4)), np.diag((side, side, 0.3 * v * r * r))
+        case Mesh() | Polyline():
+            return _mesh_solid(shape)
+    return None
+
+
+def _capsule(r: float, h: float) -> tuple[float, Matrix, Matrix]:
+    body, caps = math.pi * r * r * h, 4 / 3 * math.pi * r**3
+    side = body * (h * h / 12 + r * r / 4) + caps * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
+    return body + caps, np.zeros(3), np.diag((side, side, body * r * r / 2 + caps * 0.4 * r * r))
+
+
+def _mesh_solid(shape: Mesh | Polyline) -> tuple[float, Matrix, Matrix] | None:
+    """Of a closed mesh file; None where it cannot be read or encloses nothing."""
+    if isinstance(shape, Polyline):
+        return None
+    import trimesh
+
+    try:
+        mesh: Any = trimesh.load(shape.file, force="mesh")
+        mesh.apply_transform(np.diag((*shape.scale, 1.0)))
+        volume = float(mesh.volume)
+        if abs(volume) < 1e-15:
+            return None
+        return abs(volume), np.array(mesh.center_mass), np.array(mesh.moment_inertia) * math.copysign(1.0, volume)
+    except Exception:  # a reader of a foreign format fails in its own ways; the caller reports it
+        return None

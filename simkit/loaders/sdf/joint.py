@@ -1,0 +1,241 @@
+"""`<joint>` of a model or a world: its links, frame and axes."""
+
+from __future__ import annotations
+
+import math
+
+from simkit.diagnostics import Where, did_you_mean
+from simkit.loaders.sdf.frames import MODEL, WORLD, Frame, world_pose
+from simkit.loaders.sdf.names import named, scoped
+from simkit.loaders.sdf.parts import Part, local_pose
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.sdf.workspace import Workspace
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import Axis, Mimic, SceneJoint, SceneSensor
+
+AXES = {
+    "revolute": 1,
+    "continuous": 1,
+    "prismatic": 1,
+    "screw": 1,
+    "gearbox": 2,
+    "universal": 2,
+    "revolute2": 2,
+    "fixed": 0,
+    "ball": 0,
+}
+_NO_LIMIT = 1e15
+
+
+def end_name(joint: Params, name: str) -> str:
+    """The text of `<parent>` or `<child>`; before 1.2 it was an attribute."""
+    found = joint.child(name)
+    return "" if found is None else found.value or found.attribute("link")
+
+
+def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | None:
+    """A joint whose frame is known; None, with errors recorded, when it joins nothing.
+
+    Args:
+        model: scoped name of its model; empty in a world.
+    """
+    element, diagnostics = part.element, workspace.diagnostics
+    own = scoped(model, part.name)
+    kind = element.attribute("type").strip()
+    if kind not in AXES:
+        hint = did_you_mean(kind, AXES)
+        diagnostics.error(
+            "SK-SDF-008", f"joint {part.name!r} has type {kind!r}, known are {', '.join(AXES)}", element.where, hint
+        )
+        element.mark_all_read()
+        return None
+    parent, child = _end(part, "parent", workspace), _end(part, "child", workspace)
+    if parent is None or child is None:
+        if child is not None:
+            _axes(part, kind, IDENTITY, workspace)  # for what is wrong with them
+        element.mark_all_read()
+        return None
+    if parent is child:
+        message = f"joint {part.name!r} joins link {child.scoped!r} with itself"
+        diagnostics.error("SK-SDF-007", message, element.where)
+        return None
+    pose = world_pose(part.frame)
+    element.child("pose")
+    return SceneJoint(
+        name=part.name,
+        scoped=own,
+        type=kind,
+        parent_link=WORLD if parent.kind == WORLD else parent.scoped,
+        child_link=child.scoped,
+        pose_world=pose,
+        axes=_axes(part, kind, pose, workspace),
+        thread_pitch=_thread_pitch(element) if kind == "screw" else 0.0,
+        gearbox_ratio=element.number("gearbox_ratio", 1.0) if kind == "gearbox" else 1.0,
+        gearbox_reference=_gearbox_reference(part, workspace) if kind == "gearbox" else "",
+        sensors=_sensors(part, own, child, workspace),
+        plugins=read_plugins(element.all("plugin"), own),
+        where=element.where,
+    )
+
+
+def _sensors(part: Part, own: str, child: Frame, workspace: Workspace) -> tuple[SceneSensor, ...]:
+    """The joint's sensors, their poses in the child link's frame."""
+    diagnostics, base = workspace.diagnostics, world_pose(child)
+    in_child = base.inverse() @ world_pose(part.frame)
+    sensors = []
+    for name, e in named(part.element.all("sensor"), f"joint {part.name!r}", diagnostics, part.file.version):
+        pose = in_child @ local_pose(e, part.scope, part.frame, f"sensor {name!r}")
+        sensors.append(read_sensor(e, name, own, True, pose, base, diagnostics))
+    return tuple(sensors)
+
+
+def _end(part: Part, which: str, workspace: Workspace) -> Frame | None:
+    """The link at one end; the parent may be the world."""
+    element, diagnostics = part.element, workspace.diagnostics
+    name = end_name(element, which)
+    place = element.child(which) or element
+    what = f"joint {part.name!r}: the {which}"
+    if not name:
+        near = did_you_mean(which, [c.name for c in element.children])
+        diagnostics.error("SK-SDF-026", f"joint {part.name!r} needs <{which}>", element.where, near)
+        return None
+    if name == WORLD:
+        if which == "child":
+            diagnostics.error("SK-SDF-004", f"{what} cannot be the world", place.where, "exchange parent and child")
+            return None
+        return Frame(WORLD, WORLD, WORLD)
+    frames = part.scope.chain(name)
+    if frames is None:
+        part.scope.unknown(name, what, place.where)
+        return None
+    if frames and frames[-1] is part.frame:
+        diagnostics.error("SK-SDF-007", f"{what} is the joint itself", place.where)
+        return None
+    return part.scope.body(name, place.where, what)
+
+
+def _axes(part: Part, kind: str, pose_world: Pose, workspace: Workspace) -> tuple[Axis, ...]:
+    axes = []
+    for index, name in enumerate(("axis", "axis2")):
+        element = part.element.child(name)
+        if index >= AXES[kind]:
+            if element is not None:
+                element.mark_all_read()
+            continue
+        if element is None:
+            if kind != "gearbox" or index == 0:
+                workspace.diagnostics.warning(
+                    "SK-SDF-026", f"{kind} joint {part.name!r} has no <{name}>; 0 0 1 is used", part.element.where
+                )
+                element = Params(name, where=part.element.where, diagnostics=workspace.diagnostics)
+            else:
+                continue
+        axes.append(_axis(part, element, kind, pose_world, workspace))
+    return tuple(axes)
+
+
+def _axis(part: Part, element: Params, kind: str, pose_world: Pose, workspace: Workspace) -> Axis:
+    direction = _direction(part, element, workspace)
+    limit, dynamics = element.block("limit"), element.block("dynamics")
+    lower = _bound(limit, "lower", -math.inf)
+    upper = _bound(limit, "upper", math.inf)
+    if kind == "continuous":
+        lower, upper = -math.inf, math.inf
+    if lower > upper:
+        workspace.diagnostics.warning(
+            "SK-SDF-027",
+            f"joint {part.name!r} has a lower limit {lower:g} above its upper limit {upper:g}; it is read as unlimited",
+            limit.where,
+        )
+        lower, upper = -math.inf, math.inf
+    turned = pose_world.rotate(direction)
+    return Axis(
+        xyz_world=(float(turned[0]), float(turned[1]), float(turned[2])),
+        xyz_joint=direction,
+        lower=lower,
+        upper=upper,
+        effort=_magnitude(limit, "effort"),
+        velocity=_magnitude(limit, "velocity"),
+        damping=dynamics.number("damping", 0.0),
+        friction=dynamics.number("friction", 0.0),
+        stiffness=dynamics.number("spring_stiffness", 0.0),
+        spring_ref=dynamics.number("spring_reference", 0.0),
+        mimic=_mimic(part, element, workspace),
+    )
+
+
+def _direction(part: Part, element: Params, workspace: Workspace) -> tuple[float, float, float]:
+    """The unit axis in the joint frame; it is given there, in `expressed_in`, or (before 1.5) in the model frame."""
+    x, y, z = element.vector3("xyz", (0.0, 0.0, 1.0))
+    xyz = element.child("xyz")
+    length = math.sqrt(x * x + y * y + z * z)
+    where = (xyz or element).where
+    if length < 1e-12:
+        workspace.diagnostics.error("SK-SDF-017", f"joint {part.name!r} has an axis of length zero", where)
+        return (0.0, 0.0, 1.0)
+    frame = xyz.attribute("expressed_in") if xyz is not None else ""
+    in_model = (
+        element.boolean("use_parent_model_frame", part.file.version < (1, 5)) if part.file.version < (1, 7) else False
+    )
+    if not frame and in_model:
+        frame = MODEL
+    unit = (x / length, y / length, z / length)
+    if not frame:
+        return unit
+    source = (
+        IDENTITY if frame == MODEL and part.scope.root.scope is None else part.scope.pose_of(frame, part.frame, where)
+    )
+    turned = part.scope.resolve(part.frame).inverse().rotate(source.rotate(unit))
+    return (float(turned[0]), float(turned[1]), float(turned[2]))
+
+
+def _bound(limit: Params, name: str, none: float) -> float:
+    """A position limit; from 1e15 on it means none."""
+    value = limit.number(name, none, finite=False)
+    return math.copysign(math.inf, value) if abs(value) >= _NO_LIMIT else value
+
+
+def _magnitude(limit: Params, name: str) -> float:
+    """An effort or velocity limit; negative means none."""
+    value = limit.number(name, -1.0, finite=False)
+    return math.inf if value < 0 or value >= _NO_LIMIT else value
+
+
+def _mimic(part: Part, element: Params, workspace: Workspace) -> Mimic | None:
+    block = element.child("mimic")
+    if block is None:
+        return None
+    leader = block.attribute("joint")
+    frames = part.scope.chain(leader)
+    if not leader or not frames or frames[-1].kind != "joint":
+        part.scope.unknown(leader, f"joint {part.name!r} mimics a joint that", block.where)
+        return None
+    return Mimic(
+        joint=frames[-1].scoped,
+        axis=1 if block.attribute("axis", "axis") == "axis2" else 0,
+        multiplier=block.number("multiplier", 1.0),
+        offset=block.number("offset", 0.0),
+        reference=block.number("reference", 0.0),
+    )
+
+
+def _thread_pitch(element: Params) -> float:
+    """Metres per turn: `screw_thread_pitch`, or the older `thread_pitch` [rad/m], which is left-handed."""
+    old = element.number("thread_pitch", 0.0)
+    if element.has("screw_thread_pitch"):
+        return element.number("screw_thread_pitch", 1.0)
+    return -2 * math.pi / old if old else 1.0
+
+
+def _gearbox_reference(part: Part, workspace: Workspace) -> str:
+    name = part.element.text("gearbox_reference_body", "")
+    if not name:
+        workspace.diagnostics.error(
+            "SK-SDF-026", f"gearbox {part.name!r} needs <gearbox_reference_body>", part.element.where
+        )
+        return ""
+    where: Where = (part.element.child("gearbox_reference_body") or part.element).where
+    body = part.scope.body(name, where, f"gearbox {part.name!r}")
+    return body.scoped if body is not None else ""

@@ -1,0 +1,125 @@
+"""`<link>`: collisions, visuals, sensors, lights and mass."""
+
+from __future__ import annotations
+
+from simkit.loaders.sdf.frames import world_pose
+from simkit.loaders.sdf.geometry import read_geometry
+from simkit.loaders.sdf.inertia import read_inertial
+from simkit.loaders.sdf.light import read_light
+from simkit.loaders.sdf.material import read_material
+from simkit.loaders.sdf.names import named, scoped
+from simkit.loaders.sdf.parts import Part, local_pose
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.sdf.surface import read_surface
+from simkit.loaders.sdf.workspace import Workspace
+from simkit.params import Params
+from simkit.pose import Pose
+from simkit.scene import SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual
+
+
+def read_link(part: Part, model: str, static: bool, workspace: Workspace) -> SceneLink:
+    """A link whose frame is known.
+
+    Args:
+        model: scoped name of its model.
+        static: whether the model is static.
+    """
+    element, diagnostics = part.element, workspace.diagnostics
+    own = scoped(model, part.name)
+    pose = world_pose(part.frame)
+    element.child("pose")
+    read = [
+        _collision(part, c, name, own, workspace)
+        for name, c in named(element.all("collision"), f"link {part.name!r}", diagnostics, part.file.version)
+    ]
+    collisions = tuple(c for c, _ in read if c is not None)
+    densities = [density for c, density in read if c is not None]
+    visuals = tuple(
+        visual
+        for name, v in named(element.all("visual"), f"link {part.name!r}", diagnostics, part.file.version)
+        if (visual := _visual(part, v, name, own, workspace)) is not None
+    )
+    return SceneLink(
+        name=part.name,
+        scoped=own,
+        pose_world=pose,
+        inertial=read_inertial(element, part.name, collisions, densities, static, diagnostics),
+        gravity=element.boolean("gravity", True),
+        kinematic=element.boolean("kinematic", False),
+        self_collide=element.boolean("self_collide", False),
+        collisions=collisions,
+        visuals=visuals,
+        sensors=_sensors(part, own, pose, workspace),
+        lights=_lights(part, own, pose, workspace),
+        plugins=read_plugins(element.all("plugin"), own),
+        where=element.where,
+    )
+
+
+def _collision(
+    part: Part, element: Params, name: str, link: str, workspace: Workspace
+) -> tuple[SceneCollision | None, float | None]:
+    """A collision and its density [kg/m³], None where not given."""
+    what = f"collision {name!r} of link {part.name!r}"
+    shape = read_geometry(element, part.file, workspace, what)
+    density = element.number("density", 1000.0, minimum=0) if element.has("density") else None
+    surface = read_surface(element)
+    if shape is None:
+        element.mark_all_read()
+        return None, density
+    collision = SceneCollision(
+        name=name,
+        scoped=scoped(link, name),
+        pose_link=local_pose(element, part.scope, part.frame, what),
+        geometry=shape,
+        surface=surface,
+        laser_retro=element.number("laser_retro", 0.0),
+        where=element.where,
+    )
+    return collision, density
+
+
+def _visual(part: Part, element: Params, name: str, link: str, workspace: Workspace) -> SceneVisual | None:
+    what = f"visual {name!r} of link {part.name!r}"
+    shape = read_geometry(element, part.file, workspace, what)
+    if shape is None:
+        element.mark_all_read()
+        return None
+    return SceneVisual(
+        name=name,
+        scoped=scoped(link, name),
+        pose_link=local_pose(element, part.scope, part.frame, what),
+        geometry=shape,
+        material=read_material(element, part.file, workspace),
+        transparency=element.number("transparency", 0.0, minimum=0.0, maximum=1.0),
+        cast_shadows=element.boolean("cast_shadows", True),
+        visibility_flags=element.integer("visibility_flags", 0xFFFFFFFF) & 0xFFFFFFFF,
+        laser_retro=element.number("laser_retro", 0.0),
+        where=element.where,
+    )
+
+
+def _sensors(part: Part, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneSensor, ...]:
+    found = named(part.element.all("sensor"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
+    return tuple(
+        read_sensor(
+            e, name, link, False, local_pose(e, part.scope, part.frame, f"sensor {name!r}"), pose, workspace.diagnostics
+        )
+        for name, e in found
+    )
+
+
+def _lights(part: Part, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneLight, ...]:
+    found = named(part.element.all("light"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
+    return tuple(
+        read_light(
+            e,
+            name,
+            scoped(link, name),
+            pose @ local_pose(e, part.scope, part.frame, f"light {name!r}"),
+            link,
+            workspace.diagnostics,
+        )
+        for name, e in found
+    )

@@ -1,0 +1,240 @@
+"""`<model>`: first its names (nested and merged models included), then, once every pose can be resolved, its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from simkit.diagnostics import Diagnostics
+from simkit.loaders.sdf.frames import MODEL, Frame, Scope, world_pose
+from simkit.loaders.sdf.include import read_include, written_here
+from simkit.loaders.sdf.joint import end_name, read_joint
+from simkit.loaders.sdf.link import read_link
+from simkit.loaders.sdf.names import named, scoped
+from simkit.loaders.sdf.parts import Draft, Part, Source, read_pose
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import SceneFrame, SceneModel
+
+
+def declare_model(source: Source, outer: Scope, outer_scoped: str, workspace: Workspace) -> Draft | None:
+    """Enters a model and everything named in it; None when it is one too many."""
+    if not workspace.count_model(source.where):
+        return None
+    own = scoped(outer_scoped, source.name)
+    scope = Scope(Frame(source.name, "model", own), workspace.diagnostics)
+    frame = Frame(
+        source.name,
+        "model",
+        own,
+        outer,
+        source.pose,
+        source.relative_to,
+        inside=scope,
+        placement=source.placement,
+        where=source.where,
+    )
+    draft = Draft(source, own, frame, scope)
+    _declare_content(draft, source.element, source.file, scope, workspace)
+    draft.plugins.extend(source.plugins)
+    _choose_canonical(draft, source.element, workspace)
+    return draft
+
+
+def enter(frame: Frame, scope: Scope, version: tuple[int, int], diagnostics: Diagnostics) -> None:
+    """Gives a name to a frame; from 1.7 on all siblings of any kind share one set of names."""
+    taken = scope.names.setdefault(frame.name, frame)
+    if taken is frame:
+        return
+    line = taken.where.line
+    text = f"{frame.kind} {frame.name!r} has the name of a {taken.kind} (line {line})"
+    if taken.kind == frame.kind or version >= (1, 7):
+        diagnostics.error("SK-SDF-002", f"{text}; siblings need different names", frame.where)
+    else:
+        diagnostics.warning("SK-SDF-024", f"{text}; the name means the {taken.kind}", frame.where)
+
+
+def _declare_content(draft: Draft, element: Params, file: SdfFile, scope: Scope, workspace: Workspace) -> None:
+    diagnostics, owner = workspace.diagnostics, f"model {draft.source.name!r}"
+    for name, link in named(element.all("link"), owner, diagnostics, file.version):
+        draft.links.append(_part(draft, name, link, "link", "", scope, file, workspace))
+    for source in model_sources(element, file, workspace):
+        if source.element.name == "light":
+            _refuse_light(source, workspace)
+        elif source.merge:
+            _merge(draft, source, scope, workspace)
+        else:
+            nested = declare_model(source, scope, draft.scoped, workspace)
+            if nested is not None:
+                draft.models.append(nested)
+                enter(nested.frame, scope, file.version, diagnostics)
+    for name, joint in named(element.all("joint"), owner, diagnostics, file.version):
+        draft.joints.append(_part(draft, name, joint, "joint", end_name(joint, "child"), scope, file, workspace))
+    for name, frame in named(element.all("frame"), owner, diagnostics, file.version):
+        draft.frames.append(_part(draft, name, frame, "frame", frame.attribute("attached_to"), scope, file, workspace))
+    draft.plugins.extend(element.all("plugin"))
+
+
+def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Iterable[Source]:
+    """The models written in an element and those it includes, in document order."""
+    written, included = set(map(id, element.all("model"))), set(map(id, element.all("include")))
+    for child in element.children:
+        if id(child) in written:
+            source = written_here(child, file, workspace)
+        elif id(child) in included:
+            source = read_include(child, file, workspace)
+        else:
+            continue
+        if source is not None:
+            yield source
+
+
+def _part(
+    draft: Draft,
+    name: str,
+    element: Params,
+    kind: str,
+    attached_to: str,
+    scope: Scope,
+    file: SdfFile,
+    workspace: Workspace,
+) -> Part:
+    pose, base = read_pose(element)
+    frame = Frame(name, kind, scoped(draft.scoped, name), scope, pose, base, attached_to, where=element.where)
+    if kind == "joint" and attached_to == "world":
+        frame.attached_to = ""
+    enter(frame, scope, file.version, workspace.diagnostics)
+    return Part(name, element, frame, scope, file)
+
+
+def _refuse_light(source: Source, workspace: Workspace) -> None:
+    workspace.diagnostics.error(
+        "SK-SDF-016",
+        f"a light ({source.name!r}) cannot be included in a model",
+        source.where,
+        "include it in the world, or put it in a link",
+    )
+
+
+def _merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace) -> None:
+    """Puts the content of an included model into `draft`; a frame that stands where it was placed is its `__model__`."""
+    name = f"_merged__{source.name}__{MODEL}"
+    pose = source.pose
+    if source.placement:
+        alone = declare_model(
+            replace(source, merge=False), scope, draft.scoped, Workspace(workspace.resolver, Diagnostics())
+        )
+        pose = pose if alone is None else pose @ alone.scope.pose_of(source.placement, None, source.where).inverse()
+    proxy = Frame(
+        name, "frame", scoped(draft.scoped, name), scope, pose, source.relative_to or MODEL, where=source.where
+    )
+    enter(proxy, scope, (1, 12), workspace.diagnostics)
+    inner = Scope(proxy, workspace.diagnostics, scope.names)
+    first = len(draft.links)
+    _declare_content(draft, source.element, source.file, inner, workspace)
+    wanted = source.element.attribute("canonical_link")
+    proxy.attached_to = wanted or (draft.links[first].name if len(draft.links) > first else "")
+    draft.plugins.extend(source.plugins)
+    draft.proxies.append(proxy)
+    draft.merged.append(inner)
+
+
+def _choose_canonical(draft: Draft, element: Params, workspace: Workspace) -> None:
+    """The link that stands for the model: the named one, else the first link, else that of the first nested model."""
+    scope, diagnostics = draft.scope, workspace.diagnostics
+    wanted = element.attribute("canonical_link")
+    frames = scope.chain(wanted) if wanted else None
+    if wanted and (not frames or frames[-1].kind != "link"):
+        scope.unknown(wanted, f"model {draft.source.name!r}: the canonical link", element.where)
+    elif wanted:
+        scope.canonical = wanted
+    if not scope.canonical and draft.links:
+        scope.canonical = draft.links[0].name
+    for nested in draft.models if not scope.canonical else ():
+        if nested.scope.canonical:
+            scope.canonical = f"{nested.source.name}::{nested.scope.canonical}"
+            break
+    still = _is_static(draft.source)
+    if not draft.links and not draft.models and not still:
+        near = [c.name for c in element.children]
+        diagnostics.error(
+            "SK-SDF-006",
+            f"model {draft.source.name!r} has no link",
+            element.where,
+            f"it has only <{'>, <'.join(dict.fromkeys(near))}>" if near else "give it a <link>",
+        )
+
+
+def _is_static(source: Source) -> bool:
+    own = source.element.boolean("static", False)
+    return own if source.static is None else source.static
+
+
+def place(draft: Draft) -> None:
+    """Fixes where a model and its nested ones stand in the world."""
+    draft.scope.world = world_pose(draft.frame)
+    for merged in draft.merged:
+        merged.world = draft.scope.world
+    for nested in draft.models:
+        place(nested)
+
+
+def build_model(draft: Draft, static: bool, workspace: Workspace, base: str = "auto") -> SceneModel:
+    """The scene of a placed model; a nested model of a static one is static."""
+    source, element = draft.source, draft.source.element
+    declared = _is_static(source)
+    still = declared or static
+    element.child("pose")
+    links = tuple(read_link(part, draft.scoped, still, workspace) for part in draft.links)
+    _report_defaults(draft, [link.name for link in links if not link.inertial.given], still, workspace)
+    joints = tuple(j for part in draft.joints if (j := read_joint(part, draft.scoped, workspace)) is not None)
+    canonical = draft.scope.chain(draft.scope.canonical) if draft.scope.canonical else None
+    return SceneModel(
+        name=source.name,
+        scoped=draft.scoped,
+        pose_world=draft.scope.world,
+        static=still,
+        declared_static=declared,
+        self_collide=element.boolean("self_collide", False),
+        canonical_link=canonical[-1].scoped if canonical else "",
+        base=base,
+        links=links,
+        joints=joints,
+        frames=(*read_frames(draft.frames), *(_proxy(p) for p in draft.proxies)),
+        models=tuple(build_model(nested, still, workspace) for nested in draft.models),
+        plugins=read_plugins(draft.plugins, draft.scoped),
+        where=source.where,
+    )
+
+
+def read_frames(parts: Iterable[Part]) -> tuple[SceneFrame, ...]:
+    """Frames with the body each is attached to; one attached to nothing is an error."""
+    frames = []
+    for part in parts:
+        place_of = part.element.where
+        body = part.scope.body(part.name, place_of, f"frame {part.name!r}")
+        part.element.child("pose")
+        frames.append(
+            SceneFrame(part.name, part.frame.scoped, _world(part.frame), body.scoped if body is not None else "")
+        )
+    return tuple(frames)
+
+
+def _proxy(frame: Frame) -> SceneFrame:
+    return SceneFrame(frame.name, frame.scoped, _world(frame), "")
+
+
+def _world(frame: Frame) -> Pose:
+    return world_pose(frame) if frame.scope is not None else IDENTITY
+
+
+def _report_defaults(draft: Draft, names: list[str], static: bool, workspace: Workspace) -> None:
+    if names and not static:
+        listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+        workspace.diagnostics.note(
+            "SK-SDF-015",
+            f"model {draft.scoped!r}: no <inertial> in {listed}; SDF gives each 1 kg and 1 kg m2",
+            draft.source.element.where,
+        )

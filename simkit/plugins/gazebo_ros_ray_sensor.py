@@ -1,0 +1,54 @@
+"""Lidars of Gazebo Classic: `libgazebo_ros_ray_sensor.so` of ROS 2, `libgazebo_ros_laser.so` and kin of ROS 1."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from simkit.params import Params
+from simkit.plugins.base import SensorPlugin
+from simkit.plugins.sensor_topics import given_frame, topic_of
+
+_OUTPUTS = {
+    "sensor_msgs/LaserScan": "scan",
+    "sensor_msgs/PointCloud2": "hits",
+    "sensor_msgs/PointCloud": "old_hits",
+    "sensor_msgs/Range": "range",
+}
+_RADIATION = {"ultrasound": 0, "infrared": 1}
+
+
+class GazeboRosRaySensor(SensorPlugin):
+    """Publishes its lidar on `~/out` (after `<remapping>`), in the link's frame or `<frame_name>`.
+
+    `<output_type>` is sensor_msgs/LaserScan, PointCloud2 (the default), PointCloud or Range. Intensities are at least
+    `<min_intensity>`. `<radiation_type>` (ultrasound or infrared) goes into Range messages.
+    """
+
+    filenames = ("libgazebo_ros_ray_sensor.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        output = _OUTPUTS[params.choice("output_type", tuple(_OUTPUTS), "sensor_msgs/PointCloud2")]
+        radiation = _RADIATION[params.choice("radiation_type", tuple(_RADIATION), "infrared")]
+        least = params.number("min_intensity", 0.0)
+        topic = topic_of(self, "out", "topicName")
+        _connect(self, parent, {output: topic}, least, radiation)
+
+
+class GazeboRosLaser(SensorPlugin):
+    """ROS 1: a LaserScan on `<topicName>`, in `<frameName>`."""
+
+    filenames = ("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
+
+    def load(self, parent: Any, params: Params) -> None:
+        topic = self.ros.topic(params.text("topicName", "scan"))
+        _connect(self, parent, {"scan": topic}, 0.0, _RADIATION["infrared"])
+
+
+def _connect(plugin: SensorPlugin, sensor: Any, topics: dict[str, str], min_intensity: float, radiation: int) -> None:
+    params = plugin.params
+    if not hasattr(sensor, "min_intensity"):
+        params.error("SK-PLUGIN-003", f"plugin {plugin.name!r} is for a lidar, this sensor is {sensor.kind!r}")
+        return
+    sensor.frame_id = given_frame(sensor, params)
+    sensor.min_intensity, sensor.radiation = min_intensity, radiation
+    sensor.publish_on(topics)

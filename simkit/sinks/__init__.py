@@ -1,0 +1,1 @@
+"""What leaves a simulation: bags, progress, pictures; and scripted commands that go in. Each is imported when asked for."""

@@ -1,0 +1,156 @@
+"""Records every topic of a simulation to a bag, as the run goes."""
+
+from __future__ import annotations
+
+import fnmatch
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from simkit import msgs
+from simkit.errors import InputError, SimkitError
+from simkit.sinks.mcap_bag import McapBag
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+
+class RecordError(SimkitError):
+    """Recording stopped in the middle of a run; what was flushed before is readable."""
+
+    code = "SK-BAG-003"
+
+
+def is_single_file(path: Path) -> bool:
+    """`x.mcap` is one file, anything else a rosbag2 folder."""
+    return path.suffix.lower() == ".mcap"
+
+
+def check_target(path: Path, *, overwrite: bool = False) -> None:
+    """Says before anything is computed that a bag cannot be written there.
+
+    Raises:
+        InputError: SK-BAG-001 something is there already; SK-BAG-002 the place cannot be written.
+    """
+    if path.exists() and not overwrite:
+        raise InputError(f"SK-BAG-001 {path} exists already and is not overwritten\n    help: --force replaces it", "SK-BAG-001")
+    if path.is_dir() and is_single_file(path):
+        raise InputError(f"SK-BAG-002 cannot write {path}: it is a folder", "SK-BAG-002")
+    parent = path.absolute().parent
+    if is_single_file(path) and not parent.is_dir():
+        raise InputError(f"SK-BAG-002 cannot write {path}: there is no folder {parent}", "SK-BAG-002")
+    while not parent.exists():
+        parent = parent.parent
+    if not parent.is_dir() or not os.access(parent, os.W_OK):
+        raise InputError(f"SK-BAG-002 cannot write {path}: the folder {parent} is not writable", "SK-BAG-002")
+
+
+def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
+    """A new bag: one MCAP file or a rosbag2 folder, by the suffix of `path`.
+
+    Raises:
+        InputError: SK-BAG-001 or SK-BAG-002.
+    """
+    check_target(path, overwrite=overwrite)
+    try:
+        if is_single_file(path):
+            return McapBag(path, overwrite=overwrite)
+        from simkit.sinks.rosbag2_folder import Rosbag2Folder
+
+        return Rosbag2Folder(path, overwrite=overwrite)
+    except FileExistsError as error:
+        raise InputError(f"SK-BAG-001 {path} is not overwritten: {error}", "SK-BAG-001") from None
+    except OSError as error:
+        raise InputError(f"SK-BAG-002 cannot write {path}: {error.strerror or error}", "SK-BAG-002") from None
+
+
+class Recorder:
+    """Writes what is published to a bag; use it as a context manager around the run.
+
+    Args:
+        sim: the simulation; recording it makes every recorded sensor measure.
+        path: `x.mcap` for one file, else a rosbag2 folder.
+        overwrite: whether an existing bag may be replaced.
+        topics: shell patterns of the topics to record; all when empty.
+
+    Raises:
+        InputError: SK-BAG-001 the bag exists; SK-BAG-002 it cannot be written.
+    """
+
+    def __init__(
+        self, sim: Simulation, path: str | os.PathLike[str], *, overwrite: bool = False, topics: Sequence[str] = ()
+    ) -> None:
+        self.path = Path(path)
+        self.failure: RecordError | None = None
+        self._sim, self._patterns = sim, tuple(topics)
+        self._count = 0
+        self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
+        self._taps: dict[str, Any] = {}
+        sim.bus.on_topic(self._add)
+
+    @property
+    def message_count(self) -> int:
+        """Messages written so far."""
+        return self._count if self._bag is None else self._bag.span.count
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+        if kind is None:
+            self.check()
+
+    def check(self) -> None:
+        """Raises what went wrong while writing, if anything did.
+
+        Raises:
+            RecordError: the disk is full or gone.
+        """
+        if self.failure is not None:
+            raise self.failure
+
+    def close(self) -> None:
+        """Ends the recording and completes the bag; does nothing the second time."""
+        for tap in self._taps.values():
+            tap.close()
+        self._taps.clear()
+        bag, self._bag = self._bag, None
+        if bag is None:
+            return
+        self._count = bag.span.count
+        try:
+            bag.close()
+        except OSError as error:
+            self._fail(error)
+
+    def _add(self, topic: str, type_name: str) -> None:
+        if self._bag is None or topic in self._taps:
+            return
+        if self._patterns and not any(fnmatch.fnmatchcase(topic, p) for p in self._patterns):
+            return
+        self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._write(topic, message))
+
+    def _write(self, topic: str, message: Any) -> None:
+        bag = self._bag
+        if bag is None:
+            return
+        type_name = msgs.type_name(message)
+        data = msgs.serialize(message)
+        try:
+            channel = bag.channels.get((topic, type_name))
+            if channel is None:
+                channel = bag.channel(topic, type_name, topic in self._sim.bus.latched())
+            bag.write_raw(channel, data, self._sim.time_ns)
+        except OSError as error:
+            # Not raised here: this runs inside whoever publishes, and it is not the publisher's fault.
+            self._fail(error)
+            self.close()
+
+    def _fail(self, error: OSError) -> None:
+        self.failure = self.failure or RecordError(
+            f"SK-BAG-003 recording to {self.path} stopped at t={self._sim.time:.3f} s: {error.strerror or error}; "
+            "what was written before stays readable (simkit bag recover mends it)"
+        )

@@ -1,0 +1,102 @@
+"""gz's differential drive, driven on the ground."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from plugin_worlds import GROUND, gz_drive, rover, stamps, world, xyz, yaw
+
+import simkit
+
+
+def opened(step: float = 0.001, **values: object) -> simkit.Simulation:
+    return simkit.load(world(GROUND, rover(gz_drive(**values)), step=step))
+
+
+def test_its_topics_are_gazebos() -> None:
+    with opened() as sim:
+        topics = sim.topics()
+    assert topics["/model/rover/cmd_vel"] == "geometry_msgs/msg/Twist"
+    assert topics["/model/rover/enable"] == "std_msgs/msg/Bool"
+    assert topics["/model/rover/odometry"] == "nav_msgs/msg/Odometry"
+    assert topics["/model/rover/tf"] == "tf2_msgs/msg/TFMessage"
+
+
+def test_topics_and_frames_can_be_named() -> None:
+    with opened(topic="cmd_vel", odom_topic="odom", tf_topic="/tf", frame_id="odom", child_frame_id="base") as sim:
+        assert {"/cmd_vel", "/odom", "/tf"} <= set(sim.topics())
+        odometry = sim.subscribe("/odom")
+        sim.run(0.1)
+    assert (odometry.latest.header.frame_id, odometry.latest.child_frame_id) == ("odom", "base")
+
+
+def test_frames_are_the_models_and_its_first_links_by_default() -> None:
+    with opened() as sim:
+        odometry = sim.subscribe("/model/rover/odometry")
+        sim.run(0.1)
+    assert (odometry.latest.header.frame_id, odometry.latest.child_frame_id) == ("rover/odom", "rover/base")
+
+
+def test_odometry_comes_at_fifty_hertz_from_the_first_twenty_milliseconds_on() -> None:
+    with opened() as sim:
+        odometry = sim.subscribe("/model/rover/odometry")
+        sim.run(0.2)
+    np.testing.assert_array_equal(stamps(odometry.messages), np.arange(1, 11) * 20_000_000)
+
+
+def test_limits_on_speed_and_acceleration_hold() -> None:
+    """0.4 m/s at 1 m/s² for 2 s is 0.72 m."""
+    with opened(max_linear_acceleration=1, max_linear_velocity=0.4) as sim:
+        sim.run(0.5)
+        start = sim.model("rover").pose.position
+        sim.publish("/model/rover/cmd_vel", {"linear": {"x": 9.0}})
+        sim.run(2.0)
+        moved = sim.model("rover").pose.position - start
+    assert moved[0] == pytest.approx(0.4 * 2 - 0.4**2 / 2, abs=0.02)
+
+
+def test_odometry_follows_the_wheels_along_an_arc() -> None:
+    with opened(max_acceleration=2, min_acceleration=-2) as sim:
+        odometry = sim.subscribe("/model/rover/odometry")
+        sim.run(0.5)
+        start = sim.model("rover").pose
+        sim.publish("/model/rover/cmd_vel", {"linear": {"x": 0.3}, "angular": {"z": 0.5}})
+        sim.run(3.0)
+        moved = start.inverse() @ sim.model("rover").pose
+        message = odometry.latest
+    np.testing.assert_allclose(xyz(message.pose.pose.position)[:2], moved.position[:2], atol=0.015)
+    assert yaw(message.pose.pose.orientation) == pytest.approx(moved.rpy[2], abs=0.03)
+    assert message.twist.twist.linear.x == pytest.approx(0.3, abs=5e-3)
+
+
+def test_disabled_it_stops_and_takes_no_command_until_enabled() -> None:
+    with opened() as sim:
+
+        def speed_after(topic: str, message: dict[str, object]) -> float:
+            sim.publish(f"/model/rover/{topic}", message)
+            sim.run(0.5)
+            return float(sim.joint("rover::left_wheel").velocity)
+
+        assert speed_after("cmd_vel", {"linear": {"x": 0.2}}) == pytest.approx(2.0, abs=0.05)
+        assert speed_after("enable", {"data": False}) == pytest.approx(0.0, abs=0.05)
+        assert speed_after("cmd_vel", {"linear": {"x": 0.2}}) == pytest.approx(0.0, abs=0.05)
+        assert speed_after("enable", {"data": True}) == pytest.approx(0.0, abs=0.05)
+        assert speed_after("cmd_vel", {"linear": {"x": 0.2}}) == pytest.approx(2.0, abs=0.05)
+
+
+def test_ground_truth_goes_out_on_request() -> None:
+    with opened(publish_ground_truth="true") as sim:
+        truth = sim.subscribe("/model/rover/ground_truth/odom")
+        sim.publish("/model/rover/cmd_vel", {"linear": {"x": 0.2}})
+        sim.run(1.0)
+        np.testing.assert_allclose(xyz(truth.latest.pose.pose.position), sim.model("rover").pose.position, atol=1e-12)
+
+
+def test_a_missing_side_is_an_error() -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-001.*right_joint"):
+        opened(right_joint=None)
+
+
+def test_a_drive_on_the_world_is_left_out_with_a_warning() -> None:
+    with simkit.load(world(GROUND, rover(), gz_drive())) as sim:
+        assert "SK-PLUGIN-007" in [d.code for d in sim.diagnostics]

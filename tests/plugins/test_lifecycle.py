@@ -1,0 +1,149 @@
+"""When a plugin's hooks are called, and what becomes of its state."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import pytest
+from plugin_worlds import GROUND, rover, world
+
+import simkit
+from simkit import Params, WorldPlugin
+
+
+class Diary(WorldPlugin):
+    """Writes down when it is called."""
+
+    def __init__(self, before: float | None = None, after: float | None = None) -> None:
+        self.before_step_rate, self.after_step_rate = before, after
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.entries: list[tuple[str, float]] = [("load", parent.time)]
+
+    def reset(self) -> None:
+        self.entries.append(("reset", self.sim.time))
+
+    def before_step(self) -> None:
+        self.entries.append(("before", self.sim.time))
+
+    def after_step(self) -> None:
+        self.entries.append(("after", self.sim.time))
+
+    def close(self) -> None:
+        self.entries.append(("close", self.sim.time))
+
+    def times(self, hook: str) -> list[float]:
+        return [round(t, 6) for h, t in self.entries if h == hook]
+
+
+def opened(plugin: simkit.Plugin, *parts: str) -> simkit.Simulation:
+    return simkit.load(world(GROUND, *parts), plugins=[plugin])
+
+
+def test_without_a_rate_hooks_run_before_and_after_every_step() -> None:
+    diary = Diary()
+    with opened(diary) as sim:
+        sim.step(3)
+    assert diary.entries[:3] == [("load", 0.0), ("before", 0.0), ("after", 0.001)]
+    assert diary.times("before") == [0.0, 0.001, 0.002]
+    assert diary.times("after") == [0.001, 0.002, 0.003]
+    assert diary.entries[-1][0] == "close"
+
+
+def test_with_a_rate_they_run_at_the_first_step_at_or_after_each_period() -> None:
+    diary = Diary(before=30, after=30)
+    with opened(diary) as sim:
+        sim.run(0.11)
+    assert diary.times("after") == [0.034, 0.067, 0.1]
+    assert diary.times("before")[-2:] == [0.067, 0.1]
+
+
+def test_reset_brings_back_the_attributes_of_load_and_then_calls_the_hook() -> None:
+    diary = Diary()
+    with opened(diary) as sim:
+        sim.run(0.1)
+        sim.reset()
+        assert diary.entries == [("load", 0.0), ("reset", 0.0)]
+
+
+def test_restore_brings_back_the_attributes_and_drops_later_ones() -> None:
+    diary = Diary()
+    with opened(diary) as sim:
+        sim.step(2)
+        snapshot, entries = sim.snapshot(), list(diary.entries)
+        for _ in range(2):
+            sim.step(3)
+            diary.later = 1  # type: ignore[attr-defined]
+            sim.restore(snapshot)
+            assert diary.entries == entries
+            assert not hasattr(diary, "later")
+
+
+def test_handles_publishers_and_methods_in_attributes_survive_a_restore() -> None:
+    class Holder(Diary):
+        def load(self, parent: Any, params: Params) -> None:
+            super().load(parent, params)
+            self.model = parent.model("rover")
+            self.out = self.advertise("out", "std_msgs/msg/Float64")
+            self.call = self.after_step
+
+    holder = Holder()
+    with opened(holder, rover()) as sim:
+        model, out = holder.model, holder.out
+        sim.restore(sim.snapshot())
+        assert holder.model is model and holder.out is out
+        assert holder.call.__self__ is holder
+
+
+def test_an_attribute_that_cannot_be_copied_is_reported_once_and_left_alone() -> None:
+    class Locked(Diary):
+        def load(self, parent: Any, params: Params) -> None:
+            super().load(parent, params)
+            self.lock = threading.Lock()
+
+    locked = Locked()
+    with opened(locked) as sim:
+        lock = locked.lock
+        for _ in range(3):
+            sim.restore(sim.snapshot())
+        assert locked.lock is lock
+        assert locked.entries == [("load", 0.0)]
+        found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-006"]
+    assert len(found) == 1 and "'lock'" in found[0].message
+
+
+def test_a_hook_that_raises_stops_the_run_with_its_name_and_time() -> None:
+    class Faulty(Diary):
+        def after_step(self) -> None:
+            if self.sim.time > 0.0045:
+                raise ZeroDivisionError("too far")
+
+    with opened(Faulty()) as sim, pytest.raises(simkit.PluginError) as caught:
+        sim.run(1.0)
+    assert (caught.value.plugin, caught.value.hook) == ("Faulty", "after_step")
+    assert caught.value.time == pytest.approx(0.005)
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
+
+
+def test_a_parameter_nobody_reads_is_a_warning_with_the_closest_that_was_asked_for() -> None:
+    plugin = "<plugin name='solar' filename='libsolar_sensor.so'><light_name>sun</light_name><update_rte>3</update_rte></plugin>"
+    light = "<light name='sun' type='point'><pose>0 0 9 0 0 0</pose></light>"
+    with simkit.load(world(light, rover(plugin))) as sim:
+        found = [d for d in sim.diagnostics if d.code == "SK-PARAM-003"]
+    assert len(found) == 1
+    assert "update_rte" in found[0].message and "update_rate" in found[0].hint
+
+
+def test_systems_that_are_not_needed_are_a_note() -> None:
+    plugin = "<plugin filename='gz-sim-physics-system' name='gz::sim::systems::Physics'><engine/></plugin>"
+    with simkit.load(world(GROUND, plugin)) as sim:
+        found = [(d.code, d.severity) for d in sim.diagnostics if "Physics" in d.message]
+    assert found == [("SK-PLUGIN-005", "note")]
+
+
+def test_an_unknown_plugin_does_not_stop_the_run() -> None:
+    with simkit.load(world(GROUND, "<plugin name='x' filename='libgazebo_tutorials.so'/>")) as sim:
+        sim.run(0.1)
+        found = [(d.code, d.severity) for d in sim.diagnostics if "libgazebo_tutorials.so" in d.message]
+    assert found == [("SK-PLUGIN-001", "warning")]

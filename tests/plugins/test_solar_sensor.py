@@ -1,0 +1,146 @@
+"""The course's solar sensor: where the light stands, seen from a link."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from plugin_worlds import GROUND, element, stamps, world
+
+import simkit
+from simkit.pose import Pose, quat_rotate, rpy_from_quat
+
+SUN = "<light name='sun' type='directional'><pose>30 40 50 0 0 0</pose><direction>0 0 -1</direction></light>"
+LAMP = "<light name='lamp' type='point'><pose>0 0 9 0 0 0</pose></light>"
+
+
+def station(pose: str = "0 0 1 0 0 0", **values: Any) -> str:
+    """A post that hangs on the world, with a head half a metre above its origin."""
+    plugin = element("plugin", {"light_name": "sun", **values}, "name='solar' filename='libsolar_sensor.so'")
+    return (
+        f"<model name='station'><pose>{pose}</pose><link name='post'/><link name='head'><pose>0 0 0.5 0 0 0</pose></link>"
+        "<joint name='fixture' type='fixed'><parent>world</parent><child>post</child></joint>"
+        f"<joint name='neck' type='fixed'><parent>post</parent><child>head</child></joint>{plugin}</model>"
+    )
+
+
+def opened(seed: int = 0, **values: Any) -> simkit.Simulation:
+    return simkit.load(world(GROUND, SUN, LAMP, station(**values)), seed=seed)
+
+
+def read(sim: simkit.Simulation, seconds: float = 0.1) -> list[Any]:
+    subscription = sim.subscribe("/sunloin_imu")
+    sim.run(seconds)
+    return list(subscription.messages)
+
+
+def quaternion(message: Any) -> tuple[float, float, float, float]:
+    q = message.orientation
+    return q.w, q.x, q.y, q.z
+
+
+def test_the_x_axis_of_its_orientation_points_at_the_light() -> None:
+    with opened(frame_name="head", pose="1 2 3 0.3 -0.2 0.7") as sim:
+        message = read(sim)[-1]
+        head = sim.link("station::head").pose
+    towards = head.inverse().transform((30, 40, 50))
+    np.testing.assert_allclose(
+        quat_rotate(quaternion(message), (1, 0, 0)), towards / np.linalg.norm(towards), atol=1e-9
+    )
+    assert rpy_from_quat(quaternion(message))[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_its_frame_is_the_named_link_and_else_the_first() -> None:
+    for values, frame, height in (({"frame_name": "head"}, "head", 1.5), ({}, "post", 1.0)):
+        with opened(**values) as sim:
+            message = read(sim)[-1]
+        assert message.header.frame_id == frame
+        towards = np.array([30, 40, 50 - height])
+        np.testing.assert_allclose(
+            quat_rotate(quaternion(message), (1, 0, 0)), towards / np.linalg.norm(towards), atol=1e-6
+        )
+
+
+def test_a_body_can_be_another_than_the_frame() -> None:
+    with opened(body_name="head", frame_name="compass") as sim:
+        assert read(sim)[-1].header.frame_id == "compass"
+
+
+def test_it_comes_at_its_rate_and_without_one_at_every_step() -> None:
+    with opened(update_rate=30) as sim:
+        found = stamps(read(sim, 1.0))
+    assert len(found) == 30
+    assert found[0] == 34_000_000
+    with opened() as sim:
+        assert len(read(sim, 0.05)) == 50
+
+
+def test_the_offset_is_added_to_the_unit_vector_in_the_links_axes() -> None:
+    with opened(xyz_offset="0.1 0.2 -0.3") as sim:
+        angles = rpy_from_quat(quaternion(read(sim)[-1]))
+    x, y, z = np.array([30, 40, 49]) / math.sqrt(30**2 + 40**2 + 49**2) + (0.1, 0.2, -0.3)
+    np.testing.assert_allclose(angles[1:], [math.asin(-z), math.atan2(y, x)], atol=1e-9)
+
+
+def test_an_offset_that_leaves_the_sphere_is_cut_off_at_the_zenith() -> None:
+    with opened(xyz_offset="0 0 5") as sim:
+        assert rpy_from_quat(quaternion(read(sim)[-1]))[1] == pytest.approx(-math.pi / 2, abs=1e-6)
+
+
+def test_the_plural_names_are_taken_with_a_warning() -> None:
+    with opened(xyz_offsets="0.1 0.2 -0.3") as old, opened(xyz_offset="0.1 0.2 -0.3") as new:
+        assert quaternion(read(old)[-1]) == quaternion(read(new)[-1])
+        found = [(d.code, d.severity, d.hint) for d in old.diagnostics if "xyz_offsets" in d.message]
+    assert found == [("SK-PARAM-004", "warning", "write <xyz_offset>")]
+
+
+def test_noise_has_the_named_deviation_and_its_square_on_the_covariance() -> None:
+    with opened(gaussian_noise=0.01, update_rate=0) as sim:
+        messages = read(sim, 2.0)
+    np.testing.assert_allclose(
+        np.asarray(messages[0].orientation_covariance).reshape(3, 3), np.eye(3) * 1e-4, atol=1e-15
+    )
+    angles = np.array([rpy_from_quat(quaternion(m)) for m in messages])
+    np.testing.assert_allclose(angles.std(axis=0), 0.01, rtol=0.08)
+    true_pitch, true_yaw = math.asin(-49 / math.sqrt(30**2 + 40**2 + 49**2)), math.atan2(40, 30)
+    np.testing.assert_allclose(angles.mean(axis=0), [0, true_pitch, true_yaw], atol=1e-3)
+
+
+def test_noise_repeats_with_the_seed_and_does_not_depend_on_who_listened_before() -> None:
+    with opened(gaussian_noise=0.01) as early, opened(gaussian_noise=0.01) as late:
+        first = read(early, 0.2)
+        late.run(0.1)
+        second = read(late, 0.1)
+    assert [quaternion(m) for m in first[100:]] == [quaternion(m) for m in second]
+    with opened(seed=1, gaussian_noise=0.01) as other:
+        assert quaternion(read(other, 0.2)[-1]) != quaternion(first[-1])
+
+
+def test_it_follows_a_light_that_moves() -> None:
+    with opened() as sim:
+        sim.light("sun").set_pose(Pose((0, 100, 1)))
+        angles = rpy_from_quat(quaternion(read(sim)[-1]))
+    np.testing.assert_allclose(angles, [0, 0, math.pi / 2], atol=1e-6)
+
+
+def test_without_a_light_name_the_load_stops_and_lists_the_lights() -> None:
+    with pytest.raises(simkit.LoadError) as caught:
+        opened(light_name=None)
+    (found,) = (d for d in caught.value.diagnostics if d.severity == "error")
+    assert found.code == "SK-PARAM-001"
+    assert "light_name" in found.message and "'lamp', 'sun'" in found.hint
+
+
+def test_an_unknown_light_stops_the_load_and_lists_the_lights() -> None:
+    with pytest.raises(simkit.LoadError) as caught:
+        opened(light_name="son")
+    (found,) = (d for d in caught.value.diagnostics if d.severity == "error")
+    assert found.code == "SK-PLUGIN-003"
+    assert "'lamp', 'sun'" in found.message and "'sun'" in found.hint
+
+
+def test_an_unknown_link_is_an_error() -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003.*no link 'haed'"):
+        opened(frame_name="haed")

@@ -1,0 +1,261 @@
+"""The loop, the state and the handles, on small worlds."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import simkit
+
+BALL = """<sdf version="1.9"><world name="w"><gravity>0 0 -9.8</gravity>{extra}
+  <model name="ball"><pose>0 0 5 0 0 0</pose><link name="l"><inertial><mass>2</mass></inertial>
+    <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link></model>
+</world></sdf>"""
+
+SWING = """<sdf version="1.9"><world name="w">
+  <model name="m"><link name="base"><inertial><mass>10</mass></inertial></link>
+    <link name="arm"><pose>0 0 0 0 0 0</pose><inertial><pose>0 0 -0.5 0 0 0</pose><mass>1</mass>
+      <inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial></link>
+    <joint name="fix" type="fixed"><parent>world</parent><child>base</child></joint>
+    <joint name="hinge" type="revolute"><parent>base</parent><child>arm</child>
+      <axis><xyz>0 1 0</xyz><limit><effort>3</effort></limit></axis></joint></model></world></sdf>"""
+
+BOX = """<sdf version="1.9"><model name="{name}"><pose>{x} 0 3 0 0 0</pose><link name="l"><inertial><mass>1</mass></inertial>
+  <collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision></link></model></sdf>"""
+
+
+def load(text, **options):
+    return simkit.load(text, **options)
+
+
+def test_free_fall_is_semi_implicit_euler_to_the_last_digit():
+    with load(BALL.format(extra="")) as sim:
+        sim.step(500)
+        n, dt = 500, 0.001
+        assert sim.model("ball").pose.position[2] == pytest.approx(5 - 9.8 * dt * dt * n * (n + 1) / 2, abs=1e-12)
+        assert sim.link("ball::l").linear_velocity[2] == pytest.approx(-9.8 * 0.5, abs=1e-12)
+        assert sim.time == 0.5 and sim.time_ns == 500_000_000 and sim.tick == 500
+
+
+def test_acceleration_of_a_falling_link_is_gravity_and_at_rest_zero():
+    with load(BALL.format(extra="")) as sim:
+        sim.step(3)
+        np.testing.assert_allclose(sim.link("ball::l").linear_acceleration, [0, 0, -9.8], atol=1e-9)
+
+
+@pytest.mark.parametrize("chunks", [[400], [1] * 400, [7] * 57 + [1], [399, 1]])
+def test_however_the_steps_are_cut_and_read_the_bits_are_the_same(chunks):
+    with load(SWING) as sim, load(SWING) as reference:
+        sim.joint("m::hinge").set_position(1.0)
+        reference.joint("m::hinge").set_position(1.0)
+        reference.step(400)
+        for count in chunks:
+            sim.step(count)
+            sim.link("m::arm").pose  # noqa: B018 - reading makes the forward pass
+        assert sim.joint("m::hinge").position == reference.joint("m::hinge").position
+        assert sim.joint("m::hinge").velocity == reference.joint("m::hinge").velocity
+
+
+def test_a_state_that_is_set_is_read_back_without_a_step():
+    with load(SWING) as sim:
+        sim.joint("m::hinge").set_position(math.pi / 2)
+        assert sim.joint("m::hinge").position == pytest.approx(math.pi / 2)
+        np.testing.assert_allclose(sim.link("m::arm").pose.rpy, [0, math.pi / 2, 0], atol=1e-9)
+
+
+def test_an_effort_is_clipped_and_lasts_one_step():
+    with load(SWING) as sim:
+        hinge = sim.joint("m::hinge")
+        hinge.set_effort(100.0)
+        assert hinge.effort == pytest.approx(3.0)
+        sim.step()
+        # 3 N m on 0.01 + 1·0.5² kg m², no gravity torque while hanging straight down
+        assert hinge.velocity == pytest.approx(3.0 / 0.26 * 0.001, rel=1e-3)
+        before = hinge.velocity
+        sim.step()
+        assert hinge.velocity < before
+
+
+def test_a_wrench_pushes_for_one_step():
+    with load(BALL.format(extra="")) as sim:
+        sim.link("ball::l").apply_wrench((20.0, 0, 0))
+        sim.step(10)
+        assert sim.link("ball::l").linear_velocity[0] == pytest.approx(20.0 / 2 * 0.001, rel=1e-9)
+
+
+def test_a_joint_carries_the_weight_below_it():
+    with load(SWING) as sim:
+        sim.step(10)
+        force, torque = sim.joint("m::hinge").transmitted_wrench
+        np.testing.assert_allclose(force, [0, 0, 9.8], atol=1e-3)
+        np.testing.assert_allclose(torque, 0, atol=1e-3)
+
+
+def test_a_velocity_limit_set_through_the_handle_holds_at_every_step():
+    with load(SWING) as sim:
+        hinge = sim.joint("m::hinge")
+        hinge.set_position(1.5)
+        hinge.velocity_limit = 0.5
+        for _ in range(300):
+            sim.step()
+            assert abs(hinge.velocity) <= 0.5 + 1e-12
+
+
+def test_a_restored_run_repeats_and_so_does_a_reset():
+    with load(SWING) as sim:
+        hinge = sim.joint("m::hinge")
+        hinge.set_position(1.0)
+        sim.step(100)
+        snapshot = sim.snapshot()
+        sim.step(200)
+        first = hinge.position
+        sim.restore(snapshot)
+        assert sim.tick == 100
+        sim.step(200)
+        assert hinge.position == first
+        sim.reset()
+        assert sim.tick == 0 and hinge.position == 0.0
+
+
+def test_spawn_and_remove_leave_the_others_bits_alone():
+    with load(BALL.format(extra="")) as sim, load(BALL.format(extra="")) as alone:
+        sim.step(50)
+        ball = sim.model("ball")
+        box = sim.spawn(BOX.format(name="box", x=3.0))
+        assert box.pose.position[0] == pytest.approx(3.0)
+        sim.step(100)
+        sim.remove("box")
+        sim.step(50)
+        alone.step(200)
+        np.testing.assert_array_equal(ball.pose.position, alone.model("ball").pose.position)
+        assert "box" not in sim.models
+        with pytest.raises(simkit.InputError, match="removed"):
+            box.pose  # noqa: B018
+
+
+def test_restore_brings_back_what_was_removed_and_takes_away_what_was_spawned():
+    with load(BALL.format(extra="")) as sim:
+        sim.spawn(BOX.format(name="box", x=3.0))
+        sim.step(20)
+        snapshot = sim.snapshot()
+        sim.step(100)
+        first = sim.model("box").pose.position.copy()
+        sim.restore(snapshot)
+        sim.remove("box")
+        sim.spawn(BOX.format(name="other", x=-3.0))
+        sim.step(5)
+        sim.restore(snapshot)
+        assert set(sim.models) == {"ball", "box"}
+        sim.step(100)
+        np.testing.assert_array_equal(sim.model("box").pose.position, first)
+        sim.reset()
+        assert set(sim.models) == {"ball"}
+
+
+def test_a_spawned_name_that_is_taken_is_an_error():
+    with load(BALL.format(extra="")) as sim, pytest.raises(simkit.LoadError, match="SK-LOAD-011"):
+        sim.spawn(BOX.format(name="ball", x=1.0))
+
+
+def test_a_static_model_can_be_moved_and_still_carries():
+    table = """<model name="table"><static>true</static><link name="l"><collision name="c"><geometry><box>
+      <size>1 1 0.2</size></box></geometry></collision></link></model>"""
+    with load(BALL.format(extra=table)) as sim:
+        sim.model("table").set_pose(simkit.Pose((0, 0, 4.0)))
+        np.testing.assert_allclose(sim.link("table::l").pose.position, [0, 0, 4])
+        sim.run(2.0)
+        assert sim.model("ball").pose.position[2] == pytest.approx(4.2, abs=2e-3)
+        sim.reset()
+        np.testing.assert_allclose(sim.model("table").pose.position, 0, atol=1e-12)
+
+
+def test_switched_off_collisions_let_things_through():
+    ground = """<model name="g"><static>true</static><link name="l"><collision name="c"><geometry><plane/></geometry>
+      </collision></link></model>"""
+    with load(BALL.format(extra=ground)) as sim:
+        link = sim.link("ball::l")
+        assert link.collisions_enabled
+        link.collisions_enabled = False
+        sim.run(1.5)
+        assert sim.model("ball").pose.position[2] < -1
+        sim.reset()
+        assert link.collisions_enabled
+        sim.run(2.0)
+        assert sim.model("ball").pose.position[2] == pytest.approx(0.1, abs=2e-3)
+
+
+def test_a_diverged_run_stops_with_the_joint_and_the_time():
+    with load(SWING) as sim:
+        sim.step(10)
+        sim.mj_data.qvel[:] = np.nan
+        with pytest.raises(simkit.SimulationDiverged) as caught:
+            sim.step(100)
+        assert caught.value.joint == "m::hinge"
+        assert caught.value.time == pytest.approx(0.010, abs=2e-3)
+        assert caught.value.exit_code == 3
+
+
+def test_an_unknown_name_names_the_closest():
+    with load(SWING) as sim, pytest.raises(KeyError, match="m::hinge"):
+        sim.joint("m::hinje")
+
+
+def test_run_until_stops_when_the_condition_holds():
+    with load(BALL.format(extra="")) as sim:
+        assert sim.run_until(lambda s: s.model("ball").pose.position[2] < 4.5, timeout=2.0)
+        assert sim.time == pytest.approx(math.sqrt(2 * 0.5 / 9.8), abs=2e-3)
+        assert not sim.run_until(lambda s: False, timeout=0.01)
+
+
+class Counter(simkit.WorldPlugin):
+    """Counts its hooks."""
+
+    before_step_rate = 100.0
+
+    def load(self, parent, params):
+        self.before, self.after = [], []
+
+    def before_step(self):
+        self.before.append(self.sim.tick)
+
+    def after_step(self):
+        self.after.append(self.sim.tick)
+
+
+def test_hooks_run_at_their_rate_and_every_step_means_every_step():
+    plugin = Counter()
+    with load(BALL.format(extra=""), plugins=[plugin]) as sim:
+        sim.step(25)
+        assert plugin.after == list(range(1, 26))
+        assert plugin.before == [10, 20]
+        sim.reset()
+        assert plugin.after == []
+        sim.step(10)
+        sim.step(1)
+        assert plugin.before == [10]
+
+
+class Breaks(simkit.WorldPlugin):
+    """Raises in its third step."""
+
+    def load(self, parent, params):
+        pass
+
+    def after_step(self):
+        if self.sim.tick == 3:
+            raise RuntimeError("broken on purpose")
+
+
+def test_a_plugin_that_raises_stops_the_run_with_its_name_and_time():
+    with load(BALL.format(extra=""), plugins=[Breaks()]) as sim:
+        with pytest.raises(simkit.PluginError, match="Breaks.*0.003") as caught:
+            sim.step(10)
+        assert isinstance(caught.value.__cause__, RuntimeError)
+
+
+def test_importing_simkit_loads_neither_the_engine_nor_gl():
+    code = "import simkit, sys; bad = {'mujoco', 'OpenGL', 'rosbags', 'cv2', 'trimesh'} & set(sys.modules); sys.exit(str(bad) if bad else 0)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
