@@ -97,7 +97,7 @@ def describe(
     Raises:
         LoadError: the file has errors.
     """
-    from simkit.describe import describe_scene
+    from simkit.description import describe_scene
 
     diagnostics = Diagnostics()
     scene = _scene(source, Resolver([Path(p) for p in resource_paths]), diagnostics, xacro_args, "auto", ())

@@ -14,6 +14,7 @@ from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.pose import IDENTITY, Pose
 
 T = TypeVar("T")
+_FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
 _TRUE, _FALSE = {"true", "1"}, {"false", "0"}
 
 
@@ -203,7 +204,7 @@ class Params:
 
     def as_pose(self) -> Pose:
         """This element's text as a pose; raises ValueError."""
-        numbers = [_number(v, None, None, True) for v in self.value.split()]
+        numbers = [_number(v, -_FARTHEST, _FARTHEST, True) for v in self.value.split()]
         if not numbers:
             return IDENTITY
         if self.attributes.get("rotation_format") == "quat_xyzw":

@@ -18,9 +18,9 @@ ROOMS: dict[str, frozenset[str]] = {
     "sensors": frozenset({"runtime", "compiler", "scene"}),
     "plugins": frozenset({"runtime", "compiler", "scene"}),
     "sinks": frozenset({"runtime"}),
-    "describe": frozenset({"scene", "loaders", "sensors"}),
+    "description": frozenset({"scene", "loaders", "sensors"}),
     "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
-    "cli": frozenset({"build", "describe", "bench", "sinks"}),
+    "cli": frozenset({"build", "description", "bench", "overrides", "sinks"}),
 }
 KNOWS_ALL = frozenset({"build"})
 FRONT_DOOR = frozenset({"__init__", "__main__"})

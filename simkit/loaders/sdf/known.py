@@ -9,9 +9,9 @@ from simkit.params import Params
 
 _QUIET_WORDS = """
 ode bullet dart simbody physics real_time_update_rate min_step_size max_contacts provide_feedback allow_auto_disable
-velocity_decay must_be_base_link enable_wind auto_inertia_params thread_position_correction rolling_friction patch_radius
-surface_radius use_patch_radius soft_contact poissons_ratio elastic_modulus dissipation stiffness convex_decomposition
-sampling collide_without_contact_bitmask
+velocity_decay must_be_base_link enable_wind auto_inertia_params thread_position_correction rolling_friction
+patch_radius surface_radius use_patch_radius soft_contact poissons_ratio elastic_modulus dissipation stiffness
+convex_decomposition sampling collide_without_contact_bitmask
 gui audio audio_sink audio_source visualize meta layer lighting double_sided render_order shininess shader normal_map
 roughness_map metalness_map environment_map ambient_occlusion_map emissive_map light_map roughness metalness
 specular_map glossiness_map glossiness fog sky origin_visual texture blend use_terrain_paging cubemap_uri

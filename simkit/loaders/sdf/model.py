@@ -119,7 +119,7 @@ def _refuse_light(source: Source, workspace: Workspace) -> None:
 
 
 def _merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace) -> None:
-    """Puts the content of an included model into `draft`; a frame that stands where it was placed is its `__model__`."""
+    """Puts the content of an included model into `draft`; a frame that stands where it was placed is its root."""
     name = f"_merged__{source.name}__{MODEL}"
     pose = source.pose
     if source.placement:

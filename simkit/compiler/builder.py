@@ -1,0 +1,302 @@
+"""The one door to MuJoCo's model specification: scenes go in, sensors and plugins add to it, a model comes out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+
+from simkit.compiler.assets import Assets
+from simkit.compiler.lights import add_light
+from simkit.compiler.model_writer import ModelWriter
+from simkit.compiler.names import (
+    ActuatorRef,
+    JointBinding,
+    LightBinding,
+    ModelRecord,
+    NameMap,
+    found,
+)
+from simkit.compiler.options import apply_options, apply_size, choose_islands, set_extent
+from simkit.compiler.servo import add_actuator, add_armature, tune
+from simkit.compiler.tree import WORLD
+from simkit.diagnostics import Diagnostics
+from simkit.pose import Pose
+from simkit.scene import SceneJoint, SceneModel, SceneWorld
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """A compiled model with its state, the names bound to its ids, and the builder it came from."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    names: NameMap
+    builder: SpecBuilder
+
+
+class SpecBuilder:
+    """Builds and changes the specification of one world.
+
+    Args:
+        world: what to build: options, lights and all models.
+        diagnostics: gets what was approximated, and errors.
+
+    Attributes:
+        spec: MuJoCo's specification. Handles into it die with `copy`; look elements up by name.
+        records: what each top-level model put into it, by scoped name; the world's own under the empty name.
+    """
+
+    def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
+        self.world, self.diagnostics = world, diagnostics
+        self.spec = mujoco.MjSpec()
+        self.spec.modelname = world.name
+        self.assets = Assets(self.spec)
+        self.records: dict[str, ModelRecord] = {"": ModelRecord(SceneModel(name="", scoped="", pose_world=Pose()))}
+        self._names: NameMap | None = None
+        self._is_compiled = False
+        apply_options(self.spec, world, diagnostics)
+        for light in world.lights:
+            add_light(self.spec.worldbody, light, light.pose_world, world.surroundings.shadows)
+            self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
+        for model in world.models:
+            self.add_model(model)
+        self._join_models()
+
+    # ------------------------------------------------------------------ models
+
+    def add_model(self, model: SceneModel, *, movable: bool = False) -> None:
+        """Adds a top-level model where its poses say.
+
+        Args:
+            movable: a static model becomes mocap bodies, which can be set elsewhere while it runs.
+        """
+        record = ModelRecord(model, movable)
+        if model.scoped in self.records:
+            raise ValueError(f"there is a model {model.scoped!r} already")
+        self.records[model.scoped] = record
+        self._names = None
+        self.assets.used = record.assets
+        ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).write(self._joints_of(model))
+
+    def remove_model(self, scoped: str) -> None:
+        """Takes a top-level model out again, with all that was added to it. Raises KeyError."""
+        record = found(self.records, scoped, "model")
+        self._cut_joints_to(record)
+        spec = self.spec
+        for ref in record.actuators:
+            spec.delete(spec.actuator(ref.name))
+        for name in record.equalities:
+            spec.delete(spec.equality(name))
+        for name in record.excludes:
+            spec.delete(spec.exclude(name))
+        for light in record.lights.values():
+            if light.body_name == WORLD:
+                spec.delete(spec.light(light.scoped))
+        for name in record.world_sites:
+            spec.delete(spec.site(name))
+        for name, owner in record.geoms.items():
+            if record.links[owner.link].body_name == WORLD:
+                spec.delete(spec.geom(name))
+        for name in record.root_bodies:
+            spec.delete(spec.body(name))
+        del self.records[scoped]
+        still = set().union(*(r.assets for r in self.records.values()))
+        self.assets.drop(record.assets - still)
+        self._names = None
+
+    def _joints_of(self, model: SceneModel) -> list[SceneJoint]:
+        """The model's joints and those joints of the world that tie it to the world alone."""
+        own = {link.scoped for link in model.all_links()} | {WORLD}
+        return [
+            *model.all_joints(),
+            *(j for j in self.world.joints if {j.parent_link, j.child_link} <= own and {j.parent_link, j.child_link} != {WORLD}),
+        ]
+
+    def _join_models(self) -> None:
+        """Joints of the world between two models, as constraints."""
+        record = self.records[""]
+        done = {name for r in self.records.values() for name in r.joints}
+        rest = [j for j in self.world.joints if j.scoped not in done]
+        if rest:
+            writer = ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
+            writer.join(rest, {n: b for r in self.records.values() for n, b in r.links.items()})
+            self._names = None
+
+    def _cut_joints_to(self, record: ModelRecord) -> None:
+        world = self.records[""]
+        for scoped, joint in list(world.joints.items()):
+            if {joint.scene.parent_link, joint.scene.child_link} & set(record.links):
+                for name in joint.equalities:
+                    self.spec.delete(self.spec.equality(name))
+                    world.equalities.remove(name)
+                del world.joints[scoped]
+
+    # ------------------------------------------------------------------ what sensors and plugins add
+
+    @property
+    def names(self) -> NameMap:
+        """Names to bindings; without ids (see `Compiled.names` for those)."""
+        if self._names is None:
+            self._names = NameMap.of(self.records.values())
+        return self._names
+
+    def add_site(self, link_scoped: str, pose_link: Pose, name: str) -> str:
+        """Adds a frame to a link; on a static link it lands in the world body. Raises KeyError."""
+        link = self.names.link(link_scoped)
+        record = self.records[link.model]
+        pose = link.offset @ pose_link
+        self.spec.body(link.body_name).add_site(name=name, pos=pose.position, quat=pose.quaternion, group=5)
+        record.sites.append(name)
+        if link.body_name == WORLD:
+            record.world_sites.append(name)
+        return name
+
+    def add_velocity_servo(
+        self, joint_scoped: str, *, axis: int = 0, max_effort: float, owner: str, kv: float | None = None
+    ) -> ActuatorRef:
+        """Adds a servo whose control is a velocity [rad/s or m/s].
+
+        Args:
+            max_effort: [N·m or N]; the joint's own effort limit counts too.
+            owner: who drives it; part of the actuator's name.
+            kv: wanted gain; None takes the highest that does not ring.
+
+        Raises:
+            KeyError: no such joint or axis.
+        """
+        return self._add_actuator("velocity", joint_scoped, axis, max_effort, owner, None, kv)
+
+    def add_position_servo(
+        self,
+        joint_scoped: str,
+        *,
+        axis: int = 0,
+        max_effort: float,
+        owner: str,
+        kp: float | None = None,
+        kv: float | None = None,
+    ) -> ActuatorRef:
+        """Adds a servo whose control is a position [rad or m]; gains are capped where they would ring. Raises KeyError."""
+        return self._add_actuator("position", joint_scoped, axis, max_effort, owner, kp, kv)
+
+    def add_motor(self, joint_scoped: str, axis: int = 0, max_effort: float = float("inf"), owner: str = "motor") -> ActuatorRef:
+        """Adds an actuator whose control is an effort [N·m or N]. Raises KeyError."""
+        return self._add_actuator("motor", joint_scoped, axis, max_effort, owner, None, None)
+
+    def _add_actuator(
+        self, kind: str, scoped: str, axis: int, max_effort: float, owner: str, kp: float | None, kv: float | None
+    ) -> ActuatorRef:
+        joint = self.names.joint(scoped)
+        if not 0 <= axis < len(joint.joint_names):
+            raise KeyError(f"joint {scoped!r} ({joint.type}) has no axis {axis} to drive")
+        record = self.records[joint.model]
+        if axis < len(joint.scene.axes):
+            max_effort = min(max_effort, joint.scene.axes[axis].effort)
+        base, k = f"{owner}/{joint.joint_names[axis]}/{kind}", 1
+        taken = {ref.name for r in self.records.values() for ref in r.actuators}
+        name = base
+        while name in taken:
+            k += 1
+            name = f"{base}#{k}"
+        ref = ActuatorRef(name, kind, scoped, axis, max_effort, owner, kp, kv)
+        if kind != "motor":
+            add_armature(self.spec.joint(joint.joint_names[axis]), scoped, self.diagnostics, joint.scene.where)
+        add_actuator(self.spec, ref, joint.joint_names[axis])
+        record.actuators.append(ref)
+        return ref
+
+    def add_weld(self, name: str, parent_link: str, child_link: str, *, active: bool = True) -> str:
+        """Welds two links as they stand in the file; `active` can be changed while it runs. Raises KeyError."""
+        parent, child = self.names.link(parent_link), self.names.link(child_link)
+        record = self.records[parent.model if parent.model == child.model else ""]
+        links = {n: b for r in self.records.values() for n, b in r.links.items()}
+        ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).weld(name, parent_link, child_link, links, active)
+        if record is self.records[""]:
+            joint = SceneJoint(name, name, "fixed", parent_link, child_link, child.scene.pose_world)
+            record.joints[name] = JointBinding(name, "fixed", joint, "", is_loop=True, equalities=(name,))
+            self._names = None
+        return name
+
+    # ------------------------------------------------------------------ sleeping
+
+    def enable_sleep(self) -> None:
+        """Lets resting trees sleep, except those that `never_sleep` names and those that an actuator moves."""
+        self.spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        self.spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+
+    def never_sleep(self, link_scoped: str) -> None:
+        """Keeps the tree that carries a link awake: somebody reads it. Raises KeyError."""
+        link = self.names.link(link_scoped)
+        if link.body_name == WORLD or link.static:
+            return
+        body = self.spec.body(link.body_name)
+        while body.parent.name != WORLD:
+            body = body.parent
+        if body.joints:
+            body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
+
+    # ------------------------------------------------------------------ out
+
+    def compile(self) -> Compiled:
+        """The model with its first state. Raises LoadError when MuJoCo refuses it."""
+        self._before()
+        if not self._is_compiled and not int(self.spec.option.enableflags) & int(mujoco.mjtEnableBit.mjENBL_SLEEP):
+            choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
+        self._is_compiled = True
+        try:
+            model = self.spec.compile()
+        except ValueError as problem:
+            self._refused(problem)
+        return self._finished(model, None)
+
+    def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:
+        """The model after a change; what stays keeps its state bit for bit, in new model and data objects.
+
+        Args:
+            compiled: what this specification (or the one it was copied from) compiled to before.
+            data: the state to keep; it stays as it is.
+
+        Raises:
+            LoadError: MuJoCo refuses the changed model.
+        """
+        from simkit.compiler.carry import carry_state
+
+        self._before()
+        try:
+            model = self.spec.compile()
+        except ValueError as problem:
+            self._refused(problem)
+        fresh = mujoco.MjData(model)
+        carry_state(compiled.model, data, model, fresh)
+        model.opt.gravity[:] = compiled.model.opt.gravity
+        return self._finished(model, fresh)
+
+    def copy(self) -> SpecBuilder:
+        """An independent builder with the same content: change it, and this one stays what it was."""
+        other = SpecBuilder.__new__(SpecBuilder)
+        other.world, other.diagnostics = self.world, self.diagnostics
+        other.spec = self.spec.copy()
+        other.assets = Assets(other.spec, self.assets.known)
+        other.records = {name: record.copy() for name, record in self.records.items()}
+        other._names = None
+        other._is_compiled = self._is_compiled
+        return other
+
+    def _before(self) -> None:
+        colliding = sum(not o.is_visual for r in self.records.values() for o in r.geoms.values())
+        apply_size(self.spec, colliding)
+
+    def _refused(self, problem: ValueError) -> Any:
+        self.diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {problem}", self.world.where)
+        self.diagnostics.raise_if_errors()
+        raise AssertionError("unreachable")
+
+    def _finished(self, model: mujoco.MjModel, data: mujoco.MjData | None) -> Compiled:
+        set_extent(model)
+        tune(self.spec, model, [ref for r in self.records.values() for ref in r.actuators])
+        names = NameMap.of(self.records.values(), model)
+        return Compiled(model, data if data is not None else mujoco.MjData(model), names, self)
+
+

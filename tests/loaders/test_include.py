@@ -1,0 +1,115 @@
+"""What an include brings: names, places, static, built-in models, merging, and what it refuses."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+BOX = """<sdf version="1.9"><model name="box"><pose>9 9 9 0 0 0</pose>
+  <link name="l"><pose>0 0 1 0 0 0</pose></link></model></sdf>"""
+
+
+def test_an_include_renames_places_and_fixes_a_model(load, write):
+    root = write("models/box/model.sdf", BOX).parents[1]
+    world = """<sdf version="1.9"><world name="w"><include><uri>model://box</uri><name>b1</name>
+      <pose>1 2 3 0 0 0</pose><static>true</static><plugin name="p" filename="libp.so"/></include>
+      <include><uri>model://box</uri></include></world></sdf>"""
+    scene, found = load(world, (root,))
+    first, second = scene.world.models
+    assert (first.name, first.static, [p.filename for p in first.plugins]) == ("b1", True, ["libp.so"])
+    np.testing.assert_allclose(first.links[0].pose_world.position, (1, 2, 4))
+    np.testing.assert_allclose(second.links[0].pose_world.position, (9, 9, 10))
+    assert not [d for d in found if d.severity == "error"]
+
+
+def test_an_include_inside_an_old_model_is_nested_and_static_with_it(load, write):
+    root = write("models/box/model.sdf", BOX.replace("1.9", "1.5")).parents[1]
+    scene, _ = load(
+        '<sdf version="1.6"><world name="w"><model name="outer"><static>1</static>'
+        "<include><uri>model://box</uri></include></model></world></sdf>",
+        (root,),
+    )
+    nested = scene.world.models[0].models[0]
+    assert (nested.scoped, nested.static, nested.links[0].scoped) == ("outer::box", True, "outer::box::l")
+
+
+def test_a_merged_model_gives_its_content_away(load, write):
+    root = write("models/box/model.sdf", BOX).parents[1]
+    scene, found = load(
+        '<sdf version="1.9"><model name="m"><link name="own"/><include merge="true"><uri>model://box</uri>'
+        "<pose>0 5 0 0 0 0</pose></include></model></sdf>",
+        (root,),
+    )
+    assert not [d for d in found if d.severity == "error"]
+    assert [link.scoped for link in scene.model.links] == ["m::own", "m::l"]
+    np.testing.assert_allclose(scene.model.links[1].pose_world.position, (0, 5, 1))
+    assert [f.name for f in scene.model.frames] == ["_merged__box____model__"]
+
+
+@pytest.mark.parametrize(
+    "ground", ["model://ground_plane", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane"]
+)
+def test_ground_and_sun_need_no_files(load, ground):
+    scene, found = load(
+        f'<sdf version="1.6"><world name="w"><include><uri>{ground}</uri></include>'
+        "<include><uri>model://sun</uri></include></world></sdf>"
+    )
+    assert not found
+    assert scene.world.models[0].static and scene.world.models[0].links[0].collisions[0].surface.mu == 100
+    sun = scene.world.lights[0]
+    assert (sun.type, sun.cast_shadows, tuple(sun.pose_world.position)) == ("directional", True, (0, 0, 10))
+
+
+def test_a_fuel_model_that_is_not_here_is_one_error_with_its_url(load):
+    url = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke"
+    _, found = load(f'<sdf version="1.6"><world name="w"><include><uri>{url}</uri></include></world></sdf>')
+    assert [d.code for d in found] == ["SK-URI-002"]
+    assert url in found[0].message
+
+
+def test_fuel_caches_are_read(load, write, monkeypatch):
+    cached = write("cache/fuel.gazebosim.org/openrobotics/models/coke/2/model.sdf", BOX)
+    monkeypatch.setenv("GZ_FUEL_CACHE_PATH", str(cached.parents[5]))
+    url = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Coke"
+    scene, found = load(f'<sdf version="1.6"><world name="w"><include><uri>{url}</uri></include></world></sdf>')
+    assert [m.name for m in scene.world.models] == ["box"]
+    assert not [d for d in found if d.severity == "error"]
+
+
+def test_a_circle_of_includes_ends(load, write):
+    text = '<sdf version="1.9"><model name="a"><link name="l"/><include><uri>model://a</uri></include></model></sdf>'
+    path = write("models/a/model.sdf", text)
+    _, found = load(path, (path.parents[1],))
+    assert "SK-SDF-016" in {d.code for d in found}
+
+
+def test_model_config_chooses_the_highest_version(load, write):
+    write("models/box/old.sdf", BOX.replace('"l"', '"old"'))
+    write("models/box/new.sdf", BOX.replace('"l"', '"new"'))
+    write("models/box/model.config", '<model><sdf version="1.4">old.sdf</sdf><sdf version="1.5">new.sdf</sdf></model>')
+    root = write("models/x", "").parent
+    scene, _ = load(
+        '<sdf version="1.9"><world name="w"><include><uri>model://box</uri></include></world></sdf>', (root,)
+    )
+    assert scene.world.models[0].links[0].name == "new"
+
+
+@pytest.mark.parametrize("uri", ["model://box/../../secret.sdf", "../../../secret.sdf", "/etc/hostname"])
+def test_no_uri_leaves_its_folders(load, write, uri):
+    path = write(
+        "models/worlds/w.sdf", f'<sdf version="1.9"><world name="w"><include><uri>{uri}</uri></include></world></sdf>'
+    )
+    _, found = load(path)
+    assert [d.code for d in found] == ["SK-URI-003"]
+
+
+def test_a_missing_mesh_lists_where_it_was_looked_for(load, write):
+    path = write(
+        "m/model.sdf",
+        '<sdf version="1.9"><model name="m"><link name="l"><collision name="c"><geometry><mesh>\n'
+        "<uri>meshes/x.dae</uri></mesh></geometry></collision></link></model></sdf>",
+    )
+    _, found = load(path)
+    (error,) = [d for d in found if d.severity == "error"]
+    assert (error.code, error.file, error.line) == ("SK-URI-001", str(path), 2)
+    assert str(path.parent / "meshes" / "x.dae") in error.message

@@ -1,0 +1,51 @@
+"""Reading XML: lines, bounds, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from simkit.diagnostics import Diagnostics
+from simkit.loaders import xml
+from simkit.loaders.xml import parse_text
+
+
+def test_every_element_knows_its_line_and_keeps_its_prefix():
+    root = parse_text("\n<?xml version='1.0'?>\n<a>\n <gz:b x='1'>t</gz:b></a>", Diagnostics())
+    assert root is not None
+    child = root.children[0]
+    assert (root.where.line, child.where.line, child.name, child.value, child.attributes) == (
+        3,
+        4,
+        "gz:b",
+        "t",
+        {"x": "1"},
+    )
+
+
+def test_broken_xml_is_an_error_with_its_line():
+    found = Diagnostics()
+    assert parse_text("<a>\n<b>\n</a>", found, "f.sdf") is None
+    (error,) = found
+    assert (error.code, error.file, error.line) == ("SK-XML-001", "f.sdf", 3)
+    assert "<b>" in error.message
+
+
+def test_entities_are_refused():
+    found = Diagnostics()
+    assert parse_text('<!DOCTYPE a [<!ENTITY x "y">]><a>&x;</a>', found) is None
+    assert [d.code for d in found] == ["SK-XML-003"]
+
+
+@pytest.mark.parametrize("text", ["<!-- a -- b --><a/>", "<!-- licence -->\n<?xml version='1.0'?><a/>"])
+def test_faults_in_front_of_the_root_are_only_warned_about(text):
+    found = Diagnostics()
+    assert parse_text(text, found) is not None
+    assert [(d.code, d.severity) for d in found] == [("SK-XML-004", "warning")]
+
+
+def test_depth_and_number_of_elements_are_bounded(monkeypatch):
+    found = Diagnostics()
+    assert parse_text("<a>" * 300 + "</a>" * 300, found) is None
+    monkeypatch.setattr(xml, "MAX_ELEMENTS", 10)
+    assert parse_text("<a>" + "<b/>" * 20 + "</a>", found) is None
+    assert {d.code for d in found} == {"SK-XML-002"}

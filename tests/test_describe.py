@@ -1,0 +1,55 @@
+"""What `inspect --json` prints."""
+
+from __future__ import annotations
+
+import json
+
+from simkit.description import describe_scene
+from simkit.diagnostics import Diagnostics
+from simkit.loaders import Resolver, load_scene
+
+MODEL = """<sdf version="1.9"><model name="m"><link name="a"/><link name="b"><inertial><mass>2</mass></inertial>
+<visual name="v"><geometry><capsule><radius>0.1</radius><length>0.5</length></capsule></geometry></visual>
+<sensor name="s" type="altimeter"/></link><joint name="j" type="revolute"><parent>a</parent><child>b</child>
+<axis><xyz>0 1 0</xyz><limit><lower>-1</lower></limit></axis></joint></model></sdf>"""
+
+
+def described(text: str) -> dict:
+    diagnostics = Diagnostics()
+    scene = load_scene(text, resolver=Resolver(), diagnostics=diagnostics)
+    return describe_scene(scene, diagnostics, lambda sensor, found: {"block": sensor.kind})
+
+
+def test_a_bare_model_is_plain_data_with_totals():
+    out = json.loads(json.dumps(described(MODEL), allow_nan=False))
+    assert out["worlds"] == []
+    assert out["totals"] == {
+        "models": 1, "links": 2, "joints": 1, "collisions": 0, "visuals": 1,
+        "sensors": 1, "lights": 0, "plugins": 0, "mass": 3.0,
+    }  # fmt: skip
+    model = out["model"]
+    assert (model["name"], model["static"], model["canonical_link_resolved"]) == ("m", False, "a")
+    assert model["pose_world"] == [0, 0, 0, 1, 0, 0, 0]
+    link = model["links"][1]
+    assert link["visuals"][0]["geom"] == {"type": "capsule", "radius": 0.1, "length": 0.5}
+    assert link["sensors"][0]["block"] == "altimeter"
+
+
+def test_infinite_limits_are_texts():
+    axis = described(MODEL)["model"]["joints"][0]["axes"][0]
+    assert (axis["lower"], axis["upper"], axis["effort"]) == (-1.0, "inf", "inf")
+    assert axis["xyz_world"] == [0, 1, 0]
+
+
+def test_a_world_lists_lights_and_diagnostics():
+    out = described(
+        '<sdf version="1.9"><world name="w"><lihgt/><include><uri>model://sun</uri></include></world></sdf>'
+    )
+    world = out["worlds"][0]
+    assert (world["name"], world["gravity"], world["physics"]["max_step_size"]) == ("w", [0, 0, -9.8], 0.001)
+    assert [(light["name"], light["type"], light["cast_shadows"]) for light in world["lights"]] == [
+        ("sun", "directional", True)
+    ]
+    assert [(d["code"], d["severity"], d["hint"]) for d in out["diagnostics"]] == [
+        ("SK-SDF-011", "warning", "did you mean 'light'?")
+    ]

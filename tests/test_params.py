@@ -1,0 +1,75 @@
+"""Typed reading of a block of parameters."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from simkit.diagnostics import Diagnostics
+from simkit.loaders.xml import parse_text
+from simkit.params import Params
+
+
+def block(text: str) -> Params:
+    params = parse_text(f"<p>{text}</p>", Diagnostics(), "f.sdf")
+    assert params is not None
+    return params
+
+
+def problems(params: Params) -> list[tuple[str, str]]:
+    return [(d.code, d.hint) for d in params.diagnostics]
+
+
+def test_values_are_read_with_their_types_and_defaults():
+    p = block("<a>1.5</a><b>360.0</b><c>True</c><d> x </d><e>1 2 3</e>")
+    assert (p.number("a"), p.integer("b"), p.boolean("c"), p.text("d"), p.vector3("e")) == (
+        1.5,
+        360,
+        True,
+        "x",
+        (1, 2, 3),
+    )
+    assert (p.number("z", 7), p.boolean("z", True), p.text("z", "q")) == (7, True, "q")
+    assert not problems(p)
+
+
+@pytest.mark.parametrize("text", ["x", "nan", "1_0", "inf", ""])
+def test_what_is_no_number_is_an_error_and_gives_the_default(text):
+    p = block(f"<a>{text}</a>")
+    assert p.number("a", 4.0) == 4.0
+    assert problems(p) == [("SK-PARAM-002", "")]
+
+
+def test_a_number_out_of_range_says_the_range():
+    p = block("\n<a>-1</a>")
+    p.number("a", minimum=0, maximum=2)
+    (error,) = p.diagnostics
+    assert "from 0 to 2" in error.message and (error.file, error.line) == ("f.sdf", 2)
+
+
+def test_a_required_element_that_is_missing_names_the_closest():
+    p = block("<lef_joint>x</lef_joint>")
+    assert p.text("left_joint", required=True) == ""
+    assert problems(p) == [("SK-PARAM-001", "did you mean 'lef_joint'?")]
+
+
+def test_what_nobody_read_is_reported_except_foreign_prefixes():
+    p = block("<a>1</a><raduis>2</raduis><gz:x/><sub><y/></sub>")
+    p.number("a"), p.number("radius", 1.0), p.block("sub").text("z", "")
+    p.report_unread("SK-PARAM-003", "plugin 'q'")
+    assert problems(p) == [("SK-PARAM-003", "did you mean 'radius'?"), ("SK-PARAM-003", "")]
+
+
+def test_a_pose_may_be_in_degrees_or_a_quaternion():
+    p = block("<a degrees='true'>0 0 0 0 0 90</a><b rotation_format='quat_xyzw'>1 2 3 0 0 0 1</b><c>1 2</c>")
+    assert p.pose("a").rpy[2] == pytest.approx(math.pi / 2)
+    assert tuple(p.pose("b").position) == (1, 2, 3)
+    p.pose("c")
+    assert [code for code, _ in problems(p)] == ["SK-PARAM-002"]
+
+
+def test_a_block_made_in_python_reads_like_one_from_a_file():
+    p = Params.from_dict({"joint": ["a", "b"], "on": True, "size": (1, 2, 3), "inner": {"k": 4}})
+    assert [j.value for j in p.all("joint")] == ["a", "b"]
+    assert p.boolean("on") and p.vector3("size") == (1, 2, 3) and p.block("inner").number("k") == 4
