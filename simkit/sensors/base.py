@@ -8,8 +8,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose, Vector
 from simkit.sensors.names import absolute_topic, entity_topic, given_frame
@@ -29,10 +27,12 @@ class Product:
     Attributes:
         type_name: ROS 2 type.
         make: `make(reading, time_ns)` gives the message.
+        needs_reading: False where the message says nothing of the world; its reading may then be None.
     """
 
     type_name: str
     make: Callable[[Any, int], Any]
+    needs_reading: bool = True
 
 
 @dataclass(slots=True)
@@ -209,11 +209,11 @@ class Sensor(abc.ABC):
         self._time_ns = time_ns
         sample = self._sample = Sample(self._index, time_ns)
         wanted = [product for product, publisher in self._publishers.items() if publisher.wanted]
-        if not wanted:
+        if any(self._products[product].needs_reading for product in wanted):
+            data = sim.fresh_acceleration() if self.needs_acceleration else sim.fresh_data()
+            self._take(sample, sim.mj_model, data)
+        else:
             sample.held = sim.hold_state()
-            return
-        data = sim.fresh_acceleration() if self.needs_acceleration else sim.fresh_data()
-        self._take(sample, sim.mj_model, data)
         for product in wanted:
             self._publishers[product].publish(self._message(sample, product))
 
@@ -251,7 +251,7 @@ class Sensor(abc.ABC):
     def _frame_in_world(self, data: Any) -> tuple[Vector, Vector]:
         """Position (3,) [m] and rotation matrix (3, 3) of the sensor."""
         rotation = data.xmat[self._body].reshape(3, 3)
-        return data.xpos[self._body] + rotation @ self._offset_position, np.matmul(rotation, self._offset_rotation)
+        return data.xpos[self._body] + rotation @ self._offset_position, rotation @ self._offset_rotation
 
     def _take(self, sample: Sample, model: Any, data: Any) -> None:
         sample.truth = self.measure(model, data)

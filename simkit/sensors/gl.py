@@ -6,8 +6,12 @@ import atexit
 import ctypes
 import ctypes.util
 import importlib
+import logging
 import os
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from simkit.errors import RenderError
@@ -19,26 +23,32 @@ _PLATFORM_DEVICE = 0x313F
 
 _context: Any = None
 _failure: RenderError | None = None
+_turn = threading.RLock()
 _description = ""
 
 
-def make_current() -> None:
-    """Makes the process's context current in this thread; opens it at the first call.
+@contextmanager
+def current() -> Iterator[None]:
+    """The process's context, current in this thread while it lasts; opened at the first use.
+
+    Threads take turns; whatever context of somebody else's was current comes back afterwards.
 
     Raises:
         RenderError: no library gives one; the same error at every call, without trying again.
     """
     global _context, _failure
-    if _failure is not None:
-        raise _failure
-    if _context is None:
-        try:
-            _context = _open()
-        except RenderError as error:
-            _failure = error
-            raise
-        atexit.register(_close)
-    _context.make_current()
+    with _turn:
+        if _failure is not None:
+            raise _failure
+        if _context is None:
+            try:
+                _context = _open()
+            except RenderError as error:
+                _failure = error
+                raise
+            atexit.register(_close)
+        with _context.as_current():
+            yield
 
 
 def is_open() -> bool:
@@ -125,11 +135,13 @@ def _open() -> Any:
         if library in ("egl", "osmesa"):
             os.environ.setdefault("PYOPENGL_PLATFORM", library)
         context = importlib.import_module(f"mujoco.{library}").GLContext(16, 16)
-        context.make_current()
+        with context.as_current():
+            name = _renderer_name()
     except Exception as error:
         # drivers fail in their own ways: ImportError, AttributeError, ctypes errors, GLError
         raise RenderError(f"no renderer for cameras ({library}: {type(error).__name__}: {error}); {_HINT}") from error
-    _description = f"{_renderer_name()} through {'EGL' if library == 'egl' else library}"
+    _description = f"{name} through {'EGL' if library == 'egl' else library}"
+    logging.getLogger("simkit").info("renderer: %s", _description)
     return context
 
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from simkit.compiler.groups import VISUAL
 from simkit.errors import RenderError
-from simkit.pose import Pose, Vector
+from simkit.pose import Vector
 from simkit.sensors import gl
 
 if TYPE_CHECKING:
@@ -75,8 +75,8 @@ class Renderer:
         if width > self._width or height > self._height:
             self._width, self._height = max(width, self._width), max(height, self._height)
             if self._context is not None:
-                gl.make_current()
-                self._resize()
+                with gl.current():
+                    self._resize()
 
     def render(
         self, model: Any, data: Any, position: Vector, rotation: Vector, view: View, *, depth: bool, decorate: Any = None
@@ -98,29 +98,29 @@ class Renderer:
         Raises:
             RenderError: there is no renderer, or it failed.
         """
-        gl.make_current()
-        try:
-            self.reserve(view.width, view.height)
-            self._follow(model)
-            scene = self._scene
-            mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
-            if decorate is not None:
-                decorate(scene)
-            _aim(scene, position, rotation, view)
-            rectangle, (colours, depths) = self._buffer(view.width, view.height)
-            mujoco.mjr_render(rectangle, scene, self._context)
-            self._fill_background()
-            mujoco.mjr_readPixels(colours, depths if depth else None, rectangle, self._context)
-        except mujoco.FatalError as error:
-            raise RenderError(f"drawing a picture failed: {error}", "SK-RENDER-002") from error
+        rectangle, (colours, depths) = self._buffer(view.width, view.height)
+        with gl.current():
+            try:
+                self.reserve(view.width, view.height)
+                self._follow(model)
+                scene = self._scene
+                mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
+                if decorate is not None:
+                    decorate(scene)
+                _aim(scene, position, rotation, view)
+                mujoco.mjr_render(rectangle, scene, self._context)
+                self._fill_background()
+                mujoco.mjr_readPixels(colours, depths if depth else None, rectangle, self._context)
+            except mujoco.FatalError as error:
+                raise RenderError(f"drawing a picture failed: {error}", "SK-RENDER-002") from error
         return colours[::-1], depths[::-1] if depth else None
 
     def free(self) -> None:
         """Gives the graphics memory back; a later picture takes it anew."""
         context, self._context, self._model, self._scene = self._context, None, None, None
         if context is not None and gl.is_open():
-            gl.make_current()
-            context.free()
+            with gl.current():
+                context.free()
 
     # ------------------------------------------------------------------ within
 
@@ -145,7 +145,8 @@ class Renderer:
         flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
         flags[mujoco.mjtRndFlag.mjRND_SHADOW] = int(self._shadow_size > 0)
         self._model = model
-        self._backdrop = _backdrop(self._background)
+        if not self._backdrop:
+            self._backdrop = _backdrop(self._background)
 
     def _resize(self) -> None:
         mujoco.mjr_resizeOffscreen(self._width, self._height, self._context)
@@ -178,15 +179,20 @@ def renderer_of(sim: Simulation) -> Renderer:
     if found is None:
         surroundings = sim.world.surroundings
         found = _of_simulation[sim] = Renderer(surroundings.background[:3], sim.world.quality)
+        weakref.finalize(sim, _free_quietly, found).atexit = False
     return found
+
+
+def _free_quietly(renderer: Renderer) -> None:
+    with contextlib.suppress(RenderError, RuntimeError):
+        renderer.free()
 
 
 def free_renderer(sim: Simulation) -> None:
     """When a simulation closes."""
     found = _of_simulation.pop(sim, None)
     if found is not None:
-        with contextlib.suppress(RenderError):
-            found.free()
+        _free_quietly(found)
 
 
 def free_all() -> None:
@@ -246,13 +252,6 @@ def look_at(eye: Vector, target: Vector) -> Vector:
     left = np.cross(up, forward)
     left /= np.linalg.norm(left)
     return np.stack((forward, left, np.cross(forward, left)), axis=1)
-
-
-def pose_of_view(eye: Vector, target: Vector) -> Pose:
-    """The same as a pose."""
-    quaternion = np.empty(4)
-    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(look_at(eye, target)).reshape(-1))
-    return Pose(eye, quaternion)
 
 
 def _aim(scene: Any, position: Vector, rotation: Vector, view: View) -> None:

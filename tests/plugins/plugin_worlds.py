@@ -27,8 +27,8 @@ def _link(name: str, pose: str, mass: float, shape: str, mu: float = 1.0) -> str
 
 
 def rover(plugins: str = "", name: str = "rover", pose: str = "0 0 0 0 0 0", extra: str = "") -> str:
-    """A box on two wheels (radius 0.1 m, 0.4 m apart, under the origin) and two smooth casters."""
-    wheel = "<cylinder><radius>0.1</radius><length>0.04</length></cylinder>"
+    """A box on two round wheels (radius 0.1 m, 0.4 m apart, under the origin) and two smooth casters."""
+    wheel = "<sphere><radius>0.1</radius></sphere>"  # one point of contact: turns about the middle without scrub
     caster = "<sphere><radius>0.04</radius></sphere>"
     parts = [
         _link("base", "0 0 0.13 0 0 0", 4, "<box><size>0.4 0.3 0.06</size></box>"),

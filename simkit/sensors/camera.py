@@ -1,0 +1,296 @@
+"""Colour cameras, and what all rendered cameras share."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.errors import RenderError
+from simkit.params import Params
+from simkit.sensors import camera_info, pictures
+from simkit.sensors.base import Product, Sample, Sensor
+from simkit.sensors.camera_info import CameraInfoMaker
+from simkit.sensors.camera_model import MOST_PIXELS, CameraModel, Distorter, read_camera_model
+from simkit.sensors.image_noise import ImageNoise
+from simkit.sensors.names import absolute_topic, sibling_topic
+from simkit.sensors.noise import NoiseModel, read_noise
+from simkit.sensors.renderer import free_renderer, metres, renderer_of
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneSensor
+
+_TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
+
+
+@dataclass(frozen=True, slots=True)
+class CameraOptions:
+    """The `<camera>` block.
+
+    Attributes:
+        encoding: of colour images, as ROS names it.
+        noise: white noise; 1 is white for colours, 1 m for depths.
+        triggered: pictures are taken only when a message on `trigger_topic` has come in.
+        depth_near, depth_far: range of depths [m].
+    """
+
+    model: CameraModel
+    encoding: str
+    noise: NoiseModel
+    triggered: bool
+    trigger_topic: str
+    info_topic: str
+    depth_near: float
+    depth_far: float
+
+
+def read_options(params: Params) -> CameraOptions:
+    block = params.block("camera")
+    image = block.block("image")
+    width, height = image.integer("width", 320, minimum=1), image.integer("height", 240, minimum=1)
+    if max(width, height) > MOST_PIXELS:
+        image.error("SK-PARAM-002", f"found an image of {width}x{height}, allowed is up to {MOST_PIXELS}x{MOST_PIXELS}")
+        width, height = min(width, MOST_PIXELS), min(height, MOST_PIXELS)
+    image.child("anti_aliasing")
+    model = read_camera_model(block, width, height)
+    depth = block.child("depth_camera")
+    clip = depth.child("clip") if depth is not None else None
+    if depth is not None:
+        depth.child("output")
+    return CameraOptions(
+        model=model,
+        encoding=pictures.ENCODINGS[image.choice("format", tuple(pictures.ENCODINGS), "R8G8B8")],
+        noise=_read_image_noise(block),
+        triggered=block.boolean("triggered", False),
+        trigger_topic=block.text("trigger_topic", ""),
+        info_topic=block.text("camera_info_topic", ""),
+        depth_near=clip.number("near", 0.1, minimum=1e-6) if clip else model.near,
+        depth_far=clip.number("far", 10.0, minimum=1e-6) if clip else model.far,
+    )
+
+
+def _read_image_noise(block: Params) -> NoiseModel:
+    noise = read_noise(block)
+    extras = (noise.bias_mean, noise.bias_stddev, noise.dynamic_bias_stddev, noise.precision)
+    if any(extras):
+        message = "of a camera's noise only mean and stddev are used, as in Gazebo"
+        block.diagnostics.warning("SK-SENSOR-008", message, block.block("noise").where)
+    save = block.child("save")
+    if save is not None and save.attribute("enabled", "false") in ("true", "1"):
+        block.diagnostics.warning("SK-SENSOR-009", "<save> is not used: record the topic instead", save.where)
+    if save is not None:
+        save.mark_all_read()
+    return noise
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Colours (h, w, 3), or brightness (h, w); depths (h, w) along the optical axis [m], None for a plain camera."""
+
+    colours: npt.NDArray[np.uint8]
+    depths: npt.NDArray[np.float32] | None
+
+
+class NoisyPicture:
+    """A picture with noise, drawn when it is asked for: who wants no depths pays for none."""
+
+    def __init__(self, picture: Picture, noise: ImageNoise, index: int, near: float, far: float) -> None:
+        self._picture, self._noise, self._index = picture, noise, index
+        self._near, self._far = np.float32(near), np.float32(far)
+
+    @functools.cached_property
+    def colours(self) -> npt.NDArray[np.uint8]:
+        return self._noise.on_colours(self._picture.colours, self._index)
+
+    @functools.cached_property
+    def depths(self) -> npt.NDArray[np.float32] | None:
+        if self._picture.depths is None:
+            return None
+        return clip_depths(self._noise.on_depths(self._picture.depths, self._index), self._near, self._far)
+
+
+def clip_depths(depths: npt.NDArray[np.float32], near: float, far: float) -> npt.NDArray[np.float32]:
+    """+inf beyond `far`, -inf nearer than `near` [m], in place."""
+    np.copyto(depths, np.float32(np.inf), where=depths > np.float32(far))
+    np.copyto(depths, np.float32(-np.inf), where=depths < np.float32(near))
+    return depths
+
+
+class RenderedSensor(Sensor):
+    """A camera: looks along its x axis, y to its left, z up.
+
+    Without a renderer it is switched off, which is said once; all else goes on.
+    """
+
+    has_depth: ClassVar[bool] = False
+    options: CameraOptions
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        scene.params.child("camera")
+        self.options = read_options(scene.params)
+        self._failure: RenderError | None = None
+        self._is_triggered = self._waits = False
+        self._baseline = 0.0
+
+    def describe(self) -> dict[str, Any]:
+        model = self.options.model
+        block = {"width": model.width, "height": model.height, "hfov": model.hfov, "near": model.near, "far": model.far}
+        return {"camera": block}
+
+    def attach(self, sim: Simulation) -> None:
+        options = self.options
+        self._noise = ImageNoise(options.noise, sim.streams, self.scoped)
+        self._distorter = Distorter(options.model) if options.model.distortion else None
+        self._aim()
+        self._info = CameraInfoMaker(options.model, self._baseline)
+        super().attach(sim)
+        if options.triggered:
+            self.trigger_on(absolute_topic(options.trigger_topic) if options.trigger_topic else self.topic + "/trigger")
+
+    def _aim(self) -> None:
+        model = self.options.model
+        # surfaces nearer than the range of depths are to be seen as such, not to be cut away
+        near = min(model.near, self.options.depth_near) * 0.1 if self.has_depth else model.near
+        self._view = model.view(near, self._distorter.margin if self._distorter else 0)
+
+    def bound_depths(self, near: float | None, far: float | None) -> None:
+        """Sets the range of depths [m]; None leaves an end as it is."""
+        old = self.options
+        near, far = old.depth_near if near is None else near, old.depth_far if far is None else far
+        self.options = replace(old, depth_near=near, depth_far=far)
+        self._aim()
+
+    def set_baseline(self, baseline: float) -> None:
+        """Says how far [m] the left camera of a stereo pair is; it shows in the projection matrix."""
+        self._baseline = baseline
+        self._info = CameraInfoMaker(self.options.model, baseline)
+
+    def trigger_on(self, topic: str) -> None:
+        """Takes pictures only when a message has come in on `topic`: one at the next due time."""
+        self._waits = True
+        self.sim.bus.listen(topic, _TRIGGER_TYPES, self._on_trigger)
+
+    def _on_trigger(self, message: Any) -> None:
+        self._is_triggered = True
+
+    def accepts(self, tick: int) -> bool:
+        if not self._waits:
+            return True
+        triggered, self._is_triggered = self._is_triggered, False
+        return triggered
+
+    def bind(self, compiled: Any) -> None:
+        if self._sample is not None:
+            try:
+                self._settle(self._sample)
+            except RenderError:
+                self._sample = None
+        super().bind(compiled)
+        renderer_of(self.sim).reserve(self._view.width, self._view.height)
+
+    def measure(self, model: Any, data: Any) -> Picture:
+        options, view = self.options, self._view
+        position, rotation = self._frame_in_world(data)
+        colours, raw = renderer_of(self.sim).render(model, data, position, rotation, view, depth=self.has_depth)
+        depths = None
+        if raw is not None:
+            if self._distorter and self._distorter.margin:
+                edge = self._distorter.margin
+                raw = raw[edge:-edge, edge:-edge]
+            depths = clip_depths(metres(raw, view.near, view.far), options.depth_near, options.depth_far)
+        if self._distorter:
+            colours = self._distorter.bend(colours)
+        colours = pictures.grey(colours) if pictures.is_grey(options.encoding) else np.ascontiguousarray(colours)
+        return Picture(colours, depths)
+
+    def perturb(self, reading: Picture, index: int) -> Any:
+        if self._noise.is_silent:
+            return reading
+        return NoisyPicture(reading, self._noise, index, self.options.depth_near, self.options.depth_far)
+
+    def memory(self) -> Any:
+        return self._is_triggered
+
+    def remember(self, memory: Any) -> None:
+        self._is_triggered = memory
+
+    def restart(self) -> None:
+        self._is_triggered = False
+
+    def close(self) -> None:
+        free_renderer(self.sim)
+
+    # ------------------------------------------------------------------ when there is no renderer
+
+    def sample(self, tick: int) -> None:
+        if self._failure is not None:
+            return
+        try:
+            super().sample(tick)
+        except RenderError as error:
+            self._switch_off(error)
+
+    @property
+    def latest(self) -> Any | None:
+        """The newest picture, or None before the first; raises RenderError where there is no renderer."""
+        if self._failure is not None:
+            raise self._failure
+        return super().latest
+
+    @property
+    def truth(self) -> Any | None:
+        """The newest picture without noise; raises RenderError where there is no renderer."""
+        if self._failure is not None:
+            raise self._failure
+        return super().truth
+
+    def _settle(self, sample: Sample) -> None:
+        try:
+            super()._settle(sample)
+        except RenderError as error:
+            self._switch_off(error)
+            raise
+
+    def _switch_off(self, error: RenderError) -> None:
+        self._failure, self._sample = error, None
+        message = f"camera {self.scoped!r} is switched off: {str(error).removeprefix(error.code).strip()}"
+        self.sim.reports.warning(error.code, message, self.scene.where)
+        self.sim.log.error("%s %s", error.code, message)
+
+    # ------------------------------------------------------------------ messages
+
+    def _header(self, time_ns: int) -> Any:
+        return msgs.header(time_ns, self.frame_id)
+
+    def _colour_product(self) -> Product:
+        return Product(pictures.TYPE, self._colour_message)
+
+    def _info_product(self) -> Product:
+        return Product(camera_info.TYPE, lambda reading, time_ns: self._info.make(time_ns, self.frame_id), needs_reading=False)
+
+    def _colour_message(self, reading: Any, time_ns: int) -> Any:
+        return pictures.colour_message(self._header(time_ns), reading.colours, self.options.encoding)
+
+    def _info_topic(self, beside: str) -> str:
+        given = self.options.info_topic
+        return absolute_topic(given) if given else sibling_topic(beside, "camera_info")
+
+
+class Camera(RenderedSensor):
+    """`camera`: colour or grey images with their `CameraInfo`."""
+
+    kinds = ("camera",)
+
+    def products(self) -> dict[str, Product]:
+        return {"image": self._colour_product(), "camera_info": self._info_product()}
+
+    def default_topics(self) -> dict[str, str]:
+        topic = self._default_topic("image")
+        return {"image": topic, "camera_info": self._info_topic(topic)}

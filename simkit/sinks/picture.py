@@ -1,0 +1,152 @@
+"""A picture of a run: the scene from above, the path driven, the last scan."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit.errors import InputError
+from simkit.pose import Pose
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_SIZE = (1280, 800)  # [px]
+_PATH_COLOUR = (0.10, 0.45, 0.95, 1.0)
+_SCAN_COLOUR = (0.95, 0.20, 0.15, 1.0)
+_PATH_RADIUS, _SCAN_RADIUS = 0.012, 0.018  # [m] at a scene of 5 m
+_SHORTEST = 0.01  # [m] of travel that makes a new piece of the path
+_SCANNERS = frozenset({"ray", "gpu_ray", "lidar", "gpu_lidar"})
+
+
+class DrivenPath:
+    """Where the models that move have been, sampled by whoever drives the loop."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self.tracks: dict[str, list[np.ndarray[Any, np.dtype[np.float64]]]] = {}
+        self.sample()
+
+    def sample(self) -> None:
+        """Notes the present places."""
+        for name, model in self._sim.models.items():
+            if model.static:
+                continue
+            place = model.pose.position
+            track = self.tracks.setdefault(name, [place])
+            if float(np.linalg.norm(place - track[-1])) >= _SHORTEST:
+                track.append(place)
+
+
+def scan_points(message: Any, pose: Pose) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """The points [m] in the world that a `LaserScan` hit, shape (n, 3), for a scanner at `pose`."""
+    ranges = np.asarray(message.ranges, dtype=np.float64)
+    angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
+    hit = np.isfinite(ranges)
+    flat = np.stack((ranges[hit] * np.cos(angles[hit]), ranges[hit] * np.sin(angles[hit]), np.zeros(int(hit.sum()))), axis=1)
+    points: np.ndarray[Any, np.dtype[np.float64]] = flat @ pose.matrix.T + pose.position
+    return points
+
+
+def save_picture(sim: Simulation, path: Path, driven: DrivenPath | None = None) -> None:
+    """Draws the simulation as it is now into an image file (`.png` or `.jpg`).
+
+    Raises:
+        RenderError: SK-RENDER-001 there is no renderer.
+        InputError: SK-CLI-013 the file cannot be written.
+    """
+    import cv2
+
+    from simkit.sensors.renderer import render_view
+
+    points = [scan_points(*found) for found in _last_scans(sim)]
+
+    def decorate(scene: Any) -> None:
+        size = min(max(float(sim.mj_model.stat.extent) / 5.0, 0.3), 3.0)
+        for track in driven.tracks.values() if driven is not None else ():
+            for a, b in zip(track, track[1:], strict=False):
+                _add_capsule(scene, a, b, _PATH_RADIUS * size, _PATH_COLOUR)
+        for cloud in points:
+            for point in cloud:
+                _add_sphere(scene, point, _SCAN_RADIUS * size, _SCAN_COLOUR)
+
+    eye, target = _viewpoint(sim, points, driven)
+    colours = render_view(sim, *_SIZE, eye=eye, target=target, decorate=decorate)
+    try:
+        written = cv2.imwrite(str(path), colours[:, :, ::-1])
+    except cv2.error as error:
+        raise InputError(f"SK-CLI-013 cannot write {path}: {str(error).strip().splitlines()[-1]}", "SK-CLI-013") from None
+    if not written:
+        raise InputError(f"SK-CLI-013 cannot write {path}", "SK-CLI-013")
+
+
+def check_target(path: Path) -> None:
+    """Says before a run that its picture cannot be written.
+
+    Raises:
+        InputError: SK-CLI-013.
+    """
+    if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
+        raise InputError(f"SK-CLI-013 --picture {path}: found the ending {path.suffix!r}, allowed is .png or .jpg", "SK-CLI-013")
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"SK-CLI-013 --picture {path}: there is no folder {path.absolute().parent}", "SK-CLI-013")
+
+
+def _last_scans(sim: Simulation) -> list[tuple[Any, Pose]]:
+    """The newest planar scan of each scanner, with the scanner's pose."""
+    found = []
+    for sensor in sim.sensors.values():
+        if sensor.kind in _SCANNERS:
+            message = sensor.latest
+            if hasattr(message, "ranges"):
+                found.append((message, sensor.pose))
+    return found
+
+
+def _viewpoint(sim: Simulation, points: list[Any], driven: DrivenPath | None) -> tuple[Any, Any]:
+    """Eye and target [m]: obliquely from above, so that what moved and what was seen fills the picture."""
+    seen = [cloud for cloud in points if len(cloud)]
+    if driven is not None:
+        seen += [np.array(track) for track in driven.tracks.values()]
+    if not seen:
+        return None, None
+    cloud = np.concatenate(seen)
+    low, high = cloud.min(axis=0), cloud.max(axis=0)
+    target = (low + high) / 2
+    radius = max(float(np.linalg.norm(high - low)) / 2, 0.6)
+    distance = radius / math.tan(0.4) * 1.05
+    eye = target + distance * np.array((-0.42, -0.55, 0.72))
+    return eye, target
+
+
+def _add_capsule(scene: Any, start: Any, end: Any, radius: float, colour: tuple[float, ...]) -> None:
+    import mujoco
+
+    geom = _next_geom(scene, mujoco.mjtGeom.mjGEOM_CAPSULE, colour)
+    if geom is not None:
+        mujoco.mjv_connector(geom, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, np.asarray(start), np.asarray(end))
+
+
+def _add_sphere(scene: Any, place: Any, radius: float, colour: tuple[float, ...]) -> None:
+    import mujoco
+
+    geom = _next_geom(scene, mujoco.mjtGeom.mjGEOM_SPHERE, colour)
+    if geom is not None:
+        geom.size[:] = radius
+        geom.pos[:] = place
+
+
+def _next_geom(scene: Any, kind: Any, colour: tuple[float, ...]) -> Any:
+    """A fresh drawn geom, or None when the scene is full (the picture then lacks its last decorations)."""
+    import mujoco
+
+    if scene.ngeom >= scene.maxgeom:
+        return None
+    geom = scene.geoms[scene.ngeom]
+    mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).reshape(-1), np.array(colour, dtype=np.float32))
+    geom.emission = 0.6
+    scene.ngeom += 1
+    return geom

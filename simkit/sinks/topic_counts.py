@@ -1,0 +1,84 @@
+"""How much arrives on each topic, and at what true rate in simulated time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from simkit.runtime import Simulation
+
+# What has to be rendered for; counting it would make every frame be drawn only to be thrown away.
+RENDERED = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
+
+
+@dataclass
+class TopicCount:
+    """What arrived on one topic; times in simulated nanoseconds.
+
+    Attributes:
+        counted: False where nobody reads the topic, so that nothing is known.
+    """
+
+    topic: str
+    type_name: str
+    counted: bool
+    count: int = 0
+    first: int = 0
+    last: int = 0
+
+    @property
+    def rate(self) -> float | None:
+        """Messages per simulated second [Hz] from the first to the last; None before two of different times."""
+        if self.count < 2 or self.last <= self.first:
+            return None
+        return (self.count - 1) * 1e9 / (self.last - self.first)
+
+
+class TopicCounter:
+    """Counts the messages of every topic.
+
+    Args:
+        sim: the simulation.
+        skip: types that are listed but not read.
+    """
+
+    def __init__(self, sim: Simulation, skip: Collection[str] = ()) -> None:
+        self._sim, self._skip = sim, frozenset(skip)
+        self._rows: dict[str, TopicCount] = {}
+        self._taps: list[Any] = []
+        sim.bus.on_topic(self._add)
+
+    @property
+    def rows(self) -> list[TopicCount]:
+        """One row a topic, sorted by name."""
+        return [self._rows[topic] for topic in sorted(self._rows)]
+
+    @property
+    def total(self) -> int:
+        """Messages counted on all topics."""
+        return sum(row.count for row in self._rows.values())
+
+    def close(self) -> None:
+        """Stops counting."""
+        for tap in self._taps:
+            tap.close()
+        self._taps.clear()
+
+    def _add(self, topic: str, type_name: str) -> None:
+        if topic in self._rows:
+            return
+        row = self._rows[topic] = TopicCount(topic, type_name, type_name not in self._skip)
+        if not row.counted:
+            return
+
+        def count(_: Any) -> None:
+            now = self._sim.time_ns
+            if row.count == 0 or now < row.last:
+                row.first, row.count = now, 0
+            row.last = now
+            row.count += 1
+
+        self._taps.append(self._sim.bus.tap(topic, count))
