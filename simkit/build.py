@@ -100,7 +100,8 @@ def describe(
     from simkit.description import describe_scene
 
     diagnostics = Diagnostics()
-    scene = _scene(source, Resolver([Path(p) for p in resource_paths]), diagnostics, xacro_args, "auto", ())
+    resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True)
+    scene = _scene(source, resolver, diagnostics, xacro_args, "auto", ())
     diagnostics.raise_if_errors()
     return describe_scene(scene, diagnostics)
 

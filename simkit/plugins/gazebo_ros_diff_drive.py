@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.joint_states import JOINT_STATE, joint_state
 from simkit.plugins.lookups import find_axis_joint, numbers
 from simkit.plugins.odometry import (
     COMMAND_TYPES,
@@ -20,13 +20,13 @@ from simkit.plugins.odometry import (
     TRANSFORMS,
     BodyTwist,
     DeadReckoning,
+    TrueMotion,
     command_of,
     odometry_message,
     planar_covariance,
     rolling_twist,
     transform,
     transforms,
-    true_state,
 )
 from simkit.pose import Pose
 
@@ -176,7 +176,7 @@ class GazeboRosDiffDrive(ModelPlugin):
         options = self.options
         self.before_step_rate = self.after_step_rate = options.update_rate
         self._wheels = [self.sim.joint(name) for name, _, _ in self._joints]
-        self._model, self._base = parent, self.sim.link(self._canonical)
+        self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._command = (0.0, 0.0)
         self._rims = [0.0] * len(self._wheels)
         self._last_ns = self.sim.time_ns
@@ -189,7 +189,7 @@ class GazeboRosDiffDrive(ModelPlugin):
         self._truth = self.advertise("ground_truth/odom", ODOMETRY) if options.publish_ground_truth else None
         self._states = None
         if options.publish_wheel_joint_state:
-            self._states = self.advertise("joint_states", "sensor_msgs/msg/JointState")
+            self._states = self.advertise("joint_states", JOINT_STATE)
 
     # ------------------------------------------------------------------ commands
 
@@ -229,22 +229,23 @@ class GazeboRosDiffDrive(ModelPlugin):
         if options.from_encoders:
             self._advance()
         if self._truth is not None and self._truth.wanted:
-            self._truth.publish(
-                odometry_message(now, "world", options.base_frame, *true_state(self._model, self._base))
-            )
-        if self._odom is not None and self._odom.wanted:
+            self._truth.publish(odometry_message(now, "world", options.base_frame, *self._true.state()))
+        odom = self._odom if self._odom is not None and self._odom.wanted else None
+        tf = self._tf if self._tf is not None and self._tf.wanted else None
+        if odom or tf:
             pose, twist = self._measured()
-            message = odometry_message(now, options.odometry_frame, options.base_frame, pose, twist, self._covariance)
-            self._odom.publish(message)
-        if self._tf is not None and self._tf.wanted:
-            self._tf.publish(transforms(*self._transforms(now)))
+            if odom:
+                frames = options.odometry_frame, options.base_frame
+                odom.publish(odometry_message(now, *frames, pose, twist, self._covariance))
+            if tf:
+                tf.publish(transforms(*self._transforms(now, pose)))
         if self._states is not None and self._states.wanted:
-            self._states.publish(self._wheel_states(now))
+            self._states.publish(joint_state(now, self._wheels))
 
     def _measured(self) -> tuple[Pose, BodyTwist]:
         """Pose and twist from the chosen source; the twist in the robot's own axes."""
         if not self.options.from_encoders:
-            return true_state(self._model, self._base)
+            return self._true.state()
         pair = self.options.pairs[0]
         return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
 
@@ -259,22 +260,12 @@ class GazeboRosDiffDrive(ModelPlugin):
         left, right = self._wheels[:2]
         return float(left.position), float(right.position)
 
-    def _transforms(self, now: int) -> list[Any]:
+    def _transforms(self, now: int, base: Pose) -> list[Any]:
         found = []
         if self.options.publish_odom_tf:
-            found.append(transform(now, self.options.odometry_frame, self.options.base_frame, self._measured()[0]))
+            found.append(transform(now, self.options.odometry_frame, self.options.base_frame, base))
         if self.options.publish_wheel_tf:
             for _, above, below in self._joints:
                 parent, child = self.sim.link(above), self.sim.link(below)
                 found.append(transform(now, parent.name, child.name, parent.pose.inverse() @ child.pose))
         return found
-
-    def _wheel_states(self, now: int) -> Any:
-        return msgs.make(
-            "sensor_msgs/msg/JointState",
-            header=msgs.header(now, ""),
-            name=[wheel.name for wheel in self._wheels],
-            position=[wheel.position for wheel in self._wheels],
-            velocity=[wheel.velocity for wheel in self._wheels],
-            effort=[wheel.effort for wheel in self._wheels],
-        )

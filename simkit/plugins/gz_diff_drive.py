@@ -14,12 +14,12 @@ from simkit.plugins.odometry import (
     ODOMETRY,
     TRANSFORMS,
     DeadReckoning,
+    TrueMotion,
     command_of,
     odometry_message,
     rolling_twist,
     transform,
     transforms,
-    true_state,
 )
 from simkit.plugins.ros_names import valid_topic
 
@@ -115,7 +115,7 @@ class DiffDrive(ModelPlugin):
         # gz publishes at every step where the frequency is not positive
         self.after_step_rate = max(0.0, params.number("odom_publish_frequency", 50.0))
         self._pair = tuple(self.sim.joint(names[0]) for names in self._sides)
-        self._model, self._base = parent, self.sim.link(self._canonical)
+        self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._target = (0.0, 0.0)
         self._last, self._before_last = (0.0, 0.0), (0.0, 0.0)
         self._settled = True
@@ -174,7 +174,7 @@ class DiffDrive(ModelPlugin):
         if self._tf.wanted:
             self._tf.publish(transforms(transform(now, self._frame, self._child, pose)))
         if self._truth is not None and self._truth.wanted:
-            self._truth.publish(odometry_message(now, "world", self._child, *true_state(self._model, self._base)))
+            self._truth.publish(odometry_message(now, "world", self._child, *self._true.state()))
 
     def _advance(self) -> None:
         angles = self._read_angles()

@@ -27,14 +27,12 @@ def joint_state(time_ns: int, joints: list[Any]) -> Any:
     names: list[str] = []
     columns: tuple[list[float], list[float], list[float]] = ([], [], [])
     for joint in joints:
-        read = [np.atleast_1d(v).astype(float).tolist() for v in (joint.position, joint.velocity, joint.effort)]
+        read = [[v] if isinstance(v, float) else list(v) for v in (joint.position, joint.velocity, joint.effort)]
         count = len(read[0])
         names += [joint.name] if count < 2 else [f"{joint.name}[{i}]" for i in range(count)]
         for column, values in zip(columns, read, strict=True):
             column += values or [0.0]
-    position, velocity, effort = (np.array(column) for column in columns)
-    header = msgs.header(time_ns, "")
-    return msgs.make(JOINT_STATE, header=header, name=names, position=position, velocity=velocity, effort=effort)
+    return msgs.type_of(JOINT_STATE)(msgs.header(time_ns, ""), names, *(np.array(column) for column in columns))
 
 
 class _JointStates(ModelPlugin):

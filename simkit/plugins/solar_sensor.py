@@ -11,7 +11,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_light, find_link
-from simkit.pose import quat_from_rpy, quat_multiply
+from simkit.pose import quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -53,6 +53,8 @@ class SolarSensor(ModelPlugin):
         self._turn = quat_from_rpy(*self._rpy)
         self._covariance = np.eye(3).reshape(9) * self._noise**2
         self._stream = self.random("gaussian_noise", 3) if self._noise > 0 else None
+        geometry = ("geometry_msgs/msg/Quaternion", "geometry_msgs/msg/Vector3")
+        self._types = (msgs.type_of(IMU), *(msgs.type_of(name) for name in geometry))
         self._index = 0
         self._readings = self.advertise("sunloin_imu", IMU)
 
@@ -60,28 +62,27 @@ class SolarSensor(ModelPlugin):
         self._index += 1  # counted whether read or not, so that who listens does not change the noise
         if self._light is None or not self._readings.wanted:
             return
-        pitch, yaw = self._angles()
-        angles = np.array((0.0, pitch, yaw))
+        roll, (pitch, yaw) = 0.0, self._angles()
         if self._stream is not None:
-            angles += self._noise * self._stream.normal(self._index)
-        w, x, y, z = (float(v) for v in quat_multiply(self._turn, quat_from_rpy(*angles)))
-        message = msgs.make(
-            IMU,
-            header=msgs.header(self.sim.time_ns, self._frame),
-            orientation={"x": x, "y": y, "z": z, "w": w},
-            orientation_covariance=self._covariance.copy(),
-        )
-        self._readings.publish(message)
+            roll, pitch, yaw = (np.array((roll, pitch, yaw)) + self._noise * self._stream.normal(self._index)).tolist()
+        orientation = quat_from_rpy(roll, pitch, yaw)
+        if any(self._rpy):
+            orientation = quat_multiply(self._turn, orientation)
+        w, x, y, z = orientation.tolist()
+        imu, quaternion, vector = self._types
+        header = msgs.header(self.sim.time_ns, self._frame)
+        rest = self._covariance.copy(), vector(0.0, 0.0, 0.0), np.zeros(9), vector(0.0, 0.0, 0.0), np.zeros(9)
+        self._readings.publish(imu(header, quaternion(x, y, z, w), *rest))
 
     def _angles(self) -> tuple[float, float]:
         """Pitch and yaw [rad] of the light in the link's axes."""
         assert self._light is not None
         pose = self._link.pose
         towards = self._light.pose.position - pose.position
-        distance = float(np.linalg.norm(towards))
-        unit = towards / distance if distance > 0 else towards
-        x, y, z = pose.inverse().rotate(unit) + self._xyz
-        return math.asin(-max(-1.0, min(1.0, float(z)))), math.atan2(float(y), float(x))
+        distance = math.sqrt(towards @ towards)
+        seen = quat_rotate(quat_conjugate(pose.quaternion), towards / distance if distance > 0 else towards)
+        x, y, z = (a + b for a, b in zip(seen.tolist(), self._xyz, strict=True))
+        return math.asin(-max(-1.0, min(1.0, z))), math.atan2(y, x)
 
 
 def _light(sim: Simulation, params: Params) -> Light | None:

@@ -132,6 +132,7 @@ def _open() -> Any:
     global _description
     library = find_library()
     try:
+        logging.getLogger("OpenGL.acceleratesupport").setLevel(logging.WARNING)  # says nothing a user can use
         if library in ("egl", "osmesa"):
             os.environ.setdefault("PYOPENGL_PLATFORM", library)
         context = importlib.import_module(f"mujoco.{library}").GLContext(16, 16)

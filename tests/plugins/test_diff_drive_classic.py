@@ -93,8 +93,8 @@ def test_odometry_from_encoders_starts_at_zero_and_follows_the_wheels() -> None:
         moved = start.inverse() @ sim.model("rover").pose
         message = odometry.latest
     at = xyz(message.pose.pose.position)
-    np.testing.assert_allclose(at[:2], moved.position[:2], atol=0.01)
-    assert yaw(message.pose.pose.orientation) == pytest.approx(moved.rpy[2], abs=0.02)
+    np.testing.assert_allclose(at[:2], moved.position[:2], atol=0.02)
+    assert yaw(message.pose.pose.orientation) == pytest.approx(moved.rpy[2], abs=0.03)
     assert message.twist.twist.angular.z == pytest.approx(0.4, abs=5e-3)
 
 

@@ -7,6 +7,7 @@ from simkit.loaders.sdf.builtin import builtin_model
 from simkit.loaders.sdf.names import read_name
 from simkit.loaders.sdf.parts import Source, read_pose
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.turtlebot3 import chosen_robot
 from simkit.loaders.xml import parse_text
 from simkit.params import Params
 
@@ -66,6 +67,10 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
 def _open(uri: str, include: Params, file: SdfFile, workspace: Workspace) -> SdfFile | None:
     resolver, diagnostics = workspace.resolver, workspace.diagnostics
     place = include.child("uri") or include
+    chosen = chosen_robot(uri, place.where, diagnostics)
+    if chosen is None:
+        return None
+    uri = chosen
     path, _ = resolver.search(uri, file.folder)
     if path is None:
         text = builtin_model(uri)
