@@ -28,7 +28,7 @@ from simkit.pose import Pose
 
 if TYPE_CHECKING:
     from simkit.build import describe, load
-    from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
+    from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, WorldPlugin
     from simkit.runtime import Simulation
 
 __version__ = "0.1.0"
@@ -48,7 +48,6 @@ __all__ = [
     "SimkitError",
     "Simulation",
     "SimulationDiverged",
-    "VisualPlugin",
     "WorldPlugin",
     "__version__",
     "describe",
@@ -64,7 +63,6 @@ _LAZY = {
     "WorldPlugin": "simkit.plugins.base",
     "ModelPlugin": "simkit.plugins.base",
     "SensorPlugin": "simkit.plugins.base",
-    "VisualPlugin": "simkit.plugins.base",
 }
 
 

@@ -14,7 +14,7 @@ from simkit.pose import Pose
 from simkit.scene import Scene, SceneModel, ScenePlugin, SceneSensor, SceneWorld
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
+    from simkit.plugins.base import ParentKind, Plugin
     from simkit.runtime import Parts, Simulation
 
 Source = str | os.PathLike[str]
@@ -169,13 +169,13 @@ def _parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, p
         sensor.build(builder)
         parts.sensors.append(sensor)
         for plugin in scene.plugins:
-            _add_plugin(parts, plugin, scene, builder, diagnostics, plugin_paths, _sensor_parent(scene.scoped))
+            parent = _sensor_parent(scene.scoped)
+            _add_plugin(parts, plugin, "sensor", scene, builder, diagnostics, plugin_paths, parent)
     for nested in model.all_models():
-        for owner in (*nested.links, *nested.joints):
-            for plugin in owner.plugins:
-                _add_plugin(parts, plugin, nested, builder, diagnostics, plugin_paths, _model_parent(nested.scoped))
-        for plugin in nested.plugins:
-            _add_plugin(parts, plugin, nested, builder, diagnostics, plugin_paths, _model_parent(nested.scoped))
+        below = [plugin for owner in (*nested.links, *nested.joints) for plugin in owner.plugins]
+        parent = _model_parent(nested.scoped)
+        for plugin in (*below, *nested.plugins):
+            _add_plugin(parts, plugin, "model", nested, builder, diagnostics, plugin_paths, parent)
     return parts
 
 
@@ -188,7 +188,7 @@ def _parts_of_world(
 
     parts = Parts()
     for plugin in world.plugins:
-        _add_plugin(parts, plugin, world, builder, diagnostics, plugin_paths, lambda sim: sim)
+        _add_plugin(parts, plugin, "world", world, builder, diagnostics, plugin_paths, lambda sim: sim)
     for instance in (ClockPublisher(), StaticTransforms(), *made):
         instance.source = None
         instance.prepare(world, Params("plugin"), builder)
@@ -211,6 +211,7 @@ def _sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
 def _add_plugin(
     parts: Parts,
     plugin: ScenePlugin,
+    parent_kind: ParentKind,
     scene: Any,
     builder: Any,
     diagnostics: Diagnostics,
@@ -219,7 +220,7 @@ def _add_plugin(
 ) -> None:
     from simkit.plugins import find_plugin
 
-    cls = find_plugin(plugin, plugin_paths, diagnostics)
+    cls = find_plugin(plugin, plugin_paths, diagnostics, parent_kind)
     if cls is None:
         return
     instance = cls()

@@ -44,7 +44,7 @@ def mended(inertial: Inertial, link: SceneLink, diagnostics: Diagnostics) -> Ine
     lack = moments[2] - (moments[0] + moments[1])
     if lack > 1e-9 * moments[2]:
         moments[:2] += (0.5 + 1e-9) * lack
-    is_same = bool(np.allclose(moments, values, rtol=1e-9, atol=0.0)) and mass >= LEAST_MASS
+    is_same = bool((abs(moments - values) <= 1e-9 * abs(values)).all()) and mass >= LEAST_MASS
     if is_same:
         return inertial
     diagnostics.note(

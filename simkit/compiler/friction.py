@@ -89,13 +89,13 @@ def _sliding(surface: Surface, diagnostics: Diagnostics) -> float:
         diagnostics.note("SK-PHYS-002", f"friction coefficient {max(mu, mu2):g} is taken as {MU_MOST:g}", surface.where)
         mu, mu2 = min(mu, MU_MOST), min(mu2, MU_MOST)
     if mu != mu2:
-        diagnostics.warning(
+        diagnostics.note(
             "SK-PHYS-005",
             f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways",
             surface.where,
         )
     if surface.slip1 or surface.slip2:
-        diagnostics.warning("SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip in proportion to force", surface.where)
+        diagnostics.note("SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip with the force", surface.where)
     if surface.torsional:
         diagnostics.note("SK-PHYS-007", "torsional friction is not used: contacts resist sliding only", surface.where)
     return min(mu, mu2)
@@ -120,7 +120,9 @@ def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagn
         return world, 1.0
     if mass <= 0.0:
         diagnostics.note(
-            "SK-PHYS-004", f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is", surface.where
+            "SK-PHYS-004",
+            f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is",
+            surface.where,
         )
         return world, 1.0
     omega = math.sqrt(surface.kp / mass)

@@ -11,8 +11,8 @@ import numpy as np
 from simkit.diagnostics import Diagnostics
 from simkit.scene import SceneWorld
 
-CONTACT_SOLIMP: Final = (0.95, 0.99, 0.001, 0.5, 2.0)
-"""Impedance of contacts and limits: high, so that a heavy weight settles exactly and friction creeps little."""
+CONTACT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
+"""Impedance of contacts and limits. A higher one settles no better and makes a robot rock longer on its casters."""
 
 _MEMORY_BASE: Final = 32 << 20
 _MEMORY_PER_GEOM: Final = 64 << 10
@@ -37,7 +37,8 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     # A pyramid has 0.7 of the friction on its diagonals (a slide came out 34 % too fast there) and softens with mu².
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    option.impratio = 10.0
+    # A body on a slope or in a grip creeps 100 times less; measured, it costs no iteration.
+    option.impratio = 100.0
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     compiler = spec.compiler
     compiler.degree = False

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, closest
-from simkit.plugins.base import ModelPlugin, ParentKind, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
+from simkit.plugins.base import ModelPlugin, ParentKind, Plugin, SensorPlugin, WorldPlugin
 from simkit.plugins.ros_names import RosNames
 from simkit.registry import discover
 from simkit.scene import ScenePlugin
@@ -19,7 +19,6 @@ __all__ = [
     "Plugin",
     "RosNames",
     "SensorPlugin",
-    "VisualPlugin",
     "WorldPlugin",
     "find_plugin",
     "normalise",
@@ -112,7 +111,8 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
 
     names = aliases(plugin)
     if KNOWN.intersection(names):
-        message = f"plugin {plugin.filename!r} (name {plugin.name!r}) is a Gazebo plugin that simkit does not have; it is left out"
+        named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
+        message = f"{named} is a Gazebo plugin that simkit does not have; it is left out"
         diagnostics.warning("SK-PLUGIN-002", message, plugin.where, "write it in Python: docs/writing_a_plugin.md")
         return
     spelled = {normalise(f): f for cls in dict.fromkeys(plugin_kinds().values()) for f in (*cls.filenames, *cls.names)}

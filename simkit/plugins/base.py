@@ -1,4 +1,4 @@
-"""What a plugin is: Python that hangs on a world, a model, a sensor or a visual and is called as the run goes.
+"""What a plugin is: Python that hangs on a world, a model or a sensor and is called as the run goes.
 
 Write a class with a `load` method; everything else is optional:
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from simkit.scene import ScenePlugin
 
 Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
-ParentKind = Literal["world", "model", "sensor", "visual", "any"]
+ParentKind = Literal["world", "model", "sensor", "any"]
 
 
 class Plugin(abc.ABC):
-    """Base of all plugins; derive from `WorldPlugin`, `ModelPlugin`, `SensorPlugin` or `VisualPlugin`.
+    """Base of all plugins; derive from `WorldPlugin`, `ModelPlugin` or `SensorPlugin`.
 
     A hook that a class does not override costs nothing. Hooks run on the grid of simulated time: with a rate of
     r Hz at the first step at or after k/r, k = 1, 2, …; with None or 0 at every step.
@@ -176,7 +176,8 @@ class Plugin(abc.ABC):
             except Exception as error:  # noqa: BLE001 - as above
                 uncopied.add(key)
                 if key not in vars(self).get("_uncopied", set()):
-                    message = f"plugin {self.name!r}: attribute {key!r} cannot be copied, snapshots and reset leave it: {error}"
+                    uncopyable = f"plugin {self.name!r}: attribute {key!r} cannot be copied"
+                    message = f"{uncopyable}, snapshots and reset leave it as it is: {error}"
                     self.sim.reports.warning("SK-PLUGIN-006", message, self.where, "override get_state and set_state")
         self._uncopied = uncopied
         return state
@@ -208,9 +209,3 @@ class SensorPlugin(Plugin):
     """Hangs on a sensor; `load` gets the `Sensor`, `prepare` the `SceneSensor`."""
 
     parent_kind = "sensor"
-
-
-class VisualPlugin(Plugin):
-    """Hangs on a visual; `load` gets the `Link` that shows it, `prepare` the `SceneVisual`."""
-
-    parent_kind = "visual"

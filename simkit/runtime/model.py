@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from simkit.compiler import LinkBinding
-from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
+from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.handles import Handle, look_up
 from simkit.runtime.joint import Joint
 from simkit.runtime.link import Link
@@ -68,7 +68,8 @@ class Model(Handle):
         self._check()
         if self._canonical is None or self._in_canonical is None:
             return self._rest
-        return self._sim.link(self._canonical.scoped).pose @ self._in_canonical
+        pose = self._sim.link(self._canonical.scoped).pose
+        return pose if self._in_canonical == IDENTITY else pose @ self._in_canonical
 
     def set_pose(self, pose: Pose) -> None:
         """Moves the whole model; joint positions and velocities stay. A static model may be moved too."""

@@ -22,6 +22,9 @@ class Agenda:
     """
 
     def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
         self._tasks: list[tuple[Task, Grid | None]] = []
         self.every: list[Task] = []
         self._heap: list[tuple[int, int]] = []
@@ -61,10 +64,12 @@ class Scheduler:
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
-        self.clear()
+        self.before, self.sense, self.after = Agenda(), Agenda(), Agenda()
 
     def clear(self) -> None:
-        self.before, self.sense, self.after = Agenda(), Agenda(), Agenda()
+        """Forgets every task."""
+        for agenda in (self.before, self.sense, self.after):
+            agenda.clear()
 
     def every(self, rate: float | None, task: Task, phase: Phase) -> None:
         """Calls `task(tick)` at `rate` [Hz] (None or 0: at every step); takes effect at the next `rewind`."""

@@ -61,10 +61,11 @@ class Simulation:
         self._exact_limits: list[Joint] = []
         self._attached: set[int] = set()
         self._closed = False
+        self._advancing = self._rates_changed = False
         self._entities = Entities(self, world)
         self._adopt(structure)
         self._start(list(structure.parts.values()))
-        self._reschedule()
+        self.reschedule()
         self._loaded = self.snapshot()
 
     # ------------------------------------------------------------------ time
@@ -118,6 +119,13 @@ class Simulation:
 
     def _advance(self, target: int) -> None:
         self._check_open()
+        self._advancing = True
+        try:
+            self._loop(target)
+        finally:
+            self._advancing = False
+
+    def _loop(self, target: int) -> None:
         physics, bus = self.physics, self.bus
         before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
         while physics.tick < target:
@@ -144,6 +152,8 @@ class Simulation:
                     physics.check()
                 for task in after.due(tick):
                     task(tick)
+            if self._rates_changed:
+                self._fill_schedule()
         physics.check()
 
     # ------------------------------------------------------------------ state
@@ -211,7 +221,7 @@ class Simulation:
             sensor.set_state(state)
         for plugin, state in snapshot.plugins:
             plugin.set_state(state)
-        self._reschedule()
+        self.reschedule()
 
     # ------------------------------------------------------------------ what is in it
 
@@ -370,7 +380,7 @@ class Simulation:
             Structure(builder, compiled, {**old.models, scene.name: scene}, old.movable, {**old.parts, scene.name: parts})
         )
         self._start([parts])
-        self._reschedule()
+        self.reschedule()
         self._diagnostics.extend(found)
         return self.model(scene.name)
 
@@ -387,7 +397,7 @@ class Simulation:
         models = {k: v for k, v in old.models.items() if k != name}
         parts = {k: v for k, v in old.parts.items() if k != name}
         self._switch(Structure(builder, compiled, models, old.movable - {name}, parts))
-        self._reschedule()
+        self.reschedule()
 
     def make_movable(self, name: str) -> None:
         """Lets a static top-level model be moved: its links become bodies that follow their set pose."""
@@ -402,7 +412,7 @@ class Simulation:
             sensor.build(builder)
         compiled = builder.recompile(old.compiled, self.mj_data)
         self._switch(Structure(builder, compiled, old.models, old.movable | {name}, old.parts))
-        self._reschedule()
+        self.reschedule()
 
     def _switch(self, structure: Structure) -> None:
         """Goes on with another structure, the changed model fields carried over."""
@@ -454,8 +464,15 @@ class Simulation:
             raise PluginError(plugin.name, "load", self.time, str(plugin.where), repr(error)) from error
         plugin._remember_loaded()
 
-    def _reschedule(self) -> None:
+    def reschedule(self) -> None:
+        """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
+        self._rates_changed = True
+        if not self._advancing:
+            self._fill_schedule()
+
+    def _fill_schedule(self) -> None:
         """Fills the scheduler from what is there, in document order."""
+        self._rates_changed = False
         scheduler = self.scheduler
         scheduler.clear()
         for joint in self._exact_limits:
@@ -475,10 +492,6 @@ class Simulation:
                     scheduler.every(rate, self._guarded(plugin, hook), phase)  # type: ignore[arg-type]
         scheduler.rewind(self.tick)
 
-    def reschedule(self) -> None:
-        """Takes changed rates into account."""
-        self._reschedule()
-
     def _coasts_over_limit(self, joint: Joint) -> bool:
         """Whether a joint has a velocity limit of the file that no servo keeps."""
         limits = joint._velocity_limit
@@ -488,7 +501,7 @@ class Simulation:
         """Holds a joint's velocity limit at every step from now on."""
         if joint not in self._exact_limits:
             self._exact_limits.append(joint)
-        self._reschedule()
+        self.reschedule()
 
     def place_light(self, light: Light) -> None:
         """Shows a light where its handle says."""

@@ -73,7 +73,7 @@ class Publisher:
 
     @property
     def wanted(self) -> bool:
-        return bool(self._readers) or self.latched
+        return bool(self._readers) or self.latched or self.topic in self._bus._listeners
 
     def publish(self, message: Any) -> None:
         """Hands the message to every subscriber, now, and to command inputs before the next step."""

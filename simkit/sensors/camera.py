@@ -117,8 +117,10 @@ class NoisyPicture:
 
 def clip_depths(depths: npt.NDArray[np.float32], near: float, far: float) -> npt.NDArray[np.float32]:
     """+inf beyond `far`, -inf nearer than `near` [m], in place."""
-    np.copyto(depths, np.float32(np.inf), where=depths > np.float32(far))
-    np.copyto(depths, np.float32(-np.inf), where=depths < np.float32(near))
+    if far < np.inf:
+        np.copyto(depths, np.float32(np.inf), where=depths > np.float32(far))
+    if depths.min() < near:
+        np.copyto(depths, np.float32(-np.inf), where=depths < np.float32(near))
     return depths
 
 
@@ -204,7 +206,8 @@ class RenderedSensor(Sensor):
             if self._distorter and self._distorter.margin:
                 edge = self._distorter.margin
                 raw = raw[edge:-edge, edge:-edge]
-            depths = clip_depths(metres(raw, view.near, view.far), options.depth_near, options.depth_far)
+            far = options.depth_far if options.depth_far < view.far else np.inf
+            depths = clip_depths(metres(raw, view.near, view.far), options.depth_near, far)
         if self._distorter:
             colours = self._distorter.bend(colours)
         colours = pictures.grey(colours) if pictures.is_grey(options.encoding) else np.ascontiguousarray(colours)

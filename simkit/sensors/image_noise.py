@@ -27,6 +27,13 @@ def _normal_table() -> npt.NDArray[np.float64]:
     return table
 
 
+def _look_up(table: npt.NDArray[Any], words: npt.NDArray[np.uint16]) -> Any:
+    """`table[words]`; OpenCV from version 5 on does it three times as fast."""
+    import cv2
+
+    return cv2.LUT(words, table) if int(cv2.__version__.split(".")[0]) >= 5 else table.take(words)
+
+
 class ImageNoise:
     """Noise of one camera.
 
@@ -43,8 +50,9 @@ class ImageNoise:
         self._lengths: Any = None
 
     def _words(self, channel: str, index: int, count: int) -> npt.NDArray[np.uint16]:
-        # a generator of its own per frame: what was drawn before does not matter
-        bits: Any = self._streams.words(self._scoped, channel, index).bit_generator
+        # a generator of its own per frame, so that what was drawn before does not matter; the fastest one for the bulk
+        key: Any = self._streams.words(self._scoped, channel, index).bit_generator
+        bits: Any = np.random.SFC64(np.random.SeedSequence(key.random_raw(2).tolist()))
         words: npt.NDArray[np.uint16] = bits.random_raw(-(-count // 4)).view(np.uint16)[:count]
         return words
 
@@ -59,7 +67,7 @@ class ImageNoise:
         shape = picture.shape[:2]
         if self._model.stddev > 0:
             words = self._words("image", index, shape[0] * shape[1])
-            brighter, darker = (steps[words].reshape(shape) for steps in self._steps)
+            brighter, darker = (_look_up(steps, words.reshape(shape)) for steps in self._steps)
         else:
             brighter, darker = (np.full(shape, steps[0]) for steps in self._steps)
         if picture.ndim == 3:
@@ -73,6 +81,8 @@ class ImageNoise:
             self._lengths = (_normal_table() * self._model.stddev + self._model.mean).astype(np.float32)
         if self._model.stddev == 0:
             return depths + self._lengths[0]
-        out: npt.NDArray[np.float32] = self._lengths[self._words("depth", index, depths.size)].reshape(depths.shape)
+        out: npt.NDArray[np.float32] = _look_up(
+            self._lengths, self._words("depth", index, depths.size).reshape(depths.shape)
+        )
         out += depths
         return out

@@ -167,9 +167,10 @@ class Renderer:
 def metres(raw: Depths, near: float, far: float) -> Depths:
     """Distances along the optical axis [m] of raw depths; +inf where there is nothing up to the far plane."""
     out = raw * np.float32((far - near) / (near * far))
-    out += np.float32(1.0 / far)
-    np.reciprocal(out, out=out)
-    out[raw == 0] = np.inf
+    # nothing there is 1/0; writing the infinities through a mask would take as long as all the rest
+    out += (raw != 0) * np.float32(1.0 / far)
+    with np.errstate(divide="ignore"):
+        np.divide(np.float32(1.0), out, out=out)
     return out
 
 

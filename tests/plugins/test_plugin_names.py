@@ -62,7 +62,7 @@ def test_what_an_author_calls_a_plugin_does_not_choose_it() -> None:
 
 def test_every_kind_derives_from_one_of_the_parents_and_writes_load() -> None:
     for name, cls in plugin_kinds().items():
-        assert cls.parent_kind in {"world", "model", "sensor", "visual", "any"}, name
+        assert cls.parent_kind in {"world", "model", "sensor", "any"}, name
         assert name in {normalise(n) for n in (*cls.filenames, *cls.names)}
         assert cls.load is not Plugin.load
 

@@ -1,0 +1,76 @@
+"""`simkit inspect`: what a file means once it is resolved."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from simkit.cli.console import guarded, out
+from simkit.cli.options import File, Json, ResourcePaths
+
+
+@guarded
+def inspect(
+    file: File,
+    json_: Json = False,
+    resource_path: ResourcePaths = [],  # noqa: B006
+) -> int:
+    """Shows what a file means once it is resolved."""
+    from simkit.build import describe
+
+    found = describe(file, resource_paths=resource_path)
+    if json_:
+        out().file.write(json.dumps(found, indent=2) + "\n")
+    else:
+        for line in _tree(found):
+            out().print(line)
+    return 2 if any(d["severity"] == "error" for d in found["diagnostics"]) else 0
+
+
+def _tree(found: dict[str, Any]) -> Iterator[str]:
+    for world in found["worlds"]:
+        physics = world["physics"]
+        yield f"world {world['name']}  step {physics['max_step_size']:g} s, gravity {_numbers(world['gravity'])} m/s²"
+        for light in world["lights"]:
+            yield f"  light {light['name']}  {light['type']}"
+        yield from _plugins(world, "  ")
+        for model in world["models"]:
+            yield from _model(model, "  ")
+    if found["model"]:
+        yield from _model(found["model"], "")
+    yield "total  " + ", ".join(f"{v:g} kg" if k == "mass" else f"{v} {k}" for k, v in found["totals"].items())
+    severities = [d["severity"] for d in found["diagnostics"]]
+    if severities:
+        counts = ", ".join(f"{severities.count(s)} {s}s" for s in ("error", "warning", "note") if s in severities)
+        yield f"{counts}; simkit check shows them"
+
+
+def _model(model: dict[str, Any], indent: str) -> Iterator[str]:
+    static = "  static" if model["static"] else ""
+    yield f"{indent}model {model['name']}{static}  at {_numbers(model['pose_world'][:3])}"
+    inner = indent + "  "
+    for link in model["links"]:
+        shapes = f"{len(link['collisions'])} collisions, {len(link['visuals'])} visuals"
+        yield f"{inner}link {link['name']}  {link['mass']:g} kg, {shapes}"
+        yield from _sensors(link, inner + "  ")
+    for joint in model["joints"]:
+        yield f"{inner}joint {joint['name']}  {joint['type']}, {joint['parent_link']} → {joint['child_link']}"
+        yield from _sensors(joint, inner + "  ")
+    yield from _plugins(model, inner)
+    for nested in model["models"]:
+        yield from _model(nested, inner)
+
+
+def _sensors(owner: dict[str, Any], indent: str) -> Iterator[str]:
+    for sensor in owner["sensors"]:
+        yield f"{indent}sensor {sensor['name']}  {sensor['type']}, {sensor['update_rate']:g} Hz, {sensor['topic'] or 'default topic'}"
+
+
+def _plugins(owner: dict[str, Any], indent: str) -> Iterator[str]:
+    for plugin in owner["plugins"]:
+        yield f"{indent}plugin {plugin['name']}  {plugin['filename']}"
+
+
+def _numbers(values: list[float]) -> str:
+    return "(" + ", ".join(f"{v:g}" for v in values) + ")"

@@ -1,0 +1,81 @@
+"""The loop around the loop: advances in short slices, so that commands, pace, progress and Ctrl-C get their turn."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from simkit.cli.interrupts import Interrupts
+    from simkit.sinks.commands import Commands
+
+_LONG, _SHORT = 0.05, 0.02  # [s] of wall time that a slice may and should take
+_PACED = 0.02  # [s] of wall time that a slice stands for when a real-time factor is held
+_PATH = 0.05  # [s] of simulated time between two points of a path
+
+
+class Loop:
+    """Runs a simulation to an end.
+
+    Args:
+        sim: the simulation.
+        commands: sent at their ticks.
+        interrupts: asked between slices.
+        watchers: called after every slice.
+        rtf: highest real-time factor; None for as fast as it goes.
+        follow: whether slices are short enough to draw a path from.
+    """
+
+    def __init__(
+        self,
+        sim: Any,
+        commands: Commands,
+        interrupts: Interrupts,
+        watchers: list[Callable[[], None]],
+        *,
+        rtf: float | None = None,
+        follow: bool = False,
+    ) -> None:
+        self._sim, self._commands, self._interrupts, self._watchers = sim, commands, interrupts, watchers
+        self._rtf = rtf
+        self._longest = max(1, round(_PATH / sim.timestep)) if follow else 1 << 30
+        if rtf is not None:
+            self._longest = min(self._longest, max(1, round(_PACED * rtf / sim.timestep)))
+        self._slice = min(max(1, round(0.01 / sim.timestep)), self._longest)
+        self.keep_going: Callable[[], bool] = lambda: True
+
+    def run(self, duration: float | None) -> bool:
+        """Advances `duration` [s], for ever where None; whether it came to its end without being stopped."""
+        sim = self._sim
+        start_tick, start_wall = sim.tick, time.perf_counter()
+        end = None if duration is None else start_tick + round(duration / sim.timestep)
+        while end is None or sim.tick < end:
+            if self._interrupts.exit_code or not self.keep_going():
+                return False
+            self._commands.send_due()
+            self._advance(end)
+            for watch in self._watchers:
+                watch()
+            if self._rtf is not None:
+                ahead = (sim.tick - start_tick) * sim.timestep / self._rtf - (time.perf_counter() - start_wall)
+                if ahead > 0:
+                    time.sleep(ahead)
+        return True
+
+    def _advance(self, end: int | None) -> None:
+        sim = self._sim
+        stop = sim.tick + self._slice
+        if end is not None:
+            stop = min(stop, end)
+        ahead = self._commands.next_tick
+        if ahead is not None:
+            stop = min(stop, max(ahead, sim.tick + 1))
+        whole = stop - sim.tick == self._slice
+        begun = time.perf_counter()
+        sim.step(stop - sim.tick)
+        taken = time.perf_counter() - begun
+        if taken > _LONG:
+            self._slice = max(1, self._slice // 2)
+        elif whole and taken < _SHORT:
+            self._slice = min(self._slice * 2, self._longest)

@@ -1,0 +1,212 @@
+"""`simkit run`: a world, headless, as fast as it goes."""
+
+from __future__ import annotations
+
+import hashlib
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli.console import err, guarded, out, print_diagnostics, say
+from simkit.cli.interrupts import Interrupts
+from simkit.cli.loop import Loop
+from simkit.cli.options import Force, PluginPaths, ResourcePaths, Strict, Verbose, World
+from simkit.errors import RenderError
+
+if TYPE_CHECKING:
+    from simkit.sinks.progress import Stopwatch
+    from simkit.sinks.recorder import Recorder
+    from simkit.sinks.topic_counts import TopicCounter
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a run is to do; one field an option."""
+
+    world: str
+    duration: float | None = None
+    seed: int = 0
+    record: Path | None = None
+    topics: tuple[str, ...] = ()
+    force: bool = False
+    rtf: float | None = None
+    overrides: tuple[str, ...] = ()
+    strict: bool = False
+    view: bool = False
+    picture: Path | None = None
+    cmd_vel: str | None = None
+    script: Path | None = None
+    resource_paths: tuple[Path, ...] = ()
+    plugin_paths: tuple[Path, ...] = ()
+    verbose: bool = False
+    quiet: bool = field(default=False)
+
+
+@guarded
+def run(
+    world: World,
+    duration: Annotated[float | None, typer.Option(help="Simulated seconds; until Ctrl-C where not given.", metavar="S", min=0)] = None,
+    seed: Annotated[int, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
+    record: Annotated[Path | None, typer.Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")] = None,
+    topic: Annotated[list[str], typer.Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")] = [],  # noqa: B006
+    force: Force = False,
+    rtf: Annotated[float | None, typer.Option(help="No faster than X times real time.", metavar="X", min=1e-3)] = None,
+    set_: Annotated[list[str], typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE")] = [],  # noqa: B006
+    strict: Strict = False,
+    view: Annotated[bool, typer.Option("--view", help="Opens a viewer.")] = False,
+    picture: Annotated[Path | None, typer.Option(help="Draws the scene at the end, with path and last scan.", metavar="OUT.png")] = None,
+    cmd_vel: Annotated[str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")] = None,
+    script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
+    resource_path: ResourcePaths = [],  # noqa: B006
+    plugin_path: PluginPaths = [],  # noqa: B006
+    verbose: Verbose = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
+) -> int:
+    """Runs a world headless, as fast as it goes."""
+    request = Request(
+        world, duration, seed, record, tuple(topic), force, rtf, tuple(set_), strict, view, picture, cmd_vel, script,
+        tuple(resource_path), tuple(plugin_path), verbose, quiet,
+    )  # fmt: skip
+    return execute(request)
+
+
+def execute(request: Request) -> int:
+    """Does what is asked for; returns the exit code.
+
+    Raises:
+        SimkitError: what went wrong; the recording up to there is complete by then.
+    """
+    from simkit.build import load
+    from simkit.overrides import check_used
+    from simkit.sinks import picture, recorder, viewer
+
+    if request.record is not None:
+        recorder.check_target(request.record, overwrite=request.force)
+    if request.picture is not None:
+        picture.check_target(request.picture)
+    if request.view:
+        viewer.check_possible()
+    sim = load(
+        request.world,
+        seed=request.seed,
+        resource_paths=request.resource_paths,
+        plugin_paths=request.plugin_paths,
+        strict=request.strict,
+        overrides=request.overrides,
+    )
+    with sim:
+        check_used(sim.diagnostics)
+        print_diagnostics(sim.diagnostics, verbose=request.verbose)
+        return _Run(request, sim).execute()
+
+
+class _Run:
+    """One run of a loaded world."""
+
+    def __init__(self, request: Request, sim: Any) -> None:
+        self.request, self.sim = request, sim
+
+    def execute(self) -> int:
+        from simkit.sinks.commands import Commands
+        from simkit.sinks.picture import DrivenPath
+        from simkit.sinks.progress import Progress, Stopwatch
+        from simkit.sinks.recorder import Recorder
+        from simkit.sinks.topic_counts import RENDERED, TopicCounter
+
+        request, sim = self.request, self.sim
+        commands = Commands(sim, self._commands())
+        if request.duration is None:
+            say("running until Ctrl-C (--duration S stops by itself)")
+        driven = DrivenPath(sim) if request.picture is not None else None
+        if driven is not None:
+            self._read_scanners()
+        with ExitStack() as stack:
+            interrupts = stack.enter_context(Interrupts())
+            recording = None
+            if request.record is not None:
+                recording = stack.enter_context(
+                    Recorder(sim, request.record, overwrite=request.force, topics=request.topics)
+                )
+            counter = TopicCounter(sim, () if recording and not request.topics else RENDERED)
+            watch = Stopwatch()
+            progress = stack.enter_context(Progress(sim, counter, request.duration, out()))
+            watchers: list[Any] = [progress.update]
+            if recording is not None:
+                watchers.append(recording.check)
+            if driven is not None:
+                watchers.append(driven.sample)
+            rtf = request.rtf if request.rtf is not None or not request.view else 1.0
+            loop = Loop(sim, commands, interrupts, watchers, rtf=rtf, follow=driven is not None)
+            if request.view:
+                self._open_viewer(stack, loop, watchers)
+            try:
+                loop.run(request.duration)
+            finally:
+                elapsed = watch.elapsed
+                progress.__exit__(None, None, None)
+                if recording is not None:
+                    recording.close()
+                self._summarise(counter, recording, elapsed)
+        if driven is not None:
+            self._draw(driven)
+        return interrupts.exit_code
+
+    def _commands(self) -> list[Any]:
+        from simkit.sinks.commands import read_script, steady_velocity
+
+        topics = self.sim.topics()
+        found = []
+        if self.request.cmd_vel is not None:
+            found.append(steady_velocity(self.request.cmd_vel, topics))
+        if self.request.script is not None:
+            found += read_script(self.request.script, topics)
+        return found
+
+    def _read_scanners(self) -> None:
+        """A scan that nobody reads is measured on demand, at its last due tick; nothing has to be read on the way."""
+
+    def _open_viewer(self, stack: ExitStack, loop: Loop, watchers: list[Any]) -> None:
+        from simkit.sinks.viewer import Viewer
+
+        viewer = stack.enter_context(Viewer(self.sim))
+        watchers.append(viewer.update)
+        loop.keep_going = viewer.is_open
+
+    def _summarise(self, counter: TopicCounter, recording: Recorder | None, elapsed: float) -> None:
+        """Topics with their true rates, then one line, then the hash of the physics state."""
+        from simkit.sinks.progress import rate_text
+
+        sim = self.sim
+        if not self.request.quiet and counter.rows:
+            width = max(len(row.topic) for row in counter.rows)
+            for row in counter.rows:
+                out().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row):>12}  {row.type_name}")
+        factor = sim.time / max(elapsed, 1e-9)
+        line = f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
+        if recording is not None:
+            line += f"; {recording.message_count} in {recording.path}"
+        out().print(line)
+        out().print(f"state {state_hash(sim)}")
+
+    def _draw(self, driven: Any) -> None:
+        from simkit.sinks.picture import save_picture
+
+        path = self.request.picture
+        assert path is not None
+        try:
+            save_picture(self.sim, path, driven)
+        except RenderError as error:
+            err().print(f"warning: no picture: {error}", style="yellow")
+        else:
+            out().print(f"picture {path}")
+
+
+def state_hash(sim: Any) -> str:
+    """SHA-256 of positions and velocities, as bits: equal for two runs that did the same."""
+    digest = hashlib.sha256()
+    digest.update(sim.mj_data.qpos.tobytes())
+    digest.update(sim.mj_data.qvel.tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,62 @@
+"""A window on a running simulation: MuJoCo's own viewer, shown what the loop has."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_REFRESH = 1 / 60  # [s]
+_HELP = "run without --view, use --picture out.png, or record and open the bag in Foxglove"
+
+
+def check_possible() -> None:
+    """Says before a run why there can be no window.
+
+    Raises:
+        InputError: SK-CLI-015 no display, or no window library.
+    """
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise InputError(f"SK-CLI-015 --view: there is no display (DISPLAY is not set)\n    help: {_HELP}", "SK-CLI-015")
+    try:
+        import glfw  # noqa: F401
+    except ImportError as error:
+        text = f"SK-CLI-015 --view: the window library is missing ({error})\n    help: pip install 'simkit-robotics[view]'"
+        raise InputError(text, "SK-CLI-015") from None
+
+
+class Viewer:
+    """Opens a window; a context manager."""
+
+    def __init__(self, sim: Simulation) -> None:
+        import mujoco.viewer
+
+        try:
+            self._handle: Any = mujoco.viewer.launch_passive(sim.mj_model, sim.mj_data, show_left_ui=False, show_right_ui=False)
+        except RuntimeError as error:
+            raise InputError(f"SK-CLI-015 --view: {error}\n    help: {_HELP}", "SK-CLI-015") from None
+        self._last = 0.0
+
+    def is_open(self) -> bool:
+        """Whether the person has not closed the window."""
+        return bool(self._handle.is_running())
+
+    def update(self) -> None:
+        """Shows the present state when the last picture is old enough."""
+        now = time.perf_counter()
+        if now - self._last >= _REFRESH:
+            self._last = now
+            self._handle.sync()
+
+    def __enter__(self) -> Viewer:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._handle.close()
