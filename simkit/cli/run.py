@@ -17,7 +17,6 @@ from simkit.cli.options import Force, PluginPaths, ResourcePaths, Strict, Verbos
 from simkit.errors import RenderError
 
 if TYPE_CHECKING:
-    from simkit.sinks.progress import Stopwatch
     from simkit.sinks.recorder import Recorder
     from simkit.sinks.topic_counts import TopicCounter
 
@@ -121,8 +120,6 @@ class _Run:
         if request.duration is None:
             say("running until Ctrl-C (--duration S stops by itself)")
         driven = DrivenPath(sim) if request.picture is not None else None
-        if driven is not None:
-            self._read_scanners()
         with ExitStack() as stack:
             interrupts = stack.enter_context(Interrupts())
             recording = None
@@ -165,9 +162,6 @@ class _Run:
             found += read_script(self.request.script, topics)
         return found
 
-    def _read_scanners(self) -> None:
-        """A scan that nobody reads is measured on demand, at its last due tick; nothing has to be read on the way."""
-
     def _open_viewer(self, stack: ExitStack, loop: Loop, watchers: list[Any]) -> None:
         from simkit.sinks.viewer import Viewer
 
@@ -183,7 +177,7 @@ class _Run:
         if not self.request.quiet and counter.rows:
             width = max(len(row.topic) for row in counter.rows)
             for row in counter.rows:
-                out().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row):>12}  {row.type_name}")
+                out().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row, sim.time_ns):>12}  {row.type_name}")
         factor = sim.time / max(elapsed, 1e-9)
         line = f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
         if recording is not None:

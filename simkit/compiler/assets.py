@@ -71,8 +71,14 @@ class Assets:
         if self._is_new("texture", name):
             texture = self.spec.add_texture(name=name)
             texture.type = mujoco.mjtTexture.mjTEXTURE_2D if on_mesh else mujoco.mjtTexture.mjTEXTURE_CUBE
-            texture.height, texture.width, texture.nchannel = pixels.shape[0] * (1 if on_mesh else 6), pixels.shape[1], 3
-            texture.data = (np.ascontiguousarray(pixels) if on_mesh else np.ascontiguousarray(np.tile(pixels, (6, 1, 1)))).tobytes()
+            texture.height, texture.width, texture.nchannel = (
+                pixels.shape[0] * (1 if on_mesh else 6),
+                pixels.shape[1],
+                3,
+            )
+            texture.data = (
+                np.ascontiguousarray(pixels) if on_mesh else np.ascontiguousarray(np.tile(pixels, (6, 1, 1)))
+            ).tobytes()
         return name
 
     def material(self, emission: float, specular: float, texture: str = "") -> str:
@@ -104,8 +110,6 @@ class Assets:
         for kind, name in sorted(keys & self.known, key=lambda k: (order[k[0]], k[1])):
             self.spec.delete(getattr(self.spec, kind)(name))
             self.known.discard((kind, name))
-
-
 
 
 def _digest(*values: Any) -> str:

@@ -26,7 +26,9 @@ def add_body(parent: Any, link: SceneLink, pose: Pose, diagnostics: Diagnostics)
         body.gravcomp = 1.0
     if link.kinematic:
         diagnostics.warning(
-            "SK-PHYS-012", f"kinematic: link {link.scoped} is not pulled by gravity, but contacts still push it", link.where
+            "SK-PHYS-012",
+            f"kinematic: link {link.scoped} is not pulled by gravity, but contacts still push it",
+            link.where,
         )
     return body
 
@@ -37,7 +39,9 @@ def mended(inertial: Inertial, link: SceneLink, diagnostics: Diagnostics) -> Ine
     matrix = np.array(((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))
     mass = inertial.mass
     if not (np.isfinite(matrix).all() and np.isfinite(mass) and np.isfinite(inertial.com).all()):
-        diagnostics.error("SK-PHYS-018", f"link {link.scoped}: mass, centre of mass or inertia is not finite", link.where)
+        diagnostics.error(
+            "SK-PHYS-018", f"link {link.scoped}: mass, centre of mass or inertia is not finite", link.where
+        )
         return Inertial()
     values, axes = np.linalg.eigh(matrix)
     moments = np.maximum(values, LEAST_INERTIA)
@@ -55,7 +59,9 @@ def mended(inertial: Inertial, link: SceneLink, diagnostics: Diagnostics) -> Ine
     )
     m = (axes * moments) @ axes.T
     full = tuple(float(v) for v in (m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]))
-    return Inertial(max(mass, LEAST_MASS), inertial.com, (full[0], full[1], full[2], full[3], full[4], full[5]), inertial.given)
+    return Inertial(
+        max(mass, LEAST_MASS), inertial.com, (full[0], full[1], full[2], full[3], full[4], full[5]), inertial.given
+    )
 
 
 def _text(values: Any) -> str:

@@ -19,6 +19,7 @@ from simkit.compiler.names import (
     found,
 )
 from simkit.compiler.options import apply_options, apply_size, choose_islands, set_extent
+from simkit.compiler.overlaps import report_overlaps
 from simkit.compiler.servo import add_actuator, add_armature, tune
 from simkit.compiler.tree import WORLD
 from simkit.diagnostics import Diagnostics
@@ -111,7 +112,11 @@ class SpecBuilder:
         own = {link.scoped for link in model.all_links()} | {WORLD}
         return [
             *model.all_joints(),
-            *(j for j in self.world.joints if {j.parent_link, j.child_link} <= own and {j.parent_link, j.child_link} != {WORLD}),
+            *(
+                j
+                for j in self.world.joints
+                if {j.parent_link, j.child_link} <= own and {j.parent_link, j.child_link} != {WORLD}
+            ),
         ]
 
     def _join_models(self) -> None:
@@ -178,10 +183,12 @@ class SpecBuilder:
         kp: float | None = None,
         kv: float | None = None,
     ) -> ActuatorRef:
-        """Adds a servo whose control is a position [rad or m]; gains are capped where they would ring. Raises KeyError."""
+        """Adds a servo whose control is a position [rad or m]; gains that would ring are capped. Raises KeyError."""
         return self._add_actuator("position", joint_scoped, axis, max_effort, owner, kp, kv)
 
-    def add_motor(self, joint_scoped: str, axis: int = 0, max_effort: float = float("inf"), owner: str = "motor") -> ActuatorRef:
+    def add_motor(
+        self, joint_scoped: str, axis: int = 0, max_effort: float = float("inf"), owner: str = "motor"
+    ) -> ActuatorRef:
         """Adds an actuator whose control is an effort [N·m or N]. Raises KeyError."""
         return self._add_actuator("motor", joint_scoped, axis, max_effort, owner, None, None)
 
@@ -212,7 +219,9 @@ class SpecBuilder:
         parent, child = self.names.link(parent_link), self.names.link(child_link)
         record = self.records[parent.model if parent.model == child.model else ""]
         links = {n: b for r in self.records.values() for n, b in r.links.items()}
-        ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).weld(name, parent_link, child_link, links, active)
+        ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).weld(
+            name, parent_link, child_link, links, active
+        )
         if record is self.records[""]:
             joint = SceneJoint(name, name, "fixed", parent_link, child_link, child.scene.pose_world)
             record.joints[name] = JointBinding(name, "fixed", joint, "", is_loop=True, equalities=(name,))
@@ -249,7 +258,9 @@ class SpecBuilder:
             model = self.spec.compile()
         except ValueError as problem:
             self._refused(problem)
-        return self._finished(model, None)
+        compiled = self._finished(model, None)
+        report_overlaps(compiled.model, compiled.names, self.diagnostics, self.world.where)
+        return compiled
 
     def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:
         """The model after a change; what stays keeps its state bit for bit, in new model and data objects.
@@ -298,5 +309,3 @@ class SpecBuilder:
         tune(self.spec, model, [ref for r in self.records.values() for ref in r.actuators])
         names = NameMap.of(self.records.values(), model)
         return Compiled(model, data if data is not None else mujoco.MjData(model), names, self)
-
-

@@ -13,7 +13,7 @@ def carry_state(old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjModel,
     """
     obj = mujoco.mjtObj
     target.time = source.time
-    for name, i, j in _shared(old, new, obj.mjOBJ_JOINT):
+    for _, i, j in _shared(old, new, obj.mjOBJ_JOINT):
         width_q = {0: 7, 1: 4}.get(int(old.jnt_type[i]), 1)
         width_v = {0: 6, 1: 3}.get(int(old.jnt_type[i]), 1)
         if old.jnt_type[i] != new.jnt_type[j]:
@@ -23,18 +23,18 @@ def carry_state(old: mujoco.MjModel, source: mujoco.MjData, new: mujoco.MjModel,
         a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
         for field in ("qvel", "qacc", "qacc_warmstart", "qfrc_applied"):
             getattr(target, field)[b : b + width_v] = getattr(source, field)[a : a + width_v]
-    for name, i, j in _shared(old, new, obj.mjOBJ_BODY):
+    for _, i, j in _shared(old, new, obj.mjOBJ_BODY):
         target.xfrc_applied[j] = source.xfrc_applied[i]
         a, b = int(old.body_mocapid[i]), int(new.body_mocapid[j])
         if a >= 0 and b >= 0:
             target.mocap_pos[b], target.mocap_quat[b] = source.mocap_pos[a], source.mocap_quat[a]
-    for name, i, j in _shared(old, new, obj.mjOBJ_ACTUATOR):
+    for _, i, j in _shared(old, new, obj.mjOBJ_ACTUATOR):
         target.ctrl[j] = source.ctrl[i]
         n = int(old.actuator_actnum[i])
         if n > 0 and n == int(new.actuator_actnum[j]):
             a, b = int(old.actuator_actadr[i]), int(new.actuator_actadr[j])
             target.act[b : b + n] = source.act[a : a + n]
-    for name, i, j in _shared(old, new, obj.mjOBJ_EQUALITY):
+    for _, i, j in _shared(old, new, obj.mjOBJ_EQUALITY):
         target.eq_active[j] = source.eq_active[i]
         new.eq_data[j] = np.array(old.eq_data[i])
     mujoco.mj_forward(new, target)

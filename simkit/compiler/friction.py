@@ -18,7 +18,10 @@ from simkit.diagnostics import Diagnostics
 from simkit.scene import Surface
 
 MU_MOST: Final = 2.0
-"""Larger coefficients (people write 100000 for "never slips") are taken as this. With a pyramidal cone a larger one couples into the normal force: wheels bounce and slip (2.7 % at 10, 0.04 % at 2)."""
+"""Larger coefficients (people write 100000 for "never slips") are taken as this.
+
+With a pyramidal cone a larger one couples into the normal force: wheels bounce and slip (2.7 % at 10, 0.04 % at 2).
+"""
 
 STIFF_KP: Final = 1e5
 """From this stiffness [N/m] on a contact counts as rigid: the world-wide softness stands."""
@@ -57,7 +60,9 @@ def contact_of(surface: Surface, timestep: float, mass: float, diagnostics: Diag
     solref = _softness(surface, timestep, mass, diagnostics)
     contype, conaffinity = masks_of(surface)
     if surface.collide_without_contact:
-        diagnostics.warning("SK-PHYS-014", "collide_without_contact: the collision is left out of all contacts", surface.where)
+        diagnostics.warning(
+            "SK-PHYS-014", "collide_without_contact: the collision is left out of all contacts", surface.where
+        )
         contype = conaffinity = 0
     return Contact(
         friction=(mu, _TORSION, _ROLL),
@@ -95,7 +100,9 @@ def _sliding(surface: Surface, diagnostics: Diagnostics) -> float:
             surface.where,
         )
     if surface.slip1 or surface.slip2:
-        diagnostics.note("SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip with the force", surface.where)
+        diagnostics.note(
+            "SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip with the force", surface.where
+        )
     if surface.torsional:
         diagnostics.note("SK-PHYS-007", "torsional friction is not used: contacts resist sliding only", surface.where)
     return min(mu, mu2)
@@ -114,7 +121,7 @@ def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagn
         if surface.kp is not None and surface.kp != 1e12:
             diagnostics.note(
                 "SK-PHYS-004",
-                f"contact stiffness {surface.kp:g} N/m counts as rigid: time constant {world * 1e3:g} ms, critically damped",
+                f"contact stiffness {surface.kp:g} N/m counts as rigid: {world * 1e3:g} ms, critically damped",
                 surface.where,
             )
         return world, 1.0

@@ -67,9 +67,13 @@ class GeomWriter:
         owner = GeomOwner(place.link, collision.scoped, False)
         primitive = primitive_of(shape, False)
         if isinstance(shape, Plane) and not place.fixed and primitive is not None:
-            self.diagnostics.warning("SK-PHYS-016", "a plane on a moving link collides as a 100 m × 100 m plate", collision.where)
+            self.diagnostics.warning(
+                "SK-PHYS-016", "a plane on a moving link collides as a 100 m × 100 m plate", collision.where
+            )
             sunk = collision.pose_link @ primitive.pose @ Pose((0.0, 0.0, -_HALF_SPACE[2]))
-            self._add(place, owner, sunk, type=mujoco.mjtGeom.mjGEOM_BOX, size=_HALF_SPACE, **_colliding(contact, COLLISION))
+            self._add(
+                place, owner, sunk, type=mujoco.mjtGeom.mjGEOM_BOX, size=_HALF_SPACE, **_colliding(contact, COLLISION)
+            )
         elif primitive is not None:
             pose = collision.pose_link @ primitive.pose
             self._add(place, owner, pose, type=primitive.type, size=primitive.size, **_colliding(contact, COLLISION))
@@ -86,7 +90,9 @@ class GeomWriter:
         vertices, faces = joined(parts)
         pose, where = collision.pose_link, collision.where
         if not len(faces):
-            self.diagnostics.error("SK-MESH-003", f"{_title(collision.geometry)}: all triangles are without area", where)
+            self.diagnostics.error(
+                "SK-MESH-003", f"{_title(collision.geometry)}: all triangles are without area", where
+            )
         elif hull_volume(vertices) <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
             self._flat_collision(place, owner, collision, vertices, faces, contact)
         elif is_convex(vertices, faces):
@@ -124,7 +130,7 @@ class GeomWriter:
             coarse = trimesh.Trimesh(vertices, faces, process=False).simplify_quadric_decimation(face_count=PRISMS_MOST)
             self.diagnostics.warning(
                 "SK-MESH-005",
-                f"{_title(collision.geometry)}: {len(faces)} triangles are thinned out to {len(coarse.faces)} for contacts",
+                f"{_title(collision.geometry)}: for contacts {len(faces)} triangles become {len(coarse.faces)}",
                 collision.where,
             )
             pieces = convex_pieces(np.asarray(coarse.vertices, float), np.asarray(coarse.faces, np.int32))
@@ -136,7 +142,8 @@ class GeomWriter:
         thin = sum(not p.exact for p in pieces)
         self.diagnostics.note(
             "SK-MESH-006",
-            f"{_title(collision.geometry)} is not convex: it collides as {len(pieces) - thin} convex pieces and {thin} prisms on its surface",
+            f"{_title(collision.geometry)} is not convex: it collides as {len(pieces) - thin} convex pieces "
+            f"and {thin} prisms on its surface",
             collision.where,
         )
 
@@ -145,7 +152,9 @@ class GeomWriter:
     ) -> None:
         from simkit.compiler.static import prisms
 
-        self.diagnostics.note("SK-MESH-007", f"{_title(collision.geometry)} is flat: it collides as a thin plate", collision.where)
+        self.diagnostics.note(
+            "SK-MESH-007", f"{_title(collision.geometry)} is flat: it collides as a thin plate", collision.where
+        )
         for points in prisms(vertices, faces):
             self._hull(place, owner, collision.pose_link, points, contact, COLLISION_CONTACT)
         self._ray_copy(place, owner, collision.pose_link, vertices, faces)
@@ -162,7 +171,14 @@ class GeomWriter:
     def _ray_copy(self, place: Place, owner: GeomOwner, pose: Pose, vertices: Floats, faces: Ints) -> None:
         name = self.assets.surface(vertices, faces)
         self._add(
-            place, owner, pose, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, contype=0, conaffinity=0, group=COLLISION_RAY
+            place,
+            owner,
+            pose,
+            type=mujoco.mjtGeom.mjGEOM_MESH,
+            meshname=name,
+            contype=0,
+            conaffinity=0,
+            group=COLLISION_RAY,
         )
 
     # ------------------------------------------------------------------ visuals
@@ -178,7 +194,9 @@ class GeomWriter:
             if isinstance(shape, Plane) and not place.fixed:
                 size = (primitive.size[0], primitive.size[1], 1e-4)
                 look = self._look(visual, None, on_mesh=False)
-                self._add(place, owner, visual.pose_link @ primitive.pose, type=mujoco.mjtGeom.mjGEOM_BOX, size=size, **look)
+                self._add(
+                    place, owner, visual.pose_link @ primitive.pose, type=mujoco.mjtGeom.mjGEOM_BOX, size=size, **look
+                )
                 return
             look = self._look(visual, None, on_mesh=isinstance(shape, Plane))
             self._add(place, owner, visual.pose_link @ primitive.pose, type=primitive.type, size=primitive.size, **look)
@@ -233,7 +251,9 @@ class GeomWriter:
     def _has_size(self, shape: Geometry, where: Where) -> bool:
         if all(np.isfinite(s) and s > 0.0 for s in sizes_of(shape)):
             return True
-        self.diagnostics.warning("SK-PHYS-017", f"a {type(shape).__name__.lower()} without size is left out: {shape}", where)
+        self.diagnostics.warning(
+            "SK-PHYS-017", f"a {type(shape).__name__.lower()} without size is left out: {shape}", where
+        )
         return False
 
     def _parts(self, shape: Geometry, where: Where) -> list[MeshPart]:
@@ -260,7 +280,9 @@ class GeomWriter:
             self.diagnostics.error("SK-MESH-011", f"heightmap {shape.uri}: {problem}", where)
             return
         low, high = float(rows.min()), float(rows.max())
-        name = self.assets.heights((rows - low) / max(high - low, 1e-12), (*shape.size[:2], (high - low) * shape.size[2]))
+        name = self.assets.heights(
+            (rows - low) / max(high - low, 1e-12), (*shape.size[:2], (high - low) * shape.size[2])
+        )
         x, y, z = shape.position
         place_at = pose @ Pose((x, y, z + low * shape.size[2]))
         self._add(place, owner, place_at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)

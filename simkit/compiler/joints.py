@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.compiler.names import Follower, JointBinding, ModelRecord
 from simkit.compiler.options import CONTACT_SOLIMP, contact_time_constant
-from simkit.compiler.tree import WORLD, Edge, Tree
+from simkit.compiler.tree import WORLD, Edge
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import Axis, SceneJoint, SceneLink
@@ -37,7 +37,9 @@ class JointWriter:
         joint = edge.joint
         frame = link.pose_world.inverse() @ joint.pose_world
         axes = [self._axis_of(link, a, edge.is_reversed) for a in joint.axes]
-        kind, names, followers = mujoco.mjtJoint, [], ()
+        kind = mujoco.mjtJoint
+        names: list[str] = []
+        followers: tuple[Follower, ...] = ()
         hinges = {"revolute": 1, "continuous": 1, "universal": 2, "revolute2": 2}.get(joint.type, 0)
         if hinges:
             names = self._scalars(body, joint, frame, axes, [kind.mjJNT_HINGE] * hinges)
@@ -53,8 +55,12 @@ class JointWriter:
         elif joint.type == "floating":
             names = self._floating(body, joint, frame, edge)
         elif joint.type != "fixed":
-            self.diagnostics.warning("SK-PHYS-013", f"joint {joint.scoped}: type {joint.type} is taken as fixed", joint.where)
-        self._note(replace(self._binding(joint), joint_names=tuple(names), followers=followers, is_reversed=edge.is_reversed))
+            self.diagnostics.warning(
+                "SK-PHYS-013", f"joint {joint.scoped}: type {joint.type} is taken as fixed", joint.where
+            )
+        self._note(
+            replace(self._binding(joint), joint_names=tuple(names), followers=followers, is_reversed=edge.is_reversed)
+        )
 
     def _axis_of(self, link: SceneLink, axis: Axis, is_reversed: bool) -> tuple[float, float, float]:
         x, y, z = link.pose_world.inverse().rotate(axis.xyz_world)
@@ -62,10 +68,12 @@ class JointWriter:
         return sign * float(x), sign * float(y), sign * float(z)
 
     def _scalars(self, body: Any, joint: SceneJoint, frame: Pose, axes: list[Any], kinds: list[Any]) -> list[str]:
-        names = []
+        names: list[str] = []
         for i, kind in enumerate(kinds):
             if i >= len(axes):
-                self.diagnostics.error("SK-PHYS-019", f"joint {joint.scoped} ({joint.type}) needs {len(kinds)} axes", joint.where)
+                self.diagnostics.error(
+                    "SK-PHYS-019", f"joint {joint.scoped} ({joint.type}) needs {len(kinds)} axes", joint.where
+                )
                 return names
             name = joint.scoped if i == 0 else f"{joint.scoped}#{i}"
             made = self._joint(body, name, kind, frame, axes[i])
@@ -102,7 +110,9 @@ class JointWriter:
             body.joints[-1].damping[0] = max(0.0, joint.axes[0].damping)
             body.joints[-1].frictionloss = max(0.0, joint.axes[0].friction)
 
-    def _screw(self, body: Any, joint: SceneJoint, frame: Pose, axes: list[Any]) -> tuple[list[str], tuple[Follower, ...]]:
+    def _screw(
+        self, body: Any, joint: SceneJoint, frame: Pose, axes: list[Any]
+    ) -> tuple[list[str], tuple[Follower, ...]]:
         names = self._scalars(body, joint, frame, axes, [mujoco.mjtJoint.mjJNT_HINGE])
         if not names:
             return [], ()
@@ -112,7 +122,7 @@ class JointWriter:
         self._couple(f"{joint.scoped}#thread", slide, joint.scoped, 0.0, ratio)
         self.diagnostics.note(
             "SK-PHYS-009",
-            f"screw joint {joint.scoped}: turning and sliding are coupled by a stiff constraint ({joint.thread_pitch:g} m a turn)",
+            f"screw joint {joint.scoped} is a stiff constraint between turning and sliding ({joint.thread_pitch:g} m a turn)",
             joint.where,
         )
         return names, (Follower(slide, ratio),)
@@ -142,7 +152,7 @@ class JointWriter:
 
     # ------------------------------------------------------------------ constraints
 
-    def close(self, joint: SceneJoint, tree: Tree) -> None:
+    def close(self, joint: SceneJoint) -> None:
         """Adds the equality constraints of a joint that closes a loop."""
         kinds = mujoco.mjtEq
         points: list[Any] = [joint.pose_world.position]
@@ -163,11 +173,15 @@ class JointWriter:
             self.tie(name, kind, joint.parent_link, joint.child_link, point)
             names.append(name)
         self.diagnostics.note(
-            "SK-PHYS-020", f"joint {joint.scoped} closes a loop: it is held by a constraint, its position cannot be read", joint.where
+            "SK-PHYS-020",
+            f"joint {joint.scoped} closes a loop: it is held by a constraint, its position cannot be read",
+            joint.where,
         )
         self._note(replace(self._binding(joint), is_loop=True, equalities=tuple(names)))
 
-    def tie(self, name: str, kind: mujoco.mjtEq, parent: str, child: str, point_world: Any, active: bool = True) -> None:
+    def tie(
+        self, name: str, kind: mujoco.mjtEq, parent: str, child: str, point_world: Any, active: bool = True
+    ) -> None:
         """A connect or weld equality between two links as they stand in the file."""
         equality = self.spec.add_equality(name=name)
         equality.type = kind
@@ -202,7 +216,9 @@ class JointWriter:
         else:
             name = f"{joint.scoped}#gear"
             self._couple(name, second[0], first[0], 0.0, -joint.gearbox_ratio * first[1] * second[1])
-            self.diagnostics.note("SK-PHYS-009", f"gearbox {joint.scoped} is a stiff constraint between two joints", joint.where)
+            self.diagnostics.note(
+                "SK-PHYS-009", f"gearbox {joint.scoped} is a stiff constraint between two joints", joint.where
+            )
             names = (name,)
         self._note(replace(self._binding(joint), equalities=names))
 
@@ -210,7 +226,11 @@ class JointWriter:
         """The hinge between the reference link and `link`, and the sign of its angle along the gearbox' axis."""
         for other in self.record.joints.values():
             ends = {other.scene.parent_link, other.scene.child_link}
-            if other.type in ("revolute", "continuous") and ends == {joint.gearbox_reference, link} and other.joint_names:
+            if (
+                other.type in ("revolute", "continuous")
+                and ends == {joint.gearbox_reference, link}
+                and other.joint_names
+            ):
                 along = joint.axes[axis].xyz_world if axis < len(joint.axes) else other.scene.axes[0].xyz_world
                 sign = 1.0 if float(np.dot(along, other.scene.axes[0].xyz_world)) >= 0.0 else -1.0
                 return other.joint_names[0], sign if other.scene.child_link == link else -sign
@@ -226,9 +246,16 @@ class JointWriter:
                 leader = self.record.joints.get(axis.mimic.joint) or self.record.joints.get(
                     joint.scoped.removesuffix(joint.name) + axis.mimic.joint
                 )
-                if follower is None or leader is None or i >= len(follower.joint_names) or axis.mimic.axis >= len(leader.joint_names):
+                if (
+                    follower is None
+                    or leader is None
+                    or i >= len(follower.joint_names)
+                    or axis.mimic.axis >= len(leader.joint_names)
+                ):
                     self.diagnostics.warning(
-                        "SK-PHYS-022", f"joint {joint.scoped} mimics {axis.mimic.joint}, which has no such axis; left out", joint.where
+                        "SK-PHYS-022",
+                        f"joint {joint.scoped} mimics {axis.mimic.joint}, which has no such axis; left out",
+                        joint.where,
                     )
                     continue
                 m = axis.mimic

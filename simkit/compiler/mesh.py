@@ -53,11 +53,11 @@ def load_file(file: Path, submesh: str = "") -> list[MeshPart]:
         raise MeshFileError(f"cannot be read: {problem.strerror}") from None
     if stat.st_size > LARGEST_FILE:
         raise MeshFileError(f"is larger than {LARGEST_FILE >> 20} MiB")
-    return list(_load(file, submesh, stat.st_mtime_ns, stat.st_size))
+    return list(_load(file, submesh, (stat.st_mtime_ns, stat.st_size)))
 
 
 @lru_cache(maxsize=64)
-def _load(file: Path, submesh: str, modified: int, size: int) -> tuple[MeshPart, ...]:
+def _load(file: Path, submesh: str, _version: tuple[int, int]) -> tuple[MeshPart, ...]:
     key = mesh_key(file, submesh)
     parts = load_cached(key)
     if parts is None:
@@ -72,15 +72,19 @@ def _convert(file: Path, submesh: str) -> list[MeshPart]:
     options: dict[str, Any] = {"split_object": True} if submesh and file.suffix.lower() == ".obj" else {}
     try:
         scene = trimesh.load_scene(str(file), **options)
-        dumped = [(name, scene.graph.get(node)) for node in scene.graph.nodes_geometry for name in [scene.graph[node][1]]]
-    except Exception as problem:  # a reader of a broken file raises whatever its format's library does
+        dumped = [(scene.graph[node][1], scene.graph[node][0]) for node in scene.graph.nodes_geometry]
+    except Exception as problem:  # noqa: BLE001 -- a reader of a broken file raises whatever its format's library does
         raise MeshFileError(f"is not a readable {file.suffix[1:] or 'mesh'} file: {problem}") from None
     wanted = _wanted(file, submesh, {name for name, _ in dumped}) if submesh else None
     unit = _unit_of(file)
     parts, faces = [], 0
-    for name, (matrix, _) in dumped:
+    for name, matrix in dumped:
         geometry = scene.geometry[name]
-        if not isinstance(geometry, trimesh.Trimesh) or not len(geometry.faces) or (wanted is not None and name not in wanted):
+        if (
+            not isinstance(geometry, trimesh.Trimesh)
+            or not len(geometry.faces)
+            or (wanted is not None and name not in wanted)
+        ):
             continue
         faces += len(geometry.faces)
         if faces > LARGEST_FACES:
@@ -178,5 +182,7 @@ def _wanted(file: Path, submesh: str, names: set[str]) -> set[str]:
             of_name.setdefault(alias, set()).update(n for n in names if n in ids or n.rpartition("_")[0] in ids)
     chosen = of_name.get(submesh)
     if not chosen:
-        raise MeshFileError(f"has no sub-mesh {submesh!r} ({did_you_mean(submesh, of_name) or ', '.join(sorted(of_name))})")
+        raise MeshFileError(
+            f"has no sub-mesh {submesh!r} ({did_you_mean(submesh, of_name) or ', '.join(sorted(of_name))})"
+        )
     return chosen

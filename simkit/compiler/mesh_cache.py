@@ -51,7 +51,7 @@ def load_cached(key: str) -> list[MeshPart] | None:
         with np.load(_file_of(key), allow_pickle=False) as archive:
             header = json.loads(str(archive["header"]))
             return [_part_from(archive, i, entry) for i, entry in enumerate(header)]
-    except Exception:  # whatever a broken or foreign file does, the mesh is simply converted again
+    except Exception:  # noqa: BLE001 -- whatever a broken or foreign file does, the mesh is simply converted again
         return None
 
 
@@ -73,10 +73,10 @@ def store(key: str, parts: Sequence[MeshPart]) -> None:
         try:
             with os.fdopen(handle, "wb") as stream:
                 np.savez(stream, **arrays)
-            os.replace(temporary, target)
+            Path(temporary).replace(target)
         except BaseException:
             with contextlib.suppress(OSError):
-                os.unlink(temporary)
+                Path(temporary).unlink()
             raise
 
 
@@ -90,7 +90,7 @@ def _part_from(archive: Any, i: int, entry: dict[str, Any]) -> MeshPart:
         name=entry["name"],
         vertices=archive[f"v{i}"],
         faces=archive[f"f{i}"],
-        uv=archive[f"u{i}"] if f"u{i}" in archive else None,
+        uv=archive.get(f"u{i}"),
         colour=None if colour is None else tuple(colour),
-        texture=archive[f"t{i}"] if f"t{i}" in archive else None,
+        texture=archive.get(f"t{i}"),
     )

@@ -48,7 +48,7 @@ class ModelWriter:
         tree = plan_tree(moving, joints, static)
         self._bodies(tree)
         for joint in tree.loops:
-            self.joints.close(joint, tree)
+            self.joints.close(joint)
         for joint in tree.constraints:
             self.joints.gear(joint)
         self.joints.mimics(joints)
@@ -59,7 +59,7 @@ class ModelWriter:
         self._know(links)
         for joint in joints:
             if joint.parent_link in (WORLD, *links) and joint.child_link in (WORLD, *links):
-                self.joints.close(joint, Tree())
+                self.joints.close(joint)
         self._forget(links)
 
     def weld(self, name: str, parent: str, child: str, links: Mapping[str, LinkBinding], active: bool) -> None:

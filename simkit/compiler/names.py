@@ -69,7 +69,7 @@ class JointBinding:
     Attributes:
         joint_names, joint_ids: MuJoCo joints, one per axis (one for a ball or floating joint, none for a fixed one).
         qpos, dofs: addresses of the first coordinate and of every degree of freedom, in axis order.
-        parent_body, child_body: ids of the bodies of the file's parent and child link (0 for the world or a static link).
+        parent_body, child_body: ids of the bodies of the file's parent and child link (0: world).
         pose_child: the joint frame in the file's child link frame at load.
         pose_parent: the joint frame in the file's parent link frame at load (in the world for `world`).
         is_reversed: the tree hangs the parent link under the child; positions and axes keep the file's meaning.
@@ -187,7 +187,9 @@ def found(items: Mapping[str, T], name: str, what: str) -> T:
 class NameMap:
     """Scoped names to bindings. Before a compile the ids in them are -1."""
 
-    def __init__(self, links: dict[str, LinkBinding], joints: dict[str, JointBinding], lights: dict[str, LightBinding]) -> None:
+    def __init__(
+        self, links: dict[str, LinkBinding], joints: dict[str, JointBinding], lights: dict[str, LightBinding]
+    ) -> None:
         self.links, self.joints, self.lights = links, joints, lights
         self._owners: dict[int, GeomOwner] = {}
         self._model: mujoco.MjModel | None = None
@@ -225,6 +227,10 @@ class NameMap:
         """(link, collision or visual, drawn or not) of a geom; empty names for one that is no model's."""
         owner = self._owners.get(int(geom_id))
         return (owner.link, owner.scoped, owner.is_visual) if owner else ("", "", False)
+
+    def geom_owner_link(self, scoped: str) -> str:
+        """The link of a collision or visual by its scoped name; empty where there is none."""
+        return next((o.link for o in self._owners.values() if o.scoped == scoped), "")
 
     def link_of_body(self, body_id: int) -> str:
         """Scoped link of a MuJoCo body; empty for the world."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Any, Final
 
 import mujoco
 import numpy as np
@@ -13,6 +13,9 @@ from simkit.scene import SceneWorld
 
 CONTACT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
 """Impedance of contacts and limits. A higher one settles no better and makes a robot rock longer on its casters."""
+
+LONGEST_ELLIPTIC_STEP: Final = 0.0025
+"""[s]; beyond it contacts are pyramids."""
 
 _MEMORY_BASE: Final = 32 << 20
 _MEMORY_PER_GEOM: Final = 64 << 10
@@ -28,17 +31,16 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     """Sets step, gravity, integrator, solver flags, compiler conventions and the surroundings' light."""
     step = world.physics.max_step_size
     if not (math.isfinite(step) and step > 0.0):
-        diagnostics.error("SK-PHYS-015", f"max_step_size is {step}; a positive number of seconds is needed", world.physics.where)
+        diagnostics.error(
+            "SK-PHYS-015", f"max_step_size is {step}; a positive number of seconds is needed", world.physics.where
+        )
         step = 0.001
     option = spec.option
     option.timestep = step
     option.gravity = world.gravity
     option.magnetic = world.magnetic_field
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    # A pyramid has 0.7 of the friction on its diagonals (a slide came out 34 % too fast there) and softens with mu².
-    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    # A body on a slope or in a grip creeps 100 times less; measured, it costs no iteration.
-    option.impratio = 100.0
+    choose_cone(option, step)
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     compiler = spec.compiler
     compiler.degree = False
@@ -49,6 +51,19 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     head = spec.visual.headlight
     head.ambient = world.surroundings.ambient[:3]
     head.diffuse = head.specular = (0.0, 0.0, 0.0)
+
+
+def choose_cone(option: Any, step: float) -> None:
+    """The friction cone, by the length of the step.
+
+    A pyramid has 0.7 of the friction on its diagonals (a slide came out 34 % too fast there), so contacts are
+    elliptic; with `impratio` 100 a body on a slope or in a grip creeps 100 times less. At 4 ms a driven wheel under an
+    elliptic contact chatters and slips (6 % of a turn on the spot, under a pyramid with `impratio` 2 0.7 %), so long steps get pyramids.
+    """
+    if step <= LONGEST_ELLIPTIC_STEP:
+        option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 100.0
+    else:
+        option.cone, option.impratio = mujoco.mjtCone.mjCONE_PYRAMIDAL, 2.0
 
 
 def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:

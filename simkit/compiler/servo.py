@@ -49,7 +49,9 @@ def add_armature(joint: Any, scoped: str, diagnostics: Diagnostics, where: Where
     if joint.armature < least:
         joint.armature = least
         unit = "kg" if is_slide else "kg m²"
-        diagnostics.note("SK-PHYS-010", f"joint {scoped} gets an armature of {least:g} {unit}, because a plugin drives it", where)
+        diagnostics.note(
+            "SK-PHYS-010", f"joint {scoped} gets an armature of {least:g} {unit}, because a plugin drives it", where
+        )
 
 
 def tune(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef]) -> None:

@@ -82,7 +82,9 @@ def turn_z_to(normal: tuple[float, float, float]) -> tuple[float, float, float, 
 def cone(shape: Cone) -> tuple[Floats, Ints]:
     """Triangles of a cone with 48 sides."""
     angle = np.linspace(0.0, 2.0 * np.pi, _SIDES, endpoint=False)
-    ring = np.column_stack([shape.radius * np.cos(angle), shape.radius * np.sin(angle), np.full(_SIDES, -shape.length / 2)])
+    ring = np.column_stack(
+        [shape.radius * np.cos(angle), shape.radius * np.sin(angle), np.full(_SIDES, -shape.length / 2)]
+    )
     vertices = np.vstack([ring, [(0.0, 0.0, -shape.length / 2), (0.0, 0.0, shape.length / 2)]])
     i = np.arange(_SIDES)
     after = (i + 1) % _SIDES
@@ -101,7 +103,9 @@ def polyline(shape: Polyline) -> tuple[Floats, Ints]:
         polygon = Polygon(outline).buffer(0)
         area = polygon if area is None else area.symmetric_difference(polygon)
     regions = [] if area is None else list(getattr(area, "geoms", [area]))
-    meshes = [trimesh.creation.extrude_polygon(r, shape.height) for r in regions if r.geom_type == "Polygon" and r.area > 0]
+    meshes = [
+        trimesh.creation.extrude_polygon(r, shape.height) for r in regions if r.geom_type == "Polygon" and r.area > 0
+    ]
     if not meshes:
         raise ValueError("the outlines enclose no area")
     whole = trimesh.util.concatenate(meshes)

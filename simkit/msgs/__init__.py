@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -105,8 +106,16 @@ def stamp_ns(stamp: Any) -> int:
 
 
 def serialize(message: Any) -> bytes:
-    """The message as CDR, little-endian, as ROS 2 sends it."""
-    return bytes(type_store().serialize_cdr(message, type_name(message), little_endian=True))
+    """The message as CDR, little-endian, as ROS 2 sends it.
+
+    Raises:
+        MessageError: a field holds what its type cannot.
+    """
+    name = type_name(message)
+    try:
+        return bytes(type_store().serialize_cdr(message, name, little_endian=True))
+    except (struct.error, TypeError, ValueError, AttributeError, AssertionError, OverflowError) as error:
+        raise MessageError(f"{name} cannot be written: {error}") from None
 
 
 def deserialize(data: bytes | memoryview, type_name: str) -> Any:

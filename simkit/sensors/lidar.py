@@ -168,7 +168,7 @@ class Lidar(Sensor):
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)
         link = compiled.names.link(self.scene.parent)
-        self._fan.bind(self._body, link.visuals if self.sees_visuals else link.ray_geoms)
+        self._fan.bind(compiled.model, self._body, link.visuals if self.sees_visuals else link.ray_geoms)
         self._retro = self._reflectances(compiled)
 
     def _reflectances(self, compiled: Any) -> Vector | None:

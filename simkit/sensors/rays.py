@@ -14,6 +14,7 @@ from simkit.pose import Vector
 
 _UNUSED_GROUP = 0
 """Nothing of ours is in this group, so what is put there for a moment is not hit."""
+_ENDLESS = 1e9  # [m]
 
 
 class RayFan:
@@ -36,10 +37,11 @@ class RayFan:
         self._groups = np.zeros(6, dtype=np.uint8)
         self._groups[list(groups)] = 1
 
-    def bind(self, body: int, own_geoms: Sequence[int]) -> None:
+    def bind(self, model: Any, body: int, own_geoms: Sequence[int]) -> None:
         """Says what is not hit: the geoms of a moving body, or some geoms of the world."""
         self._exclude = body if body > 0 else -1
         self._hidden = list(own_geoms) if body <= 0 else []
+        self._roots, self._wide = _bounds_to_widen(model, self._groups)
 
     def cast(self, model: Any, data: Any, origin: Vector, rotation: Vector) -> None:
         """Fills `distances` [m] (negative: nothing hit) and `geoms`, shape (n,).
@@ -49,7 +51,7 @@ class RayFan:
             rotation: of the sensor's frame, shape (3, 3).
         """
         np.matmul(self.directions, rotation.T, out=self._rotated)
-        with self._without_own(model):
+        with self._seeing_right(model):
             mujoco.mj_multiRay(
                 model, data, origin, self._flat, self._groups, 1, self._exclude,
                 self.geoms, self.distances, None, self.count, self.reach,
@@ -58,7 +60,7 @@ class RayFan:
     def recast(self, model: Any, data: Any, origin: Vector, start: float, which: npt.NDArray[np.intp]) -> None:
         """Casts some rays of the last `cast` again, from `start` [m] along each; distances count from the origin."""
         geom = np.empty(1, dtype=np.int32)
-        with self._without_own(model):
+        with self._seeing_right(model):
             for i in which.tolist():
                 direction = self._rotated[i]
                 found = mujoco.mj_ray(
@@ -68,18 +70,58 @@ class RayFan:
                 self.geoms[i] = geom[0]
 
     @contextmanager
-    def _without_own(self, model: Any) -> Iterator[None]:
-        # one body can be excluded, but for a static link that would be the whole world
-        if not self._hidden:
-            yield
-            return
-        groups = model.geom_group
-        before = groups[self._hidden]
-        groups[self._hidden] = _UNUSED_GROUP
+    def _seeing_right(self, model: Any) -> Iterator[None]:
+        """Changes of the model that hold for one cast.
+
+        One body can be excluded, but for a static link that would be the whole world, so its geoms are put into a
+        group that is not seen. And a body is passed over where a ray misses what collides of it, even if another of
+        its geoms is in the way: its bounds are made to hold all that is seen.
+        """
+        groups, bounds = model.geom_group, model.bvh_aabb
+        hidden, roots = self._hidden, self._roots
+        if hidden:
+            kept_groups = groups[hidden]
+            groups[hidden] = _UNUSED_GROUP
+        if len(roots):
+            kept_bounds = bounds[roots]
+            bounds[roots] = self._wide
         try:
             yield
         finally:
-            groups[self._hidden] = before
+            if hidden:
+                groups[hidden] = kept_groups
+            if len(roots):
+                bounds[roots] = kept_bounds
+
+
+def _bounds_to_widen(model: Any, groups: npt.NDArray[np.uint8]) -> tuple[npt.NDArray[np.intp], Vector]:
+    """Bounds of bodies (rows of `bvh_aabb`: centre and half size, in the inertial frame) that seen geoms stick out of.
+
+    Returns:
+        The rows, shape (k,), and what they should be, shape (k, 6).
+    """
+    seen = np.flatnonzero(groups[model.geom_group] > 0)
+    bodies = model.geom_bodyid[seen]
+    seen = seen[model.body_bvhnum[bodies] > 0]
+    bodies = model.geom_bodyid[seen]
+    turn = np.empty((model.nbody, 9))
+    for body in np.unique(bodies):
+        mujoco.mju_quat2Mat(turn[body], model.body_iquat[body])
+    centre = model.geom_pos[seen] - model.body_ipos[bodies]
+    centre = np.einsum("gji,gj->gi", turn.reshape(-1, 3, 3)[bodies], centre)
+    # a plane has no radius: it has no end
+    radius = np.where(model.geom_rbound[seen] > 0, model.geom_rbound[seen], _ENDLESS)[:, None]
+    roots = model.body_bvhadr
+    low, high = np.full((model.nbody, 3), np.inf), np.full((model.nbody, 3), -np.inf)
+    np.minimum.at(low, bodies, centre - radius)
+    np.maximum.at(high, bodies, centre + radius)
+    found = np.unique(bodies)
+    rows = roots[found].astype(np.intp)
+    box = model.bvh_aabb[rows]
+    low, high = np.minimum(low[found], box[:, :3] - box[:, 3:]), np.maximum(high[found], box[:, :3] + box[:, 3:])
+    wide = np.hstack(((low + high) / 2, (high - low) / 2))
+    changed = (wide[:, 3:] > box[:, 3:] + 1e-12).any(axis=1)
+    return rows[changed], wide[changed]
 
 
 def fan_directions(azimuths: Vector, elevations: Vector) -> Vector:

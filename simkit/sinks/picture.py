@@ -117,8 +117,8 @@ def _viewpoint(sim: Simulation, points: list[Any], driven: DrivenPath | None) ->
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     target = (low + high) / 2
     radius = max(float(np.linalg.norm(high - low)) / 2, 0.6)
-    distance = radius / math.tan(0.4) * 1.05
-    eye = target + distance * np.array((-0.42, -0.55, 0.72))
+    distance = radius / math.tan(0.4)
+    eye = target + distance * np.array((-0.34, -0.46, 0.82))
     return eye, target
 
 

@@ -27,11 +27,12 @@ class Stopwatch:
         return time.perf_counter() - self._start
 
 
-def rate_text(row: TopicCount) -> str:
-    """The true rate of a topic, or why there is none."""
+def rate_text(row: TopicCount, now: int) -> str:
+    """The true rate of a topic up to `now` [ns], or why there is none."""
     if not row.counted:
         return "not read"
-    return "–" if row.rate is None else f"{row.rate:.2f} Hz"
+    rate = row.rate(now)
+    return "–" if rate is None else f"{rate:.2f} Hz"
 
 
 class Progress:
@@ -87,6 +88,6 @@ class Progress:
         rows = self._counter.rows
         room = max(self._console.height - 4, 3)
         for row in rows[:room]:
-            table.add_row(row.topic, str(row.count), rate_text(row))
+            table.add_row(row.topic, str(row.count), rate_text(row, self._sim.time_ns))
         more = [Text(f"… and {len(rows) - room} more")] if len(rows) > room else []
         return Group(head, table, *more)

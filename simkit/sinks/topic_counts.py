@@ -16,25 +16,25 @@ RENDERED = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "se
 
 @dataclass
 class TopicCount:
-    """What arrived on one topic; times in simulated nanoseconds.
+    """What arrived on one topic.
 
     Attributes:
         counted: False where nobody reads the topic, so that nothing is known.
+        count: messages since `since`.
+        since: simulated time [ns] from which they are counted.
     """
 
     topic: str
     type_name: str
     counted: bool
+    since: int
     count: int = 0
-    first: int = 0
-    last: int = 0
 
-    @property
-    def rate(self) -> float | None:
-        """Messages per simulated second [Hz] from the first to the last; None before two of different times."""
-        if self.count < 2 or self.last <= self.first:
+    def rate(self, now: int) -> float | None:
+        """Messages per simulated second [Hz] up to `now` [ns]; None before there are two."""
+        if self.count < 2 or now <= self.since:
             return None
-        return (self.count - 1) * 1e9 / (self.last - self.first)
+        return self.count * 1e9 / (now - self.since)
 
 
 class TopicCounter:
@@ -70,15 +70,14 @@ class TopicCounter:
     def _add(self, topic: str, type_name: str) -> None:
         if topic in self._rows:
             return
-        row = self._rows[topic] = TopicCount(topic, type_name, type_name not in self._skip)
+        row = self._rows[topic] = TopicCount(topic, type_name, type_name not in self._skip, self._sim.time_ns)
         if not row.counted:
             return
 
         def count(_: Any) -> None:
-            now = self._sim.time_ns
-            if row.count == 0 or now < row.last:
-                row.first, row.count = now, 0
-            row.last = now
+            if self._sim.time_ns < row.since:
+                # The simulation was reset.
+                row.since, row.count = self._sim.time_ns, 0
             row.count += 1
 
         self._taps.append(self._sim.bus.tap(topic, count))

@@ -1,0 +1,34 @@
+"""`simkit bench`: speed beside bare MuJoCo."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from simkit.cli.console import guarded, out
+from simkit.cli.options import PluginPaths, ResourcePaths, World
+
+_HOUR = 3600.0
+
+
+@guarded
+def bench(
+    world: World,
+    rounds: Annotated[int, typer.Option(help="Timings of each side.", metavar="N", min=1)] = 9,
+    resource_path: ResourcePaths = [],  # noqa: B006
+    plugin_path: PluginPaths = [],  # noqa: B006
+) -> int:
+    """Times a world and, in the same run, bare MuJoCo on the same compiled model."""
+    from simkit.bench import measure, memory_growth
+    from simkit.build import load
+
+    out().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}")
+    for figure in measure(world, rounds=rounds, resource_paths=resource_path, plugin_paths=plugin_path):
+        bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
+        ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
+        out().print(f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}  a {figure.unit}")
+    with load(world, resource_paths=resource_path, plugin_paths=plugin_path) as sim:
+        growth = memory_growth(sim, 20.0)
+    out().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
+    return 0

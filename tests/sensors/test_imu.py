@@ -1,0 +1,139 @@
+"""The IMU: levers, rates, reference frames, Classic's plugin."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from sensor_worlds import noise, sensor, world, xyz
+
+import simkit
+from simkit.sensors.noise import NoiseModel
+
+SPINNER = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>
+  <model name="m"><link name="base"><inertial><mass>1e6</mass><inertia><ixx>1e6</ixx><iyy>1e6</iyy><izz>1e6</izz></inertia></inertial></link>
+    <link name="arm"><sensor name="s" type="imu"><pose>0.5 0 0 0 0 1.5707963267948966</pose><update_rate>0</update_rate><topic>i</topic></sensor></link>
+    <joint name="j" type="revolute"><parent>base</parent><child>arm</child><axis><xyz>0 0 1</xyz></axis></joint>
+  </model></world></sdf>"""
+
+
+def classic(plugin: str, noises: str = "") -> str:
+    block = f"<imu>{noises}</imu>" + f'<plugin name="node" filename="libgazebo_ros_imu_sensor.so">{plugin}</plugin>'
+    return world(sensor("imu", block), pose="0 0 0 0 0 0.5")
+
+
+def test_on_a_turning_arm_it_feels_the_centripetal_acceleration_at_its_own_place() -> None:
+    with simkit.load(SPINNER) as sim:
+        sim.joint("m::j").set_velocity(2.0)
+        sub = sim.subscribe("/i")
+        sim.step(20)
+        message = sub.latest
+        # 0.5 m out, turned by 90 degrees about z: inwards is the sensor's +y
+        np.testing.assert_allclose(xyz(message.angular_velocity), (0, 0, 2), atol=1e-6)
+        np.testing.assert_allclose(xyz(message.linear_acceleration), (0, 0.5 * 4, 0), atol=1e-4)
+
+
+def test_on_an_accelerating_arm_it_feels_the_tangential_acceleration() -> None:
+    with simkit.load(SPINNER) as sim:
+        sub = sim.subscribe("/i")
+        speeds = []
+        for _ in range(5):
+            sim.joint("m::j").set_effort(3.0)
+            sim.step()
+            speeds.append(sim.joint("m::j").velocity)
+        sim.joint("m::j").set_effort(3.0)
+        sensor_now = sim.sensor("m::arm::s")
+        alpha = (speeds[-1] - speeds[-2]) / sim.timestep
+        del sensor_now
+        force = xyz(sub.latest.linear_acceleration)
+        assert alpha > 0.1
+        # tangential is the sensor's -x; the message was made while no effort was applied any more
+        assert abs(force[1] - 0.5 * speeds[-1] ** 2) < 1e-3
+
+
+def test_gz_orientation_is_relative_to_the_start_and_classics_to_the_world() -> None:
+    with simkit.load(world(sensor("imu", "<imu/>"), pose="0 0 0 0 0 0.5")) as sim:
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.orientation.w == pytest.approx(1.0)
+        assert sim.sensor("m::l::s").topic == "/world/w/model/m/link/l/sensor/s/imu"
+        assert sim.sensor("m::l::s").latest.header.frame_id == "m::l::s"
+    with simkit.load(classic("")) as sim:
+        sim.run(0.02)
+        message = sim.sensor("m::l::s").latest
+        assert message.orientation.z == pytest.approx(math.sin(0.25))
+        assert message.header.frame_id == "l"
+        assert "/node/out" in sim.topics()
+        assert not [t for t in sim.topics() if t.startswith("/world/")]
+    with simkit.load(classic("<initial_orientation_as_reference>true</initial_orientation_as_reference>")) as sim:
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.orientation.w == pytest.approx(1.0)
+
+
+def test_classic_names_topic_and_frame() -> None:
+    plugin = "<ros><namespace>/tb3</namespace><remapping>~/out:=imu</remapping></ros><frame_name>here</frame_name>"
+    with simkit.load(classic(plugin)) as sim:
+        sim.run(0.02)
+        assert sim.topics()["/tb3/imu"] == "sensor_msgs/msg/Imu"
+        assert sim.sensor("m::l::s").topic == "/tb3/imu"
+        assert sim.sensor("m::l::s").latest.header.frame_id == "here"
+
+
+def test_a_given_frame_stands() -> None:
+    with simkit.load(world(sensor("imu", "<gz_frame_id>odd</gz_frame_id>"))) as sim:
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.header.frame_id == "odd"
+
+
+def test_an_unknown_reference_is_reported() -> None:
+    block = "<imu><orientation_reference_frame><localization>GRAV_UP</localization></orientation_reference_frame></imu>"
+    with simkit.load(world(sensor("imu", block))) as sim:
+        assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-002"] == ["warning"]
+
+
+def test_reading_later_gives_the_same_as_reading_in_time() -> None:
+    noises = f"<angular_velocity><x>{noise(0.1)}</x></angular_velocity>"
+    with simkit.load(classic("", noises), seed=4) as early, simkit.load(classic("", noises), seed=4) as late:
+        early.subscribe("/node/out")
+        early.run(0.055)
+        late.run(0.055)
+        a, b = early.sensor("m::l::s").latest, late.sensor("m::l::s").latest
+        assert a.header.stamp.nanosec == b.header.stamp.nanosec == 50_000_000
+        assert a.angular_velocity.x == b.angular_velocity.x != 0
+        assert xyz(a.linear_acceleration).tolist() == xyz(b.linear_acceleration).tolist()
+
+
+def test_a_restored_run_repeats_its_noise() -> None:
+    more = "<dynamic_bias_stddev>0.2</dynamic_bias_stddev><dynamic_bias_correlation_time>1</dynamic_bias_correlation_time>"
+    noises = f"<angular_velocity><x>{noise(0.1, more=more)}</x></angular_velocity>"
+    with simkit.load(classic("", noises), seed=4) as sim:
+        sub = sim.subscribe("/node/out")
+        sim.run(0.1)
+        snapshot = sim.snapshot()
+        sim.run(0.1)
+        first = [m.angular_velocity.x for m in sub.messages][-10:]
+        sim.restore(snapshot)
+        sim.run(0.1)
+        assert [m.angular_velocity.x for m in sub.messages][-10:] == first
+        sim.reset()
+        sim.run(0.2)
+        assert [m.angular_velocity.x for m in sub.messages][-10:] == first
+
+
+def test_options_keep_every_noise_parameter() -> None:
+    more = (
+        "<bias_mean>1</bias_mean><bias_stddev>2</bias_stddev><dynamic_bias_stddev>3</dynamic_bias_stddev>"
+        "<dynamic_bias_correlation_time>4</dynamic_bias_correlation_time><precision>5</precision>"
+    )
+    with simkit.load(world(sensor("imu", f"<imu><angular_velocity><y>{noise(6, 7, more)}</y></angular_velocity></imu>"))) as sim:
+        assert sim.sensor("m::l::s").options.angular_velocity[1] == NoiseModel(7, 6, 1, 2, 3, 4, 5)
+
+
+def test_a_slower_rate_can_be_set() -> None:
+    with simkit.load(world(sensor("imu", "<imu/>"))) as sim:
+        sub = sim.subscribe("/world/w/model/m/link/l/sensor/s/imu")
+        sim.sensor("m::l::s").set_rate(20)
+        sim.run(0.5)
+        assert 10 <= len(sub.messages) <= 11
+        with pytest.raises(ValueError, match="at least 0"):
+            sim.sensor("m::l::s").set_rate(math.nan)

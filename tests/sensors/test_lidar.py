@@ -1,0 +1,168 @@
+"""Lidars: what is seen, how near, how far, and Classic's plugin."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from sensor_worlds import box, cloud, noise, sensor, world
+
+import simkit
+
+AHEAD = box("ahead", "3.5 0 1 0 0 0", "1 1 1", retro=70)
+HOUSING = """<collision name="c"><geometry><cylinder><radius>0.2</radius><length>0.4</length></cylinder></geometry></collision>
+  <visual name="v"><geometry><cylinder><radius>0.2</radius><length>0.4</length></cylinder></geometry></visual>"""
+TOPIC = "/world/w/model/m/link/l/sensor/s/"
+
+
+def block(samples: int = 3, low: float = -math.pi / 2, high: float = math.pi / 2, rng: tuple[float, float] = (0.1, 10), more: str = "") -> str:
+    return f"""<lidar><scan><horizontal><samples>{samples}</samples><min_angle>{low}</min_angle><max_angle>{high}</max_angle>
+      </horizontal></scan><range><min>{rng[0]}</min><max>{rng[1]}</max></range>{more}</lidar>"""
+
+
+def scan_of(text: str, name: str = "m::l::s") -> object:
+    with simkit.load(text) as sim:
+        sim.run(0.02)
+        return sim.sensor(name).latest
+
+
+@pytest.mark.parametrize("kind", ["lidar", "ray", "gpu_lidar", "gpu_ray"])
+def test_every_kind_sees_a_box_and_its_reflectance(kind: str) -> None:
+    scan = scan_of(world(sensor(kind, block()), others=AHEAD))
+    np.testing.assert_allclose(scan.ranges, (math.inf, 3.0, math.inf), atol=1e-6)
+    np.testing.assert_array_equal(scan.intensities, (0, 70, 0))
+    assert scan.angle_increment == pytest.approx(math.pi / 2)
+    assert (scan.time_increment, scan.scan_time) == (0.0, 0.01)
+
+
+def test_physics_rays_see_collisions_and_rendered_ones_visuals() -> None:
+    ghosts = box("solid", "2.5 0 1 0 0 0", "1 1 1", visual=False) + box("picture", "0 3.5 1 0 0 0", "1 1 1", collision=False)
+    np.testing.assert_allclose(scan_of(world(sensor("lidar", block()), others=ghosts)).ranges, (math.inf, 2, math.inf), atol=1e-6)
+    np.testing.assert_allclose(scan_of(world(sensor("gpu_lidar", block()), others=ghosts)).ranges, (math.inf, math.inf, 3), atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["lidar", "gpu_lidar"])
+@pytest.mark.parametrize("static", [True, False])
+def test_its_own_housing_is_not_hit(kind: str, static: bool) -> None:
+    text = world(sensor(kind, block(rng=(0.01, 10))), others=AHEAD, body=HOUSING, static=static)
+    np.testing.assert_allclose(scan_of(text).ranges, (math.inf, 3.0, math.inf), atol=1e-3)
+
+
+def test_a_housing_that_is_hidden_for_one_lidar_is_seen_by_another() -> None:
+    """The static world's other links stay visible, and nothing is left hidden."""
+    other = f'<model name="n"><static>true</static><pose>-2 0 1 0 0 0</pose><link name="l">{sensor("lidar", block())}</link></model>'
+    with simkit.load(world(sensor("lidar", block()), others=AHEAD + other, body=HOUSING)) as sim:
+        sim.run(0.02)
+        before = sim.mj_model.geom_group.copy()
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(3.0)
+        assert sim.sensor("n::l::s").latest.ranges[1] == pytest.approx(1.8, abs=1e-6)
+        np.testing.assert_array_equal(sim.mj_model.geom_group, before)
+
+
+def test_physics_rays_start_at_the_minimum_range() -> None:
+    near = box("near", "0.5 0 1 0 0 0", "0.1 1 1")
+    ranges = scan_of(world(sensor("lidar", block(rng=(1.0, 10))), others=AHEAD + near)).ranges
+    np.testing.assert_allclose(ranges, (math.inf, 3.0, math.inf), atol=1e-6)
+
+
+def test_rendered_lidars_say_minus_infinity_for_what_is_too_near() -> None:
+    near = box("near", "0.5 0 1 0 0 0", "0.1 0.1 1")
+    ranges = scan_of(world(sensor("gpu_lidar", block(rng=(1.0, 10))), others=AHEAD + near)).ranges
+    np.testing.assert_array_equal(ranges, (math.inf, -math.inf, math.inf))
+
+
+def test_a_surface_just_beyond_the_range_is_not_there() -> None:
+    assert scan_of(world(sensor("lidar", block(rng=(0.1, 2.999))), others=AHEAD)).ranges[1] == math.inf
+    assert scan_of(world(sensor("lidar", block(rng=(0.1, 3.001))), others=AHEAD)).ranges[1] == pytest.approx(3.0)
+
+
+def test_noise_is_clamped_to_the_range_and_truth_has_none() -> None:
+    text = world(sensor("lidar", block(rng=(0.1, 4), more=noise(0.01, mean=50))), others=AHEAD)
+    with simkit.load(text) as sim:
+        sim.run(0.02)
+        latest, truth = sim.sensor("m::l::s").latest, sim.sensor("m::l::s").truth
+        np.testing.assert_array_equal(latest.ranges, (math.inf, 4.0, math.inf))
+        assert truth.ranges[1] == pytest.approx(3.0)
+        assert truth.header.stamp.nanosec == latest.header.stamp.nanosec
+
+
+def test_several_layers_give_the_middle_one_as_a_scan_and_all_as_a_cloud() -> None:
+    layers = """<lidar><scan><horizontal><samples>5</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal>
+      <vertical><samples>3</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical></scan>
+      <range><min>0.1</min><max>10</max></range></lidar>"""
+    wall = box("wall", "3.5 0 1 0 0 0", "1 9 9")
+    with simkit.load(world(sensor("lidar", layers), others=wall)) as sim:
+        points = sim.subscribe(TOPIC + "lidar/points")
+        sim.run(0.02)
+        scan = sim.sensor("m::l::s").latest
+        assert len(scan.ranges) == 5
+        assert scan.ranges[2] == pytest.approx(3.0)
+        found = cloud(points.latest)
+        assert found.shape == (3, 5)
+        assert points.latest.is_dense
+        np.testing.assert_allclose(found["x"], 3.0, atol=1e-5)
+        np.testing.assert_allclose(found["z"][0, 2], -3 * math.tan(0.1), atol=1e-5)
+        assert found["ring"][:, 0].tolist() == [0, 1, 2]
+
+
+def test_rays_without_a_reading_keep_their_place_in_the_cloud() -> None:
+    with simkit.load(world(sensor("lidar", block()), others=AHEAD)) as sim:
+        points = sim.subscribe(TOPIC + "lidar/points")
+        sim.run(0.02)
+        found = cloud(points.latest)[0]
+        assert not points.latest.is_dense
+        assert np.isfinite(found["x"]).tolist() == [False, True, False]
+
+
+@pytest.mark.parametrize("output, type_name", [("LaserScan", "LaserScan"), ("PointCloud2", "PointCloud2"), ("PointCloud", "PointCloud"), ("Range", "Range")])
+def test_classic_gives_what_output_type_asks_for(output: str, type_name: str) -> None:
+    plugin = f"""<plugin name="node" filename="libgazebo_ros_ray_sensor.so"><ros><remapping>~/out:=scan</remapping></ros>
+      <output_type>sensor_msgs/{output}</output_type><min_intensity>5</min_intensity></plugin>"""
+    with simkit.load(world(sensor("ray", block(), extra=plugin), others=AHEAD)) as sim:
+        sub = sim.subscribe("/scan")
+        sim.run(0.02)
+        assert sim.topics()["/scan"] == f"sensor_msgs/msg/{type_name}"
+        message = sub.latest
+        assert message.header.frame_id == "l"
+        assert sim.sensor("m::l::s").topic == "/scan"
+        if output == "LaserScan":
+            np.testing.assert_array_equal(message.intensities, (5, 70, 5))
+        if output == "PointCloud2":
+            assert message.is_dense
+            np.testing.assert_allclose(cloud(message)["x"], [[3.0]], atol=1e-6)
+        if output == "PointCloud":
+            assert [p.x for p in message.points] == pytest.approx([3.0])
+            assert message.channels[0].name == "intensity"
+        if output == "Range":
+            assert message.range == pytest.approx(3.0)
+            assert (message.radiation_type, message.field_of_view) == (1, pytest.approx(math.pi))
+
+
+def test_bad_parameters_are_reported_together() -> None:
+    bad = """<lidar><scan><horizontal><samples>0</samples><min_angle>1</min_angle><max_angle>0</max_angle></horizontal></scan>
+      <range><min>2</min><max>1</max></range></lidar>"""
+    with pytest.raises(simkit.LoadError) as caught:
+        simkit.load(world(sensor("lidar", bad)))
+    assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-PARAM-002"] * 3
+
+
+def test_a_lidar_on_a_moved_static_model_moves_along() -> None:
+    with simkit.load(world(sensor("lidar", block()), others=AHEAD, body=HOUSING)) as sim:
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(3.0)
+        sim.model("m").set_pose(simkit.Pose((1, 0, 1)))
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(2.0)
+
+
+def test_a_spawned_box_is_seen_and_a_removed_one_is_not() -> None:
+    with simkit.load(world(sensor("lidar", block()), others=AHEAD)) as sim:
+        sim.run(0.02)
+        sim.spawn(f'<sdf version="1.9">{box("new", "2.5 0 1 0 0 0", "1 1 1")}</sdf>')
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(3.0)  # taken before
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(2.0)
+        sim.remove("new")
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(3.0)
