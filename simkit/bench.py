@@ -14,10 +14,11 @@ import numpy as np
 
 from simkit import build
 from simkit.compiler import groups
+from simkit.sensors import gl
 
 _CHUNK = 500  # steps a round
-_CAMERAS = frozenset({"sensor_msgs/msg/Image"})
-_SCANS = frozenset({"ray", "gpu_ray", "lidar", "gpu_lidar"})
+_APART = 5  # steps between two readings of a sensor
+_CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,9 @@ def interleaved(sides: Sequence[Callable[[], object]], rounds: int) -> list[floa
     return [statistics.median(times) for times in taken]
 
 
-def measure(source: str, *, rounds: int = 9, resource_paths: Sequence[Any] = (), plugin_paths: Sequence[Any] = ()) -> Iterator[Figure]:
+def measure(
+    source: str, *, rounds: int = 9, resource_paths: Sequence[Any] = (), plugin_paths: Sequence[Any] = ()
+) -> Iterator[Figure]:
     """Each figure of a world as soon as it is known."""
 
     def load() -> Any:
@@ -61,11 +64,12 @@ def measure(source: str, *, rounds: int = 9, resource_paths: Sequence[Any] = (),
         yield stepping(sim, rounds)
     with load() as sim:
         yield everything_read(sim, rounds)
-    for name in _sensor_names(load):
-        with load() as read, load() as unread:
-            figure = sensor_cost(read, unread, name, rounds)
-            if figure is not None:
-                yield figure
+    with load() as read, load() as unread:
+        for sim in (read, unread):
+            sim.run(1.0)
+        for sensor in read.sensors.values():
+            if sensor.topic:
+                yield sensor_cost(read, unread, sensor, rounds)
 
 
 def memory_growth(sim: Any, duration: float) -> float:
@@ -97,21 +101,36 @@ def everything_read(sim: Any, rounds: int) -> Figure:
     return Figure("step, all plugins, all sensors read but images", "step", ours / _CHUNK, theirs / _CHUNK)
 
 
-def sensor_cost(read: Any, unread: Any, name: str, rounds: int) -> Figure | None:
-    """What reading one sensor adds, a reading; a planar scan beside `mj_multiRay` with as many rays."""
-    sensor = read.sensor(name)
-    for output in sensor.outputs:
-        read.bus.tap(output.topic, _ignore)
-    period = read.timestep if sensor.update_rate <= 0 else 1.0 / sensor.update_rate
-    readings = max(1, min(20, round(1.0 / period)))
-    ticks = max(1, round(readings * period / read.timestep))
+def sensor_cost(read: Any, unread: Any, sensor: Any, rounds: int) -> Figure:
+    """What reading one sensor adds, a reading; a scan beside as many bare rays, a picture beside one bare pass.
+
+    Args:
+        read: where the sensor is read while this lasts.
+        unread: the same world, in which nobody reads anything.
+        sensor: of `read`.
+        rounds: timings of each side.
+    """
+    tap = read.bus.tap(sensor.topic, _ignore)
+    rate = sensor.update_rate
+    # Readings close together: at a sensor's own rate the difference would drown in that of the steps between.
+    for sim in (read, unread):
+        sim.sensor(sensor.scoped).set_rate(1.0 / (_APART * sim.timestep))
+    readings = 10 if read.topics()[sensor.topic] in _CAMERAS else 50
+    ticks = readings * _APART
     sides: list[Callable[[], object]] = [lambda: read.step(ticks), lambda: unread.step(ticks)]
-    rays = _bare_scan(read, sensor) if sensor.kind in _SCANS else None
-    if rays is not None:
-        sides.append(lambda: [rays() for _ in range(readings)])
+    bare = _bare_reading(read, sensor)
+    if bare is not None:
+        sides.append(lambda: [bare() for _ in range(readings)])
     times = interleaved(sides, max(3, rounds // 2))
-    bare = times[2] / readings if rays is not None else None
-    return Figure(f"{sensor.kind} {name}", "reading", max(times[0] - times[1], 0.0) / readings, bare)
+    tap.close()
+    for sim in (read, unread):
+        sim.sensor(sensor.scoped).set_rate(rate)
+    return Figure(
+        f"{sensor.kind} {sensor.scoped}",
+        "reading",
+        max(times[0] - times[1], 0.0) / readings,
+        times[2] / readings if bare is not None else None,
+    )
 
 
 class Bare:
@@ -125,14 +144,17 @@ class Bare:
         mujoco.mj_step(self.model, self.data, count)
 
 
-def _bare_scan(sim: Any, sensor: Any) -> Callable[[], None] | None:
-    """The engine's own scan of as many rays from the same place."""
+def _bare_reading(sim: Any, sensor: Any) -> Callable[[], None] | None:
     message = sensor.latest
-    if message is None:
-        sim.run(1.0)
-        message = sensor.latest
-    if message is None or not hasattr(message, "ranges"):
-        return None
+    if hasattr(message, "ranges"):
+        return _bare_scan(sim, sensor, message)
+    if hasattr(message, "encoding"):
+        return _bare_pass(sim, message.width, message.height)
+    return None
+
+
+def _bare_scan(sim: Any, sensor: Any, message: Any) -> Callable[[], None]:
+    """The engine's own scan of as many rays from the same place."""
     count = len(message.ranges)
     pose = sensor.pose
     angles = message.angle_min + np.arange(count) * message.angle_increment
@@ -150,9 +172,27 @@ def _bare_scan(sim: Any, sensor: Any) -> Callable[[], None] | None:
     return scan
 
 
-def _sensor_names(load: Callable[[], Any]) -> list[str]:
-    with load() as sim:
-        return list(sim.sensors)
+def _bare_pass(sim: Any, width: int, height: int) -> Callable[[], None]:
+    """One picture of the engine's own, colour and depth read together, without shadows and multisampling."""
+    model, data = copy.copy(sim.mj_model), sim.mj_data
+    model.vis.quality.offsamples = 0
+    model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+    rectangle = mujoco.MjrRect(0, 0, width, height)
+    colours, depths = np.empty((height, width, 3), np.uint8), np.empty((height, width), np.float32)
+    scene, camera, option = mujoco.MjvScene(model, model.ngeom + 100), mujoco.MjvCamera(), mujoco.MjvOption()
+    scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
+    every = int(mujoco.mjtCatBit.mjCAT_ALL)
+    with gl.current():
+        context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
+
+    def draw() -> None:
+        with gl.current():
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, context)
+            mujoco.mjv_updateScene(model, data, option, None, camera, every, scene)
+            mujoco.mjr_render(rectangle, scene, context)
+            mujoco.mjr_readPixels(colours, depths, rectangle, context)
+
+    return draw
 
 
 def _ignore(_: Any) -> None:

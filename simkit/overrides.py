@@ -66,7 +66,9 @@ def check_used(diagnostics: Sequence[Any] | Diagnostics) -> None:
     """
     for found in diagnostics:
         if found.code == "SK-PARAM-003" and (found.file or "").startswith(_PLACE):
-            raise InputError(f"{_CODE} {found.file}: {found.message}" + (f"; {found.hint}" if found.hint else ""), _CODE)
+            raise InputError(
+                f"{_CODE} {found.file}: {found.message}" + (f"; {found.hint}" if found.hint else ""), _CODE
+            )
 
 
 def _bad(text: str, reason: str) -> InputError:
@@ -89,7 +91,11 @@ class _Override:
         names = sorted(_entities(scene), key=len, reverse=True)
         entity = next((n for n in names if path.startswith(n + ".")), None)
         if entity is None:
-            asked = path.rpartition("::")[0] + "::" + path.rpartition("::")[2].split(".")[0] if "::" in path else path.split(".")[0]
+            asked = (
+                path.rpartition("::")[0] + "::" + path.rpartition("::")[2].split(".")[0]
+                if "::" in path
+                else path.split(".")[0]
+            )
             hint = did_you_mean(asked, [*names, "physics", "world"])
             raise _bad(self.text, f"no entity {asked!r}; {hint or 'simkit inspect lists them'}")
         element = path[len(entity) + 1 :]
@@ -138,9 +144,12 @@ class _Override:
         changed = (replace(s, plugins=self._plugins(s.plugins, s.scoped, entity, element)) for s in sensors)
         return tuple(self._sensor(s, element) if s.scoped == entity else s for s in changed)
 
-    def _plugins(self, plugins: tuple[ScenePlugin, ...], owner: str, entity: str, element: str) -> tuple[ScenePlugin, ...]:
+    def _plugins(
+        self, plugins: tuple[ScenePlugin, ...], owner: str, entity: str, element: str
+    ) -> tuple[ScenePlugin, ...]:
         return tuple(
-            replace(p, params=self._params(p.params, element)) if _joined(owner, p.name) == entity else p for p in plugins
+            replace(p, params=self._params(p.params, element)) if _joined(owner, p.name) == entity else p
+            for p in plugins
         )
 
     # ------------------------------------------------------------------ changing it
@@ -151,20 +160,20 @@ class _Override:
             self._known(element, _PHYSICS)
             positive = element == "max_step_size"
             number = self._number(lambda v: math.isfinite(v) and (v > 0 if positive else v >= 0), "a positive number")
-            return replace(world, physics=replace(world.physics, **{element: number}))
+            return replace(world, physics=replace(world.physics, **_change(element, number)))
         self._known(element, _WORLD)
-        return replace(world, **{element: self._vector(_WORLD[element])})
+        return replace(world, **_change(element, self._vector(_WORLD[element])))
 
     def _model(self, model: SceneModel, element: str) -> SceneModel:
         self._known(element, _MODEL)
-        return replace(model, **{element: self._boolean()})
+        return replace(model, **_change(element, self._boolean()))
 
     def _link(self, link: SceneLink, element: str) -> SceneLink:
         self._known(element, _LINK)
         if element == "inertial.mass":
             mass = self._number(lambda v: math.isfinite(v) and v > 0, "a positive number")
             return replace(link, inertial=replace(link.inertial, mass=mass, given=True))
-        return replace(link, **{element: self._boolean()})
+        return replace(link, **_change(element, self._boolean()))
 
     def _joint(self, joint: SceneJoint, element: str) -> SceneJoint:
         head, _, rest = element.partition(".")
@@ -174,13 +183,15 @@ class _Override:
         if number >= len(joint.axes):
             raise _bad(self.text, f"joint {joint.scoped!r} has {len(joint.axes)} axes")
         value = self._number(lambda v: not math.isnan(v), "a number")
-        axes = tuple(replace(a, **{_AXIS[rest]: value}) if i == number else a for i, a in enumerate(joint.axes))
+        axes = tuple(replace(a, **_change(_AXIS[rest], value)) if i == number else a for i, a in enumerate(joint.axes))
         return replace(joint, axes=axes)
 
     def _light(self, light: SceneLight, element: str) -> SceneLight:
         self._known(element, _LIGHT)
         if element == "intensity":
-            return replace(light, intensity=self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0"))
+            return replace(
+                light, intensity=self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
+            )
         if element == "direction":
             x, y, z = self._vector(3)
             length = math.hypot(x, y, z)
@@ -189,12 +200,12 @@ class _Override:
             unit = (x / length, y / length, z / length)
             world = light.pose_world.rotate(unit)
             return replace(light, direction=unit, direction_world=(float(world[0]), float(world[1]), float(world[2])))
-        return replace(light, **{element: self._boolean()})
+        return replace(light, **_change(element, self._boolean()))
 
     def _collision(self, collision: Any, element: str) -> Any:
         self._known(element, list(_SURFACE))
         value = self._number(lambda v: math.isfinite(v) and v >= 0, "a number of at least 0")
-        return replace(collision, surface=replace(collision.surface, **{_SURFACE[element]: value}))
+        return replace(collision, surface=replace(collision.surface, **_change(_SURFACE[element], value)))
 
     def _sensor(self, sensor: SceneSensor, element: str) -> SceneSensor:
         if element == "update_rate":
@@ -260,6 +271,10 @@ class _Override:
         return values
 
 
+def _change(name: str, value: Any) -> dict[str, Any]:
+    return {name: value}
+
+
 def _joined(owner: str, name: str) -> str:
     return f"{owner}::{name}" if owner else name
 
@@ -277,6 +292,7 @@ def _entities(scene: Scene) -> set[str]:
             found |= {link.scoped, *(c.scoped for c in link.collisions), *(li.scoped for li in link.lights)}
             found |= {_joined(link.scoped, p.name) for p in link.plugins}
         found |= {j.scoped for j in model.joints}
-        for sensor in (s for owner in (*model.links, *model.joints) for s in owner.sensors):
+        owned = [link.sensors for link in model.links] + [joint.sensors for joint in model.joints]
+        for sensor in (s for sensors in owned for s in sensors):
             found |= {sensor.scoped, *(_joined(sensor.scoped, p.name) for p in sensor.plugins)}
     return found

@@ -21,8 +21,13 @@ def _group() -> None:
 @bag.command()
 @guarded
 def recover(
-    broken: Annotated[Path, typer.Argument(help="The recording that was cut off: an MCAP file or a rosbag2 folder.", show_default=False)],
-    mended: Annotated[Path | None, typer.Argument(help="Where the whole one goes; beside it where not given.", show_default=False)] = None,
+    broken: Annotated[
+        Path,
+        typer.Argument(help="The recording that was cut off: an MCAP file or a rosbag2 folder.", show_default=False),
+    ],
+    mended: Annotated[
+        Path | None, typer.Argument(help="Where the whole one goes; beside it where not given.", show_default=False)
+    ] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="The same.", metavar="MENDED")] = None,
     force: Force = False,
 ) -> int:

@@ -14,8 +14,8 @@ def check(
     file: File,
     json_: Json = False,
     strict: Strict = False,
-    resource_path: ResourcePaths = [],  # noqa: B006
-    plugin_path: PluginPaths = [],  # noqa: B006
+    resource_path: ResourcePaths = [],
+    plugin_path: PluginPaths = [],
 ) -> int:
     """Prints every problem of a file, not only the first; runs nothing."""
     from simkit.build import check as check_file

@@ -16,9 +16,12 @@ from simkit.errors import InputError
 def convert(
     file: File,
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="The MJCF file; its textures go beside it.", metavar="OUT.xml", show_default=False)
+        Path,
+        typer.Option(
+            "--output", "-o", help="The MJCF file; its textures go beside it.", metavar="OUT.xml", show_default=False
+        ),
     ],
-    resource_path: ResourcePaths = [],  # noqa: B006
+    resource_path: ResourcePaths = [],
     force: Force = False,
     verbose: Verbose = False,
 ) -> int:
@@ -27,7 +30,9 @@ def convert(
     from simkit.sinks.mjcf import write_mjcf
 
     if output.exists() and not force:
-        raise InputError(f"SK-CLI-016 {output} exists already and is not overwritten\n    help: --force replaces it", "SK-CLI-016")
+        raise InputError(
+            f"SK-CLI-016 {output} exists already and is not overwritten\n    help: --force replaces it", "SK-CLI-016"
+        )
     if not output.absolute().parent.is_dir():
         raise InputError(f"SK-CLI-016 there is no folder {output.absolute().parent}", "SK-CLI-016")
     with load(file, resource_paths=resource_path) as sim:

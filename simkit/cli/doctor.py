@@ -10,8 +10,26 @@ from importlib.metadata import PackageNotFoundError, distribution, version
 
 from simkit.cli.console import guarded, out
 
-_PACKAGES = ("numpy", "lxml", "trimesh", "opencv-python-headless", "rosbags", "mcap", "typer", "rich", "PyYAML", "PyOpenGL")
-_FOLDERS = ("SIMKIT_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH", "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
+_PACKAGES = (
+    "numpy",
+    "lxml",
+    "trimesh",
+    "opencv-python-headless",
+    "rosbags",
+    "mcap",
+    "typer",
+    "rich",
+    "PyYAML",
+    "PyOpenGL",
+)
+_FOLDERS = (
+    "SIMKIT_RESOURCE_PATH",
+    "GZ_SIM_RESOURCE_PATH",
+    "SDF_PATH",
+    "GAZEBO_MODEL_PATH",
+    "ROS_PACKAGE_PATH",
+    "AMENT_PREFIX_PATH",
+)
 _REINSTALL = "pip uninstall -y mujoco mujoco-core && pip install 'mujoco>=4.0,<5'"
 _RENDERER_TIMEOUT = 60.0  # [s]
 
@@ -89,10 +107,14 @@ def _renderer() -> list[str]:
         )
     except subprocess.TimeoutExpired:
         _line("renderer", "hangs")
-        return [f"drawing a small picture took more than {_RENDERER_TIMEOUT:g} s; cameras and --picture do not work here"]
+        return [
+            f"drawing a small picture took more than {_RENDERER_TIMEOUT:g} s; cameras and --picture do not work here"
+        ]
     answer = next((line for line in probe.stdout.splitlines() if line.startswith("OK ")), None)
     if answer is None:
-        reason = _last_line(probe.stderr) if probe.returncode >= 0 else f"the driver crashed with signal {-probe.returncode}"
+        reason = (
+            _last_line(probe.stderr) if probe.returncode >= 0 else f"the driver crashed with signal {-probe.returncode}"
+        )
         _line("renderer", "none (only cameras and --picture need one)")
         return [f"no renderer: {reason}"]
     _line("renderer", answer.removeprefix("OK ").removesuffix(" black").strip())

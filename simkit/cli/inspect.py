@@ -14,7 +14,7 @@ from simkit.cli.options import File, Json, ResourcePaths
 def inspect(
     file: File,
     json_: Json = False,
-    resource_path: ResourcePaths = [],  # noqa: B006
+    resource_path: ResourcePaths = [],
 ) -> int:
     """Shows what a file means once it is resolved."""
     from simkit.build import describe

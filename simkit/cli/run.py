@@ -47,20 +47,33 @@ class Request:
 @guarded
 def run(
     world: World,
-    duration: Annotated[float | None, typer.Option(help="Simulated seconds; until Ctrl-C where not given.", metavar="S", min=0)] = None,
+    duration: Annotated[
+        float | None, typer.Option(help="Simulated seconds; until Ctrl-C where not given.", metavar="S", min=0)
+    ] = None,
     seed: Annotated[int, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
-    record: Annotated[Path | None, typer.Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")] = None,
-    topic: Annotated[list[str], typer.Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")] = [],  # noqa: B006
+    record: Annotated[
+        Path | None, typer.Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
+    ] = None,
+    topic: Annotated[
+        list[str], typer.Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")
+    ] = [],
     force: Force = False,
     rtf: Annotated[float | None, typer.Option(help="No faster than X times real time.", metavar="X", min=1e-3)] = None,
-    set_: Annotated[list[str], typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE")] = [],  # noqa: B006
+    set_: Annotated[
+        list[str],
+        typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
+    ] = [],
     strict: Strict = False,
     view: Annotated[bool, typer.Option("--view", help="Opens a viewer.")] = False,
-    picture: Annotated[Path | None, typer.Option(help="Draws the scene at the end, with path and last scan.", metavar="OUT.png")] = None,
-    cmd_vel: Annotated[str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Draws the scene at the end, with path and last scan.", metavar="OUT.png")
+    ] = None,
+    cmd_vel: Annotated[
+        str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")
+    ] = None,
     script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
-    resource_path: ResourcePaths = [],  # noqa: B006
-    plugin_path: PluginPaths = [],  # noqa: B006
+    resource_path: ResourcePaths = [],
+    plugin_path: PluginPaths = [],
     verbose: Verbose = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
 ) -> int:
@@ -179,7 +192,9 @@ class _Run:
             for row in counter.rows:
                 out().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row, sim.time_ns):>12}  {row.type_name}")
         factor = sim.time / max(elapsed, 1e-9)
-        line = f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
+        line = (
+            f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
+        )
         if recording is not None:
             line += f"; {recording.message_count} in {recording.path}"
         out().print(line)

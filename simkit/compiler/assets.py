@@ -34,6 +34,9 @@ class Assets:
         """A triangle mesh; one that does not collide may be flat or open."""
         name = "mesh#" + _digest(vertices, faces, uv, collides)
         if self._is_new("mesh", name):
+            if len(vertices) < 4:  # MuJoCo wants four; the last is in no face
+                vertices = np.vstack([vertices, vertices[:1], vertices[:1]])
+                uv = None if uv is None else np.vstack([uv, uv[:1], uv[:1]])
             mesh = self.spec.add_mesh(name=name)
             mesh.inertia = (
                 mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX if collides else mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL

@@ -15,7 +15,7 @@ from simkit.compiler.mesh import MeshFileError, load_mesh, pixels_of
 from simkit.compiler.mesh_part import Floats, Ints, MeshPart, joined
 from simkit.compiler.names import GeomOwner, ModelRecord
 from simkit.compiler.shapes import cone, heights, polyline, primitive_of, sizes_of
-from simkit.compiler.static import PRISMS_MOST, convex_pieces, hull_volume, hulls, is_convex
+from simkit.compiler.static import PRISMS_MOST, convex_pieces, hull_volume, hulls, is_convex, prisms, thinned
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
@@ -125,15 +125,13 @@ class GeomWriter:
         self, place: Place, owner: GeomOwner, collision: SceneCollision, vertices: Floats, faces: Ints, contact: Contact
     ) -> None:
         if len(faces) > PRISMS_MOST:
-            import trimesh
-
-            coarse = trimesh.Trimesh(vertices, faces, process=False).simplify_quadric_decimation(face_count=PRISMS_MOST)
+            coarse_vertices, coarse_faces = thinned(vertices, faces, PRISMS_MOST)
             self.diagnostics.warning(
                 "SK-MESH-005",
-                f"{_title(collision.geometry)}: for contacts {len(faces)} triangles become {len(coarse.faces)}",
+                f"{_title(collision.geometry)}: for contacts {len(faces)} triangles become {len(coarse_faces)}",
                 collision.where,
             )
-            pieces = convex_pieces(np.asarray(coarse.vertices, float), np.asarray(coarse.faces, np.int32))
+            pieces = convex_pieces(coarse_vertices, coarse_faces)
         else:
             pieces = convex_pieces(vertices, faces)
         for piece in pieces:
@@ -150,8 +148,6 @@ class GeomWriter:
     def _flat_collision(
         self, place: Place, owner: GeomOwner, collision: SceneCollision, vertices: Floats, faces: Ints, contact: Contact
     ) -> None:
-        from simkit.compiler.static import prisms
-
         self.diagnostics.note(
             "SK-MESH-007", f"{_title(collision.geometry)} is flat: it collides as a thin plate", collision.where
         )

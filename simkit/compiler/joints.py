@@ -13,7 +13,7 @@ from simkit.compiler.names import Follower, JointBinding, ModelRecord
 from simkit.compiler.options import CONTACT_SOLIMP, contact_time_constant
 from simkit.compiler.tree import WORLD, Edge
 from simkit.diagnostics import Diagnostics
-from simkit.pose import Pose
+from simkit.pose import IDENTITY, Pose
 from simkit.scene import Axis, SceneJoint, SceneLink
 
 STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
@@ -122,7 +122,7 @@ class JointWriter:
         self._couple(f"{joint.scoped}#thread", slide, joint.scoped, 0.0, ratio)
         self.diagnostics.note(
             "SK-PHYS-009",
-            f"screw joint {joint.scoped} is a stiff constraint between turning and sliding ({joint.thread_pitch:g} m a turn)",
+            f"screw joint {joint.scoped} is a stiff constraint between turning and sliding",
             joint.where,
         )
         return names, (Follower(slide, ratio),)
@@ -187,15 +187,13 @@ class JointWriter:
         equality.type = kind
         equality.objtype = mujoco.mjtObj.mjOBJ_BODY
         equality.name1, equality.name2 = self._body(child), self._body(parent)
-        child_pose = self.links[child].pose_world if self._body(child) != "world" else Pose()
-        parent_pose = self.links[parent].pose_world if self._body(parent) != "world" else Pose()
         data = np.zeros(len(equality.data))
         if kind == mujoco.mjtEq.mjEQ_CONNECT:
-            data[:3] = child_pose.inverse().transform(point_world)
+            data[:3] = self._pose_of(child).inverse().transform(point_world)
         else:
-            relative = child_pose.inverse() @ parent_pose
-            data[:3] = parent_pose.inverse().transform(point_world)
-            data[3:6], data[6:10], data[10] = relative.position, relative.quaternion, 1.0
+            # A relative pose of zeros lets MuJoCo take the one of the file.
+            data[:3] = self._pose_of(parent).inverse().transform(point_world)
+            data[10] = 1.0
         equality.data = data
         equality.active = active
         self._stiff(equality)
@@ -288,9 +286,13 @@ class JointWriter:
         """Notes a joint of a static model: it is there by name and has no degree of freedom."""
         self._note(self._binding(joint))
 
+    def _pose_of(self, link: str) -> Pose:
+        """World pose of the body that carries a link."""
+        return self.links[link].pose_world if self._body(link) != WORLD else IDENTITY
+
     def _body(self, link: str) -> str:
         binding = self.record.links.get(link)
-        return binding.body_name if binding else "world"
+        return binding.body_name if binding else WORLD
 
     def _binding(self, joint: SceneJoint) -> JointBinding:
         child, parent = self.links.get(joint.child_link), self.links.get(joint.parent_link)

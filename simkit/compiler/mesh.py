@@ -171,7 +171,8 @@ def _wanted(file: Path, submesh: str, names: set[str]) -> set[str]:
         aliases: dict[str, set[str]] = {}
         for geometry in root.iter("{*}geometry"):
             for alias in (geometry.get("id"), geometry.get("name")):
-                aliases.setdefault(alias, set()).add(geometry.get("id"))
+                if alias:
+                    aliases.setdefault(alias, set()).add(geometry.get("id", ""))
         for node in root.iter("{*}node"):
             urls = {i.get("url", "").lstrip("#") for i in node.iterfind("{*}instance_geometry")}
             for alias in (node.get("name"), node.get("id")):

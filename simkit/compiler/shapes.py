@@ -96,20 +96,47 @@ def cone(shape: Cone) -> tuple[Floats, Ints]:
 def polyline(shape: Polyline) -> tuple[Floats, Ints]:
     """Triangles of extruded outlines; an outline inside another is a hole. Raises ValueError."""
     import trimesh
-    from shapely.geometry import Polygon
 
-    area: Any = None
-    for outline in shape.outlines:
-        polygon = Polygon(outline).buffer(0)
-        area = polygon if area is None else area.symmetric_difference(polygon)
-    regions = [] if area is None else list(getattr(area, "geoms", [area]))
-    meshes = [
-        trimesh.creation.extrude_polygon(r, shape.height) for r in regions if r.geom_type == "Polygon" and r.area > 0
-    ]
+    rings = [np.asarray(outline, float) for outline in shape.outlines]
+    rings = [r[:-1] if len(r) > 1 and np.array_equal(r[0], r[-1]) else r for r in rings]
+    rings = [r for r in rings if len(r) >= 3 and abs(_signed_area(r)) > 0.0]
+    around = [[o for o, other in enumerate(rings) if o != i and _encloses(other, r[0])] for i, r in enumerate(rings)]
+    meshes = []
+    for i, outer in enumerate(rings):
+        if len(around[i]) % 2 == 0:
+            holes = [rings[k] for k in range(len(rings)) if i in around[k] and len(around[k]) == len(around[i]) + 1]
+            flat, faces = _filled([outer, *holes])
+            meshes.append(trimesh.creation.extrude_triangulation(flat, faces, shape.height))
     if not meshes:
         raise ValueError("the outlines enclose no area")
     whole = trimesh.util.concatenate(meshes)
     return np.asarray(whole.vertices, float), np.asarray(whole.faces, np.int32)
+
+
+def _filled(rings: list[Floats]) -> tuple[Floats, Ints]:
+    """Triangles of an outline (first) with holes (the others)."""
+    import mapbox_earcut
+
+    points = np.concatenate(rings)
+    ends = np.cumsum([len(r) for r in rings]).astype(np.uint32)
+    faces = np.asarray(mapbox_earcut.triangulate_float64(points, ends), np.int32).reshape(-1, 3)
+    if not len(faces):
+        raise ValueError("an outline crosses itself")
+    return points, faces
+
+
+def _signed_area(ring: Floats) -> float:
+    x, y = ring[:, 0], ring[:, 1]
+    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
+def _encloses(ring: Floats, point: Floats) -> bool:
+    """Whether a point lies inside an outline: a ray to the right crosses it an odd number of times."""
+    a, b = ring, np.roll(ring, -1, axis=0)
+    crosses = (a[:, 1] > point[1]) != (b[:, 1] > point[1])
+    rise = np.where(b[:, 1] == a[:, 1], 1.0, b[:, 1] - a[:, 1])
+    at = a[:, 0] + (point[1] - a[:, 1]) / rise * (b[:, 0] - a[:, 0])
+    return bool(np.count_nonzero(crosses & (at > point[0])) % 2)
 
 
 def heights(shape: Heightmap) -> Any:

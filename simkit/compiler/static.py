@@ -78,12 +78,41 @@ def hulls(vertices: Floats, faces: Ints) -> list[Floats]:
 def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
     """Convex bodies that together have the surface of a static mesh."""
     pieces: list[ConvexPiece] = []
-    for v, f in split(vertices, faces):
-        if is_convex(v, f):
+    parts = split(vertices, faces)
+    boxes = np.array([(v.min(axis=0), v.max(axis=0)) for v, _ in parts])
+    for i, (v, f) in enumerate(parts):
+        if is_convex(v, f) and not _is_cavity(v, f, np.delete(boxes, i, axis=0)):
             pieces.append(ConvexPiece(v, True))
         else:
             pieces += [ConvexPiece(p, False) for p in prisms(v, f)]
     return pieces
+
+
+def _is_cavity(vertices: Floats, faces: Ints, others: Floats) -> bool:
+    """Whether a closed piece is the inside wall of another: turned inside out, and within its box."""
+    import trimesh
+
+    if trimesh.Trimesh(vertices, faces, process=False).volume > 0.0:
+        return False
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    return bool(((others[:, 0] < low).all(axis=1) & (others[:, 1] > high).all(axis=1)).any())
+
+
+def thinned(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:
+    """A mesh of at most `most` faces: corners in one cell of an ever coarser grid become their mean."""
+    low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
+    cells = 1024.0
+    while True:
+        cell = np.floor((vertices - low) / size * cells).astype(np.int64)
+        _, inverse, count = np.unique(cell, axis=0, return_inverse=True, return_counts=True)
+        inverse = np.asarray(inverse).reshape(-1)
+        means = np.column_stack([np.bincount(inverse, vertices[:, k]) for k in range(3)]) / count[:, None]
+        f = inverse[faces]
+        f = f[(f[:, 0] != f[:, 1]) & (f[:, 1] != f[:, 2]) & (f[:, 2] != f[:, 0])]
+        f = f[np.sort(np.unique(np.sort(f, axis=1), axis=0, return_index=True)[1])]
+        if len(f) <= most:
+            return means, f.astype(np.int32)
+        cells *= 0.8
 
 
 def prisms(vertices: Floats, faces: Ints) -> list[Floats]:
@@ -151,7 +180,10 @@ def _room_inwards(mesh: Any, probes: list[Floats], normals: Floats) -> Floats:
     skin = 1e-5 * max(1e-3, float(mesh.scale))
     origins = np.vstack(probes) + skin * inward
     distance = np.full(len(origins), np.inf)
-    points, rays, _ = mesh.ray.intersects_location(origins, inward, multiple_hits=False)
+    try:
+        points, rays, _ = mesh.ray.intersects_location(origins, inward, multiple_hits=False)
+    except ImportError:  # no ray tracer on this platform: stay thin everywhere
+        return np.full(len(probes), 2.0 * _THINNEST)
     if len(rays):
         distance[rays] = np.einsum("ij,ij->i", points - origins[rays], inward[rays]) + skin
     return np.minimum.reduceat(distance, np.cumsum([0, *counts[:-1]]))

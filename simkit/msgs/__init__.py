@@ -1,8 +1,8 @@
 """ROS 2 messages: dataclasses that rosbags makes, filled from plain values and written as CDR.
 
-    msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
-    msgs.type_of("sensor_msgs/msg/Imu")          # the class itself, for the fast path
-    msgs.header(sim.time_ns, "imu_link")
+msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
+msgs.type_of("sensor_msgs/msg/Imu")          # the class itself, for the fast path
+msgs.header(sim.time_ns, "imu_link")
 """
 
 from __future__ import annotations
@@ -71,7 +71,9 @@ def type_name(message: Any) -> str:
     """
     name = getattr(message, "__msgtype__", None)
     if not isinstance(name, str):
-        raise MessageError(f"{type(message).__name__} is not a message; use simkit.msgs.make(...) or a dict of its fields")
+        raise MessageError(
+            f"{type(message).__name__} is not a message; use simkit.msgs.make(...) or a dict of its fields"
+        )
     return name
 
 

@@ -70,4 +70,5 @@ class Grid:
 
     def next(self, tick: int) -> int:
         """First due tick after a tick."""
-        return self.tick(self.index(tick) + 1)
+        num, den = self._num, self._den
+        return -(-(tick * den // num + 1) * num // den)

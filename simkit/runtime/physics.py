@@ -26,9 +26,15 @@ _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_IMPLICIT): mujoco.mj_implicit,
     int(mujoco.mjtIntegrator.mjINT_EULER): mujoco.mj_Euler,
 }
-_BAD = [int(w) for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)]
+_BAD = _BAD_POS, _BAD_VEL, _BAD_ACC = [int(w) for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)]
+# looked up once: the loop calls them every few microseconds
+mj_step, mj_forward, mj_forward_skip = mujoco.mj_step, mujoco.mj_forward, mujoco.mj_forwardSkip
+mj_check_pos, mj_check_vel, mj_check_acc = mujoco.mj_checkPos, mujoco.mj_checkVel, mujoco.mj_checkAcc
+
 _HELD = mujoco.mjtState.mjSTATE_INTEGRATION
 _WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is heard
+
+_SHORT = 16  # steps; so few are not timed, which costs as much as a small step
 
 _engine_texts: list[str] = []
 
@@ -69,6 +75,7 @@ class Physics:
         self.last_applied = np.zeros(model.nv)
         self._accelerations_tick = -1
         self._held: HeldState | None = None
+        self._held_size = mujoco.mj_stateSize(model, _HELD)
         self._second: Any = None
         self._second_of: HeldState | None = None
         self._warnings = data.warning.number
@@ -88,9 +95,9 @@ class Physics:
         """The data with a forward pass of the state at this tick."""
         stage = self.stage
         if stage == STALE:
-            mujoco.mj_forward(self.model, self.data)
+            mj_forward(self.model, self.data)
         elif stage:
-            mujoco.mj_forwardSkip(self.model, self.data, _SKIP[stage], 1)
+            mj_forward_skip(self.model, self.data, _SKIP[stage], 1)
         self.stage = FRESH
         return self.data
 
@@ -105,7 +112,7 @@ class Physics:
     def hold(self) -> HeldState:
         """The state of this tick, shared by all who ask at it."""
         if self._held is None or self._held.tick != self.tick:
-            values = np.empty(mujoco.mj_stateSize(self.model, _HELD))
+            values = np.empty(self._held_size)
             mujoco.mj_getState(self.model, self.data, values, _HELD)
             self._held = HeldState(self.tick, self.model, values)
         return self._held
@@ -130,6 +137,9 @@ class Physics:
             self._run(1)
             self._clear_one_shot()
             count -= 1
+        if 0 < count <= _SHORT and count <= self._chunk:
+            self._run(count)
+            return
         while count > 0:
             chunk = min(count, self._chunk)
             before = time.perf_counter()
@@ -138,16 +148,17 @@ class Physics:
             count -= chunk
 
     def _run(self, count: int) -> None:
-        model, data = self.model, self.data
-        if self.stage != STALE and self._integrate is not None:
-            if self.stage:
-                mujoco.mj_forwardSkip(model, data, _SKIP[self.stage], 1)
-            mujoco.mj_checkAcc(model, data)
+        model, data, stage = self.model, self.data, self.stage
+        if stage != STALE and self._integrate is not None:
+            if stage:
+                mj_forward_skip(model, data, _SKIP[stage], 1)
+            mj_check_acc(model, data)
             self._integrate(model, data)
-            if count > 1:
-                mujoco.mj_step(model, data, count - 1)
+            count_left = count - 1
+            if count_left:
+                mj_step(model, data, count_left)
         else:
-            mujoco.mj_step(model, data, count)
+            mj_step(model, data, count)
         self.stage = STALE
         self.tick += count
 
@@ -160,16 +171,16 @@ class Physics:
     def _tune(self, chunk: int, wall: float) -> None:
         if wall > _WALL_LIMIT and chunk > 1:
             self._chunk = max(1, chunk // 2)
-        elif chunk == self._chunk and wall < _WALL_LIMIT / 4:
+        elif wall < _WALL_LIMIT / 4 and chunk == self._chunk:
             self._chunk = min(1 << 16, chunk * 2)
 
     def check(self) -> None:
         """Raises SimulationDiverged where the engine met a bad number since the last reset of its counters."""
         data = self.data
-        mujoco.mj_checkPos(self.model, data)
-        mujoco.mj_checkVel(self.model, data)
+        mj_check_pos(self.model, data)
+        mj_check_vel(self.model, data)
         counts = self._warnings
-        if counts[_BAD[0]] or counts[_BAD[1]] or counts[_BAD[2]]:
+        if counts[_BAD_POS] or counts[_BAD_VEL] or counts[_BAD_ACC]:
             self._diverged()
 
     def _diverged(self) -> None:

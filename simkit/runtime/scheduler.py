@@ -44,13 +44,16 @@ class Agenda:
         """Every task due at `tick`, in order of addition; periodic ones move on to their next tick."""
         if self.next > tick:
             return self.every
-        orders: list[int] = []
-        heap = self._heap
-        while heap and heap[0][0] <= tick:
+        heap, tasks = self._heap, self._tasks
+        order = heap[0][1]
+        heapq.heapreplace(heap, (tasks[order][1].next(tick), order))  # type: ignore[union-attr]
+        self.next = heap[0][0]
+        if self.next > tick and not self.every:
+            return [tasks[order][0]]
+        orders = [order]
+        while heap[0][0] <= tick:
             order = heap[0][1]
-            grid = self._tasks[order][1]
-            assert grid is not None
-            heapq.heapreplace(heap, (grid.next(tick), order))
+            heapq.heapreplace(heap, (tasks[order][1].next(tick), order))  # type: ignore[union-attr]
             orders.append(order)
         self.next = heap[0][0]
         if self.every:

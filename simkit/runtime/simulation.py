@@ -163,6 +163,7 @@ class Simulation:
         self._check_open()
         if seed is not None:
             self.seed = seed
+        self.bus.settle()
         self.streams.reseed(self.seed)
         self.restore(self._loaded)
         for sensor in self._structure.all_sensors():
@@ -429,6 +430,7 @@ class Simulation:
         self.physics.tick = tick
 
     def _adopt(self, structure: Structure) -> None:
+        self.bus.settle()
         self._structure = structure
         compiled = structure.compiled
         tick = self.physics.tick

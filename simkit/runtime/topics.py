@@ -19,6 +19,21 @@ def absolute(topic: str) -> str:
     return topic if topic.startswith("/") else "/" + topic
 
 
+class Later:
+    """A message that is made when somebody looks at it."""
+
+    __slots__ = ("_make", "_message")
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self._make: Callable[[], Any] | None = make
+        self._message: Any = None
+
+    def get(self) -> Any:
+        if self._make is not None:
+            self._message, self._make = self._make(), None
+        return self._message
+
+
 class Subscription:
     """What arrives on a topic.
 
@@ -32,12 +47,15 @@ class Subscription:
 
     @property
     def messages(self) -> list[Any]:
-        return list(self._messages)
+        return [m.get() if type(m) is Later else m for m in self._messages]
 
     @property
     def latest(self) -> Any | None:
         """The newest message, or None before the first."""
-        return self._messages[-1] if self._messages else None
+        if not self._messages:
+            return None
+        newest = self._messages[-1]
+        return newest.get() if type(newest) is Later else newest
 
     def close(self) -> None:
         """Stops receiving; what was received stays."""
@@ -80,6 +98,16 @@ class Publisher:
         if self.latched:
             self._last = message
         self._bus._deliver(self.topic, message)
+
+    def publish_later(self, make: Callable[[], Any]) -> None:
+        """Publishes what `make()` gives, made at once only where somebody is called back with it."""
+        readers = self._readers
+        if self.latched or self.topic in self._bus._listeners or any(r._callback is not None for r in readers):
+            self.publish(make())
+            return
+        later = Later(make)
+        for reader in readers:
+            reader._messages.append(later)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
         return self
@@ -193,6 +221,12 @@ class TopicBus:
             callback(topic, type_name)
 
     # ------------------------------------------------------------------ messages
+
+    def settle(self) -> None:
+        """Makes every message that waits to be looked at, before what it is made from changes."""
+        for readers in self._readers.values():
+            for reader in readers:
+                reader.messages  # noqa: B018
 
     def publish(self, topic: str, message: Any) -> None:
         """A message from outside the loop: subscribers see it now, command inputs before the next step.

@@ -6,6 +6,7 @@ import abc
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.diagnostics import Diagnostics
@@ -41,7 +42,8 @@ class Sample:
 
     Attributes:
         index: 1 for the first sample.
-        held: the state to measure; None once measured.
+        held: the state to measure; None once captured.
+        raw: what was captured of the state; None once finished.
         truth: the reading without noise; `noisy` with it.
         messages: made so far, by product.
     """
@@ -49,6 +51,7 @@ class Sample:
     index: int
     time_ns: int
     held: Any = None
+    raw: Any = None
     truth: Any = None
     noisy: Any = None
     messages: dict[str, Any] = field(default_factory=dict)
@@ -60,6 +63,7 @@ class Sensor(abc.ABC):
 
     Attributes:
         kinds: `<sensor type>` names in files.
+        is_deferred: whether noise and message of a captured sample may wait until somebody looks.
         needs_acceleration: whether `measure` reads body accelerations or forces between bodies.
         name, scoped, kind: as in the file.
         update_rate: [Hz]; 0 is every step. Change it with `set_rate`.
@@ -69,6 +73,7 @@ class Sensor(abc.ABC):
 
     kinds: ClassVar[tuple[str, ...]] = ()
     needs_acceleration: ClassVar[bool] = False
+    is_deferred: bool = False
 
     sim: Simulation
     options: Any = None
@@ -107,7 +112,15 @@ class Sensor(abc.ABC):
     def measure(self, model: Any, data: Any) -> Any:
         """The reading without noise, of data with everything computed; arrays in it are never written to again."""
 
-    def perturb(self, reading: Any, index: int) -> Any:
+    def capture(self, model: Any, data: Any) -> Any:
+        """What must be taken from the data at once; `finish` makes the reading of it. As a rule that is the reading."""
+        return self.measure(model, data)
+
+    def finish(self, raw: Any) -> Any:
+        """The reading without noise, of what was captured."""
+        return raw
+
+    def perturb(self, reading: Any, index: int) -> Any:  # noqa: ARG002
         """The reading with the noise of a sample; the same object where there is none."""
         return reading
 
@@ -124,7 +137,7 @@ class Sensor(abc.ABC):
     def remember(self, memory: Any) -> None:  # noqa: B027
         """Takes back what `memory` gave."""
 
-    def accepts(self, tick: int) -> bool:
+    def accepts(self, tick: int) -> bool:  # noqa: ARG002
         """Whether a due time gives a sample."""
         return True
 
@@ -140,7 +153,6 @@ class Sensor(abc.ABC):
         """The newest message, or None before the first."""
         if self._sample is None:
             return None
-        self._settle(self._sample)
         return self._message(self._sample, next(iter(self._topics)))
 
     @property
@@ -208,14 +220,18 @@ class Sensor(abc.ABC):
         self.evolve(self._index, (time_ns - self._time_ns) * 1e-9 if self._time_ns >= 0 else 0.0)
         self._time_ns = time_ns
         sample = self._sample = Sample(self._index, time_ns)
-        wanted = [product for product, publisher in self._publishers.items() if publisher.wanted]
-        if any(self._products[product].needs_reading for product in wanted):
+        wanted = [item for item in self._publishers.items() if item[1].wanted]
+        products = self._products
+        if any(products[product].needs_reading for product, _ in wanted):
             data = sim.fresh_acceleration() if self.needs_acceleration else sim.fresh_data()
-            self._take(sample, sim.mj_model, data)
+            sample.raw = self.capture(sim.mj_model, data)
         else:
             sample.held = sim.hold_state()
-        for product in wanted:
-            self._publishers[product].publish(self._message(sample, product))
+        for product, publisher in wanted:
+            if self.is_deferred:
+                publisher.publish_later(partial(self._message, sample, product))
+            else:
+                publisher.publish(self._message(sample, product))
 
     def reset(self) -> None:
         """Back at t = 0."""
@@ -253,18 +269,20 @@ class Sensor(abc.ABC):
         rotation = data.xmat[self._body].reshape(3, 3)
         return data.xpos[self._body] + rotation @ self._offset_position, rotation @ self._offset_rotation
 
-    def _take(self, sample: Sample, model: Any, data: Any) -> None:
-        sample.truth = self.measure(model, data)
-        sample.noisy = self.perturb(sample.truth, sample.index)
-        sample.held = None
-
     def _settle(self, sample: Sample) -> None:
-        """Measures what was kept."""
+        """Measures what was kept, once."""
         if sample.held is not None:
-            self._take(sample, sample.held.model, self.sim.data_of(sample.held))
+            sample.raw = self.capture(sample.held.model, self.sim.data_of(sample.held))
+            sample.held = None
+        if sample.raw is not None:
+            sample.truth = self.finish(sample.raw)
+            sample.noisy = self.perturb(sample.truth, sample.index)
+            sample.raw = None
 
     def _message(self, sample: Sample, product: str) -> Any:
         message = sample.messages.get(product)
         if message is None:
+            if self._products[product].needs_reading:
+                self._settle(sample)
             message = sample.messages[product] = self._products[product].make(sample.noisy, sample.time_ns)
         return message

@@ -20,7 +20,7 @@ from simkit.sensors.camera_model import MOST_PIXELS, CameraModel, Distorter, rea
 from simkit.sensors.image_noise import ImageNoise
 from simkit.sensors.names import absolute_topic, sibling_topic
 from simkit.sensors.noise import NoiseModel, read_noise
-from simkit.sensors.renderer import free_renderer, metres, renderer_of
+from simkit.sensors.renderer import View, free_renderer, metres, renderer_of
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -102,7 +102,7 @@ class NoisyPicture:
 
     def __init__(self, picture: Picture, noise: ImageNoise, index: int, near: float, far: float) -> None:
         self._picture, self._noise, self._index = picture, noise, index
-        self._near, self._far = np.float32(near), np.float32(far)
+        self._near, self._far = near, far
 
     @functools.cached_property
     def colours(self) -> npt.NDArray[np.uint8]:
@@ -149,25 +149,28 @@ class RenderedSensor(Sensor):
     def attach(self, sim: Simulation) -> None:
         options = self.options
         self._noise = ImageNoise(options.noise, sim.streams, self.scoped)
-        self._distorter = Distorter(options.model) if options.model.distortion else None
-        self._aim()
+        self._view: View | None = None
         self._info = CameraInfoMaker(options.model, self._baseline)
         super().attach(sim)
         if options.triggered:
             self.trigger_on(absolute_topic(options.trigger_topic) if options.trigger_topic else self.topic + "/trigger")
 
-    def _aim(self) -> None:
-        model = self.options.model
-        # surfaces nearer than the range of depths are to be seen as such, not to be cut away
-        near = min(model.near, self.options.depth_near) * 0.1 if self.has_depth else model.near
-        self._view = model.view(near, self._distorter.margin if self._distorter else 0)
+    def _aimed(self) -> View:
+        """The frustum; found out at the first picture, since a lens takes a while."""
+        if self._view is None:
+            model = self.options.model
+            self._distorter = Distorter(model) if model.distortion else None
+            # surfaces nearer than the range of depths are to be seen as such, not to be cut away
+            near = min(model.near, self.options.depth_near) * 0.1 if self.has_depth else model.near
+            self._view = model.view(near, self._distorter.margin if self._distorter else 0)
+        return self._view
 
     def bound_depths(self, near: float | None, far: float | None) -> None:
         """Sets the range of depths [m]; None leaves an end as it is."""
         old = self.options
         near, far = old.depth_near if near is None else near, old.depth_far if far is None else far
         self.options = replace(old, depth_near=near, depth_far=far)
-        self._aim()
+        self._view = None
 
     def set_baseline(self, baseline: float) -> None:
         """Says how far [m] the left camera of a stereo pair is; it shows in the projection matrix."""
@@ -179,10 +182,10 @@ class RenderedSensor(Sensor):
         self._waits = True
         self.sim.bus.listen(topic, _TRIGGER_TYPES, self._on_trigger)
 
-    def _on_trigger(self, message: Any) -> None:
+    def _on_trigger(self, _: Any) -> None:
         self._is_triggered = True
 
-    def accepts(self, tick: int) -> bool:
+    def accepts(self, tick: int) -> bool:  # noqa: ARG002
         if not self._waits:
             return True
         triggered, self._is_triggered = self._is_triggered, False
@@ -195,10 +198,10 @@ class RenderedSensor(Sensor):
             except RenderError:
                 self._sample = None
         super().bind(compiled)
-        renderer_of(self.sim).reserve(self._view.width, self._view.height)
+        renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
 
     def measure(self, model: Any, data: Any) -> Picture:
-        options, view = self.options, self._view
+        options, view = self.options, self._aimed()
         position, rotation = self._frame_in_world(data)
         colours, raw = renderer_of(self.sim).render(model, data, position, rotation, view, depth=self.has_depth)
         depths = None
@@ -276,10 +279,13 @@ class RenderedSensor(Sensor):
         return Product(pictures.TYPE, self._colour_message)
 
     def _info_product(self) -> Product:
-        return Product(camera_info.TYPE, lambda reading, time_ns: self._info.make(time_ns, self.frame_id), needs_reading=False)
+        return Product(camera_info.TYPE, self._info_message, needs_reading=False)
 
     def _colour_message(self, reading: Any, time_ns: int) -> Any:
         return pictures.colour_message(self._header(time_ns), reading.colours, self.options.encoding)
+
+    def _info_message(self, _: Any, time_ns: int) -> Any:
+        return self._info.make(time_ns, self.frame_id)
 
     def _info_topic(self, beside: str) -> str:
         given = self.options.info_topic

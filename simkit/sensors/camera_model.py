@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -143,21 +142,34 @@ class Distorter:
     """
 
     def __init__(self, model: CameraModel) -> None:
-        import cv2
-
-        columns, rows = np.meshgrid(np.arange(model.width), np.arange(model.height))
-        bent = np.stack((columns, rows), axis=-1).reshape(-1, 1, 2).astype(np.float32) + np.float32(0.5)
-        matrix, coefficients = model.matrix.reshape(3, 3), model.distortion.coefficients
-        stop = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-9)
-        straight = cv2.undistortPointsIter(bent, matrix, coefficients, None, matrix, stop).reshape(model.height, model.width, 2)
-        u, v = straight[..., 0], straight[..., 1]
+        columns, rows = np.meshgrid(np.arange(float(model.width)), np.arange(float(model.height)))
+        bent_x: Vector = (columns + 0.5 - model.cx) / model.fx
+        bent_y: Vector = (rows + 0.5 - model.cy) / model.fy
+        x, y = straighten(bent_x, bent_y, model.distortion)
+        u, v = x * model.fx + model.cx, y * model.fy + model.cy
         beyond = max(-u.min(), -v.min(), u.max() - model.width, v.max() - model.height, 0.0)
         self.margin = int(min(math.ceil(beyond), max(model.width, model.height) // 2))
-        self._maps = u + (self.margin - 0.5), v + (self.margin - 0.5)
+        self._maps = (u + (self.margin - 0.5)).astype(np.float32), (v + (self.margin - 0.5)).astype(np.float32)
 
     def bend(self, picture: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
         """The picture through the lens; black where nothing was drawn."""
         import cv2
 
-        out: Any = cv2.remap(np.ascontiguousarray(picture), *self._maps, cv2.INTER_LINEAR)
+        out: npt.NDArray[np.uint8] = cv2.remap(np.ascontiguousarray(picture), *self._maps, cv2.INTER_LINEAR)
         return out
+
+
+def straighten(bent_x: Vector, bent_y: Vector, lens: Distortion) -> tuple[Vector, Vector]:
+    """Where points of the bent picture lie in the straight one, both at distance 1; the inverse of Brown's model."""
+    x, y = bent_x.copy(), bent_y.copy()
+    for _ in range(60):
+        r2 = x * x + y * y
+        # beyond the radius where the model folds back there is no answer; the bound keeps the search finite
+        radial = np.maximum(1 + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3)), 0.1)
+        next_x = (bent_x - 2 * lens.p1 * x * y - lens.p2 * (r2 + 2 * x * x)) / radial
+        next_y = (bent_y - lens.p1 * (r2 + 2 * y * y) - 2 * lens.p2 * x * y) / radial
+        moved = max(np.abs(next_x - x).max(), np.abs(next_y - y).max())
+        x, y = np.clip(next_x, -10, 10), np.clip(next_y, -10, 10)
+        if moved < 1e-6:
+            break
+    return x, y

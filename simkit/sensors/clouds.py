@@ -15,8 +15,11 @@ _DATATYPES = {"u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
 @functools.lru_cache(maxsize=32)
 def _fields(dtype: np.dtype[Any]) -> tuple[Any, ...]:
     field = msgs.type_of("sensor_msgs/msg/PointField")
-    assert dtype.fields is not None and dtype.names is not None
-    return tuple(field(name, dtype.fields[name][1], _DATATYPES[dtype.fields[name][0].str[1:]], 1) for name in dtype.names)
+    assert dtype.fields is not None
+    assert dtype.names is not None
+    return tuple(
+        field(name, dtype.fields[name][1], _DATATYPES[dtype.fields[name][0].str[1:]], 1) for name in dtype.names
+    )
 
 
 def point_cloud(header: Any, points: Any, height: int, width: int, is_dense: bool) -> Any:

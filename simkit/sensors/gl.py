@@ -10,7 +10,7 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -18,7 +18,14 @@ from simkit.errors import RenderError
 
 _HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); `simkit doctor` says more"
 _OFF = {"disable", "disabled", "off", "false", "0"}
-_LIBRARY_CHOICES = {"egl": ("egl",), "osmesa": ("osmesa",), "glfw": ("glfw",), "glx": ("glfw",), "cgl": ("cgl",), "wgl": ("glfw",)}
+_LIBRARY_CHOICES = {
+    "egl": ("egl",),
+    "osmesa": ("osmesa",),
+    "glfw": ("glfw",),
+    "glx": ("glfw",),
+    "cgl": ("cgl",),
+    "wgl": ("glfw",),
+}
 _PLATFORM_DEVICE = 0x313F
 
 _context: Any = None
@@ -125,7 +132,12 @@ def _osmesa_problem() -> str:
     return "libOSMesa not found"
 
 
-_PROBES = {"egl": _egl_problem, "osmesa": _osmesa_problem, "glfw": lambda: "", "cgl": lambda: ""}
+_PROBES: dict[str, Callable[[], str]] = {
+    "egl": _egl_problem,
+    "osmesa": _osmesa_problem,
+    "glfw": lambda: "",
+    "cgl": lambda: "",
+}
 
 
 def _open() -> Any:

@@ -72,7 +72,7 @@ class ImageNoise:
             brighter, darker = (np.full(shape, steps[0]) for steps in self._steps)
         if picture.ndim == 3:
             brighter, darker = (cv2.cvtColor(step, cv2.COLOR_GRAY2RGB) for step in (brighter, darker))
-        out: Any = cv2.subtract(cv2.add(picture, brighter), darker)
+        out: npt.NDArray[np.uint8] = cv2.subtract(cv2.add(picture, brighter), darker)
         return out
 
     def on_depths(self, depths: npt.NDArray[np.float32], index: int) -> npt.NDArray[np.float32]:
@@ -80,7 +80,8 @@ class ImageNoise:
         if self._lengths is None:
             self._lengths = (_normal_table() * self._model.stddev + self._model.mean).astype(np.float32)
         if self._model.stddev == 0:
-            return depths + self._lengths[0]
+            shifted: npt.NDArray[np.float32] = depths + self._lengths[0]
+            return shifted
         out: npt.NDArray[np.float32] = _look_up(
             self._lengths, self._words("depth", index, depths.size).reshape(depths.shape)
         )

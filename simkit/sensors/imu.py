@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 TYPE = "sensor_msgs/msg/Imu"
 _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
+object_velocity, object_acceleration = mujoco.mj_objectVelocity, mujoco.mj_objectAcceleration
 # east-north-up to the named axes
 _LOCALIZATIONS = {"ENU": (0.0, 0.0, 0.0), "NED": (math.pi, 0.0, math.pi / 2), "NWU": (0.0, 0.0, math.pi / 2)}
 
@@ -82,7 +83,11 @@ def _reference(block: Params) -> tuple[float, float, float] | None:
     if localization == "CUSTOM" and custom is not None and custom.attribute("parent_frame") == "world":
         return frame.vector3("custom_rpy", (0.0, 0.0, 0.0))
     message = f"orientation reference {localization} is taken as the attitude at the start"
-    hint = 'a custom one needs <custom_rpy parent_frame="world">' if localization == "CUSTOM" else "ENU, NED and NWU are known"
+    hint = (
+        'a custom one needs <custom_rpy parent_frame="world">'
+        if localization == "CUSTOM"
+        else "ENU, NED and NWU are known"
+    )
     frame.diagnostics.warning("SK-SENSOR-002", message, frame.where, hint)
     return None
 
@@ -105,13 +110,18 @@ class Imu(Sensor):
     def attach(self, sim: Simulation) -> None:
         options = self.options
         self._noise = Noise((*options.angular_velocity, *options.linear_acceleration), sim.streams, self.scoped, "imu")
+        self.is_deferred = not self._noise.wanders
         self._rate_covariance = variance(options.angular_velocity)
         self._force_covariance = variance(options.linear_acceleration)
         self._orientation_covariance = np.zeros(9)
         if not options.enable_orientation:
             self._orientation_covariance[0] = -1.0
         self._orientation_covariance.flags.writeable = False
-        self._make_types = (msgs.type_of(TYPE), msgs.type_of("geometry_msgs/msg/Vector3"), msgs.type_of("geometry_msgs/msg/Quaternion"))
+        self._make_types = (
+            msgs.type_of(TYPE),
+            msgs.type_of("geometry_msgs/msg/Vector3"),
+            msgs.type_of("geometry_msgs/msg/Quaternion"),
+        )
         if options.reference is None:
             self.measure_against(self.scene.pose_world.quaternion)
         else:
@@ -132,13 +142,21 @@ class Imu(Sensor):
         return {"imu": self._default_topic("imu")}
 
     def measure(self, model: Any, data: Any) -> ImuReading:
+        return self.finish(self.capture(model, data))
+
+    def capture(self, model: Any, data: Any) -> tuple[Vector, Vector, Vector]:
+        """Attitude of the body, and its velocity and proper acceleration in its own axes."""
         body = self._body
-        orientation, turn = np.empty(4), np.empty(4)
-        mujoco.mju_mulQuat(turn, data.xquat[body], self._offset.quaternion)
-        mujoco.mju_mulQuat(orientation, self._from_reference, turn)
         velocity, acceleration = np.empty(6), np.empty(6)
-        mujoco.mj_objectVelocity(model, data, _BODY, body, velocity, 1)
-        mujoco.mj_objectAcceleration(model, data, _BODY, body, acceleration, 1)
+        object_velocity(model, data, _BODY, body, velocity, 1)
+        object_acceleration(model, data, _BODY, body, acceleration, 1)
+        return data.xquat[body].copy(), velocity, acceleration
+
+    def finish(self, raw: tuple[Vector, Vector, Vector]) -> ImuReading:
+        attitude, velocity, acceleration = raw
+        orientation, turn = np.empty(4), np.empty(4)
+        mujoco.mju_mulQuat(turn, attitude, self._offset.quaternion)
+        mujoco.mju_mulQuat(orientation, self._from_reference, turn)
         rate, force = velocity[:3], acceleration[3:]
         ax, ay, az = self._offset_position.tolist()
         if ax or ay or az:
@@ -146,11 +164,12 @@ class Imu(Sensor):
             wx, wy, wz = rate.tolist()
             dx, dy, dz = acceleration[:3].tolist()
             cx, cy, cz = wy * az - wz * ay, wz * ax - wx * az, wx * ay - wy * ax
-            force = force + (
+            lever = (
                 dy * az - dz * ay + wy * cz - wz * cy,
                 dz * ax - dx * az + wz * cx - wx * cz,
                 dx * ay - dy * ax + wx * cy - wy * cx,
             )
+            force = force + np.array(lever)
         return ImuReading(orientation, rate @ self._offset_rotation, force @ self._offset_rotation)
 
     def perturb(self, reading: ImuReading, index: int) -> ImuReading:

@@ -26,7 +26,12 @@ SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 OLD_CLOUD, RANGE = "sensor_msgs/msg/PointCloud", "sensor_msgs/msg/Range"
 _MOST_RAYS = 4_000_000
 _RING_POINT = np.dtype(
-    {"names": ["x", "y", "z", "intensity", "ring"], "formats": ["<f4"] * 4 + ["<u2"], "offsets": [0, 4, 8, 12, 16], "itemsize": 18}
+    {
+        "names": ["x", "y", "z", "intensity", "ring"],
+        "formats": ["<f4"] * 4 + ["<u2"],
+        "offsets": [0, 4, 8, 12, 16],
+        "itemsize": 18,
+    }
 )
 _POINT = np.dtype([(name, "<f4") for name in ("x", "y", "z", "intensity")])
 
@@ -46,7 +51,8 @@ class Sweep:
     @property
     def angles(self) -> Vector:
         """[rad], shape (samples,)."""
-        return self.low + self.step * np.arange(self.samples)
+        angles: Vector = self.low + self.step * np.arange(float(self.samples))
+        return angles
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +101,9 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
         params.diagnostics.note("SK-SENSOR-003", message, params.where)
     low, high = params.number("min_angle", 0.0), params.number("max_angle", 0.0)
     if high < low:
-        params.error("SK-PARAM-002", f"found angles from {low:g} to {high:g}, allowed is a <max_angle> of at least <min_angle>")
+        params.error(
+            "SK-PARAM-002", f"found angles from {low:g} to {high:g}, allowed is a <max_angle> of at least <min_angle>"
+        )
     return Sweep(count, low, high)
 
 
@@ -149,6 +157,7 @@ class Lidar(Sensor):
 
     def attach(self, sim: Simulation) -> None:
         self._noise = UniformNoise(self.options.noise, self._fan.count, sim.streams, self.scoped, "ranges")
+        self.is_deferred = not self._noise.wanders
         self._scan_type = msgs.type_of(SCAN)
         super().attach(sim)
 
@@ -200,9 +209,8 @@ class Lidar(Sensor):
             if len(again):
                 fan.recast(model, data, origin, options.range_min, again)
                 nothing = distances < 0
-            too_near = None
         ranges = distances.copy()
-        if too_near is not None:
+        if self.sees_visuals:
             ranges[too_near] = -np.inf
         ranges[nothing | (distances > options.range_max)] = np.inf
         return LidarReading(ranges, self._intensities(ranges))

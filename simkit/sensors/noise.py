@@ -98,7 +98,9 @@ class Noise:
         self._walk = streams.stream(scoped, group + "/walk", self.width) if self._wandering.any() else None
         self.restart()
         # what shows in no digit is left out
-        self.is_silent = self._white is None and self._walk is None and not (self._constant.any() or self._precision.any())
+        self.is_silent = (
+            self._white is None and self._walk is None and not (self._constant.any() or self._precision.any())
+        )
 
     def restart(self) -> None:
         """Draws the bias."""
@@ -128,6 +130,11 @@ class Noise:
         return out
 
     @property
+    def wanders(self) -> bool:
+        """Whether it has a memory from sample to sample."""
+        return self._walk is not None
+
+    @property
     def offset(self) -> float:
         """What the first channel has besides white noise."""
         return float(self._constant[0])
@@ -152,6 +159,11 @@ class UniformNoise:
         self._shared = Noise([replace(model, stddev=0.0, precision=0.0)], streams, scoped, group + "/shared")
         self._white = streams.stream(scoped, group, width) if model.stddev > 0 else None
         self.is_silent = self._white is None and self._shared.is_silent and model.precision == 0
+
+    @property
+    def wanders(self) -> bool:
+        """Whether it has a memory from sample to sample."""
+        return self._shared.wanders
 
     def restart(self) -> None:
         self._shared.restart()
@@ -195,4 +207,3 @@ def variance(models: Sequence[NoiseModel]) -> Vector:
     out[[0, 4, 8]] = [m.stddev**2 for m in models]
     out.flags.writeable = False
     return out
-

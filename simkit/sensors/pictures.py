@@ -27,7 +27,7 @@ def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     """Brightness, shape (h, w), by the weights of Rec. 601."""
     import cv2
 
-    out: Any = cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY)
+    out: npt.NDArray[np.uint8] = cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY)
     return out
 
 
@@ -35,7 +35,9 @@ def image_message(header: Any, pixels: npt.NDArray[Any], encoding: str) -> Any:
     """A message of pixels, shape (h, w) or (h, w, 3), in their own byte order (little-endian)."""
     data = np.ascontiguousarray(pixels)
     height, width = data.shape[:2]
-    return msgs.type_of(TYPE)(header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8))
+    return msgs.type_of(TYPE)(
+        header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8)
+    )
 
 
 def colour_message(header: Any, colours: npt.NDArray[np.uint8], encoding: str) -> Any:

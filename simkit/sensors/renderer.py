@@ -79,7 +79,15 @@ class Renderer:
                     self._resize()
 
     def render(
-        self, model: Any, data: Any, position: Vector, rotation: Vector, view: View, *, depth: bool, decorate: Any = None
+        self,
+        model: Any,
+        data: Any,
+        position: Vector,
+        rotation: Vector,
+        view: View,
+        *,
+        depth: bool,
+        decorate: Any = None,
     ) -> tuple[Colours, Depths | None]:
         """One picture, rows from the top.
 

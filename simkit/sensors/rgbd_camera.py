@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +26,7 @@ class RgbdCamera(RenderedSensor):
     and in units of white for colours.
     """
 
-    kinds = ("rgbd_camera",)
+    kinds: ClassVar[tuple[str, ...]] = ("rgbd_camera",)
     has_depth = True
 
     def attach(self, sim: Simulation) -> None:
@@ -63,10 +63,10 @@ class RgbdCamera(RenderedSensor):
         if not is_dense:
             for axis in "yz":
                 np.copyto(points[axis], depths, where=infinite)
-        points["rgb"] = _packed(self._cloud_colours(reading, depths))
+        points["rgb"] = _packed(self._cloud_colours(reading))
         return point_cloud(self._header(time_ns), points.reshape(-1), height, width, is_dense)
 
-    def _cloud_colours(self, reading: Any, depths: npt.NDArray[np.float32]) -> npt.NDArray[np.uint8]:
+    def _cloud_colours(self, reading: Any) -> npt.NDArray[np.uint8]:
         colours: npt.NDArray[np.uint8] = reading.colours
         return colours
 
@@ -80,9 +80,10 @@ class DepthCamera(RgbdCamera):
         topic = self._default_topic("depth_image")
         return {"depth_image": topic, "points": topic + "/points", "camera_info": self._info_topic(topic)}
 
-    def _cloud_colours(self, reading: Any, depths: npt.NDArray[np.float32]) -> npt.NDArray[np.uint8]:
+    def _cloud_colours(self, reading: Any) -> npt.NDArray[np.uint8]:
         far = np.float32(self.options.depth_far)
-        return (255.0 - np.clip(depths, 0, far) * np.float32(255.0 / far)).astype(np.uint8)
+        shades: npt.NDArray[np.float32] = 255.0 - np.clip(reading.depths, 0, far) * np.float32(255.0 / far)
+        return shades.astype(np.uint8)
 
 
 def _packed(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:

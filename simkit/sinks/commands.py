@@ -113,7 +113,9 @@ def steady_velocity(text: str, topics: dict[str, str]) -> Command:
         if not (math.isfinite(linear) and math.isfinite(angular)):
             raise ValueError
     except ValueError:
-        raise InputError(f"SK-CLI-010 --cmd-vel: found {text!r}, allowed is LINEAR,ANGULAR such as 0.2,0.3", "SK-CLI-010") from None
+        raise InputError(
+            f"SK-CLI-010 --cmd-vel: found {text!r}, allowed is LINEAR,ANGULAR such as 0.2,0.3", "SK-CLI-010"
+        ) from None
     takers = [topic for topic, type_name in topics.items() if type_name in _TWISTS]
     topic = "/cmd_vel" if "/cmd_vel" in takers else takers[0] if len(takers) == 1 else None
     if topic is None:
@@ -144,7 +146,9 @@ def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
     if root is None:
         return []
     if not isinstance(root, yaml.SequenceNode):
-        raise _bad(f"{path}:{root.start_mark.line + 1}", "found something else, allowed is a list of {at, topic, message}")
+        raise _bad(
+            f"{path}:{root.start_mark.line + 1}", "found something else, allowed is a list of {at, topic, message}"
+        )
     commands = []
     for node in root.value:
         where = f"{path}:{node.start_mark.line + 1}"

@@ -77,7 +77,10 @@ class McapBag:
             if schema is None:
                 text = msgs.definition(type_name).encode()
                 schema = self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
-            metadata = {"offered_qos_profiles": qos.as_yaml([qos.profile(latched)]), "topic_type_hash": msgs.rihs(type_name)}
+            metadata = {
+                "offered_qos_profiles": qos.as_yaml([qos.profile(latched)]),
+                "topic_type_hash": msgs.rihs(type_name),
+            }
             number = self._writer.register_channel(topic, "cdr", schema, metadata)
             found = self.channels[(topic, type_name)] = Channel(number, topic, type_name, latched)
         return found

@@ -32,7 +32,9 @@ def write_mjcf(sim: Simulation, path: Path) -> int:
         for texture in spec.textures:
             if texture.file or not len(texture.data):
                 continue
-            pixels = np.frombuffer(bytes(texture.data), np.uint8).reshape(texture.height, texture.width, texture.nchannel)
+            pixels = np.frombuffer(bytes(texture.data), np.uint8).reshape(
+                texture.height, texture.width, texture.nchannel
+            )
             if texture.height == 6 * texture.width:
                 pixels = pixels[: texture.width]  # the six sides of a cube are the same picture
             folder.mkdir(exist_ok=True)

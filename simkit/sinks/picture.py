@@ -46,7 +46,9 @@ def scan_points(message: Any, pose: Pose) -> np.ndarray[Any, np.dtype[np.float64
     ranges = np.asarray(message.ranges, dtype=np.float64)
     angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
     hit = np.isfinite(ranges)
-    flat = np.stack((ranges[hit] * np.cos(angles[hit]), ranges[hit] * np.sin(angles[hit]), np.zeros(int(hit.sum()))), axis=1)
+    flat = np.stack(
+        (ranges[hit] * np.cos(angles[hit]), ranges[hit] * np.sin(angles[hit]), np.zeros(int(hit.sum()))), axis=1
+    )
     points: np.ndarray[Any, np.dtype[np.float64]] = flat @ pose.matrix.T + pose.position
     return points
 
@@ -78,7 +80,9 @@ def save_picture(sim: Simulation, path: Path, driven: DrivenPath | None = None) 
     try:
         written = cv2.imwrite(str(path), colours[:, :, ::-1])
     except cv2.error as error:
-        raise InputError(f"SK-CLI-013 cannot write {path}: {str(error).strip().splitlines()[-1]}", "SK-CLI-013") from None
+        raise InputError(
+            f"SK-CLI-013 cannot write {path}: {str(error).strip().splitlines()[-1]}", "SK-CLI-013"
+        ) from None
     if not written:
         raise InputError(f"SK-CLI-013 cannot write {path}", "SK-CLI-013")
 
@@ -90,7 +94,9 @@ def check_target(path: Path) -> None:
         InputError: SK-CLI-013.
     """
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
-        raise InputError(f"SK-CLI-013 --picture {path}: found the ending {path.suffix!r}, allowed is .png or .jpg", "SK-CLI-013")
+        raise InputError(
+            f"SK-CLI-013 --picture {path}: found the ending {path.suffix!r}, allowed is .png or .jpg", "SK-CLI-013"
+        )
     if not path.absolute().parent.is_dir():
         raise InputError(f"SK-CLI-013 --picture {path}: there is no folder {path.absolute().parent}", "SK-CLI-013")
 

@@ -35,7 +35,9 @@ def check_target(path: Path, *, overwrite: bool = False) -> None:
         InputError: SK-BAG-001 something is there already; SK-BAG-002 the place cannot be written.
     """
     if path.exists() and not overwrite:
-        raise InputError(f"SK-BAG-001 {path} exists already and is not overwritten\n    help: --force replaces it", "SK-BAG-001")
+        raise InputError(
+            f"SK-BAG-001 {path} exists already and is not overwritten\n    help: --force replaces it", "SK-BAG-001"
+        )
     if path.is_dir() and is_single_file(path):
         raise InputError(f"SK-BAG-002 cannot write {path}: it is a folder", "SK-BAG-002")
     parent = path.absolute().parent
@@ -98,7 +100,9 @@ class Recorder:
     def __enter__(self) -> Recorder:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.close()
         if kind is None:
             self.check()

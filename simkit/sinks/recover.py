@@ -42,7 +42,9 @@ def recover(source: Path, target: Path, *, overwrite: bool = False) -> Recovered
     records = progress.messages()
     first = next(records, None)
     if first is None:
-        raise InputError(f"SK-BAG-004 {source} holds no readable message: {progress.reason or 'it is empty'}", "SK-BAG-004")
+        raise InputError(
+            f"SK-BAG-004 {source} holds no readable message: {progress.reason or 'it is empty'}", "SK-BAG-004"
+        )
     bag = open_bag(target, overwrite=overwrite)
     channels: dict[tuple[str, str], Channel] = {}
     try:

@@ -39,7 +39,9 @@ class Rosbag2Folder(McapBag):
 
         target = self.folder / "metadata.yaml"
         draft = target.with_suffix(".yaml.tmp")
-        draft.write_text(yaml.dump({"rosbag2_bagfile_information": self._information()}, Dumper=_plain_dumper(), sort_keys=False))
+        draft.write_text(
+            yaml.dump({"rosbag2_bagfile_information": self._information()}, Dumper=_plain_dumper(), sort_keys=False)
+        )
         draft.replace(target)
 
     def _information(self) -> dict[str, Any]:

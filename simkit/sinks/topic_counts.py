@@ -21,7 +21,7 @@ class TopicCount:
     Attributes:
         counted: False where nobody reads the topic, so that nothing is known.
         count: messages since `since`.
-        since: simulated time [ns] from which they are counted.
+        since, last: simulated times [ns] from which they are counted and of the newest.
     """
 
     topic: str
@@ -29,6 +29,7 @@ class TopicCount:
     counted: bool
     since: int
     count: int = 0
+    last: int = 0
 
     def rate(self, now: int) -> float | None:
         """Messages per simulated second [Hz] up to `now` [ns]; None before there are two."""
@@ -75,9 +76,11 @@ class TopicCounter:
             return
 
         def count(_: Any) -> None:
-            if self._sim.time_ns < row.since:
+            now = self._sim.time_ns
+            if now < row.last:
                 # The simulation was reset.
-                row.since, row.count = self._sim.time_ns, 0
+                row.since, row.count = 0, 0
+            row.last = now
             row.count += 1
 
         self._taps.append(self._sim.bus.tap(topic, count))

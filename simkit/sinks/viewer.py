@@ -24,11 +24,15 @@ def check_possible() -> None:
         InputError: SK-CLI-015 no display, or no window library.
     """
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        raise InputError(f"SK-CLI-015 --view: there is no display (DISPLAY is not set)\n    help: {_HELP}", "SK-CLI-015")
+        raise InputError(
+            f"SK-CLI-015 --view: there is no display (DISPLAY is not set)\n    help: {_HELP}", "SK-CLI-015"
+        )
     try:
         import glfw  # noqa: F401
     except ImportError as error:
-        text = f"SK-CLI-015 --view: the window library is missing ({error})\n    help: pip install 'simkit-robotics[view]'"
+        text = (
+            f"SK-CLI-015 --view: the window library is missing ({error})\n    help: pip install 'simkit-robotics[view]'"
+        )
         raise InputError(text, "SK-CLI-015") from None
 
 
@@ -39,7 +43,9 @@ class Viewer:
         import mujoco.viewer
 
         try:
-            self._handle: Any = mujoco.viewer.launch_passive(sim.mj_model, sim.mj_data, show_left_ui=False, show_right_ui=False)
+            self._handle: Any = mujoco.viewer.launch_passive(
+                sim.mj_model, sim.mj_data, show_left_ui=False, show_right_ui=False
+            )
         except RuntimeError as error:
             raise InputError(f"SK-CLI-015 --view: {error}\n    help: {_HELP}", "SK-CLI-015") from None
         self._last = 0.0
@@ -58,5 +64,7 @@ class Viewer:
     def __enter__(self) -> Viewer:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self._handle.close()

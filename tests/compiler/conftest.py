@@ -33,6 +33,9 @@ def own_mesh_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest
     return folder
 
 
+PLAIN = Surface()
+
+
 class Make:
     """Builders of small scenes."""
 
@@ -41,7 +44,7 @@ class Make:
         scoped: str,
         shape: Geometry | None = None,
         pose: Pose = IDENTITY,
-        surface: Surface = Surface(),
+        surface: Surface = PLAIN,
         mass: float = 1.0,
         inertia: float = 0.01,
         shape_pose: Pose = IDENTITY,

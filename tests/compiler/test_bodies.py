@@ -36,7 +36,8 @@ def test_an_impossible_inertia_is_mended_and_reported(make, inertia):
     link = make.link("m::a", inertial=Inertial(1.0, (0, 0, 0), inertia))
     c = SpecBuilder(make.world(make.model("m", link)), found).compile()
     a, b, biggest = sorted(c.model.body_inertia[1])
-    assert a > 0 and a + b >= biggest * (1 - 1e-9)
+    assert a > 0
+    assert a + b >= biggest * (1 - 1e-9)
     assert biggest == pytest.approx(max(max(inertia), 1e-12), rel=1e-6)
     assert "SK-PHYS-011" in [d.code for d in found]
 
@@ -56,7 +57,9 @@ def test_a_movable_static_model_is_a_mocap_body(make):
     builder.add_model(make.model("m", make.link("m::a", Box((1, 1, 1)), Pose((5, 0, 0))), static=True), movable=True)
     c = builder.compile()
     binding = c.names.link("m::a")
-    assert binding.mocap == 0 and binding.body == 1 and binding.static
+    assert binding.mocap == 0
+    assert binding.body == 1
+    assert binding.static
     np.testing.assert_allclose(c.data.mocap_pos[0], (5, 0, 0))
 
 

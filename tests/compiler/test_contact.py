@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import mujoco
 import numpy as np
@@ -57,7 +58,7 @@ def test_priority_rises_strictly_as_the_coefficient_falls():
     coefficients = [MU_MOST, 1.5, 1.0, 0.999, 0.5, 0.1, 1e-4, 0.0]
     ranks = [priority_of(mu) for mu in coefficients]
     assert ranks[0] == 0
-    assert all(a < b for a, b in zip(ranks, ranks[1:], strict=False))
+    assert all(a < b for a, b in pairwise(ranks))
     assert ranks[-1] < 2**31
 
 

@@ -11,13 +11,13 @@ import pytest
 from simkit.compiler import SpecBuilder
 from simkit.compiler.tree import plan_tree
 from simkit.diagnostics import Diagnostics
-from simkit.pose import Pose
+from simkit.pose import IDENTITY, Pose
 from simkit.scene import Axis, Mimic, SceneJoint
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
-def joint(name, kind, parent, child, pose=Pose(), *axes, **more):
+def joint(name, kind, parent, child, pose=IDENTITY, *axes, **more):
     """A joint of model `m`; axes are `Axis` or world directions."""
     made = tuple(a if isinstance(a, Axis) else Axis(a, a) for a in axes)
     ends = [e if e == "world" else f"m::{e}" for e in (parent, child)]
@@ -81,7 +81,9 @@ def test_a_joint_whose_child_hangs_on_the_world_is_turned_round(make, compiled):
     model = chain(make, joint("j", "revolute", "a", "b", pose, Z), joint("base", "fixed", "world", "b"))
     c = compiled(model)
     binding = c.names.joint("m::j")
-    assert binding.is_reversed and c.model.nv == 1 and c.model.neq == 0
+    assert binding.is_reversed
+    assert c.model.nv == 1
+    assert c.model.neq == 0
     c.data.qpos[binding.qpos[0]] = 0.3
     mujoco.mj_forward(c.model, c.data)
     a, b = (c.data.xmat[c.names.link(f"m::{n}").body].reshape(3, 3) for n in "ab")
@@ -170,7 +172,8 @@ def test_a_loop_is_closed_by_a_constraint_and_reported(make):
         poses=poses,
     )
     c = SpecBuilder(make.world(model), found).compile()
-    assert c.names.joint("m::top").is_loop and c.model.neq == 2
+    assert c.names.joint("m::top").is_loop
+    assert c.model.neq == 2
     mujoco.mj_step(c.model, c.data, 500)
     b, top = c.names.link("m::b").body, c.names.link("m::c").body
     on_b = c.data.xpos[b] + c.data.xmat[b].reshape(3, 3) @ (0, 0, 0.5)

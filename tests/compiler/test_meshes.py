@@ -14,8 +14,10 @@ import trimesh
 from simkit.compiler import SpecBuilder, groups
 from simkit.compiler.mesh import load_file, load_mesh
 from simkit.compiler.mesh_part import joined
+from simkit.compiler.shapes import polyline
+from simkit.compiler.static import thinned
 from simkit.diagnostics import NOWHERE, Diagnostics
-from simkit.pose import Pose
+from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Material, Mesh, Polyline, SceneVisual, Sphere
 
 DAE = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -59,7 +61,7 @@ def bowl(folder: Path) -> Path:
     return file
 
 
-def static_mesh(make, file, pose=Pose(), scale=(1.0, 1.0, 1.0)):
+def static_mesh(make, file, pose=IDENTITY, scale=(1.0, 1.0, 1.0)):
     return make.model("arena", make.link("arena::link", Mesh(file, file.name, scale), pose), static=True)
 
 
@@ -81,7 +83,8 @@ def test_a_submesh_is_known_by_its_node_and_a_missing_one_is_an_error(dae):
     np.testing.assert_allclose(centred.min(axis=0), -centred.max(axis=0))
     found = Diagnostics()
     assert load_mesh(Mesh(dae, "t.dae", submesh="prt"), found, NOWHERE) == []
-    assert [d.code for d in found] == ["SK-MESH-001"] and "'part'" in next(iter(found)).message
+    assert [d.code for d in found] == ["SK-MESH-001"]
+    assert "'part'" in next(iter(found)).message
 
 
 def test_a_broken_file_is_an_error_and_not_a_traceback(tmp_path):
@@ -140,13 +143,17 @@ def test_rays_see_the_exact_mesh_and_contacts_the_pieces(make, compiled, tmp_pat
     binding = c.names.link("arena::link")
     assert {int(c.model.geom_group[g]) for g in binding.geoms} == {groups.COLLISION_CONTACT}
     (copy,) = binding.ray_geoms
-    assert c.model.geom_group[copy] == groups.COLLISION_RAY and c.model.geom_contype[copy] == 0
+    assert c.model.geom_group[copy] == groups.COLLISION_RAY
+    assert c.model.geom_contype[copy] == 0
     mask = np.zeros(6, np.uint8)
     mask[[groups.COLLISION, groups.COLLISION_RAY]] = 1
     mujoco.mj_forward(c.model, c.data)
     hit = np.array([-1], np.int32)
-    distance = mujoco.mj_ray(c.model, c.data, np.zeros(3), np.array([1.0, 0, 0]), mask, 1, -1, hit, None)
-    assert distance == pytest.approx(1.0, abs=1e-6)
+    heading, half = 0.1, math.pi / 16
+    towards = np.array([math.cos(heading), math.sin(heading), 0.05])
+    distance = mujoco.mj_ray(c.model, c.data, np.zeros(3), towards, mask, 1, -1, hit, None)
+    assert hit[0] == copy
+    assert distance == pytest.approx(math.cos(half) / math.cos(heading - half), abs=1e-5)
     assert "SK-MESH-006" in [d.code for d in c.builder.diagnostics]
 
 
@@ -182,7 +189,7 @@ def test_a_texture_travels_with_its_coordinates(make, compiled, tmp_path):
     c = compiled(make.model("m", make.link("m::a", visuals=(visual,))))
     assert (c.model.ntex, c.model.tex_height[0], c.model.tex_width[0]) == (1, 2, 4)
     np.testing.assert_array_equal(c.model.tex_data[:3], (10, 200, 30))
-    assert c.model.nmeshtexcoord == 3
+    np.testing.assert_allclose(c.model.mesh_texcoord[:3], [(0, 1), (1, 1), (1, 0)])
 
 
 def test_a_polyline_is_extruded(make, compiled):
@@ -193,6 +200,22 @@ def test_a_polyline_is_extruded(make, compiled):
     assert c.data.qpos[2] == pytest.approx(0.55, abs=2e-3)
 
 
+def test_an_outline_inside_another_is_a_hole():
+    square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+    hole = ((0.5, 0.5), (1.5, 0.5), (1.5, 1.5), (0.5, 1.5), (0.5, 0.5))
+    vertices, faces = polyline(Polyline((hole, square), 0.5))
+    mesh = trimesh.Trimesh(vertices, faces)
+    assert mesh.is_watertight
+    assert mesh.volume == pytest.approx((4.0 - 1.0) * 0.5)
+
+
+def test_a_huge_static_mesh_is_thinned_out_but_keeps_its_place():
+    ball = trimesh.creation.icosphere(subdivisions=6, radius=2.0)
+    vertices, faces = thinned(np.asarray(ball.vertices), np.asarray(ball.faces, np.int32), 20_000)
+    assert 5_000 < len(faces) <= 20_000
+    np.testing.assert_allclose(np.linalg.norm(vertices, axis=1), 2.0, atol=0.02)
+
+
 def test_equal_meshes_are_stored_once(make, compiled, dae):
     models = [make.solid(f"m{i}", Mesh(dae, "t.dae", (10, 10, 10)), Pose((i, 0, 0))) for i in range(3)]
     assert compiled(*models).model.nmesh == 1
@@ -201,4 +224,5 @@ def test_equal_meshes_are_stored_once(make, compiled, dae):
 def test_a_mesh_without_file_is_an_error_with_a_code(make, tmp_path):
     found = Diagnostics()
     SpecBuilder(make.world(make.solid("m", Mesh(tmp_path / "no.stl", "no.stl"))), found)
-    assert found.has_errors and next(iter(found)).code == "SK-MESH-001"
+    assert found.has_errors
+    assert next(iter(found)).code == "SK-MESH-001"

@@ -8,20 +8,33 @@ import numpy as np
 import numpy.typing as npt
 
 
-def sensor(kind: str, block: str, *, rate: float = 100, pose: str = "0 0 0 0 0 0", extra: str = "", name: str = "s") -> str:
-    return (
-        f'<sensor name="{name}" type="{kind}"><pose>{pose}</pose><update_rate>{rate}</update_rate>{block}{extra}</sensor>'
-    )
+def sensor(
+    kind: str, block: str, *, rate: float = 100, pose: str = "0 0 0 0 0 0", extra: str = "", name: str = "s"
+) -> str:
+    head = f'<sensor name="{name}" type="{kind}"><pose>{pose}</pose><update_rate>{rate}</update_rate>'
+    return f"{head}{block}{extra}</sensor>"
 
 
-def world(sensors: str, *, others: str = "", static: bool = True, pose: str = "0 0 1 0 0 0", body: str = "", top: str = "") -> str:
+def world(
+    sensors: str, *, others: str = "", static: bool = True, pose: str = "0 0 1 0 0 0", body: str = "", top: str = ""
+) -> str:
     """One model `m` with one link `l` that carries the sensors (and `body`), and other models."""
     return f"""<sdf version="1.9"><world name="w">{top}
-      <model name="m"><static>{str(static).lower()}</static><pose>{pose}</pose><link name="l">{body}{sensors}</link></model>
+      <model name="m"><static>{str(static).lower()}</static><pose>{pose}</pose>
+      <link name="l">{body}{sensors}</link></model>
       {others}</world></sdf>"""
 
 
-def box(name: str, pose: str, size: str, *, colour: str = "1 1 1", collision: bool = True, visual: bool = True, retro: float = 0) -> str:
+def box(
+    name: str,
+    pose: str,
+    size: str,
+    *,
+    colour: str = "1 1 1",
+    collision: bool = True,
+    visual: bool = True,
+    retro: float = 0,
+) -> str:
     shape = f"<geometry><box><size>{size}</size></box></geometry>"
     material = f"<material><ambient>{colour} 1</ambient><diffuse>{colour} 1</diffuse></material>"
     reflects = f"<laser_retro>{retro}</laser_retro>"

@@ -11,13 +11,20 @@ from sensor_worlds import box, cloud, noise, sensor, world
 import simkit
 
 AHEAD = box("ahead", "3.5 0 1 0 0 0", "1 1 1", retro=70)
-HOUSING = """<collision name="c"><geometry><cylinder><radius>0.2</radius><length>0.4</length></cylinder></geometry></collision>
-  <visual name="v"><geometry><cylinder><radius>0.2</radius><length>0.4</length></cylinder></geometry></visual>"""
+CAN = "<geometry><cylinder><radius>0.2</radius><length>0.4</length></cylinder></geometry>"
+HOUSING = f'<collision name="c">{CAN}</collision><visual name="v">{CAN}</visual>'
 TOPIC = "/world/w/model/m/link/l/sensor/s/"
 
 
-def block(samples: int = 3, low: float = -math.pi / 2, high: float = math.pi / 2, rng: tuple[float, float] = (0.1, 10), more: str = "") -> str:
-    return f"""<lidar><scan><horizontal><samples>{samples}</samples><min_angle>{low}</min_angle><max_angle>{high}</max_angle>
+def block(
+    samples: int = 3,
+    low: float = -math.pi / 2,
+    high: float = math.pi / 2,
+    rng: tuple[float, float] = (0.1, 10),
+    more: str = "",
+) -> str:
+    return f"""<lidar><scan><horizontal>
+      <samples>{samples}</samples><min_angle>{low}</min_angle><max_angle>{high}</max_angle>
       </horizontal></scan><range><min>{rng[0]}</min><max>{rng[1]}</max></range>{more}</lidar>"""
 
 
@@ -37,9 +44,15 @@ def test_every_kind_sees_a_box_and_its_reflectance(kind: str) -> None:
 
 
 def test_physics_rays_see_collisions_and_rendered_ones_visuals() -> None:
-    ghosts = box("solid", "2.5 0 1 0 0 0", "1 1 1", visual=False) + box("picture", "0 3.5 1 0 0 0", "1 1 1", collision=False)
-    np.testing.assert_allclose(scan_of(world(sensor("lidar", block()), others=ghosts)).ranges, (math.inf, 2, math.inf), atol=1e-6)
-    np.testing.assert_allclose(scan_of(world(sensor("gpu_lidar", block()), others=ghosts)).ranges, (math.inf, math.inf, 3), atol=1e-6)
+    ghosts = box("solid", "2.5 0 1 0 0 0", "1 1 1", visual=False) + box(
+        "picture", "0 3.5 1 0 0 0", "1 1 1", collision=False
+    )
+    np.testing.assert_allclose(
+        scan_of(world(sensor("lidar", block()), others=ghosts)).ranges, (math.inf, 2, math.inf), atol=1e-6
+    )
+    np.testing.assert_allclose(
+        scan_of(world(sensor("gpu_lidar", block()), others=ghosts)).ranges, (math.inf, math.inf, 3), atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("kind", ["lidar", "gpu_lidar"])
@@ -51,7 +64,8 @@ def test_its_own_housing_is_not_hit(kind: str, static: bool) -> None:
 
 def test_a_housing_that_is_hidden_for_one_lidar_is_seen_by_another() -> None:
     """The static world's other links stay visible, and nothing is left hidden."""
-    other = f'<model name="n"><static>true</static><pose>-2 0 1 0 0 0</pose><link name="l">{sensor("lidar", block())}</link></model>'
+    link = f'<link name="l">{sensor("lidar", block())}</link>'
+    other = f'<model name="n"><static>true</static><pose>-2 0 1 0 0 0</pose>{link}</model>'
     with simkit.load(world(sensor("lidar", block()), others=AHEAD + other, body=HOUSING)) as sim:
         sim.run(0.02)
         before = sim.mj_model.geom_group.copy()
@@ -88,7 +102,8 @@ def test_noise_is_clamped_to_the_range_and_truth_has_none() -> None:
 
 
 def test_several_layers_give_the_middle_one_as_a_scan_and_all_as_a_cloud() -> None:
-    layers = """<lidar><scan><horizontal><samples>5</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal>
+    layers = """<lidar><scan><horizontal><samples>5</samples>
+      <min_angle>-0.2</min_angle><max_angle>0.2</max_angle></horizontal>
       <vertical><samples>3</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical></scan>
       <range><min>0.1</min><max>10</max></range></lidar>"""
     wall = box("wall", "3.5 0 1 0 0 0", "1 9 9")
@@ -115,10 +130,13 @@ def test_rays_without_a_reading_keep_their_place_in_the_cloud() -> None:
         assert np.isfinite(found["x"]).tolist() == [False, True, False]
 
 
-@pytest.mark.parametrize("output, type_name", [("LaserScan", "LaserScan"), ("PointCloud2", "PointCloud2"), ("PointCloud", "PointCloud"), ("Range", "Range")])
+@pytest.mark.parametrize(
+    ("output", "type_name"),
+    [("LaserScan", "LaserScan"), ("PointCloud2", "PointCloud2"), ("PointCloud", "PointCloud"), ("Range", "Range")],
+)
 def test_classic_gives_what_output_type_asks_for(output: str, type_name: str) -> None:
-    plugin = f"""<plugin name="node" filename="libgazebo_ros_ray_sensor.so"><ros><remapping>~/out:=scan</remapping></ros>
-      <output_type>sensor_msgs/{output}</output_type><min_intensity>5</min_intensity></plugin>"""
+    plugin = f"""<plugin name="node" filename="libgazebo_ros_ray_sensor.so">
+      <ros><remapping>~/out:=scan</remapping></ros><output_type>sensor_msgs/{output}</output_type><min_intensity>5</min_intensity></plugin>"""
     with simkit.load(world(sensor("ray", block(), extra=plugin), others=AHEAD)) as sim:
         sub = sim.subscribe("/scan")
         sim.run(0.02)
@@ -140,7 +158,8 @@ def test_classic_gives_what_output_type_asks_for(output: str, type_name: str) ->
 
 
 def test_bad_parameters_are_reported_together() -> None:
-    bad = """<lidar><scan><horizontal><samples>0</samples><min_angle>1</min_angle><max_angle>0</max_angle></horizontal></scan>
+    bad = """<lidar><scan><horizontal><samples>0</samples>
+      <min_angle>1</min_angle><max_angle>0</max_angle></horizontal></scan>
       <range><min>2</min><max>1</max></range></lidar>"""
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(world(sensor("lidar", bad)))

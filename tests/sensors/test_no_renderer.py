@@ -1,0 +1,116 @@
+"""Without a renderer all but the cameras goes on, and the reason and the cure are said."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+from sensor_worlds import sensor, world
+
+ROOT = Path(__file__).resolve().parents[2]
+CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
+WORLD = world(sensor("camera", CAMERA, name="c") + sensor("imu", "<imu/>", name="i"))
+# a vendor list that names no file leaves the EGL library without drivers
+BROKEN = {
+    "MUJOCO_GL": "egl",
+    "__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent.json",
+    "__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent",
+}
+
+
+def run(script: str, broken: bool) -> subprocess.CompletedProcess[str]:
+    kept = {k: v for k, v in os.environ.items() if k not in BROKEN and k != "PYOPENGL_PLATFORM"}
+    environment = {**kept, "PYTHONPATH": str(ROOT), "SIMKIT_TEST_WORLD": WORLD, **(BROKEN if broken else {})}
+    return subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+def test_other_sensors_go_on_and_the_camera_says_what_is_missing() -> None:
+    done = run(
+        """
+        import os, time, simkit
+        sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"])
+        images = sim.subscribe("/world/w/model/m/link/l/sensor/c/image")
+        start = time.perf_counter()
+        sim.run(0.1)
+        assert time.perf_counter() - start < 3, "too slow"
+        assert not images.messages
+        assert sim.sensor("m::l::i").latest is not None
+        try:
+            sim.sensor("m::l::c").latest
+        except simkit.RenderError as error:
+            print(error)
+        print(*[d.code for d in sim.diagnostics])
+        sim.spawn('<sdf version="1.9"><model name="n"><static>true</static><link name="l"/></model></sdf>')
+        snapshot = sim.snapshot()
+        sim.run(0.1)
+        sim.restore(snapshot)
+        sim.close()
+        """,
+        broken=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "SK-RENDER-001" in done.stdout
+    assert "libegl1 libgl1-mesa-dri" in done.stdout
+    assert "libosmesa6" in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+def test_rendering_can_be_switched_off() -> None:
+    done = run(
+        """
+        import os
+        os.environ["MUJOCO_GL"] = "disabled"
+        import simkit
+        sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"])
+        sim.run(0.02)
+        try:
+            sim.sensor("m::l::c").latest
+        except simkit.RenderError as error:
+            print(error)
+        """,
+        broken=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "MUJOCO_GL=disabled" in done.stdout
+
+
+def test_nothing_is_said_at_the_end_of_the_process() -> None:
+    done = run(
+        """
+        import os, simkit
+        kept = [simkit.load(os.environ["SIMKIT_TEST_WORLD"]) for _ in range(2)]
+        for sim in kept:
+            sim.run(0.02)
+            try:
+                sim.sensor("m::l::c").latest
+            except simkit.RenderError:
+                pass
+        """,
+        broken=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.replace("SK-RENDER-001", "").strip() == "" or "SK-RENDER-001" in done.stderr
+
+
+def test_nothing_touches_opengl_before_the_first_picture() -> None:
+    done = run(
+        """
+        import os, sys, simkit
+        sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"])
+        sim.run(0.1)
+        assert sim.sensor("m::l::i").latest is not None
+        assert not [m for m in sys.modules if m == "OpenGL" or m.startswith("OpenGL.")], "OpenGL was imported"
+        """,
+        broken=False,
+    )
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,119 @@
+"""Commands over time: sent at exact ticks, and what is wrong with a script is said with its line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import simkit
+from simkit.errors import InputError
+from simkit.sinks.commands import Command, Commands, read_script, steady_velocity
+
+TOPICS = {"/cmd_vel": "geometry_msgs/msg/Twist", "/imu": "sensor_msgs/msg/Imu"}
+EMPTY = "<sdf version='1.9'><world name='w'/></sdf>"
+
+
+def sent(commands: list[Command], seconds: float, chunk: int) -> list[tuple[int, float]]:
+    """(tick, value) of what arrives, advancing as a loop does."""
+    arrived: list[tuple[int, float]] = []
+    with simkit.load(EMPTY) as sim:
+        sim.bus.listen("/level", ["std_msgs/msg/Float64"], lambda m: arrived.append((sim.tick, m.data)))
+        queue = Commands(sim, commands)
+        end = round(seconds / sim.timestep)
+        while sim.tick < end:
+            queue.send_due()
+            ahead = queue.next_tick
+            sim.step(min(chunk, end - sim.tick, (ahead or end + chunk) - sim.tick))
+    return arrived
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 1000])
+def test_commands_arrive_before_the_step_of_their_tick_however_the_loop_is_cut(chunk: int) -> None:
+    commands = [
+        Command(0.0, "/level", {"data": 1.0}),
+        Command(0.0335, "/level", {"data": 2.0}),
+        Command(0.02, "/level", {"data": 3.0}, until=0.04, rate=100),
+    ]
+    assert sent(commands, 0.1, chunk) == [(0, 1.0), (20, 3.0), (30, 3.0), (34, 2.0), (40, 3.0)]
+
+
+def test_of_two_at_one_time_the_earlier_in_the_list_goes_first() -> None:
+    commands = [Command(0.01, "/level", {"data": float(i)}) for i in range(5)]
+    assert [value for _, value in sent(commands, 0.02, 1000)] == [0.0, 1.0, 2.0, 3.0, 4.0]
+
+
+@pytest.mark.parametrize("text", ["0.2,0.3", "0.2 0.3", " 0.2 , 0.3 "])
+def test_a_steady_velocity_goes_to_cmd_vel(text: str) -> None:
+    command = steady_velocity(text, TOPICS)
+    assert (command.topic, command.at) == ("/cmd_vel", 0.0)
+    assert command.message == {"linear": {"x": 0.2}, "angular": {"z": 0.3}}
+
+
+def test_a_steady_velocity_goes_to_the_only_topic_that_takes_one() -> None:
+    command = steady_velocity(
+        "1,0", {"/model/a/cmd_vel": "geometry_msgs/msg/TwistStamped", "/imu": "sensor_msgs/msg/Imu"}
+    )
+    assert command.topic == "/model/a/cmd_vel"
+    assert command.message["twist"]["linear"] == {"x": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "topics", "reason"),
+    [
+        ("fast", TOPICS, "allowed is LINEAR,ANGULAR"),
+        ("0.2", TOPICS, "allowed is LINEAR,ANGULAR"),
+        ("0.2,nan", TOPICS, "allowed is LINEAR,ANGULAR"),
+        ("0.2,0", {"/imu": "sensor_msgs/msg/Imu"}, "none does"),
+        ("0.2,0", {"/a": "geometry_msgs/msg/Twist", "/b": "geometry_msgs/msg/Twist"}, "several (/a, /b)"),
+    ],
+)
+def test_a_velocity_that_cannot_be_sent_is_said(text: str, topics: dict[str, str], reason: str) -> None:
+    with pytest.raises(InputError) as error:
+        steady_velocity(text, topics)
+    assert reason in str(error.value)
+
+
+def test_a_script_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "drive.yaml"
+    path.write_text("- {at: 0.5, topic: cmd_vel, message: {linear: {x: 0.26}}}\n- {at: 2, topic: /cmd_vel}\n")
+    first, second = read_script(path, TOPICS)
+    assert (first.at, first.topic, first.message) == (0.5, "/cmd_vel", {"linear": {"x": 0.26}})
+    assert (second.at, second.message) == (2.0, {})
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "reason"),
+    [
+        ("- {at: 0, topic: /cmd_vel}\n- {at: x, topic: /cmd_vel}\n", 2, "at: found 'x'"),
+        ("- {at: 0, topic: /cmd_vle}\n", 1, "did you mean '/cmd_vel'?"),
+        ("\n\n- {at: 0, topik: /cmd_vel}\n", 3, "did you mean 'topic'?"),
+        ("- {topic: /cmd_vel}\n", 1, "needs 'at'"),
+        ("- {at: -1, topic: /cmd_vel}\n", 1, "at least 0"),
+        ("- {at: 2, until: 1, topic: /cmd_vel}\n", 1, "until"),
+        ("- {at: 1, topic: /cmd_vel, message: 3}\n", 1, "message: found 3"),
+        ("- just a text\n", 1, "allowed is {at, topic, message}"),
+        ("at: 0\n", 1, "allowed is a list"),
+        ("- {at: 0, topic: [\n", 2, "is not YAML"),
+    ],
+)
+def test_a_bad_script_is_said_with_its_line(tmp_path: Path, text: str, line: int, reason: str) -> None:
+    path = tmp_path / "drive.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError) as error:
+        read_script(path, TOPICS)
+    assert str(error.value).startswith(f"{path}:{line}: ")
+    assert reason in str(error.value)
+
+
+def test_a_script_that_is_not_there_is_said(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No such file"):
+        read_script(tmp_path / "drive.yaml", TOPICS)
+
+
+def test_a_message_that_does_not_fit_is_said_with_its_line() -> None:
+    with simkit.load(EMPTY) as sim:
+        sim.bus.listen("/level", ["std_msgs/msg/Float64"], lambda m: None)
+        queue = Commands(sim, [Command(0.0, "/level", {"dat": 1.0}, where="drive.yaml:7")])
+        with pytest.raises(InputError, match=r"drive\.yaml:7: .*did you mean 'data'"):
+            queue.send_due()

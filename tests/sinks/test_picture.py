@@ -1,0 +1,76 @@
+"""Pictures: path and scan where they belong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+import simkit
+from simkit import msgs
+from simkit.errors import InputError, RenderError
+from simkit.pose import Pose
+from simkit.sinks.picture import DrivenPath, check_target, save_picture, scan_points
+
+WORLD = """
+<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>
+  <model name="rover"><pose>0 0 0.1 0 0 0</pose><link name="body">
+    <inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>
+    <visual name="v"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></visual>
+    <sensor name="eye" type="gpu_lidar"><pose>0 0 0.2 0 0 0</pose><update_rate>10</update_rate><topic>scan</topic>
+      <lidar><scan><horizontal><samples>90</samples><min_angle>-3.1</min_angle><max_angle>3.1</max_angle></horizontal></scan>
+      <range><min>0.05</min><max>10</max></range></lidar></sensor>
+  </link></model>
+  <model name="wall"><static>true</static><pose>2 0 0.5 0 0 0</pose><link name="l">
+    <visual name="v"><geometry><box><size>0.1 2 1</size></box></geometry></visual>
+    <collision name="c"><geometry><box><size>0.1 2 1</size></box></geometry></collision></link></model>
+</world></sdf>
+"""
+
+
+def test_points_of_a_scan_lie_where_the_rays_hit() -> None:
+    scan = msgs.make(
+        "sensor_msgs/msg/LaserScan",
+        angle_min=0.0,
+        angle_increment=np.pi / 2,
+        ranges=[2.0, 1.0, float("inf"), float("-inf")],
+    )
+    points = scan_points(scan, Pose.from_rpy(1, 0, 0.5, 0, 0, np.pi / 2))
+    np.testing.assert_allclose(points, [[1, 2, 0.5], [0, 0, 0.5]], atol=1e-6)
+
+
+def test_a_path_follows_what_moves_and_leaves_out_what_stands() -> None:
+    with simkit.load(WORLD) as sim:
+        driven = DrivenPath(sim)
+        sim.model("rover").set_velocity((1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        for _ in range(10):
+            sim.run(0.05)
+            driven.sample()
+        assert set(driven.tracks) == {"rover"}
+        np.testing.assert_allclose([p[0] for p in driven.tracks["rover"]], np.arange(11) * 0.05, atol=1e-9)
+
+
+def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
+    with simkit.load(WORLD) as sim:
+        driven = DrivenPath(sim)
+        sim.model("rover").set_velocity((0.8, 0.0, 0.0), (0.0, 0.0, 0.0))
+        for _ in range(20):
+            sim.run(0.05)
+            driven.sample()
+        try:
+            save_picture(sim, tmp_path / "out.png", driven)
+        except RenderError as error:
+            pytest.skip(str(error))
+        blue, green, red = (c.astype(int) for c in cv2.split(cv2.imread(str(tmp_path / "out.png"))))
+    assert int(((red > 150) & (green < 110) & (blue < 110)).sum()) > 100  # points of the scan on the wall
+    assert int(((blue > 150) & (red < 90)).sum()) > 100  # the path behind the rover
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"), [("out.gif", "allowed is .png or .jpg"), ("no/out.png", "there is no folder")]
+)
+def test_a_picture_that_cannot_be_written_is_said_before_the_run(tmp_path: Path, name: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        check_target(tmp_path / name)

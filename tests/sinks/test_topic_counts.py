@@ -1,0 +1,47 @@
+"""True rates, and nothing read that nobody asked for."""
+
+from __future__ import annotations
+
+import simkit
+from simkit import msgs
+from simkit.sinks.topic_counts import TopicCounter
+
+WORLD = """
+<sdf version="1.9"><world name="w"><model name="m"><static>true</static><link name="l">
+  <sensor name="imu" type="imu"><update_rate>30</update_rate><topic>imu</topic></sensor>
+</link></model></world></sdf>
+"""
+
+
+def test_rates_are_those_of_simulated_time() -> None:
+    with simkit.load(WORLD) as sim:
+        counter = TopicCounter(sim)
+        sim.run(2.0)
+        rows = {row.topic: row for row in counter.rows}
+        assert rows["/imu"].count == 60
+        assert rows["/imu"].rate(sim.time_ns) == 30.0
+        sim.reset()
+        sim.run(1.0)
+        assert rows["/imu"].count == 30
+        assert rows["/imu"].rate(sim.time_ns) == 30.0
+
+
+def test_a_skipped_type_is_listed_and_not_read() -> None:
+    with simkit.load(WORLD) as sim:
+        counter = TopicCounter(sim, skip=["sensor_msgs/msg/Imu"])
+        sim.run(1.0)
+        row = next(row for row in counter.rows if row.topic == "/imu")
+        assert not row.counted
+        assert not sim.bus.wanted("/imu")
+
+
+def test_a_topic_that_comes_later_is_counted_from_then_on() -> None:
+    with simkit.load(WORLD) as sim:
+        counter = TopicCounter(sim)
+        sim.run(1.0)
+        publisher = sim.bus.advertise("/late", "std_msgs/msg/Float64")
+        for _ in range(10):
+            sim.run(0.1)
+            publisher.publish(msgs.make("std_msgs/msg/Float64"))
+        row = next(row for row in counter.rows if row.topic == "/late")
+        assert row.rate(sim.time_ns) == 10.0

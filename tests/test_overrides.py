@@ -1,0 +1,101 @@
+"""`--set PATH=VALUE`: the value is the one that counts, and a wrong path names the closest."""
+
+from __future__ import annotations
+
+import pytest
+
+from simkit.build import load
+from simkit.errors import InputError
+from simkit.overrides import check_used
+
+WORLD = """
+<sdf version="1.9"><world name="w">
+  <physics name="p" type="ignored"><max_step_size>0.001</max_step_size></physics>
+  <light name="sun" type="directional"><direction>0 0 -1</direction></light>
+  <model name="arm"><link name="base"><inertial><mass>2</mass></inertial></link>
+    <link name="tip"><pose>1 0 0 0 0 0</pose>
+      <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
+      <sensor name="imu" type="imu"><update_rate>50</update_rate><topic>imu</topic>
+        <imu><angular_velocity><x><noise type="gaussian"><stddev>0.1</stddev></noise></x></angular_velocity></imu></sensor>
+    </link>
+    <joint name="hinge" type="revolute"><parent>base</parent><child>tip</child><axis><xyz>0 1 0</xyz></axis></joint>
+    <plugin name="gz::sim::systems::JointStatePublisher" filename="gz-sim-joint-state-publisher-system"/>
+  </model>
+</world></sdf>
+"""
+
+
+def test_the_step_of_the_physics_is_set() -> None:
+    with load(WORLD, overrides=["physics.max_step_size=0.004"]) as sim:
+        assert sim.timestep == 0.004
+        assert sim.mj_model.opt.timestep == 0.004
+
+
+def test_gravity_is_set() -> None:
+    with load(WORLD, overrides=["world.gravity=0 0 -1.62"]) as sim:
+        assert sim.mj_model.opt.gravity.tolist() == [0.0, 0.0, -1.62]
+
+
+def test_the_rate_and_topic_of_a_sensor_are_set() -> None:
+    with load(WORLD, overrides=["arm::tip::imu.update_rate=20", "arm::tip::imu.topic=imu/data"]) as sim:
+        assert sim.sensor("arm::tip::imu").update_rate == 20.0
+        messages = sim.subscribe("/imu/data")
+        sim.run(1.0)
+        assert len(messages.messages) == 20
+
+
+def test_a_value_deep_in_a_sensor_is_set() -> None:
+    with load(WORLD, overrides=["arm::tip::imu.imu.angular_velocity.x.noise.stddev=0"]) as sim:
+        sensor = sim.sensor("arm::tip::imu")
+        sim.run(0.5)
+        assert sensor.latest.angular_velocity.x == sensor.truth.angular_velocity.x
+
+
+def test_values_of_links_joints_and_collisions_are_set() -> None:
+    overrides = [
+        "arm::tip.inertial.mass=3",
+        "arm::hinge.axis.limit.upper=0.5",
+        "arm::hinge.axis.dynamics.damping=0.25",
+        "arm::tip::c.surface.friction.ode.mu=0.3",
+    ]
+    with load(WORLD, overrides=overrides) as sim:
+        assert sim.link("arm::tip").mass == pytest.approx(3.0)
+        assert sim.joint("arm::hinge").upper == 0.5
+        assert sim.mj_model.dof_damping[sim.joint("arm::hinge").mj_dofs[0]] == 0.25
+
+
+def test_later_ones_win() -> None:
+    with load(WORLD, overrides=["physics.max_step_size=0.004", "physics.max_step_size=0.002"]) as sim:
+        assert sim.timestep == 0.002
+
+
+@pytest.mark.parametrize(
+    ("override", "reason"),
+    [
+        ("physics.max_step_sise=0.004", "did you mean 'max_step_size'?"),
+        ("physics.max_step_size=0", "allowed is a positive number"),
+        ("physics.max_step_size=nan", "allowed is a positive number"),
+        ("world.gravity=0 0", "allowed are 3 numbers"),
+        ("arm::tip::imv.update_rate=3", "did you mean 'arm::tip::imu'?"),
+        ("arm::tip::imu.update_rate=often", "found 'often'"),
+        ("arm::hinge.axis.limit.uper=1", "did you mean 'axis.limit.upper'?"),
+        ("arm::hinge.axis2.limit.upper=1", "has 1 axes"),
+        ("arm::tip::imu.imu=3", "holds elements; name one of them: angular_velocity"),
+        ("arm.static=maybe", "true, false, 1 or 0"),
+        ("nonsense", "allowed is PATH=VALUE"),
+        ("=3", "allowed is PATH=VALUE"),
+    ],
+)
+def test_what_does_not_fit_is_said(override: str, reason: str) -> None:
+    with pytest.raises(InputError) as error:
+        load(WORLD, overrides=[override]).close()
+    assert reason in str(error.value)
+    assert error.value.exit_code == 2
+
+
+def test_an_element_that_the_sensor_does_not_know_is_said() -> None:
+    with (
+        load(WORLD, overrides=["arm::tip::imu.visualise_it=1"]) as sim,
+        pytest.raises(InputError, match="visualise_it"),
+    ):
+        check_used(sim.diagnostics)
