@@ -11,7 +11,7 @@ from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.loaders import Resolver, load_scene
 from simkit.params import Params
 from simkit.pose import Pose
-from simkit.scene import Scene, SceneModel, ScenePlugin, SceneSensor, SceneWorld
+from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
 
 if TYPE_CHECKING:
     from simkit.plugins.base import ParentKind, Plugin
@@ -172,7 +172,8 @@ def _parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, p
             parent = _sensor_parent(scene.scoped)
             _add_plugin(parts, plugin, "sensor", scene, builder, diagnostics, plugin_paths, parent)
     for nested in model.all_models():
-        below = [plugin for owner in (*nested.links, *nested.joints) for plugin in owner.plugins]
+        owners: list[SceneLink | SceneJoint] = [*nested.links, *nested.joints]
+        below = [plugin for owner in owners for plugin in owner.plugins]
         parent = _model_parent(nested.scoped)
         for plugin in (*below, *nested.plugins):
             _add_plugin(parts, plugin, "model", nested, builder, diagnostics, plugin_paths, parent)

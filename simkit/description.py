@@ -113,8 +113,6 @@ def _shape(shape: SceneCollision | SceneVisual) -> Block:
 
 
 def _geometry(geometry: Geometry) -> Block:
-    if not is_dataclass(geometry):  # every shape is one
-        return {}
     sizes = {f.name: _plain(getattr(geometry, f.name)) for f in fields(geometry)}
     return {"type": type(geometry).__name__.lower(), **sizes}
 

@@ -16,7 +16,8 @@ WORLD = """
     <link name="tip"><pose>1 0 0 0 0 0</pose>
       <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
       <sensor name="imu" type="imu"><update_rate>50</update_rate><topic>imu</topic>
-        <imu><angular_velocity><x><noise type="gaussian"><stddev>0.1</stddev></noise></x></angular_velocity></imu></sensor>
+        <imu><angular_velocity><x><noise type="gaussian"><stddev>0.1</stddev></noise></x></angular_velocity></imu>
+      </sensor>
     </link>
     <joint name="hinge" type="revolute"><parent>base</parent><child>tip</child><axis><xyz>0 1 0</xyz></axis></joint>
     <plugin name="gz::sim::systems::JointStatePublisher" filename="gz-sim-joint-state-publisher-system"/>

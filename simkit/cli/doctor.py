@@ -7,6 +7,7 @@ import platform
 import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, distribution, version
+from pathlib import Path
 
 from simkit.cli.console import guarded, out
 
@@ -124,7 +125,7 @@ def _renderer() -> list[str]:
 def _folders() -> None:
     for name in _FOLDERS:
         for folder in filter(None, os.environ.get(name, "").split(os.pathsep)):
-            _line(name, folder if os.path.isdir(folder) else f"{folder} (is not there)")
+            _line(name, folder if Path(folder).is_dir() else f"{folder} (is not there)")
     try:
         where = str(distribution("simkit-robotics").locate_file(""))
     except PackageNotFoundError:

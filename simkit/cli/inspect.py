@@ -64,7 +64,8 @@ def _model(model: dict[str, Any], indent: str) -> Iterator[str]:
 
 def _sensors(owner: dict[str, Any], indent: str) -> Iterator[str]:
     for sensor in owner["sensors"]:
-        yield f"{indent}sensor {sensor['name']}  {sensor['type']}, {sensor['update_rate']:g} Hz, {sensor['topic'] or 'default topic'}"
+        topic = sensor["topic"] or "default topic"
+        yield f"{indent}sensor {sensor['name']}  {sensor['type']}, {sensor['update_rate']:g} Hz, {topic}"
 
 
 def _plugins(owner: dict[str, Any], indent: str) -> Iterator[str]:

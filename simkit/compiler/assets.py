@@ -49,9 +49,11 @@ class Assets:
         return name
 
     def hull(self, points: Floats) -> str:
-        """The convex hull of points that are not all in one plane."""
+        """The convex hull of points. Raises QhullError where they are all in one plane."""
         from scipy.spatial import ConvexHull
 
+        if _is_stout_prism(points):
+            return self._corners(points)
         hull = ConvexHull(points)
         used, inverse = np.unique(hull.simplices, return_inverse=True)
         vertices = np.asarray(points, float)[used]
@@ -62,6 +64,15 @@ class Assets:
         inwards = np.einsum("ij,ij->i", normals, corners[:, 0] - middle) < 0.0
         faces[inwards] = faces[inwards][:, ::-1]
         return self.surface(vertices, faces.astype(np.int32), collides=True)
+
+    def _corners(self, points: Floats) -> str:
+        """A convex mesh that MuJoCo itself finds the faces of."""
+        name = "mesh#" + _digest(points)
+        if self._is_new("mesh", name):
+            mesh = self.spec.add_mesh(name=name)
+            mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+            mesh.uservert = np.ascontiguousarray(points, np.float64).reshape(-1)
+        return name
 
     def texture(self, pixels: Any, on_mesh: bool) -> str:
         """An image. Meshes and planes map it by coordinates, other shapes wear it on every side."""
@@ -113,6 +124,19 @@ class Assets:
         for kind, name in sorted(keys & self.known, key=lambda k: (order[k[0]], k[1])):
             self.spec.delete(getattr(self.spec, kind)(name))
             self.known.discard((kind, name))
+
+
+def _is_stout_prism(points: Floats) -> bool:
+    """Whether six points are a triangle and its shifted copy, and far from flat: the usual case, quickly told."""
+    if len(points) != 6:
+        return False
+    shift = points[3:] - points[:3]
+    if np.abs(shift - shift[0]).max() > 1e-9:
+        return False
+    u, v = points[1] - points[0], points[2] - points[0]
+    area = float(np.linalg.norm(np.cross(u, v)))
+    edge = float(max(u @ u, v @ v, (u - v) @ (u - v)))
+    return area > 1e-3 * edge and float(shift[0] @ shift[0]) > 1e-8 * edge
 
 
 def _digest(*values: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +16,16 @@ from simkit.compiler.mesh import MeshFileError, load_mesh, pixels_of
 from simkit.compiler.mesh_part import Floats, Ints, MeshPart, joined
 from simkit.compiler.names import GeomOwner, ModelRecord
 from simkit.compiler.shapes import cone, heights, polyline, primitive_of, sizes_of
-from simkit.compiler.static import PRISMS_MOST, convex_pieces, hull_volume, hulls, is_convex, prisms, thinned
+from simkit.compiler.static import (
+    PRISMS_MOST,
+    convex_pieces,
+    hull_volume,
+    hulls,
+    is_convex,
+    is_inside_out,
+    prisms,
+    thinned,
+)
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
@@ -46,12 +56,12 @@ class GeomWriter:
 
     def __init__(self, assets: Assets, record: ModelRecord, timestep: float, diagnostics: Diagnostics) -> None:
         self.assets, self.record, self.timestep, self.diagnostics = assets, record, timestep, diagnostics
+        self._count: Counter[str] = Counter()
 
     def _add(self, place: Place, owner: GeomOwner, pose: Pose, **settings: Any) -> Any:
-        base, k = owner.scoped + ("#v" if owner.is_visual else "#"), 0
-        while f"{base}{k}" in self.record.geoms:
-            k += 1
-        name = f"{base}{k}"
+        base = owner.scoped + ("#v" if owner.is_visual else "#")
+        name = f"{base}{self._count[base]}"
+        self._count[base] += 1
         self.record.geoms[name] = owner
         local = place.offset @ pose
         return place.body.add_geom(name=name, pos=local.position, quat=local.quaternion, mass=0.0, **settings)
@@ -95,7 +105,7 @@ class GeomWriter:
             )
         elif hull_volume(vertices) <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
             self._flat_collision(place, owner, collision, vertices, faces, contact)
-        elif is_convex(vertices, faces):
+        elif is_convex(vertices, faces) and not (place.fixed and is_inside_out(vertices, faces)):
             self._hull(place, owner, pose, vertices, contact, COLLISION)
         elif place.fixed:
             self._static_collision(place, owner, collision, vertices, faces, contact)

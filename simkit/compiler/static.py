@@ -79,23 +79,22 @@ def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
     """Convex bodies that together have the surface of a static mesh."""
     pieces: list[ConvexPiece] = []
     parts = split(vertices, faces)
-    boxes = np.array([(v.min(axis=0), v.max(axis=0)) for v, _ in parts])
+    low, high = (np.array([end(v, axis=0) for v, _ in parts]) for end in (np.min, np.max))
+    inverted = np.array([is_inside_out(v, f) for v, f in parts])
     for i, (v, f) in enumerate(parts):
-        if is_convex(v, f) and not _is_cavity(v, f, np.delete(boxes, i, axis=0)):
+        hollow = bool((inverted & (low > low[i]).all(axis=1) & (high < high[i]).all(axis=1)).any())
+        if not inverted[i] and not hollow and is_convex(v, f):
             pieces.append(ConvexPiece(v, True))
         else:
             pieces += [ConvexPiece(p, False) for p in prisms(v, f)]
     return pieces
 
 
-def _is_cavity(vertices: Floats, faces: Ints, others: Floats) -> bool:
-    """Whether a closed piece is the inside wall of another: turned inside out, and within its box."""
+def is_inside_out(vertices: Floats, faces: Ints) -> bool:
+    """Whether a closed piece turns its faces inwards: the walls of a room or of a cavity, not a body."""
     import trimesh
 
-    if trimesh.Trimesh(vertices, faces, process=False).volume > 0.0:
-        return False
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    return bool(((others[:, 0] < low).all(axis=1) & (others[:, 1] > high).all(axis=1)).any())
+    return float(trimesh.Trimesh(vertices, faces, process=False).volume) < 0.0
 
 
 def thinned(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:

@@ -187,7 +187,7 @@ class Joint(Handle):
         self._velocity_limit[:] = value
         self._sim.limit_velocity(self)
 
-    def clamp_velocity(self) -> None:
+    def clamp_velocity(self, _tick: int = 0) -> None:
         """Brings the velocity within its limit."""
         qvel = self._sim.mj_data.qvel
         for i, dof in enumerate(self._dofs):

@@ -16,7 +16,7 @@ _BLOCK_VALUES = 2048
 def _key(seed: int, scoped: str, channel: str) -> npt.NDArray[np.uint64]:
     name = hashlib.blake2b(f"{scoped}\0{channel}".encode(), digest_size=16).digest()
     entropy = (seed, *(int.from_bytes(name[i : i + 4], "little") for i in range(0, 16, 4)))
-    return np.random.SeedSequence(entropy).generate_state(2, np.uint64)
+    return np.asarray(np.random.SeedSequence(entropy).generate_state(2, np.uint64), dtype=np.uint64)
 
 
 class Stream:

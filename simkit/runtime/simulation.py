@@ -477,12 +477,11 @@ class Simulation:
         self._rates_changed = False
         scheduler = self.scheduler
         scheduler.clear()
-        for joint in self._exact_limits:
-            if joint._there:
-                scheduler.every(None, lambda tick, j=joint: j.clamp_velocity(), "sense")
-        limited = [j for j in self._entities.tables["joint"].values() if self._coasts_over_limit(j)]
-        if limited:
-            scheduler.every(_LIMIT_GRID, lambda tick: [j.clamp_velocity() for j in limited] and None, "sense")
+        for joint in self._entities.tables["joint"].values():
+            if joint in self._exact_limits:
+                scheduler.every(None, joint.clamp_velocity, "sense")
+            elif self._coasts_over_limit(joint):
+                scheduler.every(_LIMIT_GRID, joint.clamp_velocity, "sense")
         for sensor in self._structure.all_sensors():
             scheduler.every(sensor.update_rate, sensor.sample, "sense")
         for plugin in self._structure.all_plugins():
@@ -497,7 +496,7 @@ class Simulation:
     def _coasts_over_limit(self, joint: Joint) -> bool:
         """Whether a joint has a velocity limit of the file that no servo keeps."""
         limits = joint._velocity_limit
-        return joint.dof > 0 and bool((limits < 1e6).any()) and joint not in self._exact_limits
+        return joint.dof > 0 and bool((limits < 1e6).any())
 
     def limit_velocity(self, joint: Joint) -> None:
         """Holds a joint's velocity limit at every step from now on."""

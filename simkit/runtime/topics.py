@@ -180,14 +180,15 @@ class TopicBus:
 
     def close(self, end: Publisher | Listener) -> None:
         """Takes a publisher or a listener away for good."""
-        table: dict[str, list[Any]] = self._publishers if isinstance(end, Publisher) else self._listeners  # type: ignore[assignment]
+        table: Mapping[str, list[Any]] = self._publishers if isinstance(end, Publisher) else self._listeners
         if end in table.get(end.topic, []):
             table[end.topic].remove(end)
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Leaves only the ends of these owners (and those without one) in use."""
         living = {id(o) for o in owners}
-        for ends in (*self._publishers.values(), *self._listeners.values()):
+        tables: tuple[Mapping[str, list[Any]], ...] = (self._publishers, self._listeners)
+        for ends in (ends for table in tables for ends in table.values()):
             for end in ends:
                 end.active = end.owner is None or id(end.owner) in living
 

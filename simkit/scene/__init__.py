@@ -25,6 +25,7 @@ from simkit.scene.model import (
     SceneCollision,
     SceneFrame,
     SceneJoint,
+    SceneLight,
     SceneLink,
     SceneModel,
     ScenePlugin,
@@ -32,7 +33,7 @@ from simkit.scene.model import (
     SceneVisual,
     Surface,
 )
-from simkit.scene.world import Physics, Scene, SceneLight, SceneWorld, SphericalCoordinates, Surroundings
+from simkit.scene.world import Physics, Scene, SceneWorld, SphericalCoordinates, Surroundings
 
 __all__ = [
     "Axis",

@@ -259,7 +259,13 @@ class SceneModel:
 
     def all_sensors(self) -> list[SceneSensor]:
         """Every sensor on links and joints, in document order of the models."""
-        return [s for m in self.all_models() for owner in (*m.links, *m.joints) for s in owner.sensors]
+        found: list[SceneSensor] = []
+        for model in self.all_models():
+            for link in model.links:
+                found += link.sensors
+            for joint in model.joints:
+                found += joint.sensors
+        return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -204,6 +204,7 @@ class Sensor(abc.ABC):
         """Finds itself in a compiled model, also after every change of structure."""
         if self._sample is not None:
             self._settle(self._sample)  # what is held belongs to the model before
+            self.sim.bus.settle()  # and so does what waits to be looked at
         link = compiled.names.link(self.scene.parent)
         self._body = int(link.body)
         self._offset: Pose = link.offset @ self.scene.pose_link

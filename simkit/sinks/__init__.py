@@ -1,1 +1,1 @@
-"""What leaves a simulation: bags, progress, pictures; and scripted commands that go in. Each is imported when asked for."""
+"""What leaves a simulation: bags, progress, pictures; and commands that go in. Each is imported when asked for."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,13 +70,13 @@ def save_picture(sim: Simulation, path: Path, driven: DrivenPath | None = None) 
     def decorate(scene: Any) -> None:
         size = min(max(float(sim.mj_model.stat.extent) / 5.0, 0.3), 3.0)
         for track in driven.tracks.values() if driven is not None else ():
-            for a, b in zip(track, track[1:], strict=False):
+            for a, b in itertools.pairwise(track):
                 _add_capsule(scene, a, b, _PATH_RADIUS * size, _PATH_COLOUR)
         for cloud in points:
             for point in cloud:
                 _add_sphere(scene, point, _SCAN_RADIUS * size, _SCAN_COLOUR)
 
-    eye, target = _viewpoint(sim, points, driven)
+    eye, target = _viewpoint(points, driven)
     colours = render_view(sim, *_SIZE, eye=eye, target=target, decorate=decorate)
     try:
         written = cv2.imwrite(str(path), colours[:, :, ::-1])
@@ -112,7 +113,7 @@ def _last_scans(sim: Simulation) -> list[tuple[Any, Pose]]:
     return found
 
 
-def _viewpoint(sim: Simulation, points: list[Any], driven: DrivenPath | None) -> tuple[Any, Any]:
+def _viewpoint(points: list[Any], driven: DrivenPath | None) -> tuple[Any, Any]:
     """Eye and target [m]: obliquely from above, so that what moved and what was seen fills the picture."""
     seen = [cloud for cloud in points if len(cloud)]
     if driven is not None:

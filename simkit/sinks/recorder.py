@@ -130,7 +130,7 @@ class Recorder:
         except OSError as error:
             self._fail(error)
 
-    def _add(self, topic: str, type_name: str) -> None:
+    def _add(self, topic: str, _: str) -> None:
         if self._bag is None or topic in self._taps:
             return
         if self._patterns and not any(fnmatch.fnmatchcase(topic, p) for p in self._patterns):

@@ -125,6 +125,20 @@ def test_a_body_inside_a_ring_is_not_inside_its_hull(make, compiled, tmp_path):
     np.testing.assert_allclose(c.data.qpos[:3], (0, 0, 0.1), atol=1e-3)
 
 
+@pytest.mark.parametrize("outer_wall", [False, True])
+def test_a_closed_room_holds_what_is_inside(make, compiled, tmp_path, outer_wall):
+    room = trimesh.creation.icosphere(subdivisions=2, radius=1.0)
+    room.invert()
+    if outer_wall:
+        room = trimesh.util.concatenate([room, trimesh.creation.box((2.4, 2.4, 2.4))])
+    file = tmp_path / f"room{outer_wall}.stl"
+    room.export(file)
+    c = compiled(static_mesh(make, file), make.solid("ball", Sphere(0.1), Pose((0.2, 0.1, 0))))
+    mujoco.mj_step(c.model, c.data, 5000)
+    assert 0.8 < np.linalg.norm(c.data.qpos[:3]) < 0.91
+    assert c.data.qpos[2] < -0.8
+
+
 @pytest.mark.parametrize("heading", [0.0, 0.2, 1.0])
 def test_a_thrown_ball_does_not_pass_a_thin_wall(make, compiled, tmp_path, heading):
     wall = ring(tmp_path, 1.0, 1.02)

@@ -128,3 +128,13 @@ def test_a_slower_rate_can_be_set() -> None:
         assert 10 <= len(sub.messages) <= 11
         with pytest.raises(ValueError, match="at least 0"):
             sim.sensor("m::l::s").set_rate(math.nan)
+
+
+def test_messages_not_yet_looked_at_keep_their_meaning_when_the_model_is_moved() -> None:
+    with simkit.load(world(sensor("imu", "<imu/>", extra="<topic>i</topic>"), pose="0 0 1 0.3 0 0")) as sim:
+        sub = sim.subscribe("/i")
+        sim.run(0.05)
+        sim.model("m").set_pose(simkit.Pose((0, 0, 2)))
+        sim.run(0.05)
+        np.testing.assert_allclose(xyz(sub.messages[0].linear_acceleration)[1], 9.8 * math.sin(0.3), atol=1e-9)
+        np.testing.assert_allclose(xyz(sub.latest.linear_acceleration), (0, 0, 9.8), atol=1e-9)
