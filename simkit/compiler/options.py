@@ -58,7 +58,8 @@ def choose_cone(option: Any, step: float) -> None:
 
     A pyramid has 0.7 of the friction on its diagonals (a slide came out 34 % too fast there), so contacts are
     elliptic; with `impratio` 100 a body on a slope or in a grip creeps 100 times less. At 4 ms a driven wheel under an
-    elliptic contact chatters and slips (6 % of a turn on the spot, under a pyramid with `impratio` 2 0.7 %), so long steps get pyramids.
+    elliptic contact chatters and slips (6 % of a turn on the spot, under a pyramid with `impratio` 2 0.7 %), so long
+    steps get pyramids.
     """
     if step <= LONGEST_ELLIPTIC_STEP:
         option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 100.0

@@ -14,7 +14,7 @@ import numpy as np
 
 from simkit.compiler.mesh_part import Floats, Ints
 
-PRISMS_MOST: Final = 20_000
+PRISMS_MOST: Final = 10_000
 """More patches than this are thinned out first (and reported)."""
 
 HULLS_MOST: Final = 64

@@ -113,6 +113,8 @@ class Renderer:
                 self._follow(model)
                 scene = self._scene
                 mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
+                if self._shadow_size:
+                    _bring_suns_near(scene, model)
                 if decorate is not None:
                     decorate(scene)
                 _aim(scene, position, rotation, view)
@@ -275,6 +277,13 @@ def _aim(scene: Any, position: Vector, rotation: Vector, view: View) -> None:
         camera.frustum_bottom, camera.frustum_top = view.bottom * near, view.top * near
         camera.frustum_center = (view.left + view.right) / 2 * near
         camera.frustum_width = (view.right - view.left) / 2 * near
+
+
+def _bring_suns_near(scene: Any, model: Any) -> None:
+    """Puts directional lights at the edge of the scene: from farther away their shadow maps have no depth left."""
+    for light in scene.lights[: scene.nlight]:
+        if light.type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL and not light.headlight:
+            light.pos = model.stat.center - model.stat.extent * np.asarray(light.dir)
 
 
 def _visuals_only() -> Any:

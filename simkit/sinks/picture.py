@@ -124,7 +124,7 @@ def _viewpoint(points: list[Any], driven: DrivenPath | None) -> tuple[Any, Any]:
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     target = (low + high) / 2
     radius = max(float(np.linalg.norm(high - low)) / 2, 0.6)
-    distance = radius / math.tan(0.4)
+    distance = 0.88 * radius / math.tan(0.4)
     eye = target + distance * np.array((-0.34, -0.46, 0.82))
     return eye, target
 
