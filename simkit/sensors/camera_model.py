@@ -155,8 +155,7 @@ class Distorter:
         """The picture through the lens; black where nothing was drawn."""
         import cv2
 
-        out: npt.NDArray[np.uint8] = cv2.remap(np.ascontiguousarray(picture), *self._maps, cv2.INTER_LINEAR)
-        return out
+        return np.asarray(cv2.remap(np.ascontiguousarray(picture), *self._maps, cv2.INTER_LINEAR), dtype=np.uint8)
 
 
 def straighten(bent_x: Vector, bent_y: Vector, lens: Distortion) -> tuple[Vector, Vector]:

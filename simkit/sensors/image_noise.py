@@ -72,8 +72,7 @@ class ImageNoise:
             brighter, darker = (np.full(shape, steps[0]) for steps in self._steps)
         if picture.ndim == 3:
             brighter, darker = (cv2.cvtColor(step, cv2.COLOR_GRAY2RGB) for step in (brighter, darker))
-        out: npt.NDArray[np.uint8] = cv2.subtract(cv2.add(picture, brighter), darker)
-        return out
+        return np.asarray(cv2.subtract(cv2.add(picture, brighter), darker), dtype=np.uint8)
 
     def on_depths(self, depths: npt.NDArray[np.float32], index: int) -> npt.NDArray[np.float32]:
         """Depths [m], shape (h, w), with a draw per pixel; infinite ones stay."""

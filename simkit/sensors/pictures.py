@@ -27,8 +27,7 @@ def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
     """Brightness, shape (h, w), by the weights of Rec. 601."""
     import cv2
 
-    out: npt.NDArray[np.uint8] = cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY)
-    return out
+    return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
 
 
 def image_message(header: Any, pixels: npt.NDArray[Any], encoding: str) -> Any:
