@@ -40,25 +40,30 @@ class Clock:
         """Whole steps in a duration [s], rounded to the nearest."""
         return math.floor(exact(duration) / self._step + Fraction(1, 2))
 
-    def grid(self, rate: float) -> Grid | None:
-        """The ticks at which something periodic is due; None for every step."""
+    def grid(self, rate: float, from_start: bool = False) -> Grid | None:
+        """The ticks at which something periodic is due; None for every step.
+
+        Args:
+            rate: [Hz].
+            from_start: due after the very first step as well, as Gazebo's sensors are.
+        """
         if rate <= 0:
             return None
         period = 1 / (exact(rate) * self._step)
-        return Grid(period) if period > 1 else None
+        return Grid(period, from_start) if period > 1 else None
 
 
 class Grid:
-    """Ticks ceil(k·period), k = 1, 2, …, exactly.
+    """Ticks ceil(k·period), k = 1, 2, …, exactly; and tick 1 where it is wanted from the start.
 
     Args:
         period: in ticks, more than 1.
     """
 
-    __slots__ = ("_den", "_num")
+    __slots__ = ("_den", "_from_start", "_num")
 
-    def __init__(self, period: Fraction) -> None:
-        self._num, self._den = period.numerator, period.denominator
+    def __init__(self, period: Fraction, from_start: bool = False) -> None:
+        self._num, self._den, self._from_start = period.numerator, period.denominator, from_start
 
     def tick(self, index: int) -> int:
         """Tick of the k-th sample."""
@@ -71,4 +76,6 @@ class Grid:
     def next(self, tick: int) -> int:
         """First due tick after a tick."""
         num, den = self._num, self._den
+        if tick <= 0 and self._from_start:
+            return 1
         return -(-(tick * den // num + 1) * num // den)

@@ -75,8 +75,11 @@ class Scheduler:
             agenda.clear()
 
     def every(self, rate: float | None, task: Task, phase: Phase) -> None:
-        """Calls `task(tick)` at `rate` [Hz] (None or 0: at every step); takes effect at the next `rewind`."""
-        getattr(self, phase).add(task, self.clock.grid(rate or 0.0))
+        """Calls `task(tick)` at `rate` [Hz] (None or 0: at every step); takes effect at the next `rewind`.
+
+        Sensors have a first sample after the first step, then both they and hooks keep to k/rate.
+        """
+        getattr(self, phase).add(task, self.clock.grid(rate or 0.0, from_start=phase == "sense"))
 
     def rewind(self, tick: int) -> None:
         """Says that the readings of `tick` have been dealt with, the commands before its step have not."""

@@ -28,6 +28,15 @@ def test_next_walks_the_same_ticks_as_counting(rate):
     assert grid.index(walked[7] - 1) == 7
 
 
+def test_a_sensor_is_due_after_the_first_step_and_then_on_its_grid():
+    grid = Clock(0.001).grid(30.0, from_start=True)
+    ticks, tick = [], 0
+    for _ in range(5):
+        tick = grid.next(tick)
+        ticks.append(tick)
+    assert ticks == [1, 34, 67, 100, 134]
+
+
 def test_a_rate_at_or_above_the_step_rate_means_every_step():
     assert Clock(0.001).grid(1000.0) is None
     assert Clock(0.001).grid(5000.0) is None
