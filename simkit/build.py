@@ -123,6 +123,13 @@ def check(
     return diagnostics
 
 
+def render_view(simulation: Simulation, width: int, height: int, **view: Any) -> Any:
+    """A picture of a simulation from anywhere; see `simkit.sensors.renderer.render_view`."""
+    from simkit.sensors import renderer
+
+    return renderer.render_view(simulation, width, height, **view)
+
+
 def _scene(
     source: Source,
     resolver: Resolver,

@@ -18,6 +18,7 @@ ROOMS: dict[str, frozenset[str]] = {
     "sensors": frozenset({"runtime", "compiler", "scene"}),
     "plugins": frozenset({"runtime", "compiler", "scene"}),
     "sinks": frozenset({"runtime"}),
+    "overrides": frozenset({"scene"}),
     "description": frozenset({"scene", "loaders", "sensors"}),
     "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
     "cli": frozenset({"build", "description", "bench", "overrides", "sinks"}),

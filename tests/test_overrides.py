@@ -42,7 +42,7 @@ def test_the_rate_and_topic_of_a_sensor_are_set() -> None:
         assert sim.sensor("arm::tip::imu").update_rate == 20.0
         messages = sim.subscribe("/imu/data")
         sim.run(1.0)
-        assert len(messages.messages) == 20
+        assert len(messages.messages) == 21
 
 
 def test_a_value_deep_in_a_sensor_is_set() -> None:

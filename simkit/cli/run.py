@@ -30,6 +30,7 @@ class Request:
     seed: int = 0
     record: Path | None = None
     topics: tuple[str, ...] = ()
+    skip: tuple[str, ...] = ()
     force: bool = False
     rtf: float | None = None
     overrides: tuple[str, ...] = ()
@@ -57,6 +58,9 @@ def run(
     topic: Annotated[
         list[str], typer.Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
+    skip: Annotated[
+        list[str], typer.Option(help="Leaves topics of this pattern out of the recording; repeatable.", metavar="PATTERN")
+    ] = [],
     force: Force = False,
     rtf: Annotated[float | None, typer.Option(help="No faster than X times real time.", metavar="X", min=1e-3)] = None,
     set_: Annotated[
@@ -79,7 +83,7 @@ def run(
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     request = Request(
-        world, duration, seed, record, tuple(topic), force, rtf, tuple(set_), strict, view, picture, cmd_vel, script,
+        world, duration, seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict, view, picture, cmd_vel, script,
         tuple(resource_path), tuple(plugin_path), verbose, quiet,
     )  # fmt: skip
     return execute(request)
@@ -138,9 +142,11 @@ class _Run:
             recording = None
             if request.record is not None:
                 recording = stack.enter_context(
-                    Recorder(sim, request.record, overwrite=request.force, topics=request.topics)
+                    Recorder(
+                        sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip
+                    )
                 )
-            counter = TopicCounter(sim, () if recording and not request.topics else RENDERED)
+            counter = TopicCounter(sim, () if recording and not (request.topics or request.skip) else RENDERED)
             watch = Stopwatch()
             progress = stack.enter_context(Progress(sim, counter, request.duration, out()))
             watchers: list[Any] = [progress.update]
@@ -190,7 +196,7 @@ class _Run:
         if not self.request.quiet and counter.rows:
             width = max(len(row.topic) for row in counter.rows)
             for row in counter.rows:
-                out().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row, sim.time_ns):>12}  {row.type_name}")
+                out().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row):>12}  {row.type_name}")
         factor = sim.time / max(elapsed, 1e-9)
         line = (
             f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
@@ -201,12 +207,13 @@ class _Run:
         out().print(f"state {state_hash(sim)}")
 
     def _draw(self, driven: Any) -> None:
+        from simkit.build import render_view
         from simkit.sinks.picture import save_picture
 
         path = self.request.picture
         assert path is not None
         try:
-            save_picture(self.sim, path, driven)
+            save_picture(self.sim, path, render_view, driven)
         except RenderError as error:
             err().print(f"warning: no picture: {error}", style="yellow")
         else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,10 @@ from simkit.pose import Pose
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
+Render = Callable[..., Any]
+
 _SIZE = (1280, 800)  # [px]
+_OVERSAMPLED = 2
 _PATH_COLOUR = (0.10, 0.45, 0.95, 1.0)
 _SCAN_COLOUR = (0.95, 0.20, 0.15, 1.0)
 _PATH_RADIUS, _SCAN_RADIUS = 0.012, 0.018  # [m] at a scene of 5 m
@@ -54,16 +58,20 @@ def scan_points(message: Any, pose: Pose) -> np.ndarray[Any, np.dtype[np.float64
     return points
 
 
-def save_picture(sim: Simulation, path: Path, driven: DrivenPath | None = None) -> None:
+def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath | None = None) -> None:
     """Draws the simulation as it is now into an image file (`.png` or `.jpg`).
+
+    Args:
+        sim: the simulation.
+        path: the image file.
+        render: draws a view of a simulation; `simkit.build.render_view`.
+        driven: paths to draw in.
 
     Raises:
         RenderError: SK-RENDER-001 there is no renderer.
         InputError: SK-CLI-013 the file cannot be written.
     """
     import cv2
-
-    from simkit.sensors.renderer import render_view
 
     points = [scan_points(*found) for found in _last_scans(sim)]
 
@@ -77,7 +85,10 @@ def save_picture(sim: Simulation, path: Path, driven: DrivenPath | None = None) 
                 _add_sphere(scene, point, _SCAN_RADIUS * size, _SCAN_COLOUR)
 
     eye, target = _viewpoint(points, driven)
-    colours = render_view(sim, *_SIZE, eye=eye, target=target, decorate=decorate)
+    # drawn larger and shrunk: thin edges come out smooth on any renderer
+    width, height = _SIZE
+    large = render(sim, _OVERSAMPLED * width, _OVERSAMPLED * height, eye=eye, target=target, decorate=decorate)
+    colours = cv2.resize(large, _SIZE, interpolation=cv2.INTER_AREA)
     try:
         written = cv2.imwrite(str(path), colours[:, :, ::-1])
     except cv2.error as error:

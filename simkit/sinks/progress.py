@@ -27,11 +27,11 @@ class Stopwatch:
         return time.perf_counter() - self._start
 
 
-def rate_text(row: TopicCount, now: int) -> str:
+def rate_text(row: TopicCount) -> str:
     """The true rate of a topic up to `now` [ns], or why there is none."""
     if not row.counted:
         return "not read"
-    rate = row.rate(now)
+    rate = row.rate()
     return "–" if rate is None else f"{rate:.2f} Hz"
 
 
@@ -90,6 +90,6 @@ class Progress:
         rows = self._counter.rows
         room = max(self._console.height - 4, 3)
         for row in rows[:room]:
-            table.add_row(row.topic, str(row.count), rate_text(row, self._sim.time_ns))
+            table.add_row(row.topic, str(row.count), rate_text(row))
         more = [Text(f"… and {len(rows) - room} more")] if len(rows) > room else []
         return Group(head, table, *more)

@@ -76,17 +76,24 @@ class Recorder:
         path: `x.mcap` for one file, else a rosbag2 folder.
         overwrite: whether an existing bag may be replaced.
         topics: shell patterns of the topics to record; all when empty.
+        skip: shell patterns of topics to leave out.
 
     Raises:
         InputError: SK-BAG-001 the bag exists; SK-BAG-002 it cannot be written.
     """
 
     def __init__(
-        self, sim: Simulation, path: str | os.PathLike[str], *, overwrite: bool = False, topics: Sequence[str] = ()
+        self,
+        sim: Simulation,
+        path: str | os.PathLike[str],
+        *,
+        overwrite: bool = False,
+        topics: Sequence[str] = (),
+        skip: Sequence[str] = (),
     ) -> None:
         self.path = Path(path)
         self.failure: RecordError | None = None
-        self._sim, self._patterns = sim, tuple(topics)
+        self._sim, self._patterns, self._skip = sim, tuple(topics), tuple(skip)
         self._count = 0
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         self._taps: dict[str, Any] = {}
@@ -134,6 +141,8 @@ class Recorder:
         if self._bag is None or topic in self._taps:
             return
         if self._patterns and not any(fnmatch.fnmatchcase(topic, p) for p in self._patterns):
+            return
+        if any(fnmatch.fnmatchcase(topic, p) for p in self._skip):
             return
         self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._write(topic, message))
 

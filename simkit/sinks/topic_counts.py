@@ -21,7 +21,7 @@ class TopicCount:
     Attributes:
         counted: False where nobody reads the topic, so that nothing is known.
         count: messages since `since`.
-        since, last: simulated times [ns] from which they are counted and of the newest.
+        since, second, last: simulated times [ns] from which they are counted, of the second message and of the newest.
     """
 
     topic: str
@@ -29,13 +29,14 @@ class TopicCount:
     counted: bool
     since: int
     count: int = 0
+    second: int = 0
     last: int = 0
 
-    def rate(self, now: int) -> float | None:
-        """Messages per simulated second [Hz] up to `now` [ns]; None before there are two."""
-        if self.count < 2 or now <= self.since:
+    def rate(self) -> float | None:
+        """Messages per simulated second [Hz], from the second on (the first may lie off the grid); None before three."""
+        if self.count < 3 or self.last <= self.second:
             return None
-        return self.count * 1e9 / (now - self.since)
+        return (self.count - 2) * 1e9 / (self.last - self.second)
 
 
 class TopicCounter:
@@ -82,5 +83,7 @@ class TopicCounter:
                 row.since, row.count = 0, 0
             row.last = now
             row.count += 1
+            if row.count == 2:
+                row.second = now
 
         self._taps.append(self._sim.bus.tap(topic, count))

@@ -72,7 +72,7 @@ def simkit_process(*arguments: object, cwd: Path) -> subprocess.Popen[str]:
 def test_a_run_says_topics_rates_time_and_a_hash_that_repeats(world: Path) -> None:
     first, second = simkit("run", world, "--duration", 1), simkit("run", world, "--duration", 1)
     assert first.exit_code == 0
-    assert re.search(r"^/imu +100 +100\.00 Hz +sensor_msgs/msg/Imu$", first.stdout, re.MULTILINE)
+    assert re.search(r"^/imu +101 +100\.00 Hz +sensor_msgs/msg/Imu$", first.stdout, re.MULTILINE)
     assert "simulated 1.000 s in " in first.stdout
     assert re.search(r"^state [0-9a-f]{64}$", first.stdout, re.MULTILINE)
     assert first.stdout.splitlines()[-1] == second.stdout.splitlines()[-1]
@@ -92,7 +92,7 @@ def test_a_run_is_recorded(world: Path) -> None:
     assert result.exit_code == 0
     assert "run.mcap" in result.stdout
     with AnyReader([world.parent / "run.mcap"]) as reader:
-        assert {c.topic: c.msgcount for c in reader.connections}["/imu"] == 150
+        assert {c.topic: c.msgcount for c in reader.connections}["/imu"] == 151
 
 
 def test_the_same_seed_records_the_same_bytes_whatever_the_pace(world: Path) -> None:
@@ -117,7 +117,7 @@ def test_an_existing_recording_is_replaced_only_by_force(world: Path) -> None:
 
 def test_values_are_set(world: Path) -> None:
     result = simkit("run", world, "--duration", 1, "--set", "ball::body::imu.update_rate=20")
-    assert re.search(r"^/imu +20 +20\.00 Hz", result.stdout, re.MULTILINE)
+    assert re.search(r"^/imu +21 +20\.00 Hz", result.stdout, re.MULTILINE)
 
 
 def test_a_value_that_cannot_be_set_names_the_closest(world: Path) -> None:
@@ -172,7 +172,7 @@ def test_a_plugin_that_raises_shows_its_traceback_and_the_recording_up_to_there(
     for part in ("ValueError: the wheel fell off", "raiser.py", "'wheels'", "ball.sdf:", "after_step", "t=1.5 s"):
         assert part in result.stderr
     with AnyReader([world.parent / "run.mcap"]) as reader:
-        assert {c.topic: c.msgcount for c in reader.connections}["/imu"] == 150
+        assert {c.topic: c.msgcount for c in reader.connections}["/imu"] == 151
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")

@@ -12,6 +12,7 @@ import simkit
 from simkit import msgs
 from simkit.errors import InputError, RenderError
 from simkit.pose import Pose
+from simkit.build import render_view
 from simkit.sinks.picture import DrivenPath, check_target, save_picture, scan_points
 
 WORLD = """
@@ -60,7 +61,7 @@ def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
             sim.run(0.05)
             driven.sample()
         try:
-            save_picture(sim, tmp_path / "out.png", driven)
+            save_picture(sim, tmp_path / "out.png", render_view, driven)
         except RenderError as error:
             pytest.skip(str(error))
         blue, green, red = (c.astype(int) for c in cv2.split(cv2.imread(str(tmp_path / "out.png"))))
