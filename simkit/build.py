@@ -81,7 +81,7 @@ def load(
     structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts)
     try:
-        _report_unread(parts.values(), diagnostics)
+        _report_unread(parts.values())
         diagnostics.raise_if_errors(strict)
     except BaseException:
         simulation.close()
@@ -109,7 +109,7 @@ def describe(
 def check(
     source: Source, *, resource_paths: Sequence[Source] = (), plugin_paths: Sequence[Source] = ()
 ) -> Diagnostics:
-    """Every problem of a file, up to and including what compiling it and loading its plugins finds; never raises for one."""
+    """Every problem of a file, also of compiling it and of loading its plugins; never raises for one."""
     from simkit.errors import LoadError, PluginError
 
     diagnostics = Diagnostics()
@@ -165,7 +165,7 @@ def _model_to_spawn(
 
 
 def _parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
-    """Sensors and plugins of a model; sensors' plugins come with their sensor, then the models' own, in document order."""
+    """Sensors and plugins of a model, in document order: each sensor's own plugins first, then the models'."""
     from simkit.runtime import Parts
 
     parts = Parts()
@@ -245,7 +245,7 @@ def _model_parent(scoped: str) -> Callable[[Any], Any]:
     return lambda sim: sim.model(scoped)
 
 
-def _report_unread(parts: Any, diagnostics: Diagnostics) -> None:
+def _report_unread(parts: Any) -> None:
     """Warns about each parameter that its plugin or sensor did not read."""
     for part in parts:
         for sensor in part.sensors:

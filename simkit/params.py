@@ -156,7 +156,9 @@ class Params:
         """true, false, 1 or 0."""
         return self._value(name, default, False, required, lambda p: _boolean(p.value), "true, false, 1 or 0")
 
-    def vector(self, name: str, size: int, default: Sequence[float] | None = None, required: bool = False) -> tuple[float, ...]:
+    def vector(
+        self, name: str, size: int, default: Sequence[float] | None = None, required: bool = False
+    ) -> tuple[float, ...]:
         """`size` finite numbers separated by white space."""
 
         def parse(p: Params) -> tuple[float, ...]:
@@ -168,7 +170,9 @@ class Params:
         fallback = None if default is None else tuple(float(v) for v in default)
         return self._value(name, fallback, (0.0,) * size, required, parse, f"{size} numbers")
 
-    def vector3(self, name: str, default: Sequence[float] | None = None, required: bool = False) -> tuple[float, float, float]:
+    def vector3(
+        self, name: str, default: Sequence[float] | None = None, required: bool = False
+    ) -> tuple[float, float, float]:
         x, y, z = self.vector(name, 3, default, required)
         return (x, y, z)
 

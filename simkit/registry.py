@@ -1,4 +1,4 @@
-"""Registries computed from a package's modules and from entry points: one file per addition, a duplicate is an error."""
+"""Registries computed from a package's modules and from entry points: one file per addition, no duplicates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from typing import TypeVar
 T = TypeVar("T")
 
 
-def discover(package: str, group: str, base: type[T], names: Callable[[type[T]], Iterable[str]]) -> Mapping[str, type[T]]:
+def discover(
+    package: str, group: str, base: type[T], names: Callable[[type[T]], Iterable[str]]
+) -> Mapping[str, type[T]]:
     """Every class under `package` and in the entry points `group` that is a `base`, by each name it answers to.
 
     Args:

@@ -59,7 +59,7 @@ def run(
         list[str], typer.Option(help="Records only topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
     skip: Annotated[
-        list[str], typer.Option(help="Leaves topics of this pattern out of the recording; repeatable.", metavar="PATTERN")
+        list[str], typer.Option(help="Records all but topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
     force: Force = False,
     rtf: Annotated[float | None, typer.Option(help="No faster than X times real time.", metavar="X", min=1e-3)] = None,
@@ -83,8 +83,8 @@ def run(
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     request = Request(
-        world, duration, seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict, view, picture, cmd_vel, script,
-        tuple(resource_path), tuple(plugin_path), verbose, quiet,
+        world, duration, seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict, view, picture,
+        cmd_vel, script, tuple(resource_path), tuple(plugin_path), verbose, quiet,
     )  # fmt: skip
     return execute(request)
 

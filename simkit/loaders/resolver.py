@@ -260,7 +260,7 @@ def _bare(name: str) -> bool:
 
 def _normal(path: Path) -> Path:
     """Absolute, without `..`; links stay, because a workspace of links is a folder that the user chose."""
-    return Path(os.path.abspath(path))
+    return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
 
 
 def _escapes(rest: str) -> bool:

@@ -9,4 +9,15 @@ from simkit.runtime.simulation import Simulation
 from simkit.runtime.snapshot import Snapshot
 from simkit.runtime.topics import Publisher, Subscription
 
-__all__ = ["Joint", "Light", "Link", "Model", "Parts", "Publisher", "Simulation", "Snapshot", "Structure", "Subscription"]
+__all__ = [
+    "Joint",
+    "Light",
+    "Link",
+    "Model",
+    "Parts",
+    "Publisher",
+    "Simulation",
+    "Snapshot",
+    "Structure",
+    "Subscription",
+]

@@ -75,7 +75,7 @@ class Entities:
         return self._made[id(scene)][1:]
 
     def _lights(self, scene: SceneModel) -> dict[str, Light]:
-        model, lights = self._handles(scene)
+        lights = self._handles(scene)[1]
         if not lights:
             lights.update({li.scoped: Light(self._sim, li) for link in scene.all_links() for li in link.lights})
         return lights

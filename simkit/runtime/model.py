@@ -100,7 +100,9 @@ class Model(Handle):
             moved = shift @ Pose(positions[body], quaternions[body])
             positions[body], quaternions[body] = moved.position, moved.quaternion
 
-    def set_velocity(self, linear: Sequence[float] | Vector, angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)) -> None:
+    def set_velocity(
+        self, linear: Sequence[float] | Vector, angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
+    ) -> None:
         """Gives every free part of the model this twist about the model's origin, world frame [m/s, rad/s]."""
         self._check()
         data, names, origin = self._sim.mj_data, self._sim.names, self.pose.position

@@ -377,9 +377,8 @@ class Simulation:
         parts = self._make_parts(scene, builder, found)
         found.raise_if_errors()
         compiled = builder.recompile(old.compiled, self.mj_data)
-        self._switch(
-            Structure(builder, compiled, {**old.models, scene.name: scene}, old.movable, {**old.parts, scene.name: parts})
-        )
+        models, all_parts = {**old.models, scene.name: scene}, {**old.parts, scene.name: parts}
+        self._switch(Structure(builder, compiled, models, old.movable, all_parts))
         self._start([parts])
         self.reschedule()
         self._diagnostics.extend(found)
@@ -512,7 +511,7 @@ class Simulation:
     def _guarded(self, plugin: Any, hook: str) -> Callable[[int], None]:
         method = getattr(plugin, hook)
 
-        def task(tick: int) -> None:
+        def task(_: int) -> None:
             try:
                 method()
             except SimkitError:

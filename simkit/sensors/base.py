@@ -97,7 +97,7 @@ class Sensor(abc.ABC):
         """The kind's block in `inspect --json`."""
         return {}
 
-    def build(self, builder: SpecBuilder) -> None:  # noqa: B027
+    def build(self, builder: SpecBuilder) -> None:
         """Before the compile: adds what the kind needs to the spec."""
 
     @abc.abstractmethod
@@ -120,24 +120,24 @@ class Sensor(abc.ABC):
         """The reading without noise, of what was captured."""
         return raw
 
-    def perturb(self, reading: Any, index: int) -> Any:  # noqa: ARG002
+    def perturb(self, reading: Any, index: int) -> Any:
         """The reading with the noise of a sample; the same object where there is none."""
         return reading
 
-    def evolve(self, index: int, dt: float) -> None:  # noqa: B027
+    def evolve(self, index: int, dt: float) -> None:
         """Moves noise that has a memory on by `dt` [s] (0 at the first sample), read or not."""
 
-    def restart(self) -> None:  # noqa: B027
+    def restart(self) -> None:
         """Back at t = 0: draws what is drawn once."""
 
     def memory(self) -> Any:
         """What the kind itself remembers from sample to sample, as values of its own."""
         return None
 
-    def remember(self, memory: Any) -> None:  # noqa: B027
+    def remember(self, memory: Any) -> None:
         """Takes back what `memory` gave."""
 
-    def accepts(self, tick: int) -> bool:  # noqa: ARG002
+    def accepts(self, tick: int) -> bool:
         """Whether a due time gives a sample."""
         return True
 
@@ -247,7 +247,7 @@ class Sensor(abc.ABC):
         self._index, self._time_ns, self._sample, self.update_rate, memory = state
         self.remember(memory)
 
-    def close(self) -> None:  # noqa: B027
+    def close(self) -> None:
         """When the simulation closes."""
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Sensor:

@@ -185,7 +185,7 @@ class RenderedSensor(Sensor):
     def _on_trigger(self, _: Any) -> None:
         self._is_triggered = True
 
-    def accepts(self, tick: int) -> bool:  # noqa: ARG002
+    def accepts(self, tick: int) -> bool:
         if not self._waits:
             return True
         triggered, self._is_triggered = self._is_triggered, False

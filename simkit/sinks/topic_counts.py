@@ -33,7 +33,7 @@ class TopicCount:
     last: int = 0
 
     def rate(self) -> float | None:
-        """Messages per simulated second [Hz], from the second on (the first may lie off the grid); None before three."""
+        """Messages per simulated second [Hz] since the second (the first may lie off the grid); None before three."""
         if self.count < 3 or self.last <= self.second:
             return None
         return (self.count - 2) * 1e9 / (self.last - self.second)

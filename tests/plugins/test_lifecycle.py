@@ -127,7 +127,8 @@ def test_a_hook_that_raises_stops_the_run_with_its_name_and_time() -> None:
 
 
 def test_a_parameter_nobody_reads_is_a_warning_with_the_closest_that_was_asked_for() -> None:
-    plugin = "<plugin name='solar' filename='libsolar_sensor.so'><light_name>sun</light_name><update_rte>3</update_rte></plugin>"
+    body = "<light_name>sun</light_name><update_rte>3</update_rte>"
+    plugin = f"<plugin name='solar' filename='libsolar_sensor.so'>{body}</plugin>"
     light = "<light name='sun' type='point'><pose>0 0 9 0 0 0</pose></light>"
     with simkit.load(world(light, rover(plugin))) as sim:
         found = [d for d in sim.diagnostics if d.code == "SK-PARAM-003"]

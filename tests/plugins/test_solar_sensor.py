@@ -20,7 +20,8 @@ def station(pose: str = "0 0 1 0 0 0", **values: Any) -> str:
     """A post that hangs on the world, with a head half a metre above its origin."""
     plugin = element("plugin", {"light_name": "sun", **values}, "name='solar' filename='libsolar_sensor.so'")
     return (
-        f"<model name='station'><pose>{pose}</pose><link name='post'/><link name='head'><pose>0 0 0.5 0 0 0</pose></link>"
+        f"<model name='station'><pose>{pose}</pose><link name='post'/>"
+        "<link name='head'><pose>0 0 0.5 0 0 0</pose></link>"
         "<joint name='fixture' type='fixed'><parent>world</parent><child>post</child></joint>"
         f"<joint name='neck' type='fixed'><parent>post</parent><child>head</child></joint>{plugin}</model>"
     )

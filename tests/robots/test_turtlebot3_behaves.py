@@ -1,5 +1,6 @@
 """The TurtleBot3 stands, drives and turns as commanded, in simkit's world and in the course's, at three step sizes."""
 
+import itertools
 import math
 import pathlib
 
@@ -21,7 +22,7 @@ def open_world(world, step):
     return simkit.load(path, resource_paths=[COURSE / "models"], overrides=[setting]), "turtlebot3_waffle"
 
 
-@pytest.fixture(params=[("ours", 0.001), ("ours", 0.002), ("ours", 0.004), ("course", 0.001), ("course", 0.002), ("course", 0.004)], ids=lambda p: f"{p[0]}-{p[1]}")
+@pytest.fixture(params=itertools.product(("ours", "course"), (0.001, 0.002, 0.004)), ids=lambda p: f"{p[0]}-{p[1]}")
 def robot(request):
     sim, name = open_world(*request.param)
     with sim:

@@ -17,7 +17,8 @@ def test_a_skipped_sample_shifts_nothing():
 
 def test_streams_of_other_names_channels_and_seeds_differ():
     base = draws(RandomStreams(1).stream("a", "x", 4), range(50))
-    for other in (RandomStreams(1).stream("b", "x", 4), RandomStreams(1).stream("a", "y", 4), RandomStreams(2).stream("a", "x", 4), RandomStreams(-1).stream("a", "x", 4)):
+    for seed, name, channel in ((1, "b", "x"), (1, "a", "y"), (2, "a", "x"), (-1, "a", "x")):
+        other = RandomStreams(seed).stream(name, channel, 4)
         assert np.abs(draws(other, range(50)) - base).min() > 1e-9
 
 

@@ -10,9 +10,9 @@ import pytest
 
 import simkit
 from simkit import msgs
+from simkit.build import render_view
 from simkit.errors import InputError, RenderError
 from simkit.pose import Pose
-from simkit.build import render_view
 from simkit.sinks.picture import DrivenPath, check_target, save_picture, scan_points
 
 WORLD = """

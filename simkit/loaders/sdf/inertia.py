@@ -191,5 +191,5 @@ def _mesh_solid(shape: Mesh | Polyline) -> tuple[float, Matrix, Matrix] | None:
         if abs(volume) < 1e-15:
             return None
         return abs(volume), np.array(mesh.center_mass), np.array(mesh.moment_inertia) * math.copysign(1.0, volume)
-    except Exception:  # a reader of a foreign format fails in its own ways; the caller reports it
+    except Exception:  # noqa: BLE001 - a reader of a foreign format fails in its own ways; the caller reports it
         return None

@@ -162,7 +162,7 @@ def _axis(part: Part, element: Params, kind: str, pose_world: Pose, workspace: W
         friction=dynamics.number("friction", 0.0),
         stiffness=dynamics.number("spring_stiffness", 0.0),
         spring_ref=dynamics.number("spring_reference", 0.0),
-        mimic=_mimic(part, element, workspace),
+        mimic=_mimic(part, element),
     )
 
 
@@ -203,7 +203,7 @@ def _magnitude(limit: Params, name: str) -> float:
     return math.inf if value < 0 or value >= _NO_LIMIT else value
 
 
-def _mimic(part: Part, element: Params, workspace: Workspace) -> Mimic | None:
+def _mimic(part: Part, element: Params) -> Mimic | None:
     block = element.child("mimic")
     if block is None:
         return None
