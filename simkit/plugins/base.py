@@ -96,7 +96,7 @@ class Plugin(abc.ABC):
         """After a physics step: readings."""
 
     def close(self) -> None:
-        """When the plugin leaves: the run ends or its model is removed."""
+        """When the simulation closes."""
 
     # ------------------------------------------------------------------ what a user calls
 

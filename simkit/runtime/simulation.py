@@ -59,12 +59,13 @@ class Simulation:
         self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock)
         self._originals: dict[str, Any] = {}
         self._exact_limits: list[Joint] = []
-        self._attached: set[int] = set()
+        self._attached: set[Any] = set()
+        self._loaded_plugins: list[Any] = []  # removed ones too: a restore may bring them back
         self._closed = False
         self._advancing = self._rates_changed = False
         self._entities = Entities(self, world)
         self._adopt(structure)
-        self._start(list(structure.parts.values()))
+        self._start(list(structure.parts.values()), diagnostics)
         self.reschedule()
         self._loaded = self.snapshot()
 
@@ -371,7 +372,7 @@ class Simulation:
         """
         self._check_open()
         scene, found = self._load_model(source, name=name, pose=pose, taken=set(self._structure.models))
-        old = self._structure
+        old, before = self._structure, self.snapshot()
         builder = old.builder.copy()
         builder.add_model(scene)
         parts = self._make_parts(scene, builder, found)
@@ -379,7 +380,11 @@ class Simulation:
         compiled = builder.recompile(old.compiled, self.mj_data)
         models, all_parts = {**old.models, scene.name: scene}, {**old.parts, scene.name: parts}
         self._switch(Structure(builder, compiled, models, old.movable, all_parts))
-        self._start([parts])
+        try:
+            self._start([parts], found)
+        except SimkitError:
+            self.restore(before)
+            raise
         self.reschedule()
         self._diagnostics.extend(found)
         return self.model(scene.name)
@@ -438,22 +443,22 @@ class Simulation:
         self._entities.bind(structure)
         self.bus.set_active([*structure.all_sensors(), *structure.all_plugins()])
         for sensor in structure.all_sensors():
-            if id(sensor) in self._attached:
+            if sensor in self._attached:
                 sensor.bind(compiled)
 
-    def _start(self, parts: list[Parts]) -> None:
-        """Attaches new sensors, then loads new plugins, in document order."""
+    def _start(self, parts: list[Parts], diagnostics: Diagnostics) -> None:
+        """Attaches new sensors, then loads new plugins, in document order; raises LoadError where they found errors."""
         for part in parts:
             for sensor in part.sensors:
                 with self.bus.owned_by(sensor):
                     sensor.attach(self)
-                self._attached.add(id(sensor))
+                self._attached.add(sensor)
                 sensor.bind(self._structure.compiled)
         for part in parts:
             for plugin, parent_of in part.plugins:
                 with self.bus.owned_by(plugin):
                     self._load_plugin(plugin, parent_of(self))
-        self._diagnostics.raise_if_errors()
+        diagnostics.raise_if_errors()
 
     def _load_plugin(self, plugin: Any, parent: Any) -> None:
         try:
@@ -464,6 +469,7 @@ class Simulation:
         except Exception as error:
             raise PluginError(plugin.name, "load", self.time, str(plugin.where), repr(error)) from error
         plugin._remember_loaded()
+        self._loaded_plugins.append(plugin)
 
     def reschedule(self) -> None:
         """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
@@ -530,7 +536,7 @@ class Simulation:
         """Closes plugins and sensors; further calls do nothing."""
         if self._closed:
             return
-        for plugin in self._structure.all_plugins():
+        for plugin in self._loaded_plugins:
             self._call(plugin, "close")
         for sensor in self._structure.all_sensors():
             sensor.close()

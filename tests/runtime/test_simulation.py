@@ -160,6 +160,19 @@ def test_a_spawned_name_that_is_taken_is_an_error():
         sim.spawn(BOX.format(name="ball", x=1.0))
 
 
+def test_a_model_whose_plugin_has_an_error_is_not_spawned():
+    broken = BOX.format(name="box", x=3.0).replace(
+        "</model>", '<plugin name="p" filename="libsolar_sensor.so"><light_name>nowhere</light_name></plugin></model>'
+    )
+    with load(BALL.format(extra="")) as sim:
+        sim.step(10)
+        with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003"):
+            sim.spawn(broken)
+        assert set(sim.models) == {"ball"}
+        assert sim.tick == 10
+        sim.step(10)
+
+
 def test_a_static_model_can_be_moved_and_still_carries():
     table = """<model name="table"><static>true</static><link name="l"><collision name="c"><geometry><box>
       <size>1 1 0.2</size></box></geometry></collision></link></model>"""
