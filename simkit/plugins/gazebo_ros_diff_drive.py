@@ -8,11 +8,12 @@ wheel is held), and an encoder twist is negative when the robot drives backwards
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.joint_states import JOINT_STATE, joint_state
+from simkit.plugins.joint_states import JOINT_STATE, joint_state, readings
 from simkit.plugins.lookups import find_axis_joint, numbers
 from simkit.plugins.odometry import (
     COMMAND_TYPES,
@@ -25,7 +26,6 @@ from simkit.plugins.odometry import (
     odometry_message,
     planar_covariance,
     rolling_twist,
-    transform,
     transforms,
 )
 from simkit.pose import Pose
@@ -236,11 +236,11 @@ class GazeboRosDiffDrive(ModelPlugin):
             pose, twist = self._measured()
             if odom:
                 frames = options.odometry_frame, options.base_frame
-                odom.publish(odometry_message(now, *frames, pose, twist, self._covariance))
+                odom.publish_later(partial(odometry_message, now, *frames, pose, twist, self._covariance))
             if tf:
-                tf.publish(transforms(*self._transforms(now, pose)))
+                tf.publish_later(partial(transforms, now, *self._transforms(pose)))
         if self._states is not None and self._states.wanted:
-            self._states.publish(joint_state(now, self._wheels))
+            self._states.publish_later(partial(joint_state, now, readings(self._wheels)))
 
     def _measured(self) -> tuple[Pose, BodyTwist]:
         """Pose and twist from the chosen source; the twist in the robot's own axes."""
@@ -260,12 +260,12 @@ class GazeboRosDiffDrive(ModelPlugin):
         left, right = self._wheels[:2]
         return float(left.position), float(right.position)
 
-    def _transforms(self, now: int, base: Pose) -> list[Any]:
+    def _transforms(self, base: Pose) -> list[tuple[str, str, Pose]]:
         found = []
         if self.options.publish_odom_tf:
-            found.append(transform(now, self.options.odometry_frame, self.options.base_frame, base))
+            found.append((self.options.odometry_frame, self.options.base_frame, base))
         if self.options.publish_wheel_tf:
             for _, above, below in self._joints:
                 parent, child = self.sim.link(above), self.sim.link(below)
-                found.append(transform(now, parent.name, child.name, parent.pose.inverse() @ child.pose))
+                found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
         return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
@@ -18,7 +19,6 @@ from simkit.plugins.odometry import (
     command_of,
     odometry_message,
     rolling_twist,
-    transform,
     transforms,
 )
 from simkit.plugins.ros_names import valid_topic
@@ -170,9 +170,9 @@ class DiffDrive(ModelPlugin):
         pose = self._reckoning.pose
         if self._odom.wanted:
             twist = rolling_twist(self._pair, self._radius, self._separation)
-            self._odom.publish(odometry_message(now, self._frame, self._child, pose, twist))
+            self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, twist))
         if self._tf.wanted:
-            self._tf.publish(transforms(transform(now, self._frame, self._child, pose)))
+            self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))
         if self._truth is not None and self._truth.wanted:
             self._truth.publish(odometry_message(now, "world", self._child, *self._true.state()))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,19 +20,24 @@ if TYPE_CHECKING:
 JOINT_STATE = "sensor_msgs/msg/JointState"
 
 
-def joint_state(time_ns: int, joints: list[Any]) -> Any:
-    """A `sensor_msgs/msg/JointState` of joints in their order; efforts are those applied [N·m or N].
+def readings(joints: list[Any]) -> list[tuple[str, Any, Any, Any]]:
+    """Name, position, velocity and applied effort of each joint, now."""
+    return [(joint.name, joint.position, joint.velocity, joint.effort) for joint in joints]
+
+
+def joint_state(time_ns: int, joints: list[tuple[str, Any, Any, Any]]) -> Any:
+    """A `sensor_msgs/msg/JointState` of `readings`, in their order; efforts are those applied [N·m or N].
 
     A joint of several degrees of freedom gives `name[0]`, `name[1]`, …; one of none gives one zero.
     """
     names: list[str] = []
     columns: tuple[list[float], list[float], list[float]] = ([], [], [])
-    for joint in joints:
-        read = [[v] if isinstance(v, float) else list(v) for v in (joint.position, joint.velocity, joint.effort)]
+    for name, *values in joints:
+        read = [[v] if isinstance(v, float) else list(v) for v in values]
         count = len(read[0])
-        names += [joint.name] if count < 2 else [f"{joint.name}[{i}]" for i in range(count)]
-        for column, values in zip(columns, read, strict=True):
-            column += values or [0.0]
+        names += [name] if count < 2 else [f"{name}[{i}]" for i in range(count)]
+        for column, numbers in zip(columns, read, strict=True):
+            column += numbers or [0.0]
     return msgs.type_of(JOINT_STATE)(msgs.header(time_ns, ""), names, *(np.array(column) for column in columns))
 
 
@@ -47,7 +53,7 @@ class _JointStates(ModelPlugin):
 
     def after_step(self) -> None:
         if self._states.wanted:
-            self._states.publish(joint_state(self.sim.time_ns, self._handles))
+            self._states.publish_later(partial(joint_state, self.sim.time_ns, readings(self._handles)))
 
 
 class GazeboRosJointStatePublisher(_JointStates):

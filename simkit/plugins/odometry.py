@@ -134,9 +134,9 @@ def transform(time_ns: int, frame: str, child: str, pose: Pose) -> Any:
     return types["TransformStamped"](msgs.header(time_ns, frame), child, place)
 
 
-def transforms(*items: Any) -> Any:
-    """A `tf2_msgs/msg/TFMessage` of several transforms."""
-    return msgs.make(TRANSFORMS, transforms=list(items))
+def transforms(time_ns: int, *items: tuple[str, str, Pose]) -> Any:
+    """A `tf2_msgs/msg/TFMessage`: for each (frame, child, pose), where `child` is in `frame`."""
+    return msgs.type_of(TRANSFORMS)([transform(time_ns, *item) for item in items])
 
 
 @functools.cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_light, find_link
-from simkit.pose import quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
+from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -62,23 +63,25 @@ class SolarSensor(ModelPlugin):
         self._index += 1  # counted whether read or not, so that who listens does not change the noise
         if self._light is None or not self._readings.wanted:
             return
-        roll, (pitch, yaw) = 0.0, self._angles()
+        pose, light = self._link.pose, self._light.pose.position
+        self._readings.publish_later(partial(self._message, self.sim.time_ns, self._index, pose, light))
+
+    def _message(self, time_ns: int, index: int, pose: Pose, light: Vector) -> Any:
+        roll, (pitch, yaw) = 0.0, self._angles(pose, light)
         if self._stream is not None:
-            roll, pitch, yaw = (np.array((roll, pitch, yaw)) + self._noise * self._stream.normal(self._index)).tolist()
+            roll, pitch, yaw = (np.array((roll, pitch, yaw)) + self._noise * self._stream.normal(index)).tolist()
         orientation = quat_from_rpy(roll, pitch, yaw)
         if any(self._rpy):
             orientation = quat_multiply(self._turn, orientation)
         w, x, y, z = orientation.tolist()
         imu, quaternion, vector = self._types
-        header = msgs.header(self.sim.time_ns, self._frame)
+        header = msgs.header(time_ns, self._frame)
         rest = self._covariance.copy(), vector(0.0, 0.0, 0.0), np.zeros(9), vector(0.0, 0.0, 0.0), np.zeros(9)
-        self._readings.publish(imu(header, quaternion(x, y, z, w), *rest))
+        return imu(header, quaternion(x, y, z, w), *rest)
 
-    def _angles(self) -> tuple[float, float]:
+    def _angles(self, pose: Pose, light: Vector) -> tuple[float, float]:
         """Pitch and yaw [rad] of the light in the link's axes."""
-        assert self._light is not None
-        pose = self._link.pose
-        towards = self._light.pose.position - pose.position
+        towards = light - pose.position
         distance = math.sqrt(towards @ towards)
         seen = quat_rotate(quat_conjugate(pose.quaternion), towards / distance if distance > 0 else towards)
         x, y, z = (a + b for a, b in zip(seen.tolist(), self._xyz, strict=True))

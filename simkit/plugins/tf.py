@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
-from simkit.plugins.odometry import TRANSFORMS, transform, transforms
+from simkit.plugins.odometry import TRANSFORMS, transforms
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class StaticTransforms(WorldPlugin):
         self._known = names
         found = list(self._all())
         if found:
-            self._static.publish(transforms(*(transform(0, *item) for item in found)))
+            self._static.publish(transforms(0, *found))
 
     def _all(self) -> Iterator[tuple[str, str, Pose]]:
         taken: set[str] = set()

@@ -85,9 +85,12 @@ class Joint(Handle):
         physics = self._sim.physics
         data = physics.fresh()
         pending = data.qfrc_applied if physics.one_shot else physics.last_applied
+        if self._one_dof >= 0:
+            limit = float(self._effort_limit[0])
+            return max(-limit, min(limit, float(pending[self._one_dof] + data.qfrc_actuator[self._one_dof])))
         total = pending[self._dofs] + data.qfrc_actuator[self._dofs]
-        total = np.clip(total, -self._limit(), self._limit())
-        return float(total[0]) if len(total) == 1 else total
+        clipped: Vector = np.clip(total, -self._limit(), self._limit())
+        return clipped
 
     @property
     def transmitted_wrench(self) -> tuple[Vector, Vector]:

@@ -76,6 +76,7 @@ class Physics:
         self.stage = STALE
         self.one_shot = False
         self.last_applied = np.zeros(model.nv)
+        self._shows_applied = True
         self._accelerations_tick = -1
         self._held: HeldState | None = None
         self._held_size = mujoco.mj_stateSize(model, _HELD)
@@ -136,10 +137,20 @@ class Physics:
 
     def advance(self, count: int) -> None:
         """`count` steps; forces that hold for one step only are gone after the first."""
-        if self.one_shot and count > 0:
+        if count <= 0:
+            return
+        if self._shows_applied:
+            self.last_applied[:] = 0
+            self._shows_applied = False
+        if self.one_shot:
             self._run(1)
             self._clear_one_shot()
             count -= 1
+            if not count:
+                # what was applied in the last step is what `Joint.effort` tells of it
+                self._shows_applied = True
+                return
+            self.last_applied[:] = 0
         if 0 < count <= _SHORT and count <= self._chunk:
             self._run(count)
             return
