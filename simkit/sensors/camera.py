@@ -15,6 +15,7 @@ from simkit.errors import RenderError
 from simkit.params import Params
 from simkit.sensors import camera_info, pictures
 from simkit.sensors.base import Product, Sample, Sensor
+from simkit.sensors.buffers import Spares
 from simkit.sensors.camera_info import CameraInfoMaker
 from simkit.sensors.camera_model import MOST_PIXELS, CameraModel, Distorter, read_camera_model
 from simkit.sensors.image_noise import ImageNoise
@@ -151,6 +152,8 @@ class RenderedSensor(Sensor):
         self._noise = ImageNoise(options.noise, sim.streams, self.scoped)
         self._view: View | None = None
         self._info = CameraInfoMaker(options.model, self._baseline)
+        size = options.model.height, options.model.width
+        self._spare_colours, self._spare_depths = Spares((*size, 3), np.uint8), Spares(size, np.float32)
         super().attach(sim)
         if options.triggered:
             self.trigger_on(absolute_topic(options.trigger_topic) if options.trigger_topic else self.topic + "/trigger")
@@ -210,10 +213,15 @@ class RenderedSensor(Sensor):
                 edge = self._distorter.margin
                 raw = raw[edge:-edge, edge:-edge]
             far = options.depth_far if options.depth_far < view.far else np.inf
-            depths = clip_depths(metres(raw, view.near, view.far), options.depth_near, far)
+            depths = metres(raw, view.near, view.far, options.depth_near, far, self._spare_depths.take())
         if self._distorter:
             colours = self._distorter.bend(colours)
-        colours = pictures.grey(colours) if pictures.is_grey(options.encoding) else np.ascontiguousarray(colours)
+        if pictures.is_grey(options.encoding):
+            colours = pictures.grey(colours)
+        elif not self._distorter:
+            kept = self._spare_colours.take()
+            np.copyto(kept, colours)
+            colours = kept
         return Picture(colours, depths)
 
     def perturb(self, reading: Picture, index: int) -> Any:

@@ -139,6 +139,8 @@ class Lidar(Sensor):
         self._directions = fan_directions(options.horizontal.angles, options.vertical.angles)
         self._fan = RayFan(self._directions, groups, options.range_max)
         self._retro: Vector | None = None
+        self._dark = np.zeros(self._fan.count)  # shared by all readings, which are never written to
+        self._dark.flags.writeable = False
 
     def describe(self) -> dict[str, Any]:
         o = self.options
@@ -202,22 +204,26 @@ class Lidar(Sensor):
         origin, rotation = self._frame_in_world(data)
         fan.cast(model, data, origin, rotation)
         distances = fan.distances
-        too_near = distances < options.range_min
         nothing = distances < 0
-        if not self.sees_visuals and options.range_min > 0:
-            again = np.flatnonzero(too_near & ~nothing)
-            if len(again):
-                fan.recast(model, data, origin, options.range_min, again)
-                nothing = distances < 0
-        ranges = distances.copy()
-        if self.sees_visuals:
-            ranges[too_near] = -np.inf
-        ranges[nothing | (distances > options.range_max)] = np.inf
+        if options.range_min > 0:
+            too_near = distances < options.range_min
+            too_near &= ~nothing
+            if not too_near.any():
+                ranges = distances.copy()
+            elif self.sees_visuals:
+                ranges = np.where(too_near, -np.inf, distances)
+            else:
+                fan.recast(model, data, origin, options.range_min, np.flatnonzero(too_near))
+                ranges, nothing = distances.copy(), distances < 0
+        else:
+            ranges = distances.copy()
+        nothing |= ranges > options.range_max
+        np.copyto(ranges, np.inf, where=nothing)
         return LidarReading(ranges, self._intensities(ranges))
 
     def _intensities(self, ranges: Vector) -> Vector:
         if self._retro is None:
-            return np.zeros(self._fan.count)
+            return self._dark
         values: Vector = np.where(np.isfinite(ranges), self._retro[self._fan.geoms], 0.0)
         return values
 
@@ -226,7 +232,8 @@ class Lidar(Sensor):
             return reading
         ranges = self._noise.apply(reading.ranges, index)
         infinite = np.isinf(reading.ranges)
-        np.clip(ranges, self.options.range_min, self.options.range_max, out=ranges)
+        np.maximum(ranges, self.options.range_min, out=ranges)
+        np.minimum(ranges, self.options.range_max, out=ranges)
         np.copyto(ranges, reading.ranges, where=infinite)
         return LidarReading(ranges, reading.intensities)
 

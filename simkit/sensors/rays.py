@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
@@ -42,6 +41,7 @@ class RayFan:
         self._exclude = body if body > 0 else -1
         self._hidden = list(own_geoms) if body <= 0 else []
         self._roots, self._wide = _bounds_to_widen(model, self._groups)
+        self._narrow = model.bvh_aabb[self._roots]
 
     def cast(self, model: Any, data: Any, origin: Vector, rotation: Vector) -> None:
         """Fills `distances` [m] (negative: nothing hit) and `geoms`, shape (n,).
@@ -51,16 +51,20 @@ class RayFan:
             rotation: of the sensor's frame, shape (3, 3).
         """
         np.matmul(self.directions, rotation.T, out=self._rotated)
-        with self._seeing_right(model):
+        kept = self._open_eyes(model)
+        try:
             mujoco.mj_multiRay(
                 model, data, origin, self._flat, self._groups, 1, self._exclude,
                 self.geoms, self.distances, None, self.count, self.reach,
             )  # fmt: skip
+        finally:
+            self._shut_eyes(model, kept)
 
     def recast(self, model: Any, data: Any, origin: Vector, start: float, which: npt.NDArray[np.intp]) -> None:
         """Casts some rays of the last `cast` again, from `start` [m] along each; distances count from the origin."""
         geom = np.empty(1, dtype=np.int32)
-        with self._seeing_right(model):
+        kept = self._open_eyes(model)
+        try:
             for i in which.tolist():
                 direction = self._rotated[i]
                 found = mujoco.mj_ray(
@@ -68,30 +72,30 @@ class RayFan:
                 )
                 self.distances[i] = start + found if found >= 0 else -1.0
                 self.geoms[i] = geom[0]
+        finally:
+            self._shut_eyes(model, kept)
 
-    @contextmanager
-    def _seeing_right(self, model: Any) -> Iterator[None]:
-        """Changes of the model that hold for one cast.
+    def _open_eyes(self, model: Any) -> Any:
+        """Changes the model for one cast; gives what `_shut_eyes` needs.
 
         One body can be excluded, but for a static link that would be the whole world, so its geoms are put into a
         group that is not seen. And a body is passed over where a ray misses what collides of it, even if another of
         its geoms is in the way: its bounds are made to hold all that is seen.
         """
-        groups, bounds = model.geom_group, model.bvh_aabb
-        hidden, roots = self._hidden, self._roots
-        if hidden:
-            kept_groups = groups[hidden]
-            groups[hidden] = _UNUSED_GROUP
-        if len(roots):
-            kept_bounds = bounds[roots]
-            bounds[roots] = self._wide
-        try:
-            yield
-        finally:
-            if hidden:
-                groups[hidden] = kept_groups
-            if len(roots):
-                bounds[roots] = kept_bounds
+        kept = None
+        if self._hidden:
+            groups = model.geom_group
+            kept = groups[self._hidden]
+            groups[self._hidden] = _UNUSED_GROUP
+        if len(self._roots):
+            model.bvh_aabb[self._roots] = self._wide
+        return kept
+
+    def _shut_eyes(self, model: Any, kept: Any) -> None:
+        if len(self._roots):
+            model.bvh_aabb[self._roots] = self._narrow
+        if kept is not None:
+            model.geom_group[self._hidden] = kept
 
 
 def _bounds_to_widen(model: Any, groups: npt.NDArray[np.uint8]) -> tuple[npt.NDArray[np.intp], Vector]:

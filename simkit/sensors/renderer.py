@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,6 +26,7 @@ Depths = npt.NDArray[np.float32]
 
 _EXTRA_GEOMS = 2000
 _ALL = int(mujoco.mjtCatBit.mjCAT_ALL)
+_ROWS = 32  # at once: so many fit into a processor's cache, and what is done to them costs no more memory traffic
 _QUALITIES = {"fast": (0, 0), "gazebo": (4, 2048), "high": (8, 4096)}
 """Samples per pixel and size of the shadow map."""
 
@@ -68,6 +70,8 @@ class Renderer:
         self._rectangles: dict[tuple[int, int], Any] = {}
         self._buffers: dict[tuple[int, int], tuple[Colours, Depths]] = {}
         self._backdrop = 0
+        self._shade: Colours | None = None
+        self._shades: dict[tuple[int, int], Colours] = {}
         _living.add(self)
 
     def reserve(self, width: int, height: int) -> None:
@@ -119,8 +123,14 @@ class Renderer:
                     decorate(scene)
                 _aim(scene, position, rotation, view)
                 mujoco.mjr_render(rectangle, scene, self._context)
-                self._fill_background()
+                masked = depth and not self._samples and self._shade is not None
+                if not masked:
+                    _call_list(self._backdrop)
                 mujoco.mjr_readPixels(colours, depths if depth else None, rectangle, self._context)
+                if masked:
+                    self._paint_background(colours, depths)
+                elif depth:
+                    self._learn_shade(colours, depths)
             except mujoco.FatalError as error:
                 raise RenderError(f"drawing a picture failed: {error}", "SK-RENDER-002") from error
         return colours[::-1], depths[::-1] if depth else None
@@ -161,10 +171,22 @@ class Renderer:
     def _resize(self) -> None:
         mujoco.mjr_resizeOffscreen(self._width, self._height, self._context)
 
-    def _fill_background(self) -> None:
-        from OpenGL import GL
+    def _learn_shade(self, colours: Colours, depths: Depths) -> None:
+        """Remembers how the driver rounds the background's colour."""
+        empty = int(depths.argmin())
+        if depths.flat[empty] == 0:
+            self._shade = colours.reshape(-1, 3)[empty].copy()
 
-        GL.glCallList(self._backdrop)
+    def _paint_background(self, colours: Colours, depths: Depths) -> None:
+        """What the backdrop does where there are no edges to blend, of the depths that were read anyway: five times as
+        fast as a renderer in software."""
+        import cv2
+
+        size = colours.shape[:2]
+        if size not in self._shades:
+            assert self._shade is not None
+            self._shades[size] = np.tile(self._shade, (*size, 1))
+        cv2.copyTo(self._shades[size], cv2.compare(depths, 0.0, cv2.CMP_EQ), colours)  # type: ignore[call-overload]
 
     def _buffer(self, width: int, height: int) -> tuple[Any, tuple[Colours, Depths]]:
         size = (width, height)
@@ -174,14 +196,43 @@ class Renderer:
         return self._rectangles[size], self._buffers[size]
 
 
-def metres(raw: Depths, near: float, far: float) -> Depths:
-    """Distances along the optical axis [m] of raw depths; +inf where there is nothing up to the far plane."""
-    out = raw * np.float32((far - near) / (near * far))
-    # nothing there is 1/0; writing the infinities through a mask would take as long as all the rest
-    out += (raw != 0) * np.float32(1.0 / far)
-    with np.errstate(divide="ignore"):
-        np.divide(np.float32(1.0), out, out=out)
+def metres(
+    raw: Depths, near: float, far: float, lowest: float = 0.0, highest: float = np.inf, out: Depths | None = None
+) -> Depths:
+    """Distances along the optical axis [m] of raw depths.
+
+    Args:
+        raw: shape (h, w), of a picture.
+        near, far: clip planes of the picture [m].
+        lowest, highest: what is nearer becomes -inf, what is farther +inf, as does what has nothing up to `far` [m].
+        out: contiguous, shape (h, w), to be written to.
+    """
+    import cv2
+
+    if out is None:
+        out = np.empty(raw.shape, np.float32)
+    scale, least = np.float32((far - near) / (near * far)), np.float32(1.0 / far)
+    one, infinite = np.float32(1.0), _filled(raw.shape[1], np.inf)
+    ends_before = highest < far
+    bound, nearest = float(np.float32(highest)), np.float32(lowest)
+    for first in range(0, len(raw), _ROWS):
+        part = out[first : first + _ROWS]
+        np.copyto(part, raw[first : first + _ROWS])
+        beyond: Any = None if ends_before else cv2.compare(part, 0.0, cv2.CMP_EQ)  # type: ignore[call-overload]
+        np.multiply(part, scale, out=part)
+        np.add(part, least, out=part)
+        np.divide(one, part, out=part)
+        if ends_before:
+            beyond = cv2.compare(part, bound, cv2.CMP_GT)  # type: ignore[call-overload]
+        cv2.copyTo(infinite[: len(part)], beyond, part)
+        if lowest > 0 and np.minimum.reduce(part, axis=None) < nearest:
+            np.copyto(part, np.float32(-np.inf), where=part < nearest)
     return out
+
+
+@functools.lru_cache(maxsize=8)
+def _filled(width: int, value: float) -> Depths:
+    return np.full((_ROWS, width), value, dtype=np.float32)
 
 
 def renderer_of(sim: Simulation) -> Renderer:
@@ -296,6 +347,12 @@ def _visuals_only() -> Any:
     option.flexgroup[:] = option.skingroup[:] = 0
     option.geomgroup[VISUAL] = 1
     return option
+
+
+def _call_list(number: int) -> None:
+    from OpenGL import GL
+
+    GL.glCallList(number)
 
 
 def _backdrop(colour: tuple[float, float, float]) -> int:
