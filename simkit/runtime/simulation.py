@@ -10,26 +10,25 @@ from typing import Any
 import mujoco
 
 from simkit.diagnostics import Diagnostic, Diagnostics
-from simkit.errors import InputError, PluginError, SimkitError
+from simkit.errors import InputError
 from simkit.pose import Pose
 from simkit.runtime.clock import Clock
-from simkit.runtime.entities import Entities, carry_fields, place_light
+from simkit.runtime.entities import Entities, place_light
 from simkit.runtime.joint import Joint
 from simkit.runtime.light import Light
 from simkit.runtime.link import Link
+from simkit.runtime.loop import Loop, guarded
 from simkit.runtime.model import Model
-from simkit.runtime.parts import Parts, Structure
+from simkit.runtime.parts import Structure
 from simkit.runtime.physics import CONTROL, STALE, HeldState, Physics
+from simkit.runtime.population import ModelLoader, PartsMaker, Population
 from simkit.runtime.random import RandomStreams
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.snapshot import Snapshot
 from simkit.runtime.topics import Callback, Subscription, TopicBus
-from simkit.scene import SceneLink, SceneModel, SceneWorld
+from simkit.scene import SceneLink, SceneWorld
 
 _LIMIT_GRID = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
-
-SpawnLoader = Callable[..., tuple[SceneModel, Diagnostics]]
-PartsMaker = Callable[..., Parts]
 
 
 class Simulation:
@@ -44,7 +43,7 @@ class Simulation:
         structure: Structure,
         diagnostics: Diagnostics,
         seed: int,
-        load_model: SpawnLoader,
+        load_model: ModelLoader,
         make_parts: PartsMaker,
     ) -> None:
         self.world = world
@@ -54,18 +53,15 @@ class Simulation:
         self.streams = RandomStreams(seed)
         self.seed = seed
         self._diagnostics = diagnostics
-        self._load_model, self._make_parts = load_model, make_parts
-        self.scheduler = Scheduler(self.clock)
-        self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock)
-        self._originals: dict[str, Any] = {}
+        self.originals: dict[str, Any] = {}
         self._exact_limits: list[Joint] = []
-        self._attached: set[Any] = set()
-        self._loaded_plugins: list[Any] = []  # removed ones too: a restore may bring them back
         self._closed = False
-        self._advancing = self._rates_changed = False
-        self._entities = Entities(self, world)
-        self._adopt(structure)
-        self._start(list(structure.parts.values()), diagnostics)
+        self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock)
+        self._loop = Loop(self.physics, self.bus, self._fill)
+        self.entities = Entities(self, world)
+        self._population = Population(self, load_model, make_parts)
+        self._population.adopt(structure)
+        self._population.start(list(structure.parts.values()), diagnostics)
         self.reschedule()
         self._loaded = self.snapshot()
 
@@ -120,42 +116,7 @@ class Simulation:
 
     def _advance(self, target: int) -> None:
         self._check_open()
-        self._advancing = True
-        try:
-            self._loop(target)
-        finally:
-            self._advancing = False
-
-    def _loop(self, target: int) -> None:
-        physics, bus = self.physics, self.bus
-        before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
-        while physics.tick < target:
-            tick = physics.tick
-            if bus.inbox:
-                bus.deliver_inputs()
-            if before.every or before.next <= tick:
-                for task in before.due(tick):
-                    task(tick)
-            if before.every or after.every or sense.every:
-                count = 1
-            else:
-                count = min(target, before.next, sense.next, after.next) - tick
-                if count < 1:
-                    count = 1
-            physics.advance(count)
-            tick = physics.tick
-            if sense.next <= tick or sense.every:
-                physics.check()
-                for task in sense.due(tick):
-                    task(tick)
-            if after.next <= tick or after.every:
-                if tick & 15 == 0 or after.next <= tick:
-                    physics.check()
-                for task in after.due(tick):
-                    task(tick)
-            if self._rates_changed:
-                self._fill_schedule()
-        physics.check()
+        self._loop.advance(target)
 
     # ------------------------------------------------------------------ state
 
@@ -167,18 +128,18 @@ class Simulation:
         self.bus.settle()
         self.streams.reseed(self.seed)
         self.restore(self._loaded)
-        for sensor in self._structure.all_sensors():
+        for sensor in self.structure.all_sensors():
             sensor.reset()
-        for plugin in self._structure.all_plugins():
-            self._call(plugin, "reset")
+        for plugin in self.structure.all_plugins():
+            guarded(self, plugin, "reset")()
 
     def snapshot(self) -> Snapshot:
         """The whole state; a run restored to it repeats bit for bit."""
         self._check_open()
         data = copy.copy(self.mj_data)
-        fields = {f: getattr(self.mj_model, f).copy() for f in self._originals}
+        fields = {f: getattr(self.mj_model, f).copy() for f in self.originals}
         fields["gravity"] = self.mj_model.opt.gravity.copy()
-        structure, physics = self._structure, self.physics
+        structure, physics = self.structure, self.physics
         return Snapshot(
             tick=self.tick,
             structure=structure,
@@ -186,8 +147,8 @@ class Simulation:
             fields=fields,
             sensors=[(s, s.get_state()) for s in structure.all_sensors()],
             plugins=[(p, p.get_state()) for p in structure.all_plugins()],
-            handles=[(h, h.get_state()) for h in self._entities.stateful()]
-            + [(m, m._rest) for m in self._entities.tables["model"].values()],
+            handles=[(h, h.get_state()) for h in self.entities.stateful()]
+            + [(m, m._rest) for m in self.entities.tables["model"].values()],
             inbox=tuple(self.bus.inbox),
             one_shot=physics.one_shot,
             last_applied=physics.last_applied.copy(),
@@ -196,14 +157,14 @@ class Simulation:
     def restore(self, snapshot: Snapshot) -> None:
         """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone."""
         self._check_open()
-        if snapshot.structure is not self._structure:
-            self._originals = {}
-            self._adopt(snapshot.structure)
+        if snapshot.structure is not self.structure:
+            self.originals.clear()
+            self._population.adopt(snapshot.structure)
         model, physics = self.mj_model, self.physics
-        for field, original in self._originals.items():
+        for field, original in self.originals.items():
             getattr(model, field)[:] = snapshot.fields.get(field, original)
         for field in snapshot.fields:
-            if field != "gravity" and field not in self._originals:
+            if field != "gravity" and field not in self.originals:
                 self.touch(field)[:] = snapshot.fields[field]
         model.opt.gravity[:] = snapshot.fields["gravity"]
         mujoco.mj_copyData(self.mj_data, model, snapshot.data)
@@ -230,49 +191,49 @@ class Simulation:
     @property
     def models(self) -> dict[str, Model]:
         """Top-level models by name."""
-        return dict(self._entities.models)
+        return dict(self.entities.models)
 
     @property
     def lights(self) -> dict[str, Light]:
         """Lights by scoped name."""
-        return dict(self._entities.tables["light"])
+        return dict(self.entities.tables["light"])
 
     @property
     def sensors(self) -> dict[str, Any]:
         """Sensors by scoped name."""
-        return dict(self._entities.tables["sensor"])
+        return dict(self.entities.tables["sensor"])
 
     def model(self, name: str) -> Model:
         """A model by scoped name; KeyError names the closest."""
-        found: Model = self._entities.find("model", name)
+        found: Model = self.entities.find("model", name)
         return found
 
     def link(self, name: str) -> Link:
         """A link by scoped name; KeyError names the closest."""
-        found: Link = self._entities.find("link", name)
+        found: Link = self.entities.find("link", name)
         return found
 
     def joint(self, name: str) -> Joint:
         """A joint by scoped name; KeyError names the closest."""
-        found: Joint = self._entities.find("joint", name)
+        found: Joint = self.entities.find("joint", name)
         return found
 
     def sensor(self, name: str) -> Any:
         """A sensor by scoped name; KeyError names the closest."""
-        return self._entities.find("sensor", name)
+        return self.entities.find("sensor", name)
 
     def light(self, name: str) -> Light:
         """A light by scoped name; KeyError names the closest."""
-        found: Light = self._entities.find("light", name)
+        found: Light = self.entities.find("light", name)
         return found
 
     def has_sensor(self, name: str) -> bool:
         """Whether a sensor of that name is simulated."""
-        return name in self._entities.tables["sensor"]
+        return name in self.entities.tables["sensor"]
 
     def scene_link(self, scoped: str) -> SceneLink:
         """A link as the file has it."""
-        return self._entities.scene_link(scoped)
+        return self.entities.scene_link(scoped)
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
@@ -318,12 +279,17 @@ class Simulation:
     @property
     def names(self) -> Any:
         """The compiler's name map of the present model."""
-        return self._structure.compiled.names
+        return self.structure.compiled.names
+
+    @property
+    def structure(self) -> Structure:
+        """What is in the world now."""
+        return self._population.structure
 
     @property
     def compiled(self) -> Any:
         """What the compiler made of the present structure."""
-        return self._structure.compiled
+        return self.structure.compiled
 
     def fresh_data(self) -> Any:
         """`mj_data` with everything computed for the state at `time`."""
@@ -342,20 +308,26 @@ class Simulation:
         return self.physics.data_of(held)
 
     def set_control(self, actuator: Any, value: float) -> None:
-        """Writes the control of an actuator that a plugin added; the next step sees it."""
+        """Writes the control of an actuator that a plugin added; the next step sees it.
+
+        A velocity is kept within the joint's velocity limit.
+        """
+        if actuator.kind == "velocity":
+            limit = float(self.joint(actuator.joint)._velocity_limit[actuator.axis])
+            value = max(-limit, min(limit, value))
         self.mj_data.ctrl[self.names.actuator(actuator)] = value
         self.physics.changed(CONTROL)
 
     def touch(self, field: str) -> Any:
         """A model field to be written to; snapshots and restores cover it from now on."""
         values = getattr(self.mj_model, field)
-        if field not in self._originals:
-            self._originals[field] = values.copy()
+        if field not in self.originals:
+            self.originals[field] = values.copy()
         return values
 
     def original(self, field: str) -> Any:
         """A touched field's values as compiled."""
-        return self._originals[field]
+        return self.originals[field]
 
     # ------------------------------------------------------------------ spawn and remove
 
@@ -371,132 +343,49 @@ class Simulation:
             LoadError: the source has errors, or the name is taken.
         """
         self._check_open()
-        scene, found = self._load_model(source, name=name, pose=pose, taken=set(self._structure.models))
-        old, before = self._structure, self.snapshot()
-        builder = old.builder.copy()
-        builder.add_model(scene)
-        parts = self._make_parts(scene, builder, found)
-        found.raise_if_errors()
-        compiled = builder.recompile(old.compiled, self.mj_data)
-        models, all_parts = {**old.models, scene.name: scene}, {**old.parts, scene.name: parts}
-        self._switch(Structure(builder, compiled, models, old.movable, all_parts))
-        try:
-            self._start([parts], found)
-        except SimkitError:
-            self.restore(before)
-            raise
+        name = self._population.spawn(source, name, pose)
         self.reschedule()
-        self._diagnostics.extend(found)
-        return self.model(scene.name)
+        return self.model(name)
 
     def remove(self, name: str) -> None:
         """Takes a top-level model away while time goes on."""
         self._check_open()
-        self.model(name)
-        if name not in self._structure.models:
-            raise InputError(f"{name!r} is not a top-level model; remove {name.split('::')[0]!r}", "SK-NAME-003")
-        old = self._structure
-        builder = old.builder.copy()
-        builder.remove_model(name)
-        compiled = builder.recompile(old.compiled, self.mj_data)
-        models = {k: v for k, v in old.models.items() if k != name}
-        parts = {k: v for k, v in old.parts.items() if k != name}
-        self._switch(Structure(builder, compiled, models, old.movable - {name}, parts))
+        self.model(name)  # an unknown name is a KeyError that tells the closest
+        self._population.remove(name)
         self.reschedule()
 
     def make_movable(self, name: str) -> None:
         """Lets a static top-level model be moved: its links become bodies that follow their set pose."""
-        old = self._structure
-        if name in old.movable:
-            return
-        builder = old.builder.copy()
-        scene = old.models[name]
-        builder.remove_model(name)
-        builder.add_model(scene, movable=True)
-        for sensor in old.parts[name].sensors:
-            sensor.build(builder)
-        compiled = builder.recompile(old.compiled, self.mj_data)
-        self._switch(Structure(builder, compiled, old.models, old.movable | {name}, old.parts))
-        self.reschedule()
+        if self._population.make_movable(name):
+            self.reschedule()
 
-    def _switch(self, structure: Structure) -> None:
-        """Goes on with another structure, the changed model fields carried over."""
-        old_model, fields = self.mj_model, dict(self._originals)
-        gravity = old_model.opt.gravity.copy()
-        self._originals = {}
-        tick = self.tick
-        new = structure.compiled.model
-        for field in fields:
-            self._originals[field] = getattr(new, field).copy()
-        carry_fields(old_model, new, fields)
-        new.opt.gravity[:] = gravity
-        self._adopt(structure)
-        self.physics.tick = tick
+    # ------------------------------------------------------------------ schedule
 
-    def _adopt(self, structure: Structure) -> None:
-        self.bus.settle()
-        self._structure = structure
-        compiled = structure.compiled
-        tick = self.physics.tick
-        self.physics.rebind(compiled.model, compiled.data)
-        self.physics.tick = tick
-        self._entities.bind(structure)
-        self.bus.set_active([*structure.all_sensors(), *structure.all_plugins()])
-        for sensor in structure.all_sensors():
-            if sensor in self._attached:
-                sensor.bind(compiled)
-
-    def _start(self, parts: list[Parts], diagnostics: Diagnostics) -> None:
-        """Attaches new sensors, then loads new plugins, in document order; raises LoadError where they found errors."""
-        for part in parts:
-            for sensor in part.sensors:
-                with self.bus.owned_by(sensor):
-                    sensor.attach(self)
-                self._attached.add(sensor)
-                sensor.bind(self._structure.compiled)
-        for part in parts:
-            for plugin, parent_of in part.plugins:
-                with self.bus.owned_by(plugin):
-                    self._load_plugin(plugin, parent_of(self))
-        diagnostics.raise_if_errors()
-
-    def _load_plugin(self, plugin: Any, parent: Any) -> None:
-        try:
-            plugin._setup(self, plugin.source)
-            plugin.load(parent, plugin.params)
-        except SimkitError:
-            raise
-        except Exception as error:
-            raise PluginError(plugin.name, "load", self.time, str(plugin.where), repr(error)) from error
-        plugin._remember_loaded()
-        self._loaded_plugins.append(plugin)
+    @property
+    def scheduler(self) -> Scheduler:
+        """Who is due when."""
+        return self._loop.scheduler
 
     def reschedule(self) -> None:
         """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
-        self._rates_changed = True
-        if not self._advancing:
-            self._fill_schedule()
+        self._loop.reschedule()
 
-    def _fill_schedule(self) -> None:
+    def _fill(self, scheduler: Scheduler) -> None:
         """Fills the scheduler from what is there, in document order."""
-        self._rates_changed = False
-        scheduler = self.scheduler
-        scheduler.clear()
-        for joint in self._entities.tables["joint"].values():
+        for joint in self.entities.tables["joint"].values():
             if joint in self._exact_limits:
                 scheduler.every(None, joint.clamp_velocity, "sense")
             elif self._coasts_over_limit(joint):
                 scheduler.every(_LIMIT_GRID, joint.clamp_velocity, "sense")
-        for sensor in self._structure.all_sensors():
+        for sensor in self.structure.all_sensors():
             scheduler.every(sensor.update_rate, sensor.sample, "sense")
-        for plugin in self._structure.all_plugins():
+        for plugin in self.structure.all_plugins():
             for hook, rate, phase in (
                 ("before_step", plugin.before_step_rate, "before"),
                 ("after_step", plugin.after_step_rate, "after"),
             ):
                 if plugin.has_hook(hook):
-                    scheduler.every(rate, self._guarded(plugin, hook), phase)  # type: ignore[arg-type]
-        scheduler.rewind(self.tick)
+                    scheduler.every(rate, guarded(self, plugin, hook), phase)  # type: ignore[arg-type]
 
     def _coasts_over_limit(self, joint: Joint) -> bool:
         """Whether a joint has a velocity limit of the file that no servo keeps."""
@@ -514,31 +403,15 @@ class Simulation:
         scene = light.scene
         place_light(self.mj_model, light, scene.scoped, light._pose, self.touch)
 
-    def _guarded(self, plugin: Any, hook: str) -> Callable[[int], None]:
-        method = getattr(plugin, hook)
-
-        def task(_: int) -> None:
-            try:
-                method()
-            except SimkitError:
-                raise
-            except Exception as error:
-                raise PluginError(plugin.name, hook, self.time, str(plugin.where), repr(error)) from error
-
-        return task
-
-    def _call(self, plugin: Any, hook: str) -> None:
-        self._guarded(plugin, hook)(self.tick)
-
     # ------------------------------------------------------------------ the end
 
     def close(self) -> None:
         """Closes plugins and sensors; further calls do nothing."""
         if self._closed:
             return
-        for plugin in self._loaded_plugins:
-            self._call(plugin, "close")
-        for sensor in self._structure.all_sensors():
+        for plugin in self._population.loaded_plugins:
+            guarded(self, plugin, "close")()
+        for sensor in self.structure.all_sensors():
             sensor.close()
         self._closed = True
 
