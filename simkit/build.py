@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.engine import import_engine
 from simkit.loaders import Resolver, load_scene
 from simkit.params import Params
 from simkit.pose import Pose
@@ -52,6 +54,7 @@ def load(
         LoadError: with every problem of the input.
         PluginError: a plugin raised while it was loaded.
     """
+    import_engine()
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation, Structure
 
@@ -70,14 +73,8 @@ def load(
     compiled = builder.compile()
     diagnostics.raise_if_errors(strict)
 
-    def load_model(
-        model_source: Source, *, name: str | None, pose: Pose | None, taken: set[str]
-    ) -> tuple[SceneModel, Diagnostics]:
-        return _model_to_spawn(model_source, resolver, name, pose, taken)
-
-    def make_parts(model: SceneModel, spec: Any, found: Diagnostics) -> Parts:
-        return _parts_of_model(model, spec, found, allowed)
-
+    load_model = partial(_model_to_spawn, resolver=resolver)
+    make_parts = partial(_parts_of_model, plugin_paths=allowed)
     structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts)
     try:
@@ -148,7 +145,7 @@ def _scene(
 
 
 def _model_to_spawn(
-    source: Source, resolver: Resolver, name: str | None, pose: Pose | None, taken: set[str]
+    source: Source, *, resolver: Resolver, name: str | None, pose: Pose | None, taken: set[str]
 ) -> tuple[SceneModel, Diagnostics]:
     diagnostics = Diagnostics()
     scene = load_scene(source, resolver=resolver, diagnostics=diagnostics, name=name, pose=pose)

@@ -96,6 +96,8 @@ class _Override:
                 if "::" in path
                 else path.split(".")[0]
             )
+            if path in (*names, "physics", "world"):
+                raise _bad(self.text, f"{path!r} needs an element, as in {path}.element=value")
             hint = did_you_mean(asked, [*names, "physics", "world"])
             raise _bad(self.text, f"no entity {asked!r}; {hint or 'simkit inspect lists them'}")
         element = path[len(entity) + 1 :]

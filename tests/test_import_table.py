@@ -12,6 +12,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
 SMALL_WORDS = frozenset({"pose", "params", "diagnostics", "errors", "msgs", "registry"})
 ROOMS: dict[str, frozenset[str]] = {
     "scene": frozenset(),
+    "engine": frozenset(),
     "loaders": frozenset({"scene"}),
     "compiler": frozenset({"scene"}),
     "runtime": frozenset({"compiler", "scene"}),
@@ -21,7 +22,7 @@ ROOMS: dict[str, frozenset[str]] = {
     "overrides": frozenset({"scene"}),
     "description": frozenset({"scene", "loaders", "sensors"}),
     "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
-    "cli": frozenset({"build", "description", "bench", "overrides", "sinks"}),
+    "cli": frozenset({"build", "description", "bench", "engine", "overrides", "sinks"}),
 }
 KNOWS_ALL = frozenset({"build"})
 FRONT_DOOR = frozenset({"__init__", "__main__"})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -83,10 +84,15 @@ def run(
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     request = Request(
-        world, duration, seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict, view, picture,
-        cmd_vel, script, tuple(resource_path), tuple(plugin_path), verbose, quiet,
+        world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, _finite(rtf), tuple(set_), strict,
+        view, picture, cmd_vel, script, tuple(resource_path), tuple(plugin_path), verbose, quiet,
     )  # fmt: skip
     return execute(request)
+
+
+def _finite(number: float | None) -> float | None:
+    """An infinite duration or real-time factor is none: until Ctrl-C, as fast as it goes."""
+    return number if number is None or math.isfinite(number) else None
 
 
 def execute(request: Request) -> int:

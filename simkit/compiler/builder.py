@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -254,12 +255,16 @@ class SpecBuilder:
         if not self._is_compiled and not int(self.spec.option.enableflags) & int(mujoco.mjtEnableBit.mjENBL_SLEEP):
             choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
         self._is_compiled = True
-        try:
-            model = self.spec.compile()
-        except ValueError as problem:
-            self._refused(problem)
-        compiled = self._finished(model, None)
-        report_overlaps(compiled.model, compiled.names, self.diagnostics, self.world.where)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            try:
+                model = self.spec.compile()
+            except ValueError as problem:
+                self._refused(problem)
+            compiled = self._finished(model, None)
+            report_overlaps(compiled.model, compiled.names, self.diagnostics, self.world.where)
+        for text in dict.fromkeys(str(w.message) for w in said):
+            self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
         return compiled
 
     def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:

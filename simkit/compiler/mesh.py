@@ -19,6 +19,7 @@ from simkit.scene import Mesh
 
 LARGEST_FILE: Final = 512 << 20
 LARGEST_FACES: Final = 4_000_000
+FARTHEST_VERTEX: Final = 1e9  # [m]; volumes of farther ones leave the single precision that the engine keeps them in
 LARGEST_TEXTURE: Final = 2048
 
 
@@ -99,6 +100,8 @@ def _part(name: str, geometry: Any, matrix: Any, unit: float) -> MeshPart:
     vertices = (np.asarray(geometry.vertices, float) @ matrix[:3, :3].T + matrix[:3, 3]) * unit
     if not np.isfinite(vertices).all():
         raise MeshFileError("has coordinates that are not finite")
+    if len(vertices) and np.abs(vertices).max() > FARTHEST_VERTEX:
+        raise MeshFileError(f"has coordinates beyond {FARTHEST_VERTEX:g} m")
     faces = np.asarray(geometry.faces, np.int32)
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         faces = np.ascontiguousarray(faces[:, ::-1])

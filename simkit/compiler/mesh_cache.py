@@ -16,7 +16,7 @@ import numpy as np
 
 from simkit.compiler.mesh_part import MeshPart
 
-_FORMAT: Final = "simkit mesh 1"
+_FORMAT: Final = "simkit mesh 2"
 _COMPANIONS: Final = {".mtl", ".bin", ".png", ".jpg", ".jpeg", ".tga", ".bmp", ".gif", ".tif", ".tiff"}
 _SELF_CONTAINED: Final = {".stl", ".glb", ".ply"}
 
@@ -66,8 +66,9 @@ def store(key: str, parts: Sequence[MeshPart]) -> None:
             arrays[f"u{i}"] = part.uv
         if part.texture is not None:
             arrays[f"t{i}"] = part.texture
-    target = _file_of(key)
-    with contextlib.suppress(OSError):
+    # RuntimeError: a user without a home folder
+    with contextlib.suppress(OSError, RuntimeError):
+        target = _file_of(key)
         target.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=target.parent, suffix=".tmp")
         try:

@@ -77,6 +77,7 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         bundled = resolver.find_world(str(source)) or resolver.find_model(str(source))
         if bundled is None:
             near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
+            near += resolver.bundled_names()
             diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), did_you_mean(path.name, near))
             return None
         path = bundled

@@ -230,6 +230,12 @@ class Resolver:
                     return bundle / spelt
         return None
 
+    def bundled_names(self) -> list[str]:
+        """Bare names of the worlds and models that simkit brings."""
+        worlds = [p.stem for bundle in bundled_folders("worlds") for p in bundle.glob("*.sdf")]
+        models = [p.parent.name for bundle in bundled_folders("assets") for p in bundle.glob("**/model.config")]
+        return sorted({*worlds, *models})
+
 
 def bundled_folders(kind: str) -> list[Path]:
     """The folders `assets` or `worlds` that travel with simkit, beside or inside the package."""

@@ -169,10 +169,12 @@ def _second_try(data: bytes, file: str | None, diagnostics: Diagnostics) -> Para
 def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
     """Reads one XML file; None, with an error recorded, when it cannot be read."""
     try:
-        if path.stat().st_size > MAX_BYTES:
+        with path.open("rb") as stream:
+            # Not by the size it says it has: a device or a pipe says 0.
+            text = stream.read(MAX_BYTES + 1)
+        if len(text) > MAX_BYTES:
             diagnostics.error("SK-XML-002", f"the file is larger than {MAX_BYTES} bytes", Where(str(path)))
             return None
-        text = path.read_bytes()
     except OSError as error:
         diagnostics.error("SK-LOAD-002", f"cannot read the file: {error.strerror or error}", Where(str(path)))
         return None

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 IMU = "sensor_msgs/msg/Imu"
+_LARGEST_NOISE = 1e100  # [rad]; beyond it the variance leaves the numbers
 
 
 class SolarSensor(ModelPlugin):
@@ -45,7 +46,7 @@ class SolarSensor(ModelPlugin):
         self._frame = frame or self._link_name.rsplit("::", 1)[-1]
         self._xyz = _offset(params, "xyz_offset")
         self._rpy = _offset(params, "rpy_offset")
-        self._noise = params.number("gaussian_noise", 0.0, minimum=0)
+        self._noise = params.number("gaussian_noise", 0.0, minimum=0, maximum=_LARGEST_NOISE)
         self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
 
     def load(self, parent: Any, params: Params) -> None:

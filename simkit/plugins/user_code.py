@@ -56,7 +56,7 @@ def _by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostic
             wanted = [c for c in classes if c.__name__ == plugin.name] or classes
             if len(wanted) == 1:
                 return wanted[0]
-            listed = ", ".join(c.__name__ for c in classes) or "none"
+            listed = ", ".join(c.__name__ for c in classes) or "none with a load method"
             message = f"{plugin.filename!r} must have one plugin class, or one called {plugin.name!r}; it has: {listed}"
             diagnostics.error("SK-PLUGIN-008", message, plugin.where)
             return None

@@ -18,6 +18,7 @@ from simkit.errors import RenderError
 
 _HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); `simkit doctor` says more"
 _OFF = {"disable", "disabled", "off", "false", "0"}
+_ON = {"", "enable", "enabled", "on", "true", "1"}
 _LIBRARY_CHOICES = {
     "egl": ("egl",),
     "osmesa": ("osmesa",),
@@ -88,6 +89,8 @@ def _candidates() -> tuple[str, ...]:
     platform = os.environ.get("PYOPENGL_PLATFORM", "").strip().lower()
     if wanted in _OFF:
         raise RenderError(f"rendering is switched off by MUJOCO_GL={wanted}; unset it")
+    if wanted not in (*_LIBRARY_CHOICES, *_ON):
+        raise RenderError(f"MUJOCO_GL={wanted}: no such renderer, allowed is one of {', '.join(_LIBRARY_CHOICES)}")
     if wanted in _LIBRARY_CHOICES:
         return _LIBRARY_CHOICES[wanted]
     if sys.platform == "darwin":

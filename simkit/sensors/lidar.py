@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 OLD_CLOUD, RANGE = "sensor_msgs/msg/PointCloud", "sensor_msgs/msg/Range"
+_NOTHING, _INFINITE = np.array(0.0), np.array(np.inf)
 _MOST_RAYS = 4_000_000
 _RING_POINT = np.dtype(
     {
@@ -141,6 +142,8 @@ class Lidar(Sensor):
         self._retro: Vector | None = None
         self._dark = np.zeros(self._fan.count)  # shared by all readings, which are never written to
         self._dark.flags.writeable = False
+        # as arrays: NumPy takes as long to look at a number as to go through a planar scan
+        self._limits = np.array(options.range_min), np.array(options.range_max)
 
     def describe(self) -> dict[str, Any]:
         o = self.options
@@ -203,22 +206,20 @@ class Lidar(Sensor):
         options, fan = self.options, self._fan
         origin, rotation = self._frame_in_world(data)
         fan.cast(model, data, origin, rotation)
-        distances = fan.distances
-        nothing = distances < 0
-        if options.range_min > 0:
-            too_near = distances < options.range_min
-            too_near &= ~nothing
-            if not too_near.any():
-                ranges = distances.copy()
-            elif self.sees_visuals:
-                ranges = np.where(too_near, -np.inf, distances)
+        ranges = fan.distances.copy()
+        low, high = self._limits
+        nothing = ranges < _NOTHING
+        nothing |= ranges > high
+        np.copyto(ranges, _INFINITE, where=nothing)
+        if np.minimum.reduce(ranges) < options.range_min:
+            too_near = ranges < low
+            if self.sees_visuals:
+                ranges[too_near] = -np.inf
             else:
-                fan.recast(model, data, origin, options.range_min, np.flatnonzero(too_near))
-                ranges, nothing = distances.copy(), distances < 0
-        else:
-            ranges = distances.copy()
-        nothing |= ranges > options.range_max
-        np.copyto(ranges, np.inf, where=nothing)
+                again = np.flatnonzero(too_near)
+                fan.recast(model, data, origin, options.range_min, again)
+                found = fan.distances[again]
+                ranges[again] = np.where((found < 0) | (found > options.range_max), np.inf, found)
         return LidarReading(ranges, self._intensities(ranges))
 
     def _intensities(self, ranges: Vector) -> Vector:
@@ -231,9 +232,9 @@ class Lidar(Sensor):
         if self._noise.is_silent:
             return reading
         ranges = self._noise.apply(reading.ranges, index)
-        infinite = np.isinf(reading.ranges)
-        np.maximum(ranges, self.options.range_min, out=ranges)
-        np.minimum(ranges, self.options.range_max, out=ranges)
+        infinite, (low, high) = np.isinf(reading.ranges), self._limits
+        np.maximum(ranges, low, out=ranges)
+        np.minimum(ranges, high, out=ranges)
         np.copyto(ranges, reading.ranges, where=infinite)
         return LidarReading(ranges, reading.intensities)
 

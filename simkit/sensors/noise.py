@@ -18,6 +18,7 @@ from simkit.pose import Vector
 if TYPE_CHECKING:
     from simkit.runtime.random import RandomStreams
 
+LARGEST_DEVIATION = 1e100  # of any channel; beyond it the variance leaves the numbers
 _TYPES = ("none", "gaussian", "gaussian_quantized")
 
 
@@ -61,7 +62,7 @@ def read_noise(owner: Params) -> NoiseModel:
         return NO_NOISE
     return NoiseModel(
         mean=params.number("mean", 0.0),
-        stddev=params.number("stddev", 0.0, minimum=0),
+        stddev=params.number("stddev", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
         bias_mean=params.number("bias_mean", 0.0),
         bias_stddev=params.number("bias_stddev", 0.0, minimum=0),
         dynamic_bias_stddev=params.number("dynamic_bias_stddev", 0.0, minimum=0),

@@ -121,7 +121,7 @@ class Renderer:
                     _bring_suns_near(scene, model)
                 if decorate is not None:
                     decorate(scene)
-                _aim(scene, position, rotation, view)
+                aim(scene, position, rotation, view)
                 mujoco.mjr_render(rectangle, scene, self._context)
                 masked = depth and not self._samples and self._shade is not None
                 if not masked:
@@ -186,7 +186,7 @@ class Renderer:
         if size not in self._shades:
             assert self._shade is not None
             self._shades[size] = np.tile(self._shade, (*size, 1))
-        cv2.copyTo(self._shades[size], cv2.compare(depths, 0.0, cv2.CMP_EQ), colours)  # type: ignore[call-overload]
+        cv2.copyTo(self._shades[size], cv2.compare(depths, 0.0, cv2.CMP_EQ), colours)
 
     def _buffer(self, width: int, height: int) -> tuple[Any, tuple[Colours, Depths]]:
         size = (width, height)
@@ -218,12 +218,12 @@ def metres(
     for first in range(0, len(raw), _ROWS):
         part = out[first : first + _ROWS]
         np.copyto(part, raw[first : first + _ROWS])
-        beyond: Any = None if ends_before else cv2.compare(part, 0.0, cv2.CMP_EQ)  # type: ignore[call-overload]
+        beyond: Any = None if ends_before else cv2.compare(part, 0.0, cv2.CMP_EQ)
         np.multiply(part, scale, out=part)
         np.add(part, least, out=part)
         np.divide(one, part, out=part)
         if ends_before:
-            beyond = cv2.compare(part, bound, cv2.CMP_GT)  # type: ignore[call-overload]
+            beyond = cv2.compare(part, bound, cv2.CMP_GT)
         cv2.copyTo(infinite[: len(part)], beyond, part)
         if lowest > 0 and np.minimum.reduce(part, axis=None) < nearest:
             np.copyto(part, np.float32(-np.inf), where=part < nearest)
@@ -316,7 +316,7 @@ def look_at(eye: Vector, target: Vector) -> Vector:
     return np.stack((forward, left, np.cross(forward, left)), axis=1)
 
 
-def _aim(scene: Any, position: Vector, rotation: Vector, view: View) -> None:
+def aim(scene: Any, position: Vector, rotation: Vector, view: View) -> None:
     """Sets both eyes of the scene's camera; their mean is what is drawn."""
     near = view.near
     for camera in scene.camera:

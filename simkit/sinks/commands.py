@@ -143,6 +143,10 @@ def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise _bad(f"{path}:{line}", f"is not YAML: {error.problem}") from None
+    except yaml.YAMLError as error:
+        raise _bad(str(path), f"is not YAML: {str(error).splitlines()[0]}") from None
+    except RecursionError:
+        raise _bad(str(path), "is nested too deep") from None
     if root is None:
         return []
     if not isinstance(root, yaml.SequenceNode):

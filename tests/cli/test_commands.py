@@ -286,3 +286,18 @@ def test_importing_simkit_loads_no_engine() -> None:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+def test_an_infinite_pace_is_no_pace(world: Path) -> None:
+    assert simkit("run", world, "--duration", 0.01, "--rtf", "inf").exit_code == 0
+
+
+def test_a_terminal_without_our_signs_ends_no_run(world: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "simkit", "run", str(world), "--duration", "0.01"],
+        env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONPATH": str(Path(__file__).resolve().parents[2])},
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr

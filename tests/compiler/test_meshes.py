@@ -240,3 +240,10 @@ def test_a_mesh_without_file_is_an_error_with_a_code(make, tmp_path):
     SpecBuilder(make.world(make.solid("m", Mesh(tmp_path / "no.stl", "no.stl"))), found)
     assert found.has_errors
     assert next(iter(found)).code == "SK-MESH-001"
+
+
+def test_a_mesh_with_coordinates_beyond_all_reach_is_an_error(make, tmp_path):
+    (tmp_path / "far.obj").write_text("v 1e300 0 0\nv 1 0 1e300\nv 0 1 0\nv 0 0 1e38\nf 1 2 3\nf 1 2 4\n")
+    diagnostics = Diagnostics()
+    load_mesh(Mesh(tmp_path / "far.obj", "far.obj"), diagnostics, NOWHERE)
+    assert [d.code for d in diagnostics] == ["SK-MESH-001"]

@@ -145,3 +145,8 @@ def test_an_unknown_light_stops_the_load_and_lists_the_lights() -> None:
 def test_an_unknown_link_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003.*no link 'haed'"):
         opened(frame_name="haed")
+
+
+def test_a_noise_whose_variance_leaves_the_numbers_is_refused() -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
+        opened(gaussian_noise=1e308)

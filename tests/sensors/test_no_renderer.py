@@ -8,6 +8,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+import pytest
 from sensor_worlds import sensor, world
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -115,3 +116,25 @@ def test_nothing_touches_opengl_before_the_first_picture() -> None:
         broken=False,
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("value", ["foo", "osmesa"])
+def test_a_renderer_that_is_not_there_stops_only_what_draws(value: str) -> None:
+    done = run(
+        f"""
+        import ctypes.util, os
+        os.environ["MUJOCO_GL"] = {value!r}
+        import simkit
+        sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"])
+        sim.run(0.1)
+        assert sim.sensor("m::l::i").latest is not None
+        try:
+            sim.sensor("m::l::c").latest
+        except simkit.RenderError as error:
+            print(error)
+        print("OSMesa", ctypes.util.find_library("OSMesa"))
+        """,
+        broken=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "SK-RENDER-001" in done.stdout or (value == "osmesa" and "OSMesa None" not in done.stdout)

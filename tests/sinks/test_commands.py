@@ -117,3 +117,11 @@ def test_a_message_that_does_not_fit_is_said_with_its_line() -> None:
         queue = Commands(sim, [Command(0.0, "/level", {"dat": 1.0}, where="drive.yaml:7")])
         with pytest.raises(InputError, match=r"drive\.yaml:7: .*did you mean 'data'"):
             queue.send_due()
+
+
+@pytest.mark.parametrize("text", ["\0", "[" * 3000])
+def test_a_script_that_no_yaml_reader_takes_is_a_message(text: str, tmp_path: Path) -> None:
+    script = tmp_path / "odd.yaml"
+    script.write_text(text)
+    with pytest.raises(InputError, match="SK-CLI-011"):
+        read_script(script, TOPICS)

@@ -43,6 +43,9 @@ def _read(file: SdfFile, document: Document, request: LoadRequest, workspace: Wo
         if world.name in seen:
             workspace.diagnostics.error("SK-SDF-002", f"the file has two worlds named {world.name!r}", world.where)
         seen.add(world.name)
+    if len(worlds) > 1:
+        message = f"the file has {len(worlds)} worlds; the first, {worlds[0].name!r}, is the one that runs"
+        workspace.diagnostics.note("SK-SDF-031", message, worlds[1].where)
     if worlds:
         return Scene(worlds, None, name)
     source = _bare(file, workspace)

@@ -1,0 +1,221 @@
+"""Speed beside bare MuJoCo on the same compiled model: both sides in turn, medians of each."""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from simkit import build
+from simkit.bench.bare import Bare, HandWritten, bare_pass, bare_scan
+from simkit.plugins import WorldPlugin
+from simkit.sensors.camera import RenderedSensor
+from simkit.sensors.lidar import Lidar
+
+_CHUNK = 500  # steps a round
+_CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One comparison; times in seconds.
+
+    Attributes:
+        ours, bare: median time of one unit; `bare` is None where there is nothing to compare with.
+        aim: highest ratio aimed at, or None.
+    """
+
+    name: str
+    unit: str
+    ours: float
+    bare: float | None = None
+    aim: float | None = None
+
+    @property
+    def ratio(self) -> float | None:
+        return None if not self.bare else self.ours / self.bare
+
+
+class EveryStep(WorldPlugin):
+    """The least that a plugin can do: it is called after every step."""
+
+    def load(self, parent: Any, params: Any) -> None:
+        self.calls = 0
+
+    def after_step(self) -> None:
+        self.calls += 1
+
+
+def interleaved(sides: Sequence[Callable[[], object]], rounds: int) -> list[float]:
+    """Median CPU time of one call of each side [s]; the sides alternate, so that a busy machine hits all alike."""
+    taken: list[list[float]] = [[] for _ in sides]
+    for side in sides:
+        side()
+    for _ in range(rounds):
+        for side, times in zip(sides, taken, strict=True):
+            start = time.process_time()
+            side()
+            times.append(time.process_time() - start)
+    return [statistics.median(times) for times in taken]
+
+
+def measure(
+    source: str,
+    *,
+    rounds: int = 9,
+    what: str = "all",
+    resource_paths: Sequence[Any] = (),
+    plugin_paths: Sequence[Any] = (),
+) -> Iterator[Figure]:
+    """Each figure of a world as soon as it is known.
+
+    Args:
+        source: the world.
+        rounds: timings of each side.
+        what: "steps", "sensors" or "all".
+        resource_paths, plugin_paths: as of `simkit.load`.
+    """
+
+    def load(*plugins: Any) -> Any:
+        return build.load(source, resource_paths=resource_paths, plugin_paths=plugin_paths, plugins=plugins)
+
+    if what != "sensors":
+        yield from _steps(load, rounds)
+    if what != "steps":
+        with load() as sim:
+            sim.run(1.0)
+            for sensor in sim.sensors.values():
+                if sensor.topic:
+                    yield sensor_cost(sim, sensor, rounds)
+
+
+def _steps(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
+    with load() as sim:
+        yield stepping(sim, rounds)
+    with load(EveryStep()) as sim:
+        yield _beside_step(sim, rounds, "step, a Python plugin after each", 1.20)
+    with load() as sim:
+        imu = next((s for s in sim.sensors.values() if s.kind == "imu" and s.topic), None)
+        if imu:
+            sim.bus.tap(imu.topic, _ignore)
+            yield _beside_step(sim, rounds, f"step, imu read at {imu.update_rate:g} Hz", 1.10)
+    if imu:
+        with load() as sim:
+            sim.bus.subscribe(imu.topic, keep=1)
+            yield _beside_step(sim, rounds, "step, imu subscribed to, looked at later", 1.10)
+    with load() as sim:
+        yield everything_read(sim, rounds)
+
+
+def import_time(rounds: int) -> float:
+    """What `import simkit` adds to a fresh interpreter [s], wall time."""
+    # the same simkit as this one, wherever it was imported from
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    taken: dict[str, list[float]] = {"pass": [], "import simkit": []}
+    for _ in range(rounds):
+        for statement, times in taken.items():
+            start = time.perf_counter()
+            subprocess.run([sys.executable, "-c", statement], check=True, env=environment)
+            times.append(time.perf_counter() - start)
+    empty, ours = (statistics.median(times) for times in taken.values())
+    return ours - empty
+
+
+def memory_growth(sim: Any, duration: float) -> float:
+    """Bytes a simulated second adds to the process with all but images read; the first half is left to settle."""
+    _read_all(sim)
+    sim.run(duration / 2)
+    before = _resident()
+    sim.run(duration / 2)
+    return (_resident() - before) / (duration / 2)
+
+
+def stepping(sim: Any, rounds: int) -> Figure:
+    """Steps with nothing due beside `mj_step` on a copy of the same model and state."""
+    sim.step(100)
+    sim.scheduler.clear()
+    sim.scheduler.rewind(sim.tick)
+    return _beside_step(sim, rounds, "step, nothing due", 1.05)
+
+
+def _beside_step(sim: Any, rounds: int, name: str, aim: float) -> Figure:
+    sim.step(100)
+    bare = Bare(sim)
+    ours, theirs = interleaved([lambda: sim.step(_CHUNK), lambda: bare.step(_CHUNK)], rounds)
+    return Figure(name, "step", ours / _CHUNK, theirs / _CHUNK, aim)
+
+
+def everything_read(sim: Any, rounds: int) -> Figure:
+    """The world with its plugins and every topic but images read, beside a hand-written loop of the same readings."""
+    counts = _read_all(sim)
+    second = round(1.0 / sim.timestep)
+    sim.step(second)
+    counts.clear()  # the first sample of all comes early
+    sim.step(second)
+    periods = {topic: max(1, round(second / n)) for topic, n in counts.items() if n > 1}
+    bare = HandWritten(sim, periods)
+    ours, theirs = interleaved([lambda: sim.step(second), lambda: bare.step(second)], rounds)
+    name = "step, all plugins, all sensors read but images"
+    return Figure(name, "step", ours / second, theirs / second, 1 / 0.85)
+
+
+def sensor_cost(sim: Any, sensor: Any, rounds: int) -> Figure:
+    """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
+    bare pass. Pictures are without noise, and clouds are not made."""
+    clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
+    taps = [sim.bus.tap(t, _ignore) for p, t in sensor._topics.items() if p not in clouds]
+    sim.fresh_acceleration()
+    name, aim, bare = f"{sensor.kind} {sensor.scoped}", None, None
+    count = 200
+    if isinstance(sensor, RenderedSensor):
+        count = 5
+        vars(sensor)["perturb"] = lambda reading, _index: reading  # of this one sensor
+        bare, aim = bare_pass(sim, sensor), 1.20 if sensor.has_depth else None
+        name += ", no noise"
+    elif isinstance(sensor, Lidar):
+        bare, aim = bare_scan(sensor, sim.mj_model, sim.mj_data), 1.20
+    tick = sim.tick
+    sides: list[Callable[[], object]] = [lambda: [sensor.sample(tick) for _ in range(count)]]
+    if bare is not None:
+        one = bare
+        sides.append(lambda: [one() for _ in range(count)])
+    times = interleaved(sides, max(3, rounds))
+    for tap in taps:
+        tap.close()
+    return Figure(name, "sample", times[0] / count, times[1] / count if bare is not None else None, aim)
+
+
+def _read_all(sim: Any) -> dict[str, int]:
+    """Reads every topic but images; gives how many messages came, by topic."""
+    counts: dict[str, int] = {}
+
+    def count(topic: str) -> Callable[[Any], None]:
+        def one_more(_: Any) -> None:
+            counts[topic] = counts.get(topic, 0) + 1
+
+        return one_more
+
+    for topic, type_name in sim.topics().items():
+        if type_name not in _CAMERAS:
+            sim.bus.tap(topic, count(topic))
+    return counts
+
+
+def _ignore(_: Any) -> None:
+    return None
+
+
+def _resident() -> int:
+    """Memory of this process in use now [B]; the highest so far where the system does not say."""
+    import resource
+
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * resource.getpagesize()
+    except OSError:
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
