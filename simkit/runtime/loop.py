@@ -12,6 +12,8 @@ from simkit.runtime.topics import TopicBus
 
 Fill = Callable[[Scheduler], None]
 
+_CHECK_MASK = 15  # a hook of every step costs more with a check each time: every 16th sees a bad number soon enough
+
 
 class Loop:
     """Advances the physics from one due tick to the next.
@@ -52,30 +54,50 @@ class Loop:
         before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
         while physics.tick < target:
             tick = physics.tick
+            stop = min(target, before.next, sense.next, after.next)
+            has_every = before.every or after.every or sense.every
+            if has_every and stop - tick > 1:
+                self._walk(stop - 1)
+                continue
             if bus.inbox:
                 bus.deliver_inputs()
             if before.every or before.next <= tick:
                 for task in before.due(tick):
                     task(tick)
-            if before.every or after.every or sense.every:
-                count = 1
-            else:
-                count = max(1, min(target, before.next, sense.next, after.next) - tick)
-            physics.advance(count)
+            physics.advance(1 if has_every else max(1, stop - tick))
             tick = physics.tick
             if sense.next <= tick or sense.every:
                 physics.check()
                 for task in sense.due(tick):
                     task(tick)
             if after.next <= tick or after.every:
-                # a hook of every step costs more with a check each time: every 16th sees a bad number soon enough
-                if tick & 15 == 0 or after.next <= tick:
+                if tick & _CHECK_MASK == 0 or after.next <= tick:
                     physics.check()
                 for task in after.due(tick):
                     task(tick)
             if self._is_outdated:
                 self._refill()
         physics.check()
+
+
+    def _walk(self, stop: int) -> None:
+        """Up to the tick `stop`, through steps at which only what runs at every step is due."""
+        physics, bus = self._physics, self._bus
+        before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]
+        tick = physics.tick
+        while tick < stop and not self._is_outdated:
+            if bus.inbox:
+                bus.deliver_inputs()
+            for task in before:
+                task(tick)
+            physics.single()
+            tick += 1
+            if not tick & _CHECK_MASK:
+                physics.check()
+            for task in after:
+                task(tick)
+        if self._is_outdated:
+            self._refill()
 
 
 def guarded(sim: Any, plugin: Any, hook: str) -> Callable[..., None]:

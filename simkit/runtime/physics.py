@@ -161,6 +161,14 @@ class Physics:
             self._tune(chunk, time.perf_counter() - before)
             count -= chunk
 
+    def single(self) -> None:
+        """One step."""
+        if self.stage == STALE and not (self.one_shot or self._shows_applied):
+            mj_step(self.model, self.data)
+            self.tick += 1
+        else:
+            self.advance(1)
+
     def _run(self, count: int) -> None:
         model, data, stage = self.model, self.data, self.stage
         if stage != STALE and self._integrate is not None:
