@@ -146,10 +146,15 @@ class Joint(Handle):
     def set_effort(self, effort: float | Sequence[float] | Vector) -> None:
         """Applies an effort in the next step only, clipped to the effort limit."""
         self._check()
-        limit = self._limit()
-        self._sim.mj_data.qfrc_applied[self._dofs] = np.clip(self._shaped(effort), -limit, limit)
-        self._sim.physics.one_shot = True
-        self._sim.physics.changed(CONTROL)
+        physics = self._sim.physics
+        if self._one_dof >= 0 and isinstance(effort, float) and math.isfinite(effort):
+            most = self._effort_limit.item(0)
+            physics.data.qfrc_applied[self._one_dof] = max(-most, min(most, effort))
+        else:
+            limit = self._limit()
+            physics.data.qfrc_applied[self._dofs] = np.clip(self._shaped(effort), -limit, limit)
+        physics.one_shot = True
+        physics.changed(CONTROL)
 
     # ------------------------------------------------------------------ limits
 
