@@ -102,7 +102,10 @@ class Publisher:
     def publish_later(self, make: Callable[[], Any]) -> None:
         """Publishes what `make()` gives, made at once only where somebody is called back with it."""
         readers = self._readers
-        if self.latched or self.topic in self._bus._listeners or any(r._callback is not None for r in readers):
+        waits = not (self.latched or self.topic in self._bus._listeners)
+        for reader in readers:
+            waits = waits and reader._callback is None
+        if not waits:
             self.publish(make())
             return
         later = Later(make)

@@ -88,6 +88,7 @@ class Sensor(abc.ABC):
         self._topics: dict[str, str] = {}
         self._products: Mapping[str, Product] = {}
         self._publishers: dict[str, Publisher] = {}
+        self._ends: list[tuple[str, Publisher, bool]] = []
         self._sample: Sample | None = None
         self._index, self._time_ns = 0, -1
 
@@ -190,6 +191,7 @@ class Sensor(abc.ABC):
             bus.close(publisher)
         self._topics = dict(topics)
         self._publishers = {p: bus.advertise(t, self._products[p].type_name) for p, t in self._topics.items()}
+        self._ends = [(p, publisher, self._products[p].needs_reading) for p, publisher in self._publishers.items()]
 
     # ------------------------------------------------------------------ what the simulation calls
 
@@ -221,14 +223,16 @@ class Sensor(abc.ABC):
         self.evolve(self._index, (time_ns - self._time_ns) * 1e-9 if self._time_ns >= 0 else 0.0)
         self._time_ns = time_ns
         sample = self._sample = Sample(self._index, time_ns)
-        wanted = [item for item in self._publishers.items() if item[1].wanted]
-        products = self._products
-        if any(products[product].needs_reading for product, _ in wanted):
+        wanted = [end for end in self._ends if end[1].wanted]
+        needs_reading = False
+        for end in wanted:
+            needs_reading = needs_reading or end[2]
+        if needs_reading:
             data = sim.fresh_acceleration() if self.needs_acceleration else sim.fresh_data()
             sample.raw = self.capture(sim.mj_model, data)
         else:
             sample.held = sim.hold_state()
-        for product, publisher in wanted:
+        for product, publisher, _ in wanted:
             if self.is_deferred:
                 publisher.publish_later(partial(self._message, sample, product))
             else:
