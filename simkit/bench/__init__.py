@@ -14,6 +14,8 @@ from typing import Any
 from simkit import build
 from simkit.bench.bare import Bare, HandWritten, bare_pass, bare_scan
 from simkit.plugins import WorldPlugin
+from simkit.runtime.loop import guarded
+from simkit.runtime.scheduler import Phase
 from simkit.sensors.camera import RenderedSensor
 from simkit.sensors.lidar import Lidar
 
@@ -97,17 +99,19 @@ def measure(
 def _steps(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
     with load() as sim:
         yield stepping(sim, rounds)
-    with load(EveryStep()) as sim:
-        yield _beside_step(sim, rounds, "step, a Python plugin after each", 1.20)
+    plugin = EveryStep()
+    with load(plugin) as sim:
+        _leave_only(sim, None, guarded(sim, plugin, "after_step"), "after")
+        yield _beside_step(sim, rounds, "step, only a Python plugin after each", 1.20)
     with load() as sim:
         imu = next((s for s in sim.sensors.values() if s.kind == "imu" and s.topic), None)
         if imu:
+            _leave_only(sim, imu.update_rate, imu.sample, "sense")
+            latest = sim.bus.subscribe(imu.topic, keep=1)
+            yield _beside_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, looked at later", 1.10)
+            latest.close()
             sim.bus.tap(imu.topic, _ignore)
-            yield _beside_step(sim, rounds, f"step, imu read at {imu.update_rate:g} Hz", 1.10)
-    if imu:
-        with load() as sim:
-            sim.bus.subscribe(imu.topic, keep=1)
-            yield _beside_step(sim, rounds, "step, imu subscribed to, looked at later", 1.10)
+            yield _beside_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, each message made", 1.10)
     with load() as sim:
         yield everything_read(sim, rounds)
 
@@ -141,6 +145,13 @@ def stepping(sim: Any, rounds: int) -> Figure:
     sim.scheduler.clear()
     sim.scheduler.rewind(sim.tick)
     return _beside_step(sim, rounds, "step, nothing due", 1.05)
+
+
+def _leave_only(sim: Any, rate: float | None, task: Callable[[int], None], phase: Phase) -> None:
+    """Nothing but `task` is due in this simulation from now on."""
+    sim.scheduler.clear()
+    sim.scheduler.every(rate, task, phase)
+    sim.scheduler.rewind(sim.tick)
 
 
 def _beside_step(sim: Any, rounds: int, name: str, aim: float) -> Figure:

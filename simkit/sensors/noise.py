@@ -91,6 +91,7 @@ class Noise:
         self._mean, self._stddev = column("mean"), column("stddev")
         self._bias_mean, self._bias_stddev = column("bias_mean"), column("bias_stddev")
         self._precision = column("precision")
+        self._is_quantised = bool(self._precision.any())
         self._wandering = np.array([m.wanders for m in models])
         self._walk_stddev = np.where(self._wandering, column("dynamic_bias_stddev"), 0.0)
         self._walk_time = np.where(self._wandering, column("dynamic_bias_correlation_time"), 1.0)
@@ -100,7 +101,7 @@ class Noise:
         self.restart()
         # what shows in no digit is left out
         self.is_silent = (
-            self._white is None and self._walk is None and not (self._constant.any() or self._precision.any())
+            self._white is None and self._walk is None and not (self._constant.any() or self._is_quantised)
         )
 
     def restart(self) -> None:
@@ -126,7 +127,7 @@ class Noise:
         out: Vector = values + self._constant
         if self._white is not None:
             out += self._stddev * self._white.normal(index)
-        if self._precision.any():
+        if self._is_quantised:
             out = quantise(out, self._precision)
         return out
 
