@@ -195,15 +195,6 @@ class Params:
     def attribute(self, name: str, default: str = "") -> str:
         return self.attributes.get(name, default)
 
-    def attribute_number(self, name: str, default: float) -> float:
-        if name not in self.attributes:
-            return default
-        try:
-            return _number(self.attributes[name], None, None, True)
-        except ValueError:
-            self._bad(f"{name}={self.attributes[name]!r}", "a number", self.where)
-            return default
-
     # ------------------------------------------------------------------ this element's own text
 
     def as_pose(self) -> Pose:

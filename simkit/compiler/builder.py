@@ -229,30 +229,12 @@ class SpecBuilder:
             self._names = None
         return name
 
-    # ------------------------------------------------------------------ sleeping
-
-    def enable_sleep(self) -> None:
-        """Lets resting trees sleep, except those that `never_sleep` names and those that an actuator moves."""
-        self.spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
-        self.spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
-
-    def never_sleep(self, link_scoped: str) -> None:
-        """Keeps the tree that carries a link awake: somebody reads it. Raises KeyError."""
-        link = self.names.link(link_scoped)
-        if link.body_name == WORLD or link.static:
-            return
-        body = self.spec.body(link.body_name)
-        while body.parent.name != WORLD:
-            body = body.parent
-        if body.joints:
-            body.sleep = mujoco.mjtSleepPolicy.mjSLEEP_NEVER
-
     # ------------------------------------------------------------------ out
 
     def compile(self) -> Compiled:
         """The model with its first state. Raises LoadError when MuJoCo refuses it."""
         self._before()
-        if not self._is_compiled and not int(self.spec.option.enableflags) & int(mujoco.mjtEnableBit.mjENBL_SLEEP):
+        if not self._is_compiled:
             choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
         self._is_compiled = True
         with warnings.catch_warnings(record=True) as said:

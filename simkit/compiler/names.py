@@ -193,7 +193,6 @@ class NameMap:
         self.links, self.joints, self.lights = links, joints, lights
         self._owners: dict[int, GeomOwner] = {}
         self._model: mujoco.MjModel | None = None
-        self._link_of_body: dict[int, str] = {}
 
     def link(self, scoped: str) -> LinkBinding:
         """Raises KeyError, which names the closest."""
@@ -231,10 +230,6 @@ class NameMap:
     def geom_owner_link(self, scoped: str) -> str:
         """The link of a collision or visual by its scoped name; empty where there is none."""
         return next((o.link for o in self._owners.values() if o.scoped == scoped), "")
-
-    def link_of_body(self, body_id: int) -> str:
-        """Scoped link of a MuJoCo body; empty for the world."""
-        return self._link_of_body.get(int(body_id), "")
 
     def _id(self, kind: str, name: str) -> int:
         import mujoco
@@ -289,8 +284,6 @@ class NameMap:
         for scoped, link in self.links.items():
             body = number(mujoco.mjtObj.mjOBJ_BODY, link.body_name)
             free = number(mujoco.mjtObj.mjOBJ_JOINT, link.free_joint) if link.free_joint else -1
-            if body > 0:
-                self._link_of_body[body] = scoped
             self.links[scoped] = replace(
                 link,
                 body=body,

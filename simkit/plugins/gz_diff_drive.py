@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_axis_joint
@@ -21,7 +22,6 @@ from simkit.plugins.odometry import (
     rolling_twist,
     transforms,
 )
-from simkit.plugins.ros_names import valid_topic
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

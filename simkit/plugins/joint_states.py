@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit import msgs
+from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_joint
-from simkit.plugins.ros_names import valid_topic
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -63,9 +63,3 @@ class RosNames:
 
     def __deepcopy__(self, memo: dict[int, object]) -> RosNames:
         return self
-
-
-def valid_topic(name: str) -> str:
-    """`name` as an absolute topic the way gz-transport makes one: spaces become `_`, other bad characters go."""
-    kept = re.sub(r"[^A-Za-z0-9_/.:-]|~|@|:=", "", name.replace(" ", "_"))
-    return "/" + kept.strip("/")

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-Rate = Fraction
-
 
 def exact(value: float | int | str | Fraction) -> Fraction:
     """The decimal number as written: 0.001 is 1/1000, not the nearest binary fraction."""

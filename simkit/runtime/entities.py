@@ -15,7 +15,7 @@ from simkit.runtime.light import Light
 from simkit.runtime.link import Link
 from simkit.runtime.model import Model
 from simkit.runtime.parts import Structure
-from simkit.scene import SceneLight, SceneLink, SceneModel, SceneWorld
+from simkit.scene import SceneLink, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -88,10 +88,6 @@ class Entities:
         """A link of the file by scoped name."""
         link: SceneLink = self.find("link", scoped).scene
         return link
-
-    def scene_light(self, name: str) -> SceneLight:
-        light: SceneLight = self.find("light", name).scene
-        return light
 
     def stateful(self) -> list[Any]:
         """Handles with a state of their own."""

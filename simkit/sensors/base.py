@@ -10,8 +10,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.diagnostics import Diagnostics
+from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
-from simkit.sensors.names import absolute_topic, entity_topic, given_frame
+from simkit.sensors.names import entity_topic, given_frame
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -264,7 +265,7 @@ class Sensor(abc.ABC):
 
     def _default_topic(self, suffix: str) -> str:
         """`<topic>` where the file gives it, else Gazebo's."""
-        return absolute_topic(self.scene.topic) if self.scene.topic else self._entity_topic(suffix)
+        return valid_topic(self.scene.topic) if self.scene.topic else self._entity_topic(suffix)
 
     def _entity_topic(self, suffix: str) -> str:
         return entity_topic(self.sim.world.name, self.scene, suffix)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.errors import RenderError
+from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.sensors import camera_info, pictures
 from simkit.sensors.base import Product, Sample, Sensor
@@ -19,7 +20,7 @@ from simkit.sensors.buffers import Spares
 from simkit.sensors.camera_info import CameraInfoMaker
 from simkit.sensors.camera_model import MOST_PIXELS, CameraModel, Distorter, read_camera_model
 from simkit.sensors.image_noise import ImageNoise
-from simkit.sensors.names import absolute_topic, sibling_topic
+from simkit.sensors.names import sibling_topic
 from simkit.sensors.noise import NoiseModel, read_noise
 from simkit.sensors.renderer import View, free_renderer, metres, renderer_of
 
@@ -156,7 +157,7 @@ class RenderedSensor(Sensor):
         self._spare_colours, self._spare_depths = Spares((*size, 3), np.uint8), Spares(size, np.float32)
         super().attach(sim)
         if options.triggered:
-            self.trigger_on(absolute_topic(options.trigger_topic) if options.trigger_topic else self.topic + "/trigger")
+            self.trigger_on(valid_topic(options.trigger_topic) if options.trigger_topic else self.topic + "/trigger")
 
     def _aimed(self) -> View:
         """The frustum; found out at the first picture, since a lens takes a while."""
@@ -297,7 +298,7 @@ class RenderedSensor(Sensor):
 
     def _info_topic(self, beside: str) -> str:
         given = self.options.info_topic
-        return absolute_topic(given) if given else sibling_topic(beside, "camera_info")
+        return valid_topic(given) if given else sibling_topic(beside, "camera_info")
 
 
 class Camera(RenderedSensor):

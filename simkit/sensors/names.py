@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
+from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.scene import SceneSensor
-
-
-def absolute_topic(name: str) -> str:
-    """`name` as an absolute topic the way gz-transport makes one: spaces become `_`, other bad characters go."""
-    kept = re.sub(r"[^A-Za-z0-9_/.:-]|:=", "", name.replace(" ", "_"))
-    return "/" + kept.strip("/")
 
 
 def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
@@ -21,7 +14,7 @@ def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
     for model in models:
         parts += ["model", model]
     parts += ["joint" if sensor.on_joint else "link", owner, "sensor", sensor.name]
-    return absolute_topic("/".join([*parts, suffix] if suffix else parts))
+    return valid_topic("/".join([*parts, suffix] if suffix else parts))
 
 
 def sibling_topic(topic: str, name: str) -> str:

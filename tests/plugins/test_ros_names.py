@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.ros_names import RosNames, valid_topic
+from simkit.plugins.ros_names import RosNames
 
 
 def names(node: str = "driver", **ros: object) -> RosNames:

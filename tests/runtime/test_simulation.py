@@ -66,6 +66,41 @@ def test_a_state_that_is_set_is_read_back_without_a_step():
         np.testing.assert_allclose(sim.link("m::arm").pose.rpy, [0, math.pi / 2, 0], atol=1e-9)
 
 
+def test_several_joints_are_put_at_positions_at_once():
+    with load(SWING) as sim:
+        sim.model("m").set_joint_positions({"hinge": 0.3})
+        assert sim.joint("m::hinge").position == pytest.approx(0.3)
+
+
+def test_a_twist_given_to_a_model_is_that_of_its_origin_in_the_world():
+    with load(BALL.format(extra="")) as sim:
+        sim.model("ball").set_pose(simkit.Pose.from_rpy(0, 0, 5, 0.4, -0.2, 1.0))
+        sim.model("ball").set_velocity((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
+        np.testing.assert_allclose(sim.link("ball::l").linear_velocity, [1, 2, 3], atol=1e-12)
+        np.testing.assert_allclose(sim.link("ball::l").angular_velocity, [0.1, 0.2, 0.3], atol=1e-12)
+
+
+class Accelerometer(simkit.WorldPlugin):
+    """Keeps what it reads after every step."""
+
+    def load(self, parent, params):
+        self.link, self.read = parent.link("m::arm"), []
+
+    def after_step(self):
+        self.read.append(self.link.linear_acceleration)
+
+
+def test_a_hook_of_every_step_never_sees_a_bad_number():
+    plugin = Accelerometer()
+    with load(SWING, plugins=[plugin]) as sim:
+        sim.step(5)
+        sim.mj_data.qvel[:] = np.nan
+        with pytest.raises(simkit.SimulationDiverged):
+            sim.step(50)
+        assert len(plugin.read) == 5
+        assert np.isfinite(plugin.read).all()
+
+
 def test_an_effort_is_clipped_and_lasts_one_step():
     with load(SWING) as sim:
         hinge = sim.joint("m::hinge")
