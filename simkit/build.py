@@ -61,9 +61,11 @@ def load(
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths])
     scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides)
-    diagnostics.raise_if_errors()
     world = scene.world
     allowed = [Path(p) for p in plugin_paths]
+    if diagnostics.has_errors:
+        _look_further(world, diagnostics, allowed)
+    diagnostics.raise_if_errors()
     builder = SpecBuilder(world, diagnostics)
     parts: dict[str, Any] = {}
     for model in world.models:
@@ -142,6 +144,21 @@ def _scene(
         diagnostics.raise_if_errors()
         scene = apply_overrides(scene, overrides)
     return scene
+
+
+def _look_further(world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
+    """What the sensors and plugin names of a file with errors have to say, so that all of it comes in one pass."""
+    from simkit.plugins import find_plugin
+
+    for plugin in world.plugins:
+        find_plugin(plugin, plugin_paths, diagnostics, "world")
+    for model in world.models:
+        for scene in model.all_sensors():
+            _sensor(scene, diagnostics)
+            for plugin in scene.plugins:
+                find_plugin(plugin, plugin_paths, diagnostics, "sensor")
+        for plugin in (plugin for nested in model.all_models() for plugin in nested.plugins):
+            find_plugin(plugin, plugin_paths, diagnostics, "model")
 
 
 def _model_to_spawn(
