@@ -44,6 +44,7 @@ class Params:
         self.children = list(children)
         self.diagnostics = diagnostics if diagnostics is not None else Diagnostics()
         self._asked: set[str] = set()
+        self._attributes_asked: set[str] = set()
         self._read = False
 
     @classmethod
@@ -109,6 +110,16 @@ class Params:
         """Names of children that a reader has asked for, present or not."""
         return set(self._asked)
 
+    @property
+    def attributes_asked(self) -> set[str]:
+        """Names of attributes that a reader has asked for, present or not."""
+        return set(self._attributes_asked)
+
+    def copied(self) -> Params:
+        """The same tree, unread, that can be changed without changing this one."""
+        same = [c.copied() for c in self.children]
+        return Params(self.name, self.value, self.attributes, same, self.where, self.diagnostics)
+
     def mark_all_read(self) -> None:
         """Says that this whole block is understood elsewhere."""
         self._read = True
@@ -142,12 +153,13 @@ class Params:
         minimum: int | None = None,
         maximum: int | None = None,
     ) -> int:
-        """A whole number (a text such as `360.0` is taken too)."""
+        """A whole number; `360.0` is taken too, and of 666.5 the whole part with a warning, as Gazebo takes it."""
 
         def parse(p: Params) -> int:
             number = _number(p.value, minimum, maximum, True)
             if number != int(number):
-                raise ValueError
+                message = f"<{name}>{p.value}</{name}> is not a whole number, {int(number)} is used"
+                p.diagnostics.warning("SK-PARAM-005", message, p.where)
             return int(number)
 
         return self._value(name, default, 0, required, parse, "a whole number" + _range_text(minimum, maximum))
@@ -193,6 +205,7 @@ class Params:
     # ------------------------------------------------------------------ attributes
 
     def attribute(self, name: str, default: str = "") -> str:
+        self._attributes_asked.add(name)
         return self.attributes.get(name, default)
 
     # ------------------------------------------------------------------ this element's own text
@@ -202,15 +215,17 @@ class Params:
         numbers = [_number(v, -_FARTHEST, _FARTHEST, True) for v in self.value.split()]
         if not numbers:
             return IDENTITY
-        if self.attributes.get("rotation_format") == "quat_xyzw":
-            if len(numbers) != 7:
+        degrees = _boolean(self.attribute("degrees", "false"))
+        form = self.attribute("rotation_format", "euler_rpy") or "euler_rpy"
+        if form == "quat_xyzw":
+            if len(numbers) != 7 or degrees:
                 raise ValueError
             x, y, z, qx, qy, qz, qw = numbers
             return Pose((x, y, z), (qw, qx, qy, qz))
-        if len(numbers) != 6:
+        if len(numbers) != 6 or form != "euler_rpy":
             raise ValueError
         angles = numbers[3:]
-        if self.attributes.get("degrees", "false") in _TRUE:
+        if degrees:
             angles = [math.radians(a) for a in angles]
         return Pose.from_rpy(*numbers[:3], *angles)
 
@@ -255,7 +270,8 @@ class Params:
         return did_you_mean(name, [c.name for c in self.children])
 
     def _bad(self, found: str, allowed: str, where: Where) -> None:
-        self.diagnostics.error("SK-PARAM-002", f"found {found}, allowed is {allowed}", where)
+        shown = found if len(found) <= 200 else found[:200] + "..."
+        self.diagnostics.error("SK-PARAM-002", f"found {shown}, allowed is {allowed}", where)
 
 
 def _range_text(minimum: float | None, maximum: float | None) -> str:
@@ -268,7 +284,7 @@ def _range_text(minimum: float | None, maximum: float | None) -> str:
 
 def _number(text: str, minimum: float | None, maximum: float | None, finite: bool) -> float:
     value = float(text)
-    if "_" in text or math.isnan(value) or (finite and math.isinf(value)):
+    if "_" in text or not text.isascii() or math.isnan(value) or (finite and math.isinf(value)):
         raise ValueError(text)
     if (minimum is not None and value < minimum) or (maximum is not None and value > maximum):
         raise ValueError(text)

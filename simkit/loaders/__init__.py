@@ -8,14 +8,17 @@ from functools import lru_cache
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.loaders.base import Loader, LoadRequest
+from simkit.loaders.base import Loader, LoadRequest, MeshReader
+from simkit.loaders.foreign import ALLOWED, said_of_root
 from simkit.loaders.resolver import Resolver
+from simkit.loaders.turtlebot3 import chosen_name
+from simkit.loaders.xacro import expand, needs_expansion
 from simkit.loaders.xml import Document, parse_file, parse_text
 from simkit.pose import Pose
 from simkit.registry import discover
 from simkit.scene import Scene
 
-__all__ = ["Document", "LoadRequest", "Loader", "Resolver", "load_scene", "loader_kinds"]
+__all__ = ["Document", "LoadRequest", "Loader", "Resolver", "find_document", "load_scene", "loader_kinds"]
 
 
 @lru_cache(maxsize=1)
@@ -33,6 +36,8 @@ def load_scene(
     base: str = "auto",
     name: str | None = None,
     pose: Pose | None = None,
+    as_model: bool = False,
+    mesh_reader: MeshReader | None = None,
 ) -> Scene:
     """Reads a file, or XML text, into a scene.
 
@@ -44,22 +49,37 @@ def load_scene(
         base: "auto", "fixed" or "floating", for a bare model.
         name: replaces the name of a bare model.
         pose: replaces the pose of a bare model [m], in the world.
+        as_model: one model is wanted, where a file could be a world as well.
+        mesh_reader: gives the triangles of a mesh, for automatic inertia; without it meshes have no volume.
 
     Returns:
         What could be read; an empty scene when nothing could.
     """
-    document = _document(source, resolver, diagnostics)
+    document, _ = find_document(source, resolver, diagnostics, xacro_args)
     if document is None:
         return Scene()
     root = document.root
     kinds = loader_kinds()
     if root.name not in kinds:
         known = ", ".join(f"<{kind}>" for kind in kinds)
-        hint = did_you_mean(root.name, kinds) or "a world or model file begins with <sdf version='...'>"
+        hint = said_of_root(root.name) or did_you_mean(root.name, kinds) or ALLOWED
         diagnostics.error("SK-LOAD-003", f"the root element is <{root.name}>, known are {known}", root.where, hint)
         return Scene()
-    request = LoadRequest(resolver, diagnostics, dict(xacro_args or {}), base, name, pose)
+    request = LoadRequest(resolver, diagnostics, dict(xacro_args or {}), base, name, pose, as_model, mesh_reader)
     return kinds[root.name]().load(document, request)
+
+
+def find_document(
+    source: str | os.PathLike[str],
+    resolver: Resolver,
+    diagnostics: Diagnostics,
+    xacro_args: Mapping[str, str] | None = None,
+) -> tuple[Document | None, bool]:
+    """The parsed file that a source means, and whether it was expanded from xacro; None with an error recorded."""
+    document = _document(source, resolver, diagnostics)
+    if document is None or not needs_expansion(document):
+        return document, False
+    return expand(document, resolver.around(document.folder), dict(xacro_args or {}), diagnostics), True
 
 
 def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: Diagnostics) -> Document | None:
@@ -74,7 +94,10 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         model = resolver.model_file(path, Where(str(path)), diagnostics)
         return None if model is None else parse_file(model, diagnostics)
     if not path.exists():
-        bundled = resolver.find_world(str(source)) or resolver.find_model(str(source))
+        name = chosen_name(str(source), diagnostics)
+        if name is None:
+            return None
+        bundled = resolver.find_world(name) or resolver.find_model(name)
         if bundled is None:
             near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
             near += resolver.bundled_names()

@@ -3,15 +3,28 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar, Protocol
 
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.resolver import Resolver
 from simkit.loaders.xml import Document
 from simkit.pose import Pose
-from simkit.scene import Scene
+from simkit.scene import Mesh, Scene
+
+
+class Triangles(Protocol):
+    """A part of a mesh in metres: vertices of shape (n, 3) and the three vertex indices of each face."""
+
+    @property
+    def vertices(self) -> Any: ...
+
+    @property
+    def faces(self) -> Any: ...
+
+
+MeshReader = Callable[[Mesh, Diagnostics, Where], Sequence[Triangles]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +34,8 @@ class LoadRequest:
     Attributes:
         base: "auto", "fixed" or "floating", for a bare model.
         name, pose: replace those of a bare model.
+        as_model: one model is wanted, where a file could be a world as well.
+        mesh_reader: gives the triangles of a mesh, for automatic inertia; without it meshes have no volume.
     """
 
     resolver: Resolver
@@ -29,6 +44,8 @@ class LoadRequest:
     base: str = "auto"
     name: str | None = None
     pose: Pose | None = None
+    as_model: bool = False
+    mesh_reader: MeshReader | None = None
 
 
 class Loader(abc.ABC):

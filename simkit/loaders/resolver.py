@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from pathlib import Path
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.loaders.packages import package_of, package_places
+from simkit.loaders.uris import escapes, first_of, is_elsewhere, is_there, listed, normal, without_find
 from simkit.params import Params
 
 _SEARCH_VARIABLES = (
@@ -32,6 +34,7 @@ class Resolver:
         base: the folder of the file being loaded; searched last.
         missing_meshes: whether a mesh that is not found is only a warning (to inspect a file without its meshes).
         anywhere: lets absolute paths and `..` leave the folders named above.
+        package_paths: the folder of each ROS package that the caller knows; they come before every other place.
     """
 
     def __init__(
@@ -41,13 +44,18 @@ class Resolver:
         base: Path | None = None,
         missing_meshes: bool = False,
         anywhere: bool = False,
+        package_paths: Mapping[str, str | os.PathLike[str]] | None = None,
     ) -> None:
         self.base, self.missing_meshes, self.anywhere = base, missing_meshes, anywhere
+        self.packages = {name: normal(Path(p).expanduser()) for name, p in (package_paths or {}).items()}
+        self._found: dict[str, Path] = {}
+        self._below: dict[Path, dict[str, Path]] = {}
+        self._near: dict[tuple[str, Path], tuple[Path, ...]] = {}
         found = [Path(p).expanduser() for p in paths]
         for variable in _SEARCH_VARIABLES:
             found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
         found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-        self.paths: tuple[Path, ...] = tuple(dict.fromkeys(_normal(p) for p in found))
+        self.paths: tuple[Path, ...] = tuple(dict.fromkeys(normal(p) for p in found))
 
     def around(self, folder: Path | None) -> Resolver:
         """The same, with the folder of the file being loaded where none was given."""
@@ -70,10 +78,14 @@ class Resolver:
         """
         found, places = self.search(uri, relative_to)
         if found is not None:
+            if is_elsewhere(uri, found):
+                message = f"{uri} is not here under that name; {found} is used"
+                diagnostics.note("SK-URI-010", message, where)
             return found
+        uri = without_find(uri)
         scheme, _, rest = uri.partition("://")
         if uri.startswith(("http://", "https://")):
-            looked = _listed(places)
+            looked = listed(places)
             diagnostics.error(
                 "SK-URI-002",
                 f"{uri} is not on this machine and nothing is downloaded{looked}",
@@ -90,15 +102,49 @@ class Resolver:
                 did_you_mean(scheme, ("model", "package", "file", "https")),
             )
         else:
-            name = rest.split("/")[0]
-            near = did_you_mean(name, self._siblings(relative_to)) if scheme in ("model", "package") else ""
-            diagnostics.error("SK-URI-001", f"{uri} is not found{_listed(places)}", where, near or _PATH_HINT)
+            self._not_found(uri, scheme, rest.split("/")[0], places, where, diagnostics, relative_to)
         return None
+
+    def _not_found(
+        self,
+        uri: str,
+        scheme: str,
+        name: str,
+        places: list[Path] | None,
+        where: Where,
+        diagnostics: Diagnostics,
+        relative_to: Path | None,
+    ) -> None:
+        near = did_you_mean(name, self._siblings(relative_to)) if scheme in ("model", "package") else ""
+        if scheme == "package":
+            folder, tried = self.find_package(name, relative_to)
+            if folder is None:
+                message = f"{uri}: the package {name!r} is not found{listed(tried)}"
+                hint = f"name its folder: --package-path {name}=DIR"
+                diagnostics.error("SK-URI-009", message, where, f"{near} or {hint}" if near else hint)
+                return
+        diagnostics.error("SK-URI-001", f"{uri} is not found{listed(places)}", where, near or _PATH_HINT)
+
+    def find_package(self, name: str, relative_to: Path | None) -> tuple[Path | None, list[Path]]:
+        """The folder of a ROS package, and every place looked in; what is found may be read from then on."""
+        if not _bare(name):
+            return None, []
+        around = [normal(f) for f in (relative_to, self.base) if f is not None]
+        tried = list(package_places(name, self.packages, around, self.paths, self._below, self._near))
+        for bundle in bundled_folders("assets"):
+            tried += [bundle / name, *sorted(bundle.glob(f"*/{name}"))]
+        folder, unique = first_of([t for t in tried if t.is_dir()] or tried)
+        if folder is not None:
+            self._found[name] = folder
+        return folder, unique
 
     def search(self, uri: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
         """What `resolve` finds, and every place looked in (None where the URI leaves its folders)."""
+        if len(uri) > 4096 or "\0" in uri or any(len(part.encode(errors="replace")) > 255 for part in uri.split("/")):
+            return None, []  # no file has such a name
         if uri.startswith(("http://", "https://")):
-            return _first(list(self._fuel(uri)))
+            return first_of(list(self._fuel(uri)))
+        uri = without_find(uri)
         scheme, separator, rest = uri.partition("://")
         if not separator:
             return self._path(unquote(uri) if not self._exists(uri, relative_to) else uri, relative_to)
@@ -107,12 +153,15 @@ class Resolver:
             return self._path(rest, relative_to)
         if scheme not in ("model", "package"):
             return None, []
-        if _escapes(rest):
+        if escapes(rest):
             return None, None
-        return _first(list(self._named(rest, relative_to)))
+        named = self._named(rest, relative_to)
+        if scheme == "model":
+            return first_of([*named, *self._packaged(rest, relative_to)])
+        return first_of([*self._packaged(rest, relative_to), *named, *self._renamed(rest, relative_to)])
 
     def _exists(self, text: str, relative_to: Path | None) -> bool:
-        return relative_to is not None and (relative_to / text).exists()
+        return relative_to is not None and is_there(relative_to / text)
 
     def _named(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
         """Candidates for `model://name/...`: in each folder, and a folder that itself has that name."""
@@ -125,7 +174,7 @@ class Resolver:
         for folder in (relative_to, self.base):
             if folder is None:
                 continue
-            folder = _normal(folder)
+            folder = normal(folder)
             for ancestor in (folder, *folder.parents[:3]):
                 if ancestor.name == name:
                     yield ancestor / inside
@@ -134,22 +183,58 @@ class Resolver:
             yield bundle / name / inside
             yield from sorted(bundle.glob(f"*/{name}/")) if not inside and name.replace("_", "").isalnum() else ()
 
+    def _packaged(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+        """Candidates for `package://name/...` in the package of that name."""
+        name, _, inside = rest.strip("/").partition("/")
+        around = [normal(f) for f in (relative_to, self.base) if f is not None]
+        for place in package_places(name, self.packages, around, self.paths, self._below, self._near):
+            yield place / inside
+
+    def _renamed(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+        """`package://name/a/b` below the folders above the file: a checkout whose folder has another name."""
+        inside = rest.strip("/").partition("/")[2]
+        if relative_to is None or "/" not in inside or package_of(normal(relative_to)) is not None:
+            return  # a file that lies in a package has its name from there
+        folder = normal(relative_to)
+        for ancestor in (folder, *folder.parents[:2]):
+            if len(ancestor.parts) > 3 and ancestor != Path.home():
+                yield ancestor / inside
+
+    def _moved(self, path: Path, relative_to: Path | None) -> Path | None:
+        """An absolute path of another machine: its end below a package that is here."""
+        parts = path.parts
+        for position in range(len(parts) - 2, 0, -1):
+            name = parts[position]
+            if name not in ("share", "src", "install", "home", "opt", "meshes", "models"):
+                folder, _ = self.find_package(name, relative_to)
+                if folder is not None and folder.joinpath(*parts[position + 1 :]).is_file():
+                    return folder.joinpath(*parts[position + 1 :])
+        return None
+
     def _path(self, text: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
-        """A plain path: absolute, or relative to the file's folder, then to each resource folder."""
+        """A plain path: absolute, or relative to the file's folder, then to each resource folder.
+
+        An absolute one that is not here, as `$(find pkg)` leaves them on another machine, is looked for in its package.
+        """
         folders = [f for f in (relative_to, self.base) if f is not None] or [Path.cwd()]
         roots = [*folders, *self.paths]
         if Path(text).is_absolute():
-            candidates = [_normal(Path(text))]
+            candidates = [normal(Path(text))]
         else:
-            candidates = list(dict.fromkeys(_normal(root / text) for root in roots))
+            candidates = list(dict.fromkeys(normal(root / text) for root in roots))
         if not self.anywhere:
-            limits = [_normal(r) for r in (*roots, *bundled_folders("assets"))]
-            limits += [package for f in folders if (package := _package_of(_normal(f))) is not None]
+            limits = [normal(r) for r in (*roots, *bundled_folders("assets"))]
+            limits += [package for f in folders if (package := package_of(normal(f))) is not None]
+            limits += [*self.packages.values(), *self._found.values()]
             kept = [c for c in candidates if any(c == limit or limit in c.parents for limit in limits)]
+            if not any(is_there(c) for c in kept) and Path(text).is_absolute() and ".." not in Path(text).parts:
+                moved = self._moved(Path(text), relative_to)
+                if moved is not None:
+                    return moved, [moved]
             if candidates and not kept:
                 return None, None
             candidates = kept
-        return _first(candidates)
+        return first_of(candidates)
 
     def _fuel(self, uri: str) -> Iterator[Path]:
         """Candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""
@@ -192,14 +277,14 @@ class Resolver:
                 return None
             listed = _listed_files(document.root)
             for _, name in sorted(listed, key=lambda item: item[0], reverse=True):
-                if (folder / name).is_file() and not _escapes(name):
+                if (folder / name).is_file() and not escapes(name):
                     return folder / name
             names = ", ".join(name for _, name in listed) or "none"
             if (folder / "model.sdf").is_file():
                 return folder / "model.sdf"
             diagnostics.error("SK-URI-005", f"{manifest} lists no SDF file that exists (listed: {names})", where)
             return None
-        for name in ("model.sdf", f"{folder.name}.sdf"):
+        for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
             if (folder / name).is_file():
                 return folder / name
         diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf", where)
@@ -215,7 +300,9 @@ class Resolver:
                 if found is not None:
                     return found
             for suffix in ("sdf", "urdf", "xacro"):
-                for file in (bundle / f"{name}.{suffix}", *sorted(bundle.glob(f"*/{name}.{suffix}"))):
+                spelt = name if name.endswith(f".{suffix}") else f"{name}.{suffix}"
+                below = [file for pattern in ("*", "*/urdf") for file in sorted(bundle.glob(f"{pattern}/{spelt}"))]
+                for file in (bundle / spelt, *below):
                     if file.is_file():
                         return file
         return None
@@ -257,49 +344,14 @@ def _listed_files(root: Params) -> list[tuple[tuple[int, int], str]]:
         version = sdf_version(element.attribute("version", "1.0")) or (1, 0)
         if version <= NEWEST_SDF and element.value:
             found.append((version, element.value))
-    return found
+    return found + [((0, 0), element.value) for element in root.all("urdf") if element.value]
 
 
 def _bare(name: str) -> bool:
-    return bool(name) and not set(name) & set("/\\*?[]<>:") and not name.startswith(".")
-
-
-def _normal(path: Path) -> Path:
-    """Absolute, without `..`; links stay, because a workspace of links is a folder that the user chose."""
-    return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
-
-
-def _escapes(rest: str) -> bool:
-    depth = 0
-    for part in rest.split("/")[1:]:
-        depth += {"..": -1, ".": 0, "": 0}.get(part, 1)
-        if depth < 0:
-            return True
-    return rest.split("/")[0] in ("..", ".")
-
-
-def _package_of(folder: Path) -> Path | None:
-    """The package that a file lies in: the nearest folder upwards with a `package.xml`."""
-    for ancestor in (folder, *folder.parents[:4]):
-        if (ancestor / "package.xml").is_file():
-            return ancestor
-    return None
+    return 0 < len(name) < 200 and not set(name) & set("/\\*?[]<>:") and not name.startswith(".")
 
 
 def _fuel_caches() -> list[Path]:
     named = [Path(p) for v in _CACHE_VARIABLES for p in os.environ.get(v, "").split(os.pathsep) if p]
     home = Path.home()
     return [*named, home / ".gz" / "fuel", home / ".ignition" / "fuel"]
-
-
-def _first(candidates: list[Path]) -> tuple[Path | None, list[Path]]:
-    unique = list(dict.fromkeys(candidates))
-    return next((c for c in unique if c.exists()), None), unique
-
-
-def _listed(places: list[Path] | None) -> str:
-    if not places:
-        return ""
-    shown = [str(p) for p in places[:8]]
-    more = f" and {len(places) - 8} more" if len(places) > 8 else ""
-    return "; looked in " + ", ".join(shown) + more

@@ -6,7 +6,7 @@ import os
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 
-MODELS = ("waffle",)
+MODELS = ("burger", "waffle", "waffle_pi")
 _URI = "model://turtlebot3"
 _DEFAULT = "waffle"
 
@@ -27,3 +27,11 @@ def chosen_robot(uri: str, where: Where, diagnostics: Diagnostics) -> str | None
         diagnostics.error("SK-URI-007", message, where, did_you_mean(name, MODELS) or "unset it")
         return None
     return f"{_URI}_{name}"
+
+
+def chosen_name(name: str, diagnostics: Diagnostics) -> str | None:
+    """The bare name of a bundled model, with `turtlebot3` made the robot that `TURTLEBOT3_MODEL` names."""
+    if name != "turtlebot3":
+        return name
+    uri = chosen_robot(_URI, Where(name), diagnostics)
+    return None if uri is None else uri.removeprefix("model://")

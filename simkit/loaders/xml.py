@@ -11,6 +11,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders.foreign import is_foreign
 from simkit.params import Params
 
 MAX_BYTES = 256 * 1024 * 1024
@@ -177,6 +178,8 @@ def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
             return None
     except OSError as error:
         diagnostics.error("SK-LOAD-002", f"cannot read the file: {error.strerror or error}", Where(str(path)))
+        return None
+    if is_foreign(text, Where(str(path)), diagnostics):
         return None
     root = parse_text(text, diagnostics, str(path))
     return None if root is None else Document(root, path, text)

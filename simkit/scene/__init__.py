@@ -3,6 +3,7 @@
 Every pose is resolved, every default of the format is filled in, every list is a list.
 """
 
+from simkit.scene.actuation import Calibration, Safety, Transmission, TransmissionEnd
 from simkit.scene.geometry import (
     Box,
     Capsule,
@@ -33,11 +34,25 @@ from simkit.scene.model import (
     SceneVisual,
     Surface,
 )
-from simkit.scene.world import Physics, Scene, SceneWorld, SphericalCoordinates, Surroundings
+from simkit.scene.world import (
+    Animation,
+    Atmosphere,
+    Physics,
+    Scene,
+    SceneActor,
+    SceneWorld,
+    SphericalCoordinates,
+    Surroundings,
+    Trajectory,
+    Waypoint,
+)
 
 __all__ = [
+    "Animation",
+    "Atmosphere",
     "Axis",
     "Box",
+    "Calibration",
     "Capsule",
     "Cone",
     "Cylinder",
@@ -52,7 +67,9 @@ __all__ = [
     "Physics",
     "Plane",
     "Polyline",
+    "Safety",
     "Scene",
+    "SceneActor",
     "SceneCollision",
     "SceneFrame",
     "SceneJoint",
@@ -67,4 +84,8 @@ __all__ = [
     "SphericalCoordinates",
     "Surface",
     "Surroundings",
+    "Trajectory",
+    "Transmission",
+    "TransmissionEnd",
+    "Waypoint",
 ]

@@ -63,6 +63,9 @@ class Mesh:
         submesh: name of the one sub-mesh to use, or empty for all.
         center: whether that sub-mesh is moved to the origin.
         missing: the file is not there (only where the caller asked to read on without it).
+        optimization: what a collision that is not convex becomes: "" (the compiler's choice), "convex_hull" or
+            "convex_decomposition".
+        max_hulls: pieces of a convex decomposition.
     """
 
     file: Path
@@ -71,10 +74,21 @@ class Mesh:
     submesh: str = ""
     center: bool = False
     missing: bool = False
+    optimization: str = ""
+    max_hulls: int = 16
 
 
 @dataclass(frozen=True, slots=True)
 class Heightmap:
+    """Heights from the grey values of an image: black at z = 0, white at z = `size[2]`, centred in x and y.
+
+    Attributes:
+        file: absolute path.
+        uri: as written in the file.
+        size: extent in x and y, and the height of white [m].
+        position: of its centre, in the shape's frame [m].
+    """
+
     file: Path
     uri: str
     size: Vec3 = (1.0, 1.0, 1.0)

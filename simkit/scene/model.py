@@ -9,7 +9,9 @@ from pathlib import Path
 from simkit.diagnostics import NOWHERE, Where
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
+from simkit.scene.actuation import Calibration, Safety, Transmission
 from simkit.scene.geometry import Geometry, Vec3
+from simkit.scene.mjcf import MjcfSource
 
 Colour = tuple[float, float, float, float]
 
@@ -38,6 +40,9 @@ class Surface:
         mu, mu2: sliding friction along and across `fdir1`.
         torsional: torsional friction coefficient; None where not given.
         kp, kd: contact stiffness [N/m] and damping [N·s/m].
+        patch_radius, surface_radius: of the torsional model [m]; the patch counts where `use_patch_radius`.
+        torsional_slip: slip of the torsional friction, for engines that have it.
+        rolling: coefficient of rolling friction (Bullet's); None where not given.
     """
 
     mu: float = 1.0
@@ -58,11 +63,23 @@ class Surface:
     category_bitmask: int = 0xFFFF
     collide_without_contact: bool = False
     where: Where = NOWHERE
+    patch_radius: float = 0.0
+    surface_radius: float = 0.0
+    use_patch_radius: bool = True
+    torsional_slip: float = 0.0
+    rolling: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """How a visual looks; colours RGBA from 0 to 1."""
+    """How a visual looks; colours RGBA from 0 to 1.
+
+    Attributes:
+        texture: the picture it wears; it counts times `diffuse`.
+        script: name of the material script, or empty.
+        roughness: of a physically based material, from 0 (mirror) to 1; None where not given.
+        double_sided: whether faces are seen from behind as well.
+    """
 
     ambient: Colour = (1.0, 1.0, 1.0, 1.0)
     diffuse: Colour = (1.0, 1.0, 1.0, 1.0)
@@ -70,6 +87,8 @@ class Material:
     emissive: Colour = (0.0, 0.0, 0.0, 1.0)
     texture: Path | None = None
     script: str = ""
+    roughness: float | None = None
+    double_sided: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +158,13 @@ class SceneSensor:
 
 @dataclass(frozen=True, slots=True)
 class SceneLink:
+    """A rigid body.
+
+    Attributes:
+        velocity_decay: part of the linear and of the angular velocity that is lost at every step; 0 loses nothing.
+        enable_wind: whether the wind of the world pushes it.
+    """
+
     name: str
     scoped: str
     pose_world: Pose
@@ -152,6 +178,8 @@ class SceneLink:
     lights: tuple[SceneLight, ...] = ()
     plugins: tuple[ScenePlugin, ...] = ()
     where: Where = NOWHERE
+    velocity_decay: tuple[float, float] = (0.0, 0.0)
+    enable_wind: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,6 +200,8 @@ class Axis:
     Attributes:
         xyz_world: unit axis in the world at load time.
         xyz_joint: unit axis in the joint frame.
+        limit_stiffness, limit_dissipation: of the stop at a position limit [N·m/rad, N·m·s/rad, or per metre];
+            None where the file says nothing.
     """
 
     xyz_world: Vec3
@@ -185,6 +215,8 @@ class Axis:
     stiffness: float = 0.0
     spring_ref: float = 0.0
     mimic: Mimic | None = None
+    limit_stiffness: float | None = None
+    limit_dissipation: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +228,8 @@ class SceneJoint:
         parent_link, child_link: scoped link names; the parent may be `world`.
         thread_pitch: screw: metres per turn (gz convention of the file already applied).
         gearbox_ratio, gearbox_reference: gearbox only; the reference is a scoped link name.
+        axes: planar: along x and y of its plane, then the turn about its normal.
+        safety, calibration: of a URDF joint, for controllers.
     """
 
     name: str
@@ -211,6 +245,8 @@ class SceneJoint:
     sensors: tuple[SceneSensor, ...] = ()
     plugins: tuple[ScenePlugin, ...] = ()
     where: Where = NOWHERE
+    safety: Safety | None = None
+    calibration: Calibration | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,6 +266,10 @@ class SceneModel:
         canonical_link: scoped name of the link whose motion is the model's; empty where there is none.
         declared_static: what the model's own element (or its include) says; `static` also follows the outer model.
         base: "auto" (floating unless joined to the world), "fixed" or "floating".
+        allow_auto_disable: whether it may sleep while it rests.
+        transmissions: of a URDF robot.
+        controls: `<ros2_control>` elements as they stand in the file, for a plugin that reads them.
+        mjcf: the engine's own description of the model, which is then what is simulated.
     """
 
     name: str
@@ -246,6 +286,10 @@ class SceneModel:
     models: tuple[SceneModel, ...] = ()
     plugins: tuple[ScenePlugin, ...] = ()
     where: Where = NOWHERE
+    allow_auto_disable: bool = True
+    transmissions: tuple[Transmission, ...] = ()
+    controls: tuple[Params, ...] = ()
+    mjcf: MjcfSource | None = None
 
     def all_models(self) -> list[SceneModel]:
         """This model and all nested ones, outermost first, in document order."""

@@ -2,30 +2,115 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
 
 from simkit.diagnostics import NOWHERE, Where
+from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3
 from simkit.scene.model import Colour, SceneFrame, SceneJoint, SceneLight, SceneModel, ScenePlugin
 
 
 @dataclass(frozen=True, slots=True)
 class Physics:
-    """Step [s] and the wanted real-time factor (0: as fast as it goes)."""
+    """Step [s] and the wanted real-time factor (0: as fast as it goes).
+
+    Attributes:
+        max_contacts: of one pair of collisions; 20 where the file says nothing.
+        sleep: whether what rests may be left out of the physics until something reaches it.
+    """
 
     max_step_size: float = 0.001
     real_time_factor: float = 1.0
     where: Where = NOWHERE
+    max_contacts: int = 20
+    sleep: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class SphericalCoordinates:
-    """Where on Earth the world's origin lies; angles rad, elevation m."""
+    """Where on Earth (or the Moon, or an ellipsoid of its own) the world's origin lies; angles rad, elevation m.
+
+    Attributes:
+        heading: from east to the world's x axis, counter-clockwise.
+        surface: EARTH_WGS84, MOON_SCS or CUSTOM_SURFACE.
+        equatorial, polar: semi-axes of that surface [m].
+    """
 
     latitude: float = 0.0
     longitude: float = 0.0
     elevation: float = 0.0
     heading: float = 0.0
+    where: Where = NOWHERE
+    surface: str = "EARTH_WGS84"
+    equatorial: float = 6378137.0
+    polar: float = 6356752.314245
+
+
+@dataclass(frozen=True, slots=True)
+class Atmosphere:
+    """The air at the height of the origin, with a constant lapse rate.
+
+    Attributes:
+        temperature: [K].
+        temperature_gradient: [K/m].
+        pressure: [Pa].
+    """
+
+    temperature: float = 288.15
+    temperature_gradient: float = -0.0065
+    pressure: float = 101325.0
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoint:
+    """Where an actor is at a time [s] of its script."""
+
+    time: float
+    pose: Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Trajectory:
+    """A way of an actor; `type` names the animation that plays meanwhile, `tension` is that of the spline (0 to 1)."""
+
+    id: int
+    type: str
+    waypoints: tuple[Waypoint, ...] = ()
+    tension: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Animation:
+    """A skeleton animation of an actor."""
+
+    name: str
+    uri: str
+    scale: float = 1.0
+    interpolate_x: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SceneActor:
+    """A person or animal that follows a script; it is not moved yet.
+
+    Attributes:
+        skin: URI of the mesh; empty where there is none.
+        loop, delay_start, auto_start: how its script plays; the delay in seconds.
+    """
+
+    name: str
+    pose_world: Pose = IDENTITY
+    skin: str = ""
+    skin_scale: float = 1.0
+    animations: tuple[Animation, ...] = ()
+    trajectories: tuple[Trajectory, ...] = ()
+    loop: bool = True
+    delay_start: float = 0.0
+    auto_start: bool = True
+    plugins: tuple[ScenePlugin, ...] = ()
     where: Where = NOWHERE
 
 
@@ -48,6 +133,8 @@ class SceneWorld:
         gravity: [m/s²] in the world frame.
         magnetic_field: [T] in the world frame.
         quality: renderer quality asked for: fast, gazebo or high.
+        wind: velocity of the air [m/s] in the world frame.
+        mjcf: for a world in MuJoCo's own format: makes a fresh specification, whose settings of the engine count.
     """
 
     name: str = "default"
@@ -63,6 +150,10 @@ class SceneWorld:
     spherical_coordinates: SphericalCoordinates | None = None
     quality: str = "fast"
     where: Where = NOWHERE
+    wind: Vec3 = (0.0, 0.0, 0.0)
+    atmosphere: Atmosphere = Atmosphere()
+    actors: tuple[SceneActor, ...] = ()
+    mjcf: Callable[[], Any] | None = None
 
     def model(self, name: str) -> SceneModel | None:
         return next((m for m in self.models if m.name == name), None)
@@ -70,16 +161,23 @@ class SceneWorld:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A loaded file: its worlds, or one bare model, or one bare light."""
+    """A loaded file: its worlds, or one bare model, or one bare light.
+
+    Attributes:
+        around: what a bare model's file says of the world that it is to stand in; None where it says nothing.
+    """
 
     worlds: tuple[SceneWorld, ...] = ()
     model: SceneModel | None = None
     file: str | None = None
     light: SceneLight | None = None
+    around: SceneWorld | None = None
 
     @property
     def world(self) -> SceneWorld:
         """The world to run: the first of the file, or an empty one around the bare model or light."""
         if self.worlds:
             return self.worlds[0]
+        if self.around is not None and self.model is not None:
+            return replace(self.around, models=(self.model,))
         return SceneWorld(models=(self.model,) if self.model else (), lights=(self.light,) if self.light else ())

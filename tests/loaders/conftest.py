@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import pytest
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.loaders import Resolver, load_scene
 from simkit.scene import Scene
+
+sys.path.insert(0, str(Path(__file__).parent))
 
 Load = Callable[..., tuple[Scene, list[Diagnostic]]]
 

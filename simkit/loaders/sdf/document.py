@@ -24,13 +24,16 @@ class SdfLoader(Loader):
     roots: ClassVar[tuple[str, ...]] = ("sdf", "gazebo")
 
     def load(self, document: Document, request: LoadRequest) -> Scene:
-        workspace = Workspace(request.resolver.around(document.folder), request.diagnostics)
+        resolver = request.resolver.around(document.folder)
+        workspace = Workspace(resolver, request.diagnostics, mesh_reader=request.mesh_reader)
         chain = (str(document.path.resolve()),) if document.path is not None else ("",)
         folder = document.folder or request.resolver.base
         file = workspace.file(document.root, folder, chain)
         scene = _read(file, document, request, workspace)
         for root in workspace.roots.values():
             report_unread(root, request.diagnostics)
+        for model in workspace.changed:
+            report_unread(model, request.diagnostics, model.name)
         return scene
 
 

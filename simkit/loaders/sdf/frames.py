@@ -13,6 +13,7 @@ from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 
 WORLD = "world"
+_MOST_HINTS, _MOST_NAMES = 100, 1000  # beyond these the search for the closest name is left out
 MODEL = "__model__"
 
 
@@ -28,6 +29,9 @@ class Frame:
         attached_to: what it moves with: a frame's `attached_to`, a joint's child; empty for the default.
         inside: a model's own scope.
         placement: a model's frame that its pose speaks of; empty for the model frame.
+        pose_where: the place of its pose in the file, where it has one.
+        carrier: the link (or the world) that it moves with, once that is known.
+        adrift: there is none, which has been reported.
     """
 
     name: str
@@ -41,7 +45,9 @@ class Frame:
     placement: str = ""
     where: Where = NOWHERE
     resolved: Pose | None = None
-    busy: bool = False
+    pose_where: Where | None = None
+    carrier: Frame | None = None
+    adrift: bool = False
 
     @property
     def default_base(self) -> str:
@@ -65,6 +71,7 @@ class Scope:
     names: dict[str, Frame] = field(default_factory=dict)
     canonical: str = ""
     world: Pose = IDENTITY
+    hints: int = 0
 
     def chain(self, path: str) -> list[Frame] | None:
         """The frames from this scope down to `a::b::c`; None when a name is unknown; empty for the root.
@@ -97,7 +104,8 @@ class Scope:
         frames = self.chain(path)
         if frames is None:
             owner = f"{asker.kind} {asker.name!r}: " if asker else ""
-            self.unknown(path, owner + "the frame", asker.where if asker else where)
+            place = where if asker is None or where is not NOWHERE else asker.where
+            self.unknown(path, owner + "the frame", place)
             return IDENTITY
         pose = IDENTITY
         for frame in frames:
@@ -105,59 +113,85 @@ class Scope:
         return pose
 
     def resolve(self, frame: Frame) -> Pose:
-        """The pose of `frame` in the coordinates of the scope that names it."""
-        if frame.resolved is not None:
-            return frame.resolved
-        if frame.scope is None:
-            return IDENTITY
-        if frame.busy:
-            self.diagnostics.error(
-                "SK-SDF-005", f"the pose of {frame.kind} {frame.scoped!r} depends on itself", frame.where
-            )
-            return IDENTITY
-        frame.busy = True
+        """The pose of `frame` in the coordinates of the scope that names it.
+
+        What it depends on comes first, without recursion: a file may have a chain of any length.
+        """
+        waiting = [(frame, False)]
+        begun: set[int] = set()
+        while waiting:
+            one, ready = waiting.pop()
+            if one.resolved is not None or one.scope is None:
+                continue
+            if ready:
+                one.resolved = self._resolved(one)
+            elif id(one) in begun:
+                text = f"the pose of {one.kind} {one.scoped!r} depends on itself"
+                self.diagnostics.error("SK-SDF-005", text, one.pose_where or one.where)
+                one.resolved = IDENTITY
+            else:
+                begun.add(id(one))
+                waiting.append((one, True))
+                waiting.extend((needed, False) for needed in _needs(one))
+        return frame.resolved or IDENTITY
+
+    def _resolved(self, frame: Frame) -> Pose:
+        """The pose of a frame whose every need is resolved."""
+        assert frame.scope is not None
         base = frame.relative_to or frame.default_base
-        pose = (
-            frame.pose if not base and frame.scope.root.scope is None else frame.scope.pose_of(base, frame) @ frame.pose
-        )
+        pose = frame.pose
+        if base or frame.scope.root.scope is not None:
+            pose = frame.scope.pose_of(base, frame, frame.pose_where or NOWHERE) @ pose
         if frame.inside is not None and frame.placement:
             pose = pose @ frame.inside.pose_of(frame.placement, None, frame.where).inverse()
-        frame.busy = False
-        frame.resolved = pose
         return pose
 
-    def body(self, path: str, where: Where, owner: str, seen: frozenset[int] = frozenset()) -> Frame | None:
+    def body(self, path: str, where: Where, owner: str) -> Frame | None:
         """The link (or the world) that a named frame moves with; None, with an error recorded, where there is none."""
-        frames = self.chain(path)
-        if frames is None:
-            self.unknown(path, f"{owner}: the frame", where)
-            return None
-        if not frames:
-            return self._body_of_root(where, owner, seen)
-        frame, scope = frames[-1], self
-        if id(frame) in seen:
-            self.diagnostics.error("SK-SDF-005", f"{frame.kind} {frame.scoped!r} is attached to itself", frame.where)
-            return None
-        if frame.kind == "link":
-            return frame
-        seen = seen | {id(frame)}
-        if frame.inside is not None:
-            return frame.inside._body_of_root(where, owner, seen)
-        scope = frame.scope or self
-        return scope.body(frame.attached_to, frame.where, f"{frame.kind} {frame.name!r}", seen)
+        seen: dict[int, Frame] = {}
+        found = self._followed(path, where, owner, seen)
+        for frame in seen.values():
+            frame.carrier, frame.adrift = found, found is None
+        return found
 
-    def _body_of_root(self, where: Where, owner: str, seen: frozenset[int]) -> Frame | None:
-        if self.root.kind == WORLD:
-            return self.root
-        canonical = self.canonical
-        if not canonical:
-            self.diagnostics.error("SK-SDF-004", f"{owner}: model {self.root.name!r} has no link to attach to", where)
-            return None
-        return self.body(canonical, where, owner, seen)
+    def _followed(self, path: str, where: Where, owner: str, seen: dict[int, Frame]) -> Frame | None:
+        """`body`, noting every frame on the way."""
+        scope: Scope = self
+        while True:
+            frames = scope.chain(path)
+            if frames is None:
+                scope.unknown(path, f"{owner}: the frame", where)
+                return None
+            frame = frames[-1] if frames else None
+            if frame is not None and frame.adrift:
+                return None
+            if frame is not None and id(frame) in seen:
+                text = f"{frame.kind} {frame.scoped!r} is attached to itself"
+                self.diagnostics.error("SK-SDF-005", text, frame.where)
+                return None
+            if frame is not None and (frame.kind == "link" or frame.carrier is not None):
+                return frame.carrier or frame
+            inside = scope if frame is None else frame.inside
+            if inside is not None:
+                if inside.root.kind == WORLD:
+                    return inside.root
+                if not inside.canonical:
+                    text = f"{owner}: model {inside.root.name!r} has no link to attach to"
+                    self.diagnostics.error("SK-SDF-004", text, where)
+                    return None
+                scope, path = inside, inside.canonical
+            elif frame is not None:
+                owner, where, path = f"{frame.kind} {frame.name!r}", frame.where, frame.attached_to
+                scope = frame.scope or scope
+            if frame is not None:
+                seen[id(frame)] = frame
 
     def unknown(self, path: str, what: str, where: Where, code: str = "SK-SDF-004") -> None:
         """Records that a name is unknown, with the closest one."""
-        hint = did_you_mean(path, self.all_names())
+        hint = ""
+        if self.hints < _MOST_HINTS and len(self.names) <= _MOST_NAMES:
+            self.hints += 1
+            hint = did_you_mean(path, self.all_names())
         known = ", ".join(list(self.names)[:8]) or "none"
         self.diagnostics.error(code, f"{what} {path!r} does not exist here (there are: {known})", where, hint)
 
@@ -165,6 +199,17 @@ class Scope:
         """Names that can be used here, nested ones one level down included."""
         nested = [f"{n}::{inner}" for n, f in self.names.items() if f.inside for inner in f.inside.names]
         return [*self.names, *nested]
+
+
+def _needs(frame: Frame) -> list[Frame]:
+    """The frames whose poses the pose of `frame` is made of."""
+    needed: list[Frame] = []
+    base = frame.relative_to or frame.default_base
+    if frame.scope is not None and (base or frame.scope.root.scope is not None):
+        needed += frame.scope.chain(base) or ()
+    if frame.inside is not None and frame.placement:
+        needed += frame.inside.chain(frame.placement) or ()
+    return needed
 
 
 def world_pose(frame: Frame) -> Pose:

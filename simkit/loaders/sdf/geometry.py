@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
 from simkit.scene import (
@@ -116,6 +116,7 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
         scale = (1.0, 1.0, 1.0)
     part = element.block("submesh")
     name, center = part.text("name", ""), part.boolean("center", False)
+    optimization, most = _optimization(element)
     if not uri:
         return None
     place = element.child("uri") or element.child("filename") or element
@@ -123,17 +124,42 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
     if path is None:
         missing = workspace.resolver.missing_meshes
         return Mesh(Path(uri), uri, scale, name, center, missing=True) if missing else None
-    return Mesh(path.absolute(), uri, scale, name, center)
+    return Mesh(path.absolute(), uri, scale, name, center, optimization=optimization, max_hulls=most)
+
+
+def _optimization(element: Params) -> tuple[str, int]:
+    """What `<mesh optimization>` asks for, and into how many pieces."""
+    settings = element.block("convex_decomposition")
+    most = settings.integer("max_convex_hulls", 16, minimum=1, maximum=1_000_000)
+    settings.child("voxel_resolution")  # of another algorithm, which fills the mesh with cubes
+    asked = element.attribute("optimization")
+    if asked in ("", "convex_hull", "convex_decomposition"):
+        return asked, most
+    allowed = ("convex_hull", "convex_decomposition")
+    element.diagnostics.warning(
+        "SK-MESH-015",
+        f"<mesh optimization={asked!r}> is not known, allowed are {', '.join(allowed)}",
+        element.where,
+        did_you_mean(asked, allowed),
+    )
+    return "", most
 
 
 def find_mesh(uri: str, place: Params, file: SdfFile, workspace: Workspace) -> Path | None:
-    """The mesh file that a URI names; a missing one is an error, or a warning where the caller reads on without."""
+    """The mesh file that a URI names; a missing one is an error, or a warning where the caller reads on without.
+
+    One that is missing is said once, however often it is used.
+    """
     resolver = workspace.resolver
     found = Diagnostics()
     path = resolver.resolve(uri, place.where, found, file.folder)
     if path is not None and path.is_dir():
         found.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", place.where)
         path = None
+    if path is None:
+        if uri in workspace.reported:
+            return None
+        workspace.reported.add(uri)
     for problem in found:
         severity = "warning" if resolver.missing_meshes else problem.severity
         workspace.diagnostics.extend([replace(problem, severity=severity)])

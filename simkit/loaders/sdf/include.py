@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from simkit.diagnostics import did_you_mean
+from functools import partial
+
+from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.loaders.sdf.builtin import builtin_model
+from simkit.loaders.sdf.changes import BLOCK, apply_changes
 from simkit.loaders.sdf.names import read_name
-from simkit.loaders.sdf.parts import Source, read_pose
+from simkit.loaders.sdf.parts import Source, pose_place, read_pose
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.loaders.turtlebot3 import chosen_robot
 from simkit.loaders.xml import parse_text
@@ -20,7 +23,9 @@ def written_here(element: Params, file: SdfFile, workspace: Workspace) -> Source
     if not name:
         return None
     pose, base = read_pose(element)
-    return Source(name, element, file, pose, base, placement=element.attribute("placement_frame"), where=element.where)
+    placement = element.attribute("placement_frame") if element.name == "model" else ""
+    where, place = element.where, pose_place(element)
+    return Source(name, element, file, pose, base, placement=placement, where=where, pose_where=place)
 
 
 def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source | None:
@@ -40,6 +45,13 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
     element = _only_entity(found, uri, include, workspace)
     if element is None:
         return None
+    if found.mjcf is not None and (include.attribute("merge", "false").lower() in ("true", "1") or include.has(BLOCK)):
+        include.error(
+            "SK-MJCF-015", f"{uri} is a model in MuJoCo's own format: it cannot be merged or changed by its include"
+        )
+        include.all(BLOCK)
+        return None
+    element = _changed(include, element, found, workspace)
     own, own_base = read_pose(element)
     own_name = name or read_name(element, workspace.diagnostics, found.version)
     if not own_name:
@@ -57,11 +69,37 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
         pose=pose if placed else own,
         relative_to=base if placed else own_base,
         static=fixed,
-        placement=placement or element.attribute("placement_frame"),
+        placement=placement or (element.attribute("placement_frame") if element.name == "model" else ""),
         plugins=plugins,
         merge=merge,
         where=include.where,
+        pose_where=pose_place(include if placed else element),
     )
+
+
+def _changed(include: Params, element: Params, file: SdfFile, workspace: Workspace) -> Params:
+    """The included model with the changes that the include makes; without any, the model itself."""
+    blocks = include.all(BLOCK)
+    if not blocks:
+        return element
+    element.mark_all_read()
+    own = element.copied()
+    workspace.changed.append(own)
+    for block in blocks:
+        apply_changes(block, own, partial(_name_given, file=file, workspace=workspace))
+    return own
+
+
+def _name_given(include: Params, file: SdfFile, workspace: Workspace) -> str:
+    """The name of what an include brings, without a word about its mistakes: reading it in earnest says them."""
+    name = include.text("name", "")
+    uri = include.text("uri", "")
+    if name or not uri:
+        return name
+    quiet = Workspace(workspace.resolver, Diagnostics())
+    found = _open(uri, include, file, quiet)
+    element = None if found is None else _only_entity(found, uri, include, quiet)
+    return "" if element is None else element.attribute("name").strip()
 
 
 def _open(uri: str, include: Params, file: SdfFile, workspace: Workspace) -> SdfFile | None:
@@ -71,18 +109,19 @@ def _open(uri: str, include: Params, file: SdfFile, workspace: Workspace) -> Sdf
     if chosen is None:
         return None
     uri = chosen
-    path, _ = resolver.search(uri, file.folder)
+    path = workspace.places.get((uri, file.folder)) or resolver.search(uri, file.folder)[0]
     if path is None:
         text = builtin_model(uri)
         if text is not None:
             root = parse_text(text, diagnostics, uri)
             return None if root is None else workspace.file(root, None, (*file.chain, uri))
         path = resolver.resolve(uri, place.where, diagnostics, file.folder)
+    if path is not None and path.is_dir():
+        path = resolver.model_file(path, place.where, diagnostics)
     if path is None:
         return None
-    if path.is_dir():
-        path = resolver.model_file(path, place.where, diagnostics)
-    return None if path is None else workspace.open(path, place.where, file.chain)
+    workspace.places[uri, file.folder] = path
+    return workspace.open(path, place.where, file.chain)
 
 
 def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace) -> Params | None:
@@ -98,9 +137,5 @@ def _only_entity(file: SdfFile, uri: str, include: Params, workspace: Workspace)
             include.where,
             near,
         )
-        return None
-    if entities[0].name == "actor":
-        entities[0].mark_all_read()
-        workspace.diagnostics.warning("SK-SDF-012", f"{uri}: actors are not simulated", include.where)
         return None
     return entities[0]

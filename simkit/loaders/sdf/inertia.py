@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
+from simkit.loaders.base import MeshReader
+from simkit.loaders.sdf.solids import Solid, solid_of, solid_of_triangles
 from simkit.params import Params
-from simkit.scene import (
-    Box,
-    Capsule,
-    Cone,
-    Cylinder,
-    Ellipsoid,
-    Geometry,
-    Inertial,
-    Mesh,
-    Polyline,
-    SceneCollision,
-    Sphere,
-)
+from simkit.scene import Inertial, Mesh, SceneCollision
 
 Matrix = npt.NDArray[np.float64]
 _WATER = 1000.0
+_MOST = 1e15  # kg and kg·m²: the products of larger ones leave the numbers
 _KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
@@ -37,20 +26,22 @@ def read_inertial(
     densities: Sequence[float | None],
     static: bool,
     diagnostics: Diagnostics,
+    mesh_reader: MeshReader | None = None,
 ) -> Inertial:
     """The mass properties of a link in link axes, about its centre of mass.
 
     Args:
         densities: of each collision [kg/m³], None where not given.
         static: faults are only warnings, because nothing static moves.
+        mesh_reader: gives the triangles of meshes; without it they have no volume.
     """
     block = link.child("inertial")
     if block is None:
         return Inertial(given=False)
     if block.attribute("auto", "false").lower() in ("true", "1"):
-        return _automatic(block, name, collisions, densities, diagnostics)
+        return _automatic(block, name, collisions, densities, mesh_reader, diagnostics)
     block.has("density")
-    mass = block.number("mass", 1.0)
+    mass = block.number("mass", 1.0, maximum=_MOST)
     pose = block.pose("pose")
     values = _moments(block.block("inertia"))
     _check(name, mass, values, block, static, diagnostics)
@@ -62,7 +53,9 @@ def read_inertial(
 
 
 def _moments(block: Params) -> tuple[float, float, float, float, float, float]:
-    ixx, iyy, izz, ixy, ixz, iyz = (block.number(k, 1.0 if k[1] == k[2] else 0.0) for k in _KEYS)
+    ixx, iyy, izz, ixy, ixz, iyz = (
+        block.number(k, 1.0 if k[1] == k[2] else 0.0, minimum=-_MOST, maximum=_MOST) for k in _KEYS
+    )
     return ixx, iyy, izz, ixy, ixz, iyz
 
 
@@ -110,13 +103,14 @@ def _automatic(
     name: str,
     collisions: Sequence[SceneCollision],
     densities: Sequence[float | None],
+    mesh_reader: MeshReader | None,
     diagnostics: Diagnostics,
 ) -> Inertial:
     """Mass properties of the collision solids; a given mass scales them."""
     common = block.number("density", _WATER, minimum=0)
     parts = []
     for collision, density in zip(collisions, densities, strict=True):
-        solid = _solid(collision.geometry)
+        solid = _solid(collision, mesh_reader, diagnostics)
         if solid is None:
             diagnostics.warning(
                 "SK-SDF-022",
@@ -140,56 +134,19 @@ def _automatic(
         d = at - com
         inertia += moments + mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
     given = block.number("mass", total)
+    if given <= 0:
+        place = block.child("mass") or block
+        diagnostics.error("SK-SDF-013", f"link {name!r} has mass {given:g} kg, it must be positive", place.where)
+        given = total
     x, y, z = (float(v) for v in com)
     return Inertial(given, (x, y, z), _six(inertia * (given / total)), True)
 
 
-def _solid(shape: Geometry) -> tuple[float, Matrix, Matrix] | None:
-    """Volume [m³], centroid [m] and moments [m⁵] of a solid of density 1 about its centroid, in the shape's frame."""
-    centre = np.zeros(3)
-    match shape:
-        case Box(size=(x, y, z)):
-            v = x * y * z
-            return v, centre, np.diag((y * y + z * z, x * x + z * z, x * x + y * y)) * (v / 12)
-        case Sphere(radius=r):
-            v = 4 / 3 * math.pi * r**3
-            return v, centre, np.eye(3) * (0.4 * v * r * r)
-        case Ellipsoid(radii=(a, b, c)):
-            v = 4 / 3 * math.pi * a * b * c
-            return v, centre, np.diag((b * b + c * c, a * a + c * c, a * a + b * b)) * (v / 5)
-        case Cylinder(radius=r, length=h):
-            v = math.pi * r * r * h
-            side = v * (3 * r * r + h * h) / 12
-            return v, centre, np.diag((side, side, v * r * r / 2))
-        case Capsule(radius=r, length=h):
-            return _capsule(r, h)
-        case Cone(radius=r, length=h):
-            v = math.pi * r * r * h / 3
-            side = v * (3 / 20 * r * r + 3 / 80 * h * h)
-            return v, np.array((0.0, 0.0, -h / 4)), np.diag((side, side, 0.3 * v * r * r))
-        case Mesh() | Polyline():
-            return _mesh_solid(shape)
-    return None
-
-
-def _capsule(r: float, h: float) -> tuple[float, Matrix, Matrix]:
-    body, caps = math.pi * r * r * h, 4 / 3 * math.pi * r**3
-    side = body * (h * h / 12 + r * r / 4) + caps * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
-    return body + caps, np.zeros(3), np.diag((side, side, body * r * r / 2 + caps * 0.4 * r * r))
-
-
-def _mesh_solid(shape: Mesh | Polyline) -> tuple[float, Matrix, Matrix] | None:
-    """Of a closed mesh file; None where it cannot be read or encloses nothing."""
-    if isinstance(shape, Polyline):
+def _solid(collision: SceneCollision, mesh_reader: MeshReader | None, diagnostics: Diagnostics) -> Solid | None:
+    """What a collision encloses; a mesh is read, which reports what is wrong with its file."""
+    shape = collision.geometry
+    if not isinstance(shape, Mesh):
+        return solid_of(shape)
+    if mesh_reader is None or shape.missing:
         return None
-    import trimesh
-
-    try:
-        mesh: Any = trimesh.load(shape.file, force="mesh")
-        mesh.apply_transform(np.diag((*shape.scale, 1.0)))
-        volume = float(mesh.volume)
-        if abs(volume) < 1e-15:
-            return None
-        return abs(volume), np.array(mesh.center_mass), np.array(mesh.moment_inertia) * math.copysign(1.0, volume)
-    except Exception:  # noqa: BLE001 - a reader of a foreign format fails in its own ways; the caller reports it
-        return None
+    return solid_of_triangles(mesh_reader(shape, diagnostics, collision.where))

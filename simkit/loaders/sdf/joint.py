@@ -32,7 +32,7 @@ _NO_LIMIT = 1e15
 def end_name(joint: Params, name: str) -> str:
     """The text of `<parent>` or `<child>`; before 1.2 it was an attribute."""
     found = joint.child(name)
-    return "" if found is None else found.value or found.attribute("link")
+    return "" if found is None else found.value or found.attribute("link").strip()
 
 
 def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | None:
@@ -60,6 +60,7 @@ def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | Non
     if parent is child:
         message = f"joint {part.name!r} joins link {child.scoped!r} with itself"
         diagnostics.error("SK-SDF-007", message, element.where)
+        element.mark_all_read()
         return None
     pose = world_pose(part.frame)
     element.child("pose")
@@ -98,8 +99,8 @@ def _end(part: Part, which: str, workspace: Workspace) -> Frame | None:
     place = element.child(which) or element
     what = f"joint {part.name!r}: the {which}"
     if not name:
-        near = did_you_mean(which, [c.name for c in element.children])
-        diagnostics.error("SK-SDF-026", f"joint {part.name!r} needs <{which}>", element.where, near)
+        near = "" if element.has(which) else did_you_mean(which, [c.name for c in element.children])
+        diagnostics.error("SK-SDF-026", f"joint {part.name!r} needs <{which}>", place.where, near)
         return None
     if name == WORLD:
         if which == "child":
@@ -119,11 +120,10 @@ def _end(part: Part, which: str, workspace: Workspace) -> Frame | None:
 def _axes(part: Part, kind: str, pose_world: Pose, workspace: Workspace) -> tuple[Axis, ...]:
     axes = []
     for index, name in enumerate(("axis", "axis2")):
-        element = part.element.child(name)
         if index >= AXES[kind]:
-            if element is not None:
-                element.mark_all_read()
+            part.element.has(name)  # it has no meaning for this kind, which the report on unused elements says
             continue
+        element = part.element.child(name)
         if element is None:
             if kind != "gearbox" or index == 0:
                 workspace.diagnostics.warning(
@@ -147,7 +147,7 @@ def _axis(part: Part, element: Params, kind: str, pose_world: Pose, workspace: W
         workspace.diagnostics.warning(
             "SK-SDF-027",
             f"joint {part.name!r} has a lower limit {lower:g} above its upper limit {upper:g}; it is read as unlimited",
-            limit.where,
+            (limit.child("lower") or limit).where,
         )
         lower, upper = -math.inf, math.inf
     turned = pose_world.rotate(direction)
@@ -158,12 +158,19 @@ def _axis(part: Part, element: Params, kind: str, pose_world: Pose, workspace: W
         upper=upper,
         effort=_magnitude(limit, "effort"),
         velocity=_magnitude(limit, "velocity"),
-        damping=dynamics.number("damping", 0.0),
-        friction=dynamics.number("friction", 0.0),
-        stiffness=dynamics.number("spring_stiffness", 0.0),
-        spring_ref=dynamics.number("spring_reference", 0.0),
+        damping=dynamics.number("damping", 0.0, maximum=_NO_LIMIT),
+        friction=dynamics.number("friction", 0.0, maximum=_NO_LIMIT),
+        stiffness=dynamics.number("spring_stiffness", 0.0, maximum=_NO_LIMIT),
+        spring_ref=dynamics.number("spring_reference", 0.0, minimum=-_NO_LIMIT, maximum=_NO_LIMIT),
         mimic=_mimic(part, element),
+        limit_stiffness=_given(limit, "stiffness"),
+        limit_dissipation=_given(limit, "dissipation"),
     )
+
+
+def _given(block: Params, name: str) -> float | None:
+    """A number that is not negative, where the file gives one."""
+    return block.number(name, 0.0, minimum=0.0) if block.has(name) else None
 
 
 def _direction(part: Part, element: Params, workspace: Workspace) -> tuple[float, float, float]:
@@ -223,10 +230,14 @@ def _mimic(part: Part, element: Params) -> Mimic | None:
 
 def _thread_pitch(element: Params) -> float:
     """Metres per turn: `screw_thread_pitch`, or the older `thread_pitch` [rad/m], which is left-handed."""
-    old = element.number("thread_pitch", 0.0)
+    old = element.number("thread_pitch", 1.0)
     if element.has("screw_thread_pitch"):
         return element.number("screw_thread_pitch", 1.0)
-    return -2 * math.pi / old if old else 1.0
+    if old == 0:
+        place = element.child("thread_pitch") or element
+        place.error("SK-PARAM-002", "found <thread_pitch>0</thread_pitch>, allowed is a number other than 0")
+        return 1.0
+    return -2 * math.pi / old if element.has("thread_pitch") else 1.0
 
 
 def _gearbox_reference(part: Part, workspace: Workspace) -> str:

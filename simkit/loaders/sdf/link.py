@@ -18,12 +18,13 @@ from simkit.pose import Pose
 from simkit.scene import SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual
 
 
-def read_link(part: Part, model: str, static: bool, workspace: Workspace) -> SceneLink:
+def read_link(part: Part, model: str, static: bool, windy: bool, workspace: Workspace) -> SceneLink:
     """A link whose frame is known.
 
     Args:
         model: scoped name of its model.
         static: whether the model is static.
+        windy: whether the wind pushes the links of the model that do not say it themselves.
     """
     element, diagnostics = part.element, workspace.diagnostics
     own = scoped(model, part.name)
@@ -44,7 +45,7 @@ def read_link(part: Part, model: str, static: bool, workspace: Workspace) -> Sce
         name=part.name,
         scoped=own,
         pose_world=pose,
-        inertial=read_inertial(element, part.name, collisions, densities, static, diagnostics),
+        inertial=read_inertial(element, part.name, collisions, densities, static, diagnostics, workspace.mesh_reader),
         gravity=element.boolean("gravity", True),
         kinematic=element.boolean("kinematic", False),
         self_collide=element.boolean("self_collide", False),
@@ -54,7 +55,15 @@ def read_link(part: Part, model: str, static: bool, workspace: Workspace) -> Sce
         lights=_lights(part, own, pose, workspace),
         plugins=read_plugins(element.all("plugin"), own),
         where=element.where,
+        velocity_decay=_velocity_decay(element),
+        enable_wind=element.boolean("enable_wind", windy),
     )
+
+
+def _velocity_decay(element: Params) -> tuple[float, float]:
+    """The part of the linear and of the angular velocity lost at every step."""
+    block = element.block("velocity_decay")
+    return block.number("linear", 0.0, minimum=0.0, maximum=1.0), block.number("angular", 0.0, minimum=0.0, maximum=1.0)
 
 
 def _collision(

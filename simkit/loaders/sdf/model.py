@@ -10,13 +10,16 @@ from simkit.loaders.sdf.frames import MODEL, Frame, Scope, world_pose
 from simkit.loaders.sdf.include import read_include, written_here
 from simkit.loaders.sdf.joint import end_name, read_joint
 from simkit.loaders.sdf.link import read_link
+from simkit.loaders.sdf.mjcf import build_included
 from simkit.loaders.sdf.names import named, scoped
-from simkit.loaders.sdf.parts import Draft, Part, Source, read_pose
+from simkit.loaders.sdf.parts import Draft, Part, Source, pose_place, read_pose
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneFrame, SceneModel
+
+_OF_A_MODEL = ("static", "self_collide", "enable_wind", "allow_auto_disable")
 
 
 def declare_model(source: Source, outer: Scope, outer_scoped: str, workspace: Workspace) -> Draft | None:
@@ -35,6 +38,7 @@ def declare_model(source: Source, outer: Scope, outer_scoped: str, workspace: Wo
         inside=scope,
         placement=source.placement,
         where=source.where,
+        pose_where=source.pose_where,
     )
     draft = Draft(source, own, frame, scope)
     _declare_content(draft, source.element, source.file, scope, workspace)
@@ -61,10 +65,10 @@ def _declare_content(draft: Draft, element: Params, file: SdfFile, scope: Scope,
     for name, link in named(element.all("link"), owner, diagnostics, file.version):
         draft.links.append(_part(draft, name, link, "link", "", scope, file, workspace))
     for source in model_sources(element, file, workspace):
-        if source.element.name == "light":
-            _refuse_light(source, workspace)
+        if source.element.name != "model":
+            _refuse(source, workspace)
         elif source.merge:
-            _merge(draft, source, scope, workspace)
+            merge(draft, source, scope, workspace)
         else:
             nested = declare_model(source, scope, draft.scoped, workspace)
             if nested is not None:
@@ -103,23 +107,30 @@ def _part(
 ) -> Part:
     pose, base = read_pose(element)
     frame = Frame(name, kind, scoped(draft.scoped, name), scope, pose, base, attached_to, where=element.where)
+    frame.pose_where = pose_place(element)
     if kind == "joint" and attached_to == "world":
         frame.attached_to = ""
     enter(frame, scope, file.version, workspace.diagnostics)
     return Part(name, element, frame, scope, file)
 
 
-def _refuse_light(source: Source, workspace: Workspace) -> None:
+def _refuse(source: Source, workspace: Workspace) -> None:
+    kind = source.element.name
+    source.element.mark_all_read()
     workspace.diagnostics.error(
         "SK-SDF-016",
-        f"a light ({source.name!r}) cannot be included in a model",
+        f"a {kind} ({source.name!r}) cannot be included in a model".replace("a actor", "an actor"),
         source.where,
-        "include it in the world, or put it in a link",
+        "include it in the world" + (", or put it in a link" if kind == "light" else ""),
     )
 
 
-def _merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace) -> None:
-    """Puts the content of an included model into `draft`; a frame that stands where it was placed is its root."""
+def merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace, base: str = MODEL) -> None:
+    """Puts the content of an included model into `draft`; a frame that stands where it was placed is its root.
+
+    Args:
+        base: the frame that its pose speaks of where the include does not say.
+    """
     name = f"_merged__{source.name}__{MODEL}"
     pose = source.pose
     if source.placement:
@@ -128,17 +139,34 @@ def _merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace) -> 
         )
         pose = pose if alone is None else pose @ alone.scope.pose_of(source.placement, None, source.where).inverse()
     proxy = Frame(
-        name, "frame", scoped(draft.scoped, name), scope, pose, source.relative_to or MODEL, where=source.where
+        name, "frame", scoped(draft.scoped, name), scope, pose, source.relative_to or base, where=source.where
     )
     enter(proxy, scope, (1, 12), workspace.diagnostics)
     inner = Scope(proxy, workspace.diagnostics, scope.names)
-    first = len(draft.links)
+    first, models = len(draft.links), len(draft.models)
     _declare_content(draft, source.element, source.file, inner, workspace)
     wanted = source.element.attribute("canonical_link")
     proxy.attached_to = wanted or (draft.links[first].name if len(draft.links) > first else "")
+    for nested in draft.models[models:]:
+        if not proxy.attached_to and nested.scope.canonical:
+            proxy.attached_to = f"{nested.source.name}::{nested.scope.canonical}"
+    _report_lost(source, workspace)
     draft.plugins.extend(source.plugins)
     draft.proxies.append(proxy)
     draft.merged.append(inner)
+
+
+def _report_lost(source: Source, workspace: Workspace) -> None:
+    """Says which settings of a merged model are lost: there is no model left to have them."""
+    lost = [name for name in _OF_A_MODEL if source.element.child(name) is not None]
+    if source.static is not None and "static" not in lost:
+        lost.insert(0, "static")
+    source.element.child("pose")
+    if lost:
+        listed = ", ".join(f"<{name}>" for name in lost)
+        workspace.diagnostics.note(
+            "SK-SDF-035", f"{listed} of the merged model {source.name!r} is lost in the merge", source.where
+        )
 
 
 def _choose_canonical(draft: Draft, element: Params, workspace: Workspace) -> None:
@@ -186,8 +214,15 @@ def build_model(draft: Draft, static: bool, workspace: Workspace, base: str = "a
     source, element = draft.source, draft.source.element
     declared = _is_static(source)
     still = declared or static
+    if source.file.mjcf is not None:
+        return build_included(source.file.mjcf, draft, still, base)
+    if source.file.urdf is not None:
+        from simkit.loaders.urdf import included  # it reads <gazebo> with the readers of this package
+
+        return included.build_included(draft, source.file.urdf, still, workspace, base)
     element.child("pose")
-    links = tuple(read_link(part, draft.scoped, still, workspace) for part in draft.links)
+    windy = element.boolean("enable_wind", False)
+    links = tuple(read_link(part, draft.scoped, still, windy, workspace) for part in draft.links)
     _report_defaults(draft, [link.name for link in links if not link.inertial.given], still, workspace)
     joints = tuple(j for part in draft.joints if (j := read_joint(part, draft.scoped, workspace)) is not None)
     canonical = draft.scope.chain(draft.scope.canonical) if draft.scope.canonical else None
@@ -206,6 +241,7 @@ def build_model(draft: Draft, static: bool, workspace: Workspace, base: str = "a
         models=tuple(build_model(nested, still, workspace) for nested in draft.models),
         plugins=read_plugins(draft.plugins, draft.scoped),
         where=source.where,
+        allow_auto_disable=element.boolean("allow_auto_disable", True),
     )
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 
+LONGEST_NAME = 1000
+MOST_SIBLINGS = 100_000
+
 
 def scoped(*parts: str) -> str:
     """Names joined with `::`; empty ones are left out."""
@@ -17,6 +20,10 @@ def read_name(element: Params, diagnostics: Diagnostics, version: tuple[int, int
     if not name:
         diagnostics.error("SK-SDF-001", f"<{element.name}> needs a name", element.where)
         return ""
+    if len(name) > LONGEST_NAME:
+        text = f"<{element.name}> has a name of {len(name)} characters, allowed are {LONGEST_NAME}"
+        diagnostics.error("SK-SDF-003", text, element.where)
+        return name[:LONGEST_NAME]
     if name.startswith("__") and name.endswith("__"):
         diagnostics.error(
             "SK-SDF-003", f"<{element.name} name={name!r}>: names __like_this__ are reserved", element.where
@@ -36,6 +43,10 @@ def named(
 ) -> list[tuple[str, Params]]:
     """Elements with their names, without those that have none; two of one name are an error."""
     found: dict[str, Params] = {}
+    if len(elements) > MOST_SIBLINGS:
+        text = f"{owner} has {len(elements)} of <{elements[0].name}>, allowed are {MOST_SIBLINGS}"
+        diagnostics.error("SK-XML-002", text, elements[MOST_SIBLINGS].where)
+        return []
     for element in elements:
         name = read_name(element, diagnostics, version)
         if not name:

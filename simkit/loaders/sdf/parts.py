@@ -33,6 +33,7 @@ class Source:
         plugins: those that the include adds.
         merge: whether its content becomes part of the including model.
         where: the place of the model, or of the include.
+        pose_where: the place of its pose.
     """
 
     name: str
@@ -45,11 +46,16 @@ class Source:
     plugins: tuple[Params, ...] = ()
     merge: bool = False
     where: Where = field(default_factory=Where)
+    pose_where: Where | None = None
 
 
 @dataclass
 class Draft:
-    """A model whose names are known and whose poses are not resolved yet."""
+    """A model whose names are known and whose poses are not resolved yet.
+
+    Attributes:
+        saved_links: what a saved state of the world says of its links.
+    """
 
     source: Source
     scoped: str
@@ -62,11 +68,18 @@ class Draft:
     merged: list[Scope] = field(default_factory=list)
     models: list[Draft] = field(default_factory=list)
     plugins: list[Params] = field(default_factory=list)
+    saved_links: list[Params] = field(default_factory=list)
 
 
 def read_pose(element: Params, name: str = "pose") -> tuple[Pose, str]:
     """The `<pose>` of an element and the frame it speaks of (empty for the default)."""
     return element.pose(name), base_of(element.child(name))
+
+
+def pose_place(element: Params) -> Where:
+    """The line of an element's pose, or its own."""
+    pose = element.child("pose")
+    return element.where if pose is None else pose.where
 
 
 def local_pose(element: Params, scope: Scope, owner: Frame, what: str) -> Pose:
@@ -76,6 +89,6 @@ def local_pose(element: Params, scope: Scope, owner: Frame, what: str) -> Pose:
         return pose
     frames = scope.chain(base)
     if frames is None:
-        scope.unknown(base, f"{what}: the frame", element.where)
+        scope.unknown(base, f"{what}: the frame", pose_place(element))
         return pose
     return scope.resolve(owner).inverse() @ scope.pose_of(base) @ pose

@@ -28,8 +28,9 @@ def read_sensor(
     scoped = join(parent, name)
     own = [c for c in element.children if c.name != "plugin"]
     params = Params(element.name, element.value, element.attributes, own, element.where, element.diagnostics)
-    for common in ("pose", "always_on", "visualize", "enable_metrics"):
+    for common in ("pose", "always_on", "visualize", "enable_metrics", "update_rate", "topic"):
         params.child(common)
+        element.child(common)
     return SceneSensor(
         name=name,
         scoped=scoped,

@@ -17,6 +17,7 @@ def read_surface(collision: Params) -> Surface:
     mu2 = _friction(ode, "mu2", _friction(bullet, "friction2", 1.0 if ode.has("mu") else mu))
     soft = contact.child("ode")
     twist = friction.block("torsional")
+    rolling = bullet.number("rolling_friction", 0.0, minimum=0) if bullet.has("rolling_friction") else None
     return Surface(
         mu=mu,
         mu2=mu2,
@@ -36,6 +37,11 @@ def read_surface(collision: Params) -> Surface:
         category_bitmask=_mask(contact, "category_bitmask"),
         collide_without_contact=contact.boolean("collide_without_contact", False),
         where=block.where,
+        patch_radius=twist.number("patch_radius", 0.0, minimum=0),
+        surface_radius=twist.number("surface_radius", 0.0, minimum=0),
+        use_patch_radius=twist.boolean("use_patch_radius", True),
+        torsional_slip=twist.block("ode").number("slip", 0.0),
+        rolling=rolling,
     )
 
 
@@ -63,8 +69,11 @@ def _mask(contact: Params, name: str) -> int:
     found = contact.child(name)
     if found is None:
         return 0xFFFF
+    text = found.value.lower()
     try:
-        return int(found.value, 0) & 0xFFFFFFFF
+        if not text.isascii() or "_" in text:
+            raise ValueError
+        return int(text, 16 if text.startswith("0x") else 10) & 0xFFFFFFFF
     except ValueError:
         found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>, allowed is a whole number")
         return 0xFFFF

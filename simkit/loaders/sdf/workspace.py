@@ -6,13 +6,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders.base import MeshReader
+from simkit.loaders.mjcf.document import MjcfFile, open_mjcf
 from simkit.loaders.resolver import NEWEST_SDF, Resolver, sdf_version
+from simkit.loaders.sdf.flattened import nested
+from simkit.loaders.sdf.mjcf import stand_in
 from simkit.loaders.sdf.old import modern
 from simkit.loaders.xml import Document, parse_file
 from simkit.params import Params
 
 MAX_INCLUDE_DEPTH = 32
-MAX_MODELS = 50_000
+MAX_MODELS = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,12 +25,16 @@ class SdfFile:
 
     Attributes:
         chain: the files that include one another down to this one.
+        mjcf: the file in MuJoCo's own format that the root stands for.
+        urdf: the `<robot>` that the root stands for.
     """
 
     root: Params
     version: tuple[int, int]
     folder: Path | None
     chain: tuple[str, ...] = ()
+    mjcf: MjcfFile | None = None
+    urdf: Params | None = None
 
 
 @dataclass
@@ -35,14 +43,23 @@ class Workspace:
 
     Attributes:
         roots: the root element of every file read, for the report on unused elements.
+        reported: what is said once however often it is met: missing pictures and meshes.
+        changed: models that an include has changed, for the same report.
+        places: the files that URIs named so far, by the folder of the file that names them.
     """
 
     resolver: Resolver
     diagnostics: Diagnostics
     roots: dict[str, Params] = field(default_factory=dict)
+    changed: list[Params] = field(default_factory=list)
+    mesh_reader: MeshReader | None = None
+    places: dict[tuple[str, Path | None], Path] = field(default_factory=dict)
     models: int = 0
     unknown_materials: set[str] = field(default_factory=set)
+    reported: set[str] = field(default_factory=set)
     _documents: dict[Path, Document | None] = field(default_factory=dict)
+    _robots: dict[Path, Params | None] = field(default_factory=dict)
+    _mjcf_files: dict[Path, tuple[MjcfFile, Params] | None] = field(default_factory=dict)
 
     def open(self, path: Path, where: Where, chain: tuple[str, ...]) -> SdfFile | None:
         """Reads an included SDF file, once however often it is included; None with an error recorded."""
@@ -59,12 +76,41 @@ class Workspace:
         document = self._documents[path]
         if document is None:
             return None
+        if document.root.name == "mujoco":
+            return self._mjcf(document, path, (*chain, key))
+        if document.root.name == "robot":
+            return self._urdf(document, path, (*chain, key))
         if document.root.name not in ("sdf", "gazebo"):
             self.diagnostics.error(
                 "SK-SDF-016", f"{path} begins with <{document.root.name}>, an included file begins with <sdf>", where
             )
             return None
         return self.file(document.root, path.parent, (*chain, key))
+
+    def _urdf(self, document: Document, path: Path, chain: tuple[str, ...]) -> SdfFile | None:
+        """An included robot in URDF or xacro, expanded once however often it is included."""
+        from simkit.loaders.urdf.included import stand_in  # it reads <gazebo> with the readers of this package
+        from simkit.loaders.xacro import expand, needs_expansion
+
+        if path not in self._robots:
+            expanded: Document | None = document
+            if needs_expansion(document):
+                expanded = expand(document, self.resolver, {}, self.diagnostics)
+            self._robots[path] = None if expanded is None else expanded.root
+        robot = self._robots[path]
+        if robot is None:
+            return None
+        file = SdfFile(robot, (1, 11), path.parent, chain)
+        return SdfFile(stand_in(file, self), (1, 11), path.parent, chain, urdf=robot)
+
+    def _mjcf(self, document: Document, path: Path, chain: tuple[str, ...]) -> SdfFile | None:
+        """An included file in MuJoCo's own format, read and compiled once however often it is included."""
+        if path not in self._mjcf_files:
+            found = open_mjcf(document.root, document.path, self.resolver, self.diagnostics)
+            root = None if found is None else stand_in(found, self.diagnostics)
+            self._mjcf_files[path] = None if found is None or root is None else (found, root)
+        known = self._mjcf_files[path]
+        return None if known is None else SdfFile(known[1], (1, 7), path.parent, chain, known[0])
 
     def file(self, root: Params, folder: Path | None, chain: tuple[str, ...]) -> SdfFile:
         """Notes a root element for the final report and reads its version."""
@@ -83,7 +129,9 @@ class Workspace:
             self.diagnostics.warning(
                 "SK-LOAD-004", f"SDF {text} is from 2012; it is read in today's spelling", root.where
             )
-        root = self.roots.setdefault(key, modern(root, version))
+        if key not in self.roots:
+            self.roots[key] = nested(modern(root, version), version)
+        root = self.roots[key]
         return SdfFile(root, version, folder, chain)
 
     def count_model(self, where: Where) -> bool:

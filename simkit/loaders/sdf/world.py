@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
+from simkit.loaders.sdf.actor import read_actor
 from simkit.loaders.sdf.frames import WORLD, Frame, Scope, world_pose
 from simkit.loaders.sdf.joint import end_name, read_joint
 from simkit.loaders.sdf.light import read_light
-from simkit.loaders.sdf.model import build_model, declare_model, enter, model_sources, place, read_frames
+from simkit.loaders.sdf.model import build_model, declare_model, enter, merge, model_sources, place, read_frames
 from simkit.loaders.sdf.names import named, read_name
-from simkit.loaders.sdf.parts import Draft, Part, Source, read_pose
-from simkit.loaders.sdf.physics import read_physics, read_quality, read_spherical_coordinates, read_surroundings
+from simkit.loaders.sdf.parts import Draft, Part, Source, pose_place, read_pose
+from simkit.loaders.sdf.physics import read_physics
 from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.population import population_sources
+from simkit.loaders.sdf.state import deleted, inserted, place_models, report_unapplied, saved_lights, saved_states
+from simkit.loaders.sdf.surroundings import (
+    read_atmosphere,
+    read_quality,
+    read_spherical_coordinates,
+    read_surroundings,
+)
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
-from simkit.scene import SceneLight, SceneWorld
+from simkit.pose import Pose
+from simkit.scene import SceneActor, SceneFrame, SceneLight, SceneWorld
+
+_MAGNETIC = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 
 
 def world_scope(workspace: Workspace) -> Scope:
@@ -20,59 +34,115 @@ def world_scope(workspace: Workspace) -> Scope:
     return Scope(Frame(WORLD, WORLD, WORLD), workspace.diagnostics)
 
 
+@dataclass
+class _Content:
+    """What stands in a world, before any pose is resolved."""
+
+    scope: Scope
+    drafts: list[Draft] = field(default_factory=list)
+    lights: list[Source] = field(default_factory=list)
+    actors: list[Source] = field(default_factory=list)
+    frames: list[Part] = field(default_factory=list)
+    joints: list[Part] = field(default_factory=list)
+    proxies: list[Frame] = field(default_factory=list)
+    plugins: list[Params] = field(default_factory=list)
+
+
 def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWorld:
     """A world with everything in it resolved."""
     diagnostics = workspace.diagnostics
-    name = read_name(element, diagnostics, file.version)
-    scope = world_scope(workspace)
-    drafts, lights = _entities(element, file, scope, workspace)
-    frames = _parts(element, "frame", file, scope, workspace)
-    joints = _parts(element, "joint", file, scope, workspace)
-    for draft in drafts:
+    name = read_name(element, diagnostics, file.version) or "default"
+    states = saved_states(element, name, diagnostics)
+    content = _Content(world_scope(workspace))
+    content.plugins.extend(element.all("plugin"))
+    for source in _sources(element, name, states, file, workspace):
+        _take(source, content, workspace)
+    content.frames += _parts(element, "frame", file, content.scope, workspace)
+    content.joints += _parts(element, "joint", file, content.scope, workspace)
+    place_models(states, content.drafts, diagnostics)
+    for draft in content.drafts:
         place(draft)
+        report_unapplied(draft, diagnostics)
     physics, gravity = read_physics(element, diagnostics)
+    stood = saved_lights(states)
     return SceneWorld(
-        name=name or "default",
+        name=name,
         gravity=gravity,
-        magnetic_field=element.vector3("magnetic_field", (5.5645e-6, 22.8758e-6, -42.3884e-6)),
+        magnetic_field=element.vector3("magnetic_field", _MAGNETIC),
         physics=physics,
-        models=tuple(build_model(draft, False, workspace) for draft in drafts),
-        lights=tuple(_light(source, scope, workspace) for source in lights),
-        frames=read_frames(frames),
-        joints=tuple(j for part in joints if (j := read_joint(part, "", workspace)) is not None),
-        plugins=read_plugins(element.all("plugin"), ""),
+        models=tuple(build_model(draft, False, workspace) for draft in content.drafts),
+        lights=tuple(_light(source, content.scope, stood.get(source.name), workspace) for source in content.lights),
+        frames=(*read_frames(content.frames), *(_proxy(p, content.scope) for p in content.proxies)),
+        joints=tuple(j for part in content.joints if (j := read_joint(part, "", workspace)) is not None),
+        plugins=read_plugins(content.plugins, ""),
         surroundings=read_surroundings(element),
         spherical_coordinates=read_spherical_coordinates(element, diagnostics),
         quality=read_quality(element),
         where=element.where,
+        wind=element.block("wind").vector3("linear_velocity", (0.0, 0.0, 0.0)),
+        atmosphere=read_atmosphere(element, diagnostics),
+        actors=tuple(_actor(source, content.scope, workspace) for source in content.actors),
     )
 
 
-def _entities(element: Params, file: SdfFile, scope: Scope, workspace: Workspace) -> tuple[list[Draft], list[Source]]:
-    """Models entered in the world's names, and lights, in document order."""
-    drafts: list[Draft] = []
-    lights = [
-        _light_source(e, name, file)
-        for name, e in named(element.all("light"), "the world", workspace.diagnostics, file.version)
-    ]
-    for source in model_sources(element, file, workspace):
-        if source.element.name == "light":
-            if any(light.name == source.name for light in lights):
-                workspace.diagnostics.error(
-                    "SK-SDF-002", f"the world has two lights named {source.name!r}", source.where
-                )
-            else:
-                lights.append(source)
-        elif source.merge:
-            workspace.diagnostics.error("SK-SDF-016", "a model cannot be merged into a world", source.where)
+def _sources(element: Params, world: str, states: list[Params], file: SdfFile, workspace: Workspace) -> list[Source]:
+    """Models, lights and actors: those written, included and populated, and what a saved state adds and removes."""
+    diagnostics = workspace.diagnostics
+    found: list[Source] = []
+    for kind in ("light", "actor"):
+        for name, e in named(element.all(kind), "the world", diagnostics, file.version):
+            found.append(_source(e, name, file))
+    found += model_sources(element, file, workspace)
+    for population in element.all("population"):
+        found += population_sources(population, world, file, workspace)
+    for block in inserted(states):
+        found += model_sources(block, file, workspace)
+        for name, e in named(block.all("light"), "the saved state", diagnostics, file.version):
+            found.append(_source(e, name, file))
+    gone = deleted(states)
+    for source in found:
+        if source.name in gone:
+            source.element.mark_all_read()
+    return [source for source in found if source.name not in gone]
+
+
+def _take(source: Source, content: _Content, workspace: Workspace) -> None:
+    """Enters one entity in the world's names."""
+    kind = source.element.name
+    if kind != "model":
+        others = content.lights if kind == "light" else content.actors
+        if any(other.name == source.name for other in others):
+            text = f"the world has two {kind}s named {source.name!r}"
+            workspace.diagnostics.error("SK-SDF-002", text, source.where)
         else:
-            draft = declare_model(source, scope, "", workspace)
-            if draft is not None:
-                before = scope.names.get(source.name)
-                enter(draft.frame, scope, file.version, workspace.diagnostics)
-                if before is None:
-                    drafts.append(draft)
-    return drafts, lights
+            others.append(source)
+    elif source.merge:
+        _merge(source, content, workspace)
+    else:
+        draft = declare_model(source, content.scope, "", workspace)
+        if draft is not None:
+            before = content.scope.names.get(source.name)
+            enter(draft.frame, content.scope, source.file.version, workspace.diagnostics)
+            if before is None:
+                content.drafts.append(draft)
+
+
+def _merge(source: Source, content: _Content, workspace: Workspace) -> None:
+    """Puts what an included model holds into the world, which has neither links nor grippers of its own."""
+    for kind in ("link", "gripper"):
+        for part in source.element.all(kind):
+            part.mark_all_read()
+            text = f"<{kind} name={part.attribute('name')!r}> of {source.name!r} cannot be merged into a world"
+            workspace.diagnostics.error("SK-SDF-016", text, source.where, "include it without merge")
+    if any(source.element.has(kind) for kind in ("link", "gripper")):
+        return
+    draft = Draft(source, "", content.scope.root, content.scope)
+    merge(draft, source, content.scope, workspace, WORLD)
+    content.drafts += draft.models
+    content.frames += draft.frames
+    content.joints += draft.joints
+    content.proxies += draft.proxies
+    content.plugins += draft.plugins
 
 
 def _parts(element: Params, kind: str, file: SdfFile, scope: Scope, workspace: Workspace) -> list[Part]:
@@ -81,16 +151,31 @@ def _parts(element: Params, kind: str, file: SdfFile, scope: Scope, workspace: W
         pose, base = read_pose(found)
         attached = end_name(found, "child") if kind == "joint" else found.attribute("attached_to")
         frame = Frame(name, kind, name, scope, pose, base, attached, where=found.where)
+        frame.pose_where = pose_place(found)
         enter(frame, scope, file.version, workspace.diagnostics)
         parts.append(Part(name, found, frame, scope, file))
     return parts
 
 
-def _light_source(element: Params, name: str, file: SdfFile) -> Source:
+def _proxy(frame: Frame, scope: Scope) -> SceneFrame:
+    body = scope.body(frame.name, frame.where, f"frame {frame.name!r}") if frame.attached_to else None
+    return SceneFrame(frame.name, frame.scoped, world_pose(frame), "" if body is None else body.scoped)
+
+
+def _source(element: Params, name: str, file: SdfFile) -> Source:
     pose, base = read_pose(element)
     return Source(name, element, file, pose, base, where=element.where)
 
 
-def _light(source: Source, scope: Scope, workspace: Workspace) -> SceneLight:
-    frame = Frame(source.name, "light", source.name, scope, source.pose, source.relative_to, where=source.where)
-    return read_light(source.element, source.name, source.name, world_pose(frame), "", workspace.diagnostics)
+def _pose_of(source: Source, kind: str, scope: Scope) -> Pose:
+    frame = Frame(source.name, kind, source.name, scope, source.pose, source.relative_to, where=source.where)
+    return world_pose(frame)
+
+
+def _light(source: Source, scope: Scope, saved: Pose | None, workspace: Workspace) -> SceneLight:
+    pose = saved if saved is not None else _pose_of(source, "light", scope)
+    return read_light(source.element, source.name, source.name, pose, "", workspace.diagnostics)
+
+
+def _actor(source: Source, scope: Scope, workspace: Workspace) -> SceneActor:
+    return read_actor(source.element, source.name, _pose_of(source, "actor", scope), workspace.diagnostics)

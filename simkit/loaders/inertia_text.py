@@ -1,0 +1,168 @@
+"""Where the numbers of each inertia stand in a file, so that they can be changed and nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.parsers import expat
+
+from simkit.loaders.xml import MAX_BYTES
+
+KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_SDF_DEFAULTS = {"ixx": 1.0, "iyy": 1.0, "izz": 1.0, "ixy": 0.0, "ixz": 0.0, "iyz": 0.0}
+
+
+@dataclass
+class InertiaText:
+    """The inertia of one link as it is written.
+
+    Attributes:
+        link: name of the link.
+        line: of its `<inertia>`.
+        mass: [kg]; 1 where the file gives none (SDF), 0 in URDF.
+        values: ixx, iyy, izz, ixy, ixz, iyz [kg·m²] in the axes of its `<inertial>`.
+        spans: byte range of each number that is written.
+        end: where a number that is not written can be put in.
+        is_urdf: numbers are attributes, else elements.
+    """
+
+    link: str
+    line: int
+    is_urdf: bool
+    mass: float = 1.0
+    values: dict[str, float] = field(default_factory=dict)
+    spans: dict[str, tuple[int, int]] = field(default_factory=dict)
+    end: int = -1
+
+    @property
+    def six(self) -> tuple[float, float, float, float, float, float]:
+        a, b, c, d, e, f = (self.values[k] for k in KEYS)
+        return a, b, c, d, e, f
+
+
+class _Finder:
+    """Follows expat's events and notes byte offsets."""
+
+    def __init__(self, data: bytes) -> None:
+        self.data, self.stack = data, list[str]()
+        self.links: list[str] = []
+        self.found: list[InertiaText] = []
+        self.mass: float | None = None
+        self.is_urdf = False
+        self.open: InertiaText | None = None
+        self.number_from = -1
+        self.parser = expat.ParserCreate()
+        self.parser.StartElementHandler = self.start
+        self.parser.EndElementHandler = self.end
+        self.parser.EntityDeclHandler = self.entity
+
+    def entity(self, *_: object) -> None:
+        raise ValueError("the file declares an entity")
+
+    def tag_end(self) -> int:
+        """The byte after the `>` of the start tag that is being read."""
+        position, quote = self.parser.CurrentByteIndex, 0
+        while position < len(self.data):
+            byte = self.data[position]
+            if quote:
+                quote = 0 if byte == quote else quote
+            elif byte in b"\"'":
+                quote = byte
+            elif byte == ord(">"):
+                return position + 1
+            position += 1
+        return len(self.data)
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        if not self.stack:
+            self.is_urdf = name == "robot"
+        self.stack.append(name)
+        where = self.stack[-4:]
+        if name == "link":
+            self.links.append(attributes.get("name", ""))
+        elif name == "inertial":
+            self.mass = None
+        elif name == "mass" and where[-2:-1] == ["inertial"]:
+            self.number_from = self.tag_end()
+            if "value" in attributes:
+                self.mass = _number(attributes["value"])
+        elif name == "inertia" and where[-2:-1] == ["inertial"] and self.links:
+            self.open = InertiaText(self.links[-1], self.parser.CurrentLineNumber, self.is_urdf)
+            self.open.values = dict(_SDF_DEFAULTS) if not self.is_urdf else dict.fromkeys(KEYS, 0.0)
+            if self.is_urdf:
+                self.attributes(self.open)
+        elif name in KEYS and self.open is not None:
+            self.number_from = self.tag_end()
+
+    def attributes(self, inertia: InertiaText) -> None:
+        begin, finish = self.parser.CurrentByteIndex, self.tag_end()
+        tag = self.data[begin:finish]
+        for key in KEYS:
+            match = re.search(rb"\s" + key.encode() + rb"\s*=\s*([\"'])(.*?)\1", tag, re.DOTALL)
+            if match:
+                inertia.values[key] = _number(match[2].decode())
+                inertia.spans[key] = (begin + match.start(2), begin + match.end(2))
+        inertia.end = finish - (2 if tag.endswith(b"/>") else 1)
+
+    def end(self, name: str) -> None:
+        position = self.parser.CurrentByteIndex
+        self.stack.pop()
+        if name in KEYS and self.open is not None and self.stack[-1:] == ["inertia"]:
+            self.open.spans[name] = (self.number_from, position)
+            self.open.values[name] = _number(self.data[self.number_from : position].decode())
+        elif name == "mass" and self.stack[-1:] == ["inertial"] and not self.is_urdf:
+            self.mass = _number(self.data[self.number_from : position].decode())
+        elif name == "inertia" and self.open is not None:
+            if not self.is_urdf:
+                self.open.end = position
+            self.found.append(self.open)
+            self.open = None
+        elif name == "inertial" and self.found and self.mass is not None and self.links:
+            if self.found[-1].link == self.links[-1]:
+                self.found[-1].mass = self.mass
+        elif name == "link":
+            self.links.pop()
+
+
+def find_inertias(path: Path) -> tuple[bytes, list[InertiaText]]:
+    """A file and every inertia in it, in document order.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is no XML in UTF-8 whose numbers can be read.
+    """
+    with path.open("rb") as stream:
+        data = stream.read(MAX_BYTES + 1)
+    if len(data) > MAX_BYTES:
+        raise ValueError(f"is larger than {MAX_BYTES} bytes")
+    data.decode("utf-8")
+    finder = _Finder(data)
+    try:
+        finder.parser.Parse(data, True)
+    except expat.ExpatError as error:
+        raise ValueError(f"is broken XML: {error}") from None
+    return data, finder.found
+
+
+def with_numbers(data: bytes, changes: Sequence[tuple[InertiaText, Mapping[str, str]]]) -> bytes:
+    """The file with the numbers of some inertias replaced (by key, as text) and every other byte as it was."""
+    edits: list[tuple[int, int, bytes]] = []
+    for inertia, texts in changes:
+        for key, text in texts.items():
+            if key in inertia.spans:
+                edits.append((*inertia.spans[key], text.encode()))
+            else:
+                added = f' {key}="{text}"' if inertia.is_urdf else f"<{key}>{text}</{key}>"
+                edits.append((inertia.end, inertia.end, added.encode()))
+    out: list[bytes] = []
+    position = 0
+    for begin, finish, new in sorted(edits, key=lambda e: e[0]):
+        out += [data[position:begin], new]
+        position = finish
+    return b"".join([*out, data[position:]])
+
+
+def _number(text: str) -> float:
+    return float(text.strip())

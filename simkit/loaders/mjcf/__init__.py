@@ -1,0 +1,1 @@
+"""MuJoCo's own format, MJCF, as a world or as a model."""

@@ -1,0 +1,105 @@
+"""Joints of a compiled file."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from simkit.loaders.mjcf.placed import Found, Placed
+from simkit.pose import Pose
+from simkit.scene import Axis, Mimic, SceneJoint
+
+if TYPE_CHECKING:
+    from simkit.loaders.mjcf.model import ModelReader
+
+_FREE, _BALL, _SLIDE, _HINGE = range(4)
+_EQUAL_JOINTS: Final = 2
+_TYPES: Final = {_BALL: "ball", _SLIDE: "prismatic"}
+
+
+def read_joints(reader: ModelReader, body: int, placed: Placed, place: Pose, found: Found) -> list[SceneJoint]:
+    """The joints that carry a body; one that is rigidly held hangs on a fixed joint."""
+    model = reader.model
+    child, parent = reader.scoped_link(body, placed), reader.scoped_link(int(model.body_parentid[body]), placed)
+    if int(model.body_parentid[body]) == 0:
+        parent = "world"
+    numbers = list(range(model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body]))
+    is_free = bool(numbers) and int(model.jnt_type[numbers[0]]) == _FREE
+    pose, where = place @ reader.pose(body), reader.where("body", reader.name("BODY", body))
+    if is_free and placed.base != "fixed":
+        found.free[child] = reader.name("JOINT", numbers[0])
+        return []
+    if not numbers and parent == "world" and placed.base == "floating":
+        found.free[child] = f"{reader.name('BODY', body)}_free"
+        return []
+    if is_free or not numbers:
+        if int(model.body_mocapid[body]) >= 0:
+            return []
+        name = f"{reader.link_name(body, placed)}_fixed"
+        while reader.spec.joint(name) is not None:
+            name += "_"
+        scoped = f"{placed.scoped}::{name}"
+        found.joints[scoped] = ""
+        return [SceneJoint(name, scoped, "fixed", parent, child, pose, where=where)]
+    return [_joint(reader, j, placed, pose, parent, child, found) for j in numbers]
+
+
+def _joint(
+    reader: ModelReader, j: int, placed: Placed, body: Pose, parent: str, child: str, found: Found
+) -> SceneJoint:
+    model, full = reader.model, reader.name("JOINT", j)
+    name = full.removeprefix(placed.strip)
+    scoped = f"{placed.scoped}::{name}"
+    found.joints[scoped] = full
+    axes: tuple[Axis, ...] = ()
+    kind = int(model.jnt_type[j])
+    limited = bool(model.jnt_limited[j])
+    if kind != _BALL:
+        axes = (_axis(reader, j, body),)
+    return SceneJoint(
+        name=name,
+        scoped=scoped,
+        type=_TYPES.get(kind, "revolute" if limited else "continuous"),
+        parent_link=parent,
+        child_link=child,
+        pose_world=body @ Pose(model.jnt_pos[j]),
+        axes=axes,
+        where=reader.where("joint", full),
+    )
+
+
+def _axis(reader: ModelReader, j: int, body: Pose) -> Axis:
+    model = reader.model
+    dof = int(model.jnt_dofadr[j])
+    x, y, z = (float(v) for v in model.jnt_axis[j])
+    wx, wy, wz = (float(v) for v in body.rotate((x, y, z)))
+    low, high = (float(v) for v in model.jnt_range[j]) if model.jnt_limited[j] else (-math.inf, math.inf)
+    effort = float(abs(model.jnt_actfrcrange[j]).max()) if model.jnt_actfrclimited[j] else math.inf
+    return Axis(
+        xyz_world=(wx, wy, wz),
+        xyz_joint=(x, y, z),
+        lower=low,
+        upper=high,
+        effort=effort,
+        damping=float(model.dof_damping[dof]),
+        friction=float(model.dof_frictionloss[dof]),
+        stiffness=float(model.jnt_stiffness[j]),
+        spring_ref=float(model.qpos_spring[model.jnt_qposadr[j]]),
+        mimic=_mimic(reader, j),
+    )
+
+
+def _mimic(reader: ModelReader, j: int) -> Mimic | None:
+    """The leader of a joint that an equality ties to another in a straight line."""
+    model = reader.model
+    for e in reader.equalities_of.get(j, ()):
+        data = model.eq_data[e]
+        if int(model.eq_type[e]) != _EQUAL_JOINTS:
+            continue
+        leader = int(model.eq_obj2id[e])
+        if leader < 0 or not model.eq_active0[e] or data[2:5].any():
+            continue
+        rest, start = (float(model.qpos0[model.jnt_qposadr[k]]) for k in (j, leader))
+        ratio = float(data[1])
+        return Mimic(reader.name("JOINT", leader), 0, ratio, rest + float(data[0]) - ratio * start)
+    return None

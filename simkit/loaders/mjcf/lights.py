@@ -1,0 +1,56 @@
+"""Lights of a compiled file."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.loaders.mjcf.placed import Found
+from simkit.pose import Pose
+from simkit.scene import SceneLight
+
+if TYPE_CHECKING:
+    from simkit.loaders.mjcf.model import ModelReader
+
+_TYPES: Final = {0: "spot", 1: "directional"}
+
+
+def read_lights(reader: ModelReader, body: int, link: str, pose: Pose, found: Found) -> tuple[SceneLight, ...]:
+    """The lights of a body.
+
+    Args:
+        link: its link's scoped name; empty for those of the world.
+        pose: of the body in the world.
+    """
+    return tuple(_light(reader, i, link, pose, found) for i in reader.lights_of.get(body, ()))
+
+
+def _light(reader: ModelReader, i: int, link: str, body: Pose, found: Found) -> SceneLight:
+    model, name = reader.model, reader.name("LIGHT", i)
+    pose = body @ Pose(model.light_pos[i])
+    x, y, z = (float(v) for v in model.light_dir[i])
+    wx, wy, wz = (float(v) for v in pose.rotate((x, y, z)))
+    scoped = f"{link}::{name}" if link else name
+    found.lights[scoped] = (name, link)
+    constant, linear, quadratic = (float(v) for v in model.light_attenuation[i])
+    return SceneLight(
+        name=name,
+        scoped=scoped,
+        type=_TYPES.get(int(model.light_type[i]), "point"),
+        pose_world=pose,
+        direction=(x, y, z),
+        direction_world=(wx, wy, wz),
+        link=link,
+        diffuse=_colour(model.light_diffuse[i]),
+        specular=_colour(model.light_specular[i]),
+        attenuation=(float(model.light_range[i]), constant, linear, quadratic),
+        spot=(0.0, 2.0 * math.radians(float(model.light_cutoff[i])), float(model.light_exponent[i])),
+        cast_shadows=bool(model.light_castshadow[i]),
+        on=bool(model.light_active[i]),
+        where=reader.where("light", name),
+    )
+
+
+def _colour(rgb: Any) -> tuple[float, float, float, float]:
+    r, g, b = (float(c) for c in rgb)
+    return r, g, b, 1.0

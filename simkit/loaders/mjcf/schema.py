@@ -1,0 +1,111 @@
+"""Which elements and attributes MuJoCo's reader knows, so that every unknown one is told of in one pass.
+
+The reader itself stops at the first. Its own table of the format is asked, so this cannot go stale.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Final
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.loaders.mjcf.engine import schema_text
+from simkit.params import Params
+
+_LINE: Final = re.compile(r"^( *)(\S+) \((.)\) *(.*)$")
+_INDENT: Final = 3
+_OUTSIDE: Final[dict[str, frozenset[str]]] = {
+    "include": frozenset({"file"}),
+    "frame": frozenset(("name", "class", "childclass", "pos", "quat", "axisangle", "xyaxes", "zaxis", "euler")),
+    "replicate": frozenset(("count", "offset", "euler", "sep", "prefix", "childclass")),
+}
+"""Elements that the reader takes apart before it looks at its table."""
+
+
+@dataclass(slots=True)
+class _Kind:
+    recursive: bool = False
+    attributes: set[str] = field(default_factory=set)
+    children: dict[str, _Kind] = field(default_factory=dict)
+
+
+@lru_cache(maxsize=1)
+def _table() -> _Kind | None:
+    """The outermost element's kind; None where the engine's table has another form than it had."""
+    stack: list[tuple[int, _Kind]] = []
+    root: _Kind | None = None
+    for line in schema_text().splitlines():
+        found = _LINE.match(line)
+        if found is None:
+            if stack:
+                stack[-1][1].attributes.update(line.split())
+            continue
+        level = len(found[1]) // _INDENT
+        kind = _Kind(found[3] == "R", set(found[4].split()))
+        while stack and stack[-1][0] >= level:
+            stack.pop()
+        if stack:
+            for name in ("worldbody", "body") if found[2] == "(world)body" else (found[2],):
+                stack[-1][1].children[name] = kind
+        else:
+            root = kind
+        stack.append((level, kind))
+    body = root.children.get("body") if root is not None else None
+    return root if body is not None and "geom" in body.children and "pos" in body.attributes else None
+
+
+def check_names(root: Params, diagnostics: Diagnostics) -> None:
+    """Records an error for every element and attribute that MJCF does not have, with the closest name."""
+    table = _table()
+    if table is not None:
+        _walk(root, table, diagnostics)
+
+
+def _walk(element: Params, kind: _Kind, diagnostics: Diagnostics) -> None:
+    for child in element.children:
+        name = child.name
+        if name in _OUTSIDE:
+            _attributes(child, _OUTSIDE[name], diagnostics)
+            _walk(child, kind, diagnostics)
+            continue
+        below = kind if kind.recursive and name == _own_name(element, name) else kind.children.get(name)
+        if below is None:
+            known = [*kind.children, *_OUTSIDE, *(("body", "default") if kind.recursive else ())]
+            hint = did_you_mean(name, known) or _elsewhere(name)
+            diagnostics.error("SK-MJCF-002", f"<{element.name}> has no element <{name}>", child.where, hint)
+            continue
+        _attributes(child, below.attributes, diagnostics)
+        _walk(child, below, diagnostics)
+
+
+def _own_name(element: Params, name: str) -> str:
+    """The name by which an element that may hold others of its kind does so."""
+    if name == "body" and element.name in ("worldbody", "body", *_OUTSIDE):
+        return "body"
+    return "default" if name == "default" and element.name == "default" else ""
+
+
+def _attributes(element: Params, known: set[str] | frozenset[str], diagnostics: Diagnostics) -> None:
+    for name in element.attributes:
+        if name not in known and ":" not in name:
+            hint = did_you_mean(name, known) or (f"known are {', '.join(sorted(known))}" if len(known) < 12 else "")
+            diagnostics.error(
+                "SK-MJCF-003",
+                f"<{element.name}> has no attribute {name!r} (= {_short(element, name)})",
+                element.where,
+                hint,
+            )
+
+
+def _short(element: Params, name: str) -> str:
+    text = element.attributes[name]
+    return repr(text if len(text) <= 40 else text[:37] + "...")
+
+
+def _elsewhere(name: str) -> str:
+    """Where an element belongs that stands in the wrong place."""
+    table = _table()
+    places = [] if table is None else [f"<{p}>" for p, kind in table.children.items() if name in kind.children]
+    return f"<{name}> belongs in {' or '.join(places[:3])}" if places else ""

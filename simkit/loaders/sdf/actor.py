@@ -1,0 +1,53 @@
+"""`<actor>`: a person or animal that follows a script. It is read in full and does not move yet."""
+
+from __future__ import annotations
+
+from simkit.diagnostics import Diagnostics
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.params import Params
+from simkit.pose import Pose
+from simkit.scene import Animation, SceneActor, Trajectory, Waypoint
+
+
+def read_actor(element: Params, name: str, pose_world: Pose, diagnostics: Diagnostics) -> SceneActor:
+    """An actor whose pose is resolved; a warning says that it stands still."""
+    diagnostics.warning(
+        "SK-SDF-012", f"<actor>: actors are not simulated; {name!r} is read and does not move", element.where
+    )
+    element.child("pose")
+    skin, script = element.block("skin"), element.block("script")
+    return SceneActor(
+        name=name,
+        pose_world=pose_world,
+        skin=skin.text("filename", ""),
+        skin_scale=skin.number("scale", 1.0),
+        animations=tuple(_animation(a) for a in element.all("animation")),
+        trajectories=tuple(_trajectory(t) for t in script.all("trajectory")),
+        loop=script.boolean("loop", True),
+        delay_start=script.number("delay_start", 0.0, minimum=0.0),
+        auto_start=script.boolean("auto_start", True),
+        plugins=read_plugins(element.all("plugin"), name),
+        where=element.where,
+    )
+
+
+def _animation(element: Params) -> Animation:
+    return Animation(
+        element.attribute("name"),
+        element.text("filename", required=True),
+        element.number("scale", 1.0),
+        element.boolean("interpolate_x", False),
+    )
+
+
+def _trajectory(element: Params) -> Trajectory:
+    number = element.attribute("id", "0").strip()
+    if not (number.isascii() and number.lstrip("-").isdigit()):
+        element.error("SK-PARAM-002", f"found <trajectory id={number!r}>, allowed is a whole number")
+        number = "0"
+    points = [Waypoint(p.number("time", required=True), p.pose("pose")) for p in element.all("waypoint")]
+    for before, after, waypoint in zip(points, points[1:], element.all("waypoint")[1:], strict=False):
+        if after.time < before.time:
+            waypoint.error("SK-PARAM-002", f"found a waypoint at {after.time:g} s after one at {before.time:g} s")
+    tension = element.number("tension", 0.0, minimum=0.0, maximum=1.0)
+    return Trajectory(int(number), element.attribute("type"), tuple(points), tension)

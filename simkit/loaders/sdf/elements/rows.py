@@ -1,0 +1,119 @@
+"""The form of the tables: rows of text, and the schema that they make together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+
+class Use(Enum):
+    """What becomes of an element; the sign stands for it in a table's text."""
+
+    USED = "="
+    APPROXIMATED = "~"
+    IGNORED = "-"
+    NOT_SIMULATED = "!"
+
+    @property
+    def read(self) -> bool:
+        """Whether a reader asks for it."""
+        return self in (Use.USED, Use.APPROXIMATED)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One element or attribute.
+
+    Attributes:
+        path: from the table's own element: names joined with `/`, an attribute's with `@` before it.
+        use: what becomes of it.
+        becomes: the same in words.
+        like: the table that describes its content; empty where this table goes on.
+    """
+
+    path: str
+    use: Use
+    becomes: str
+    like: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """The rows of one element.
+
+    Attributes:
+        element: the element whose content they describe; also the table's name.
+        rows: in the order of the page.
+        open: whether names beyond the rows are somebody else's to know (a plugin's, a sensor's kind's).
+    """
+
+    element: str
+    rows: tuple[Row, ...]
+    open: bool = False
+
+
+def table(element: str, text: str, open_: bool = False) -> Table:
+    """A table from lines `path sign what it becomes > other table`; the sign is that of a `Use`."""
+    rows = []
+    for line in text.strip().splitlines():
+        left, _, like = line.partition(" > ")
+        path, sign, becomes = left.split(None, 2)
+        rows.append(Row(path, Use(sign), becomes.strip(), like.strip()))
+    return Table(element, tuple(rows), open_)
+
+
+@dataclass
+class Schema:
+    """All tables as one tree.
+
+    A place in it is a text: the name of a table, or such a name and a path inside it (`link/velocity_decay`).
+    """
+
+    tables: tuple[Table, ...]
+    rows: dict[str, Row] = field(init=False)
+    _children: dict[str, list[str]] = field(init=False)
+    _open: frozenset[str] = field(init=False)
+    _elements: dict[str, list[str]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.rows, self._children = {}, {}
+        for one in self.tables:
+            self._children.setdefault(one.element, [])
+            for row in one.rows:
+                place = f"{one.element}/{row.path}"
+                self.rows[place] = row
+                parent, _, name = place.rpartition("/")
+                self._children.setdefault(parent, []).append(name)
+        self._open = frozenset(one.element for one in self.tables if one.open)
+        self._elements = {
+            place: [n for n in names if not n.startswith(("@", "#"))] for place, names in self._children.items()
+        }
+
+    def row(self, place: str, name: str) -> Row | None:
+        """The row of a child (or `@attribute`) at a place."""
+        return self.rows.get(f"{place}/{name}")
+
+    def inside(self, place: str, name: str) -> str:
+        """The place of a child's content."""
+        row = self.row(place, name)
+        return row.like if row is not None and row.like else f"{place}/{name}"
+
+    def elements(self, place: str) -> list[str]:
+        """Names of the elements at a place."""
+        return self._elements.get(place, [])
+
+    def attributes(self, place: str) -> list[str]:
+        """Names of the attributes at a place."""
+        return [n[1:] for n in self._children.get(place, ()) if n.startswith("@")]
+
+    def has_text(self, place: str) -> bool:
+        """Whether an element that holds others may also have a text of its own (some had one in old versions)."""
+        return f"{place}/#text" in self.rows
+
+    def is_open(self, place: str) -> bool:
+        """Whether unknown names are not this schema's to judge."""
+        return place in self._open
+
+    def homes(self, name: str) -> list[str]:
+        """Places that have an element of this name."""
+        return [place for place, names in self._children.items() if name in names]

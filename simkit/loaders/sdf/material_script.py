@@ -1,0 +1,183 @@
+"""OGRE material scripts (`.material`) found through a visual's `<script><uri>`: colours, texture, inheritance.
+
+Of a script's techniques and passes the first value of each kind counts; shaders, animations and blending do not.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Final
+
+from simkit.loaders.sdf.gazebo_materials import gazebo_material
+from simkit.scene.model import Colour
+
+_LARGEST_SCRIPT: Final = 1 << 20
+_MOST_SCRIPTS: Final = 200
+_DEEPEST: Final = 16
+_COLOURS: Final = ("ambient", "diffuse", "specular", "emissive")
+_TOKEN: Final = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"[^"\n]*"|[{}]|[^\s{}"]+|\n', re.DOTALL)
+
+
+@dataclass(frozen=True)
+class OgreMaterial:
+    """What a script says; colours None where it says nothing.
+
+    Attributes:
+        parent: name of the material it begins as.
+        texture: name of a picture.
+        folder: of the script.
+        is_transparent: whether it blends by alpha.
+    """
+
+    name: str
+    folder: Path
+    parent: str = ""
+    colours: dict[str, Colour] = field(default_factory=dict)
+    texture: str = ""
+    is_transparent: bool = False
+    is_double_sided: bool = False
+
+
+def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
+    """The material of that name in script files and folders, with what it inherits; None where there is none."""
+    known: dict[str, OgreMaterial] = {}
+    for script in _scripts(places):
+        for material in _materials(script):
+            known.setdefault(material.name, material)
+    found = known.get(name)
+    seen = {name}
+    while found is not None and found.parent and found.parent not in seen:
+        seen.add(found.parent)
+        above = known.get(found.parent)
+        if above is None:
+            of_gazebo = gazebo_material(found.parent)
+            colours = {k: getattr(of_gazebo, k) for k in _COLOURS} if of_gazebo is not None else {}
+            return replace(found, parent="", colours={**colours, **found.colours})
+        found = replace(
+            found,
+            parent=above.parent,
+            colours={**above.colours, **found.colours},
+            texture=found.texture or above.texture,
+            is_transparent=found.is_transparent or above.is_transparent,
+            is_double_sided=found.is_double_sided or above.is_double_sided,
+        )
+    return found
+
+
+def find_texture(material: OgreMaterial, places: Sequence[Path]) -> Path | None:
+    """The picture that a material names: in the folders given, beside its script, or in `textures` beside that."""
+    folders = [p if p.is_dir() else p.parent for p in places]
+    folders += [material.folder, material.folder.parent / "textures"]
+    name = material.texture.replace("\\", "/")
+    for folder in dict.fromkeys(folders):
+        path = Path(os.path.abspath(folder / name))  # noqa: PTH100 - resolve() would follow links
+        real, home = Path(os.path.realpath(path)), Path(os.path.realpath(folder))
+        if folder in path.parents and home in real.parents and path.is_file():
+            return path
+    return None
+
+
+def _scripts(places: Sequence[Path]) -> list[Path]:
+    files: list[Path] = []
+    for place in places:
+        try:
+            files += sorted(place.glob("*.material"))[:_MOST_SCRIPTS] if place.is_dir() else [place]
+        except OSError:
+            continue
+    return [f for f in dict.fromkeys(files) if f.suffix == ".material"][:_MOST_SCRIPTS]
+
+
+def _materials(file: Path) -> tuple[OgreMaterial, ...]:
+    try:
+        stat = file.stat()
+        if stat.st_size > _LARGEST_SCRIPT or not file.is_file():
+            return ()
+        return _parsed(file, stat.st_mtime_ns)
+    except OSError:
+        return ()
+
+
+@lru_cache(maxsize=256)
+def _parsed(file: Path, _version: int) -> tuple[OgreMaterial, ...]:
+    text = file.read_text(encoding="utf-8", errors="replace")
+    return tuple(_read(list(_lines(text)), file.parent))
+
+
+def _lines(text: str) -> Iterator[list[str]]:
+    """The script's words, line by line; braces stand in lines of their own."""
+    line: list[str] = []
+    for match in _TOKEN.finditer(text):
+        word = match.group()
+        if word.startswith(("//", "/*")):
+            continue
+        if word == "\n" or word in "{}":
+            if line:
+                yield line
+            line = []
+            if word != "\n":
+                yield [word]
+        else:
+            line.append(word.strip('"'))
+    if line:
+        yield line
+
+
+def _read(lines: list[list[str]], folder: Path) -> Iterator[OgreMaterial]:
+    depth, current, header = 0, None, None
+    for words in lines:
+        if words == ["{"]:
+            depth += 1
+            if header is not None and depth == 1:
+                current, header = header, None
+        elif words == ["}"]:
+            depth = max(0, depth - 1)
+            if depth == 0 and current is not None:
+                yield current
+                current = None
+        elif depth == 0:
+            header = _header(words, folder)
+        elif current is not None and depth <= _DEEPEST:
+            current = _with(current, words)
+    if current is not None:
+        yield current
+
+
+def _header(words: list[str], folder: Path) -> OgreMaterial | None:
+    """`[abstract] material NAME [: PARENT]`."""
+    words = words[1:] if words[0] == "abstract" else words
+    if words[0] != "material" or len(words) < 2:
+        return None
+    name, _, parent = " ".join(words[1:]).partition(":")
+    return OgreMaterial(name.strip(), folder, parent.strip())
+
+
+def _with(material: OgreMaterial, words: list[str]) -> OgreMaterial:
+    key, *values = words
+    if key in _COLOURS and key not in material.colours:
+        colour = _colour(values, 3 if key == "specular" and len(values) == 4 else 4)
+        return material if colour is None else replace(material, colours={**material.colours, key: colour})
+    if key == "texture" and values and not material.texture:
+        return replace(material, texture=values[0])
+    if key == "set_texture_alias" and len(values) == 2:
+        return replace(material, texture=values[1])
+    if key == "scene_blend" and values[:1] == ["alpha_blend"]:
+        return replace(material, is_transparent=True)
+    if key == "cull_hardware" and values[:1] == ["none"]:
+        return replace(material, is_double_sided=True)
+    return material
+
+
+def _colour(values: list[str], most: int) -> Colour | None:
+    """Three or four numbers; of a specular colour the last of four is its shininess."""
+    try:
+        numbers = [min(1.0, max(0.0, float(v))) for v in values[:most]]
+    except ValueError:
+        return None
+    if len(numbers) < 3 or any(v != v for v in numbers):
+        return None
+    return numbers[0], numbers[1], numbers[2], numbers[3] if len(numbers) > 3 else 1.0

@@ -1,0 +1,174 @@
+"""`<population>`: many copies of one model, placed by a rule, as Gazebo Classic expands it.
+
+The places at random come from a stream of their own, named by the world and the population, so that the same file gives
+the same places in every process and one population never moves another.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.names import read_name
+from simkit.loaders.sdf.parts import Source, read_pose
+from simkit.loaders.sdf.workspace import MAX_MODELS, SdfFile, Workspace
+from simkit.params import Params
+from simkit.pose import Pose
+
+Points = npt.NDArray[np.float64]
+DISTRIBUTIONS = ("random", "uniform", "grid", "linear-x", "linear-y", "linear-z")
+_CODE = "SK-SDF-033"
+_SAMPLES = 10_000
+_ROUNDS = 100
+
+
+@dataclass(frozen=True, slots=True)
+class _Region:
+    """Where the copies may stand, in the population's own axes: a box from 0 to `size`, or a cylinder about z."""
+
+    kind: str
+    size: tuple[float, float, float]
+
+    def drawn(self, count: int, stream: np.random.Generator) -> Points:
+        """Points at random; in a cylinder as many near the axis as far from it, which is Gazebo's rule."""
+        numbers: Points = stream.random((count, 3))
+        if self.kind == "box":
+            return np.asarray(numbers * np.array(self.size))
+        angle, radius = 2 * math.pi * numbers[:, 0], self.size[0] * numbers[:, 1]
+        return np.column_stack((radius * np.cos(angle), radius * np.sin(angle), self.size[2] * numbers[:, 2]))
+
+
+def population_sources(population: Params, world: str, file: SdfFile, workspace: Workspace) -> list[Source]:
+    """The copies, named `model_clone_0`, `model_clone_1`, ...; none, with errors recorded, where it says no place.
+
+    A copy stands upright at its point: like Gazebo, what the model's own `<pose>` says does not count.
+    """
+    diagnostics = workspace.diagnostics
+    name = read_name(population, diagnostics, file.version)
+    models = population.all("model")
+    pose, base = read_pose(population)
+    if len(models) != 1:
+        population.error(_CODE, f"population {name!r} needs one <model>, it has {len(models)}")
+        return []
+    model = read_name(models[0], diagnostics, file.version)
+    models[0].child("pose")
+    points = _points(population, name, f"{world}::{name}", pose)
+    if not model or points is None:
+        models[0].mark_all_read()
+        return []
+    return [
+        Source(f"{model}_clone_{i}", models[0], file, Pose(tuple(point)), base, where=population.where)
+        for i, point in enumerate(points)
+    ]
+
+
+def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | None:
+    """Where the copies stand, in the frame that the population's pose speaks of."""
+    rule = population.block("distribution")
+    kind = rule.text("type", "random")
+    if kind not in DISTRIBUTIONS:
+        place = rule.child("type") or rule
+        known = ", ".join(DISTRIBUTIONS)
+        place.error(_CODE, f"distribution {kind!r} is not one of {known}", did_you_mean(kind, DISTRIBUTIONS))
+        return None
+    if kind == "grid":
+        return _placed(_grid(population, rule, name), pose, np.zeros(3))
+    count = population.integer("model_count", 1, minimum=1)
+    if count > MAX_MODELS:
+        population.error(_CODE, f"population {name!r} has {count} models, allowed are {MAX_MODELS}")
+        return None
+    region = _region(population, name)
+    if region is None:
+        return None
+    corner = np.array(region.size) / 2 if region.kind == "box" else np.zeros(3)
+    if kind.startswith("linear"):
+        if region.kind != "box":
+            population.error(_CODE, f"population {name!r}: distribution {kind!r} needs a <box>")
+            return None
+        return _placed(_line(region.size, count, "xyz".index(kind[-1])), pose, corner)
+    generator = _stream(stream)
+    points = region.drawn(count, generator) if kind == "random" else _spread(region, count, generator)
+    return _placed(points, pose, corner)
+
+
+def _placed(points: Points | None, pose: Pose, corner: Points) -> Points | None:
+    """Points turned about the population's pose, which is the middle of a box (Gazebo does not turn the half size)."""
+    if points is None:
+        return None
+    return points @ pose.matrix.T + (np.asarray(pose.position) - corner)
+
+
+def _region(population: Params, name: str) -> _Region | None:
+    box, cylinder = population.child("box"), population.child("cylinder")
+    if box is not None:
+        size = box.vector3("size", (1.0, 1.0, 1.0))
+        region = _Region("box", size)
+    elif cylinder is not None:
+        radius = cylinder.number("radius", 1.0)
+        region = _Region("cylinder", (radius, radius, cylinder.number("length", 1.0)))
+    else:
+        population.error(_CODE, f"population {name!r} needs a <box> or a <cylinder> to stand in")
+        return None
+    if min(region.size) <= 0:
+        (box or cylinder or population).error(_CODE, f"population {name!r} stands in a {region.kind} without a volume")
+        return None
+    return region
+
+
+def _grid(population: Params, rule: Params, name: str) -> Points | None:
+    """Rows along y, columns along x, the middle of the grid at the population's pose."""
+    rows, cols = rule.integer("rows", 1, minimum=1), rule.integer("cols", 1, minimum=1)
+    if rows * cols > MAX_MODELS:
+        population.error(_CODE, f"population {name!r} has {rows * cols} models, allowed are {MAX_MODELS}")
+        return None
+    step = np.array(rule.vector3("step", (1.0, 1.0, 0.0)))
+    column, row = np.meshgrid(np.arange(cols) - (cols - 1) / 2, np.arange(rows) - (rows - 1) / 2)
+    return np.column_stack((column.ravel() * step[0], row.ravel() * step[1], np.zeros(rows * cols)))
+
+
+def _line(size: tuple[float, float, float], count: int, axis: int) -> Points:
+    """Equal distances from one end of the box, in the middle of it otherwise."""
+    points = np.tile(np.array(size) / 2, (count, 1))
+    points[:, axis] = size[axis] * np.arange(count) / count
+    return points
+
+
+def _spread(region: _Region, count: int, stream: np.random.Generator) -> Points:
+    """Evenly spread places: the means of as many clusters of points drawn from the region (Lloyd's algorithm)."""
+    cloud = region.drawn(max(_SAMPLES, 4 * count), stream)
+    centres = cloud[:count].copy()
+    if count > 500:  # clusters of four points say no more than the points do
+        return centres
+    nearest: npt.NDArray[np.intp] | None = None
+    for _ in range(_ROUNDS):
+        now = _nearest(cloud, centres)
+        if nearest is not None and np.array_equal(now, nearest):
+            break
+        nearest = now
+        sizes = np.bincount(nearest, minlength=count)
+        for axis in range(3):
+            sums = np.bincount(nearest, weights=cloud[:, axis], minlength=count)
+            centres[:, axis] = np.where(sizes > 0, sums / np.maximum(sizes, 1), centres[:, axis])
+    return centres
+
+
+def _nearest(cloud: Points, centres: Points) -> npt.NDArray[np.intp]:
+    """The nearest centre of each point; sums of squares, not a product of matrices, whose bits depend on threads."""
+    best = np.full(len(cloud), np.inf)
+    index = np.zeros(len(cloud), dtype=np.intp)
+    for i, centre in enumerate(centres):
+        distance = ((cloud - centre) ** 2).sum(axis=1)
+        closer = distance < best
+        best[closer], index[closer] = distance[closer], i
+    return index
+
+
+def _stream(name: str) -> np.random.Generator:
+    """A stream of random numbers that depends on its name alone."""
+    words = np.frombuffer(hashlib.sha256(name.encode()).digest(), dtype="<u4")
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence([int(w) for w in words])))

@@ -1,0 +1,85 @@
+"""What a world is in: the air and its wind, the place on a planet, colours and shadows."""
+
+from __future__ import annotations
+
+import math
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.loaders.sdf.material import read_colour
+from simkit.params import Params
+from simkit.scene import Atmosphere, SphericalCoordinates, Surroundings
+
+# Semi-axes [m] of the surfaces that have a name: WGS84 (NIMA TR8350.2) and the Moon's mean sphere.
+SURFACES = {"EARTH_WGS84": (6378137.0, 6356752.314245), "MOON_SCS": (1737400.0, 1737400.0), "CUSTOM_SURFACE": None}
+
+
+def read_surroundings(world: Params) -> Surroundings:
+    """Colours and shadows of the `<scene>`."""
+    scene = world.block("scene")
+    return Surroundings(
+        ambient=read_colour(scene, "ambient", (0.4, 0.4, 0.4, 1.0)),
+        background=read_colour(scene, "background", (0.7, 0.7, 0.7, 1.0)),
+        shadows=scene.boolean("shadows", True),
+        grid=scene.boolean("grid", True),
+        sky=scene.has("sky"),
+    )
+
+
+def read_quality(world: Params) -> str:
+    """`<simkit:quality>` of the scene: fast, gazebo or high."""
+    return world.block("scene").choice("simkit:quality", ("fast", "gazebo", "high"), "fast")
+
+
+def read_atmosphere(world: Params, diagnostics: Diagnostics) -> Atmosphere:
+    """The air at the origin; only the adiabatic kind is known to the format."""
+    block = world.block("atmosphere")
+    kind = block.attribute("type", "adiabatic") or "adiabatic"
+    if kind != "adiabatic":
+        hint = did_you_mean(kind, ("adiabatic",))
+        diagnostics.error("SK-SDF-036", f"<atmosphere type={kind!r}>: the one type is adiabatic", block.where, hint)
+    return Atmosphere(
+        temperature=block.number("temperature", 288.15, minimum=0.0),
+        temperature_gradient=block.number("temperature_gradient", -0.0065),
+        pressure=block.number("pressure", 101325.0, minimum=0.0),
+        where=block.where,
+    )
+
+
+def read_spherical_coordinates(world: Params, diagnostics: Diagnostics) -> SphericalCoordinates | None:
+    """Where on a planet the origin lies; angles are degrees in the file."""
+    block = world.child("spherical_coordinates")
+    if block is None:
+        return None
+    orientation = block.text("world_frame_orientation", "ENU")
+    if orientation != "ENU":
+        place = block.child("world_frame_orientation") or block
+        message = f"<world_frame_orientation> is {orientation!r}; the one that exists is ENU, which is used"
+        diagnostics.warning("SK-SDF-012", message, place.where)
+    equatorial, polar = _surface(block, diagnostics)
+    return SphericalCoordinates(
+        latitude=math.radians(block.number("latitude_deg", 0.0, minimum=-90, maximum=90)),
+        longitude=math.radians(block.number("longitude_deg", 0.0, minimum=-360, maximum=360)),
+        elevation=block.number("elevation", 0.0, minimum=-1e9, maximum=1e9),
+        heading=math.radians(block.number("heading_deg", 0.0, minimum=-1e6, maximum=1e6)),
+        where=block.where,
+        surface=block.text("surface_model", "EARTH_WGS84"),
+        equatorial=equatorial,
+        polar=polar,
+    )
+
+
+def _surface(block: Params, diagnostics: Diagnostics) -> tuple[float, float]:
+    """Semi-axes [m] of the surface; a custom one says its own."""
+    name = block.text("surface_model", "EARTH_WGS84")
+    custom = name == "CUSTOM_SURFACE"
+    axes = tuple(block.number(f"surface_axis_{a}", 0.0, required=custom) for a in ("equatorial", "polar"))
+    place = block.child("surface_model") or block
+    if name not in SURFACES:
+        message = f"<surface_model> {name!r} is not one of {', '.join(SURFACES)}"
+        diagnostics.error("SK-SDF-036", message, place.where, did_you_mean(name, SURFACES))
+    if not custom:
+        return SURFACES.get(name) or SURFACES["EARTH_WGS84"] or (0.0, 0.0)
+    if min(axes) <= 0:
+        message = f"CUSTOM_SURFACE has the semi-axes {axes[0]:g} and {axes[1]:g} m, both must be positive"
+        diagnostics.error("SK-SDF-036", message, place.where)
+    return axes[0], axes[1]

@@ -1,0 +1,260 @@
+"""`<joint>`: axes, limits, dynamics, mimic, and what `<gazebo>` adds to them."""
+
+from __future__ import annotations
+
+import math
+
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.names import named
+from simkit.loaders.sdf.parts import local_pose
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.urdf import extensions
+from simkit.loaders.urdf.draft import Draft, JointDraft
+from simkit.loaders.urdf.reading import missing, number, parse_number, text, vector3
+from simkit.params import Params
+from simkit.pose import Pose, Vector
+from simkit.scene import Axis, Calibration, Mimic, Safety, SceneJoint, SceneSensor
+from simkit.scene.geometry import Vec3
+
+_NO_LIMIT = 1e15
+_ALWAYS_SO = ("preserveFixedJoint", "disableFixedJointLumping")  # every link stays a link here
+
+
+def read_joint(draft: Draft, joint: JointDraft) -> SceneJoint:
+    """A joint whose ends have their places."""
+    element, name = joint.element, joint.name
+    extension = draft.extensions.of(name)
+    pose = draft.links_world[joint.child]
+    for said in _ALWAYS_SO:
+        extension.all(said)
+    own = draft.own(name)
+    return SceneJoint(
+        name=name,
+        scoped=own,
+        type=joint.type,
+        parent_link=draft.own(joint.parent),
+        child_link=draft.own(joint.child),
+        pose_world=pose,
+        axes=_axes(draft, joint, pose, extension),
+        sensors=_sensors(draft, joint, extension),
+        plugins=read_plugins(extension.all("plugin"), own),
+        where=element.where,
+        safety=_safety(element),
+        calibration=_calibration(element),
+    )
+
+
+# ---------------------------------------------------------------------- axes
+
+
+def _axes(draft: Draft, joint: JointDraft, pose: Pose, extension: Params) -> tuple[Axis, ...]:
+    """One axis; for a planar joint x and y of its plane and the normal; none for fixed and floating."""
+    element = joint.element
+    mimic = _mimic(draft, joint)
+    if joint.type in ("fixed", "floating"):
+        for unused in ("axis", "limit", "dynamics"):
+            found = element.child(unused)
+            if found is not None:
+                found.mark_all_read()
+                for attribute in found.attributes:
+                    found.attribute(attribute)
+        return ()
+    direction = _direction(draft, joint)
+    limit = _limits(draft, joint)
+    dynamics = element.block("dynamics")
+    damping = number(dynamics, "damping", 0.0)
+    friction = number(dynamics, "friction", 0.0)
+    stiffness = extensions.number(extension, "springStiffness") or 0.0
+    spring_ref = extensions.number(extension, "springReference") or 0.0
+    directions = (*_plane_axes(direction), direction) if joint.type == "planar" else (direction,)
+    return tuple(
+        Axis(
+            xyz_world=_vec3(pose.rotate(d)),
+            xyz_joint=d,
+            lower=limit[0],
+            upper=limit[1],
+            effort=limit[2],
+            velocity=limit[3],
+            damping=damping,
+            friction=friction,
+            stiffness=stiffness,
+            spring_ref=spring_ref,
+            mimic=mimic if index == 0 else None,
+        )
+        for index, d in enumerate(directions)
+    )
+
+
+def _direction(draft: Draft, joint: JointDraft) -> Vec3:
+    """The unit axis in the joint frame; x where none is given, as URDF has it."""
+    element = joint.element.child("axis")
+    if element is None:
+        return (1.0, 0.0, 0.0)
+    if "xyz" not in element.attributes:
+        missing(element, "xyz", "3 numbers", f"joint {joint.name!r}")
+    x, y, z = vector3(element, "xyz", (1.0, 0.0, 0.0))
+    length = math.sqrt(x * x + y * y + z * z)
+    if not 1e-12 < length < math.inf:
+        message = f"joint {joint.name!r} has an axis of length {length:g}"
+        draft.diagnostics.error("SK-URDF-014", message, element.where)
+        return (1.0, 0.0, 0.0)
+    return (x / length, y / length, z / length)
+
+
+def _plane_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
+    """Two unit vectors that with the normal make a right-handed frame: x and y for a normal along z."""
+    main = max(range(3), key=lambda i: abs(normal[i]))
+    seed = [0.0, 0.0, 0.0]
+    seed[(main + 1) % 3] = 1.0
+    along = sum(s * n for s, n in zip(seed, normal, strict=True))
+    x = [s - along * n for s, n in zip(seed, normal, strict=True)]
+    length = math.sqrt(sum(v * v for v in x))
+    a, b, c = (v / length for v in x)
+    p, q, r = normal
+    return (a, b, c), (q * c - r * b, r * a - p * c, p * b - q * a)
+
+
+def _vec3(values: Vector) -> Vec3:
+    return (float(values[0]), float(values[1]), float(values[2]))
+
+
+# ---------------------------------------------------------------------- limits
+
+
+def _limits(draft: Draft, joint: JointDraft) -> tuple[float, float, float, float]:
+    """Lower, upper, effort, velocity; infinite where there is none."""
+    element, name = joint.element, joint.name
+    limit = element.child("limit")
+    bounded = joint.type in ("revolute", "prismatic")
+    if limit is None:
+        if bounded:
+            hint = "make it continuous" if joint.type == "revolute" else "give it <limit lower= upper= ...>"
+            message = f"{joint.type} joint {name!r} has no <limit>, which URDF requires; it is read as unlimited"
+            draft.diagnostics.warning("SK-URDF-020", message, element.where, hint)
+        return (-math.inf, math.inf, math.inf, math.inf)
+    effort, velocity = _most(draft, joint, limit, "effort"), _most(draft, joint, limit, "velocity")
+    lower, upper = _bound(limit, "lower"), _bound(limit, "upper")
+    if not bounded:
+        return (-math.inf, math.inf, effort, velocity)
+    if "lower" not in limit.attributes and "upper" not in limit.attributes:
+        message = f"{joint.type} joint {name!r}: <limit> has neither lower nor upper; both are 0, it cannot move"
+        draft.diagnostics.warning("SK-URDF-020", message, limit.where)
+    if lower > upper:
+        message = f"joint {name!r} has lower {lower:g} above upper {upper:g}; it is read as unlimited"
+        draft.diagnostics.warning("SK-URDF-019", message, limit.where)
+        return (-math.inf, math.inf, effort, velocity)
+    return (lower, upper, effort, velocity)
+
+
+def _bound(limit: Params, attribute: str) -> float:
+    value = number(limit, attribute, 0.0, finite=False)
+    return math.copysign(math.inf, value) if abs(value) >= _NO_LIMIT else value
+
+
+def _most(draft: Draft, joint: JointDraft, limit: Params, attribute: str) -> float:
+    """An effort or velocity limit; negative or none means unlimited, and so does a velocity of 0."""
+    if attribute not in limit.attributes:
+        limit.attribute(attribute)
+        if joint.type in ("revolute", "prismatic"):
+            message = f"joint {joint.name!r}: <limit> has no {attribute}, which URDF requires; it is read as unlimited"
+            draft.diagnostics.warning("SK-URDF-020", message, limit.where)
+        return math.inf
+    value = number(limit, attribute, -1.0, finite=False)
+    if value == 0 and attribute == "velocity":
+        message = f"joint {joint.name!r} has a velocity limit of 0, under which it could never move; read as unlimited"
+        draft.diagnostics.warning("SK-URDF-019", message, limit.where)
+        return math.inf
+    return math.inf if value < 0 or value >= _NO_LIMIT else value
+
+
+# ---------------------------------------------------------------------- mimic, safety, calibration
+
+
+def _mimic(draft: Draft, joint: JointDraft) -> Mimic | None:
+    """position = multiplier · leader + offset."""
+    element = joint.element.child("mimic")
+    if element is None:
+        return None
+    leader = text(element, "joint")
+    multiplier, offset = number(element, "multiplier", 1.0), number(element, "offset", 0.0)
+    message, said = "", draft.diagnostics.error
+    if not leader:
+        missing(element, "joint", "the name of a joint", f"joint {joint.name!r}")
+        return None
+    if leader not in draft.joints:
+        message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
+        said = draft.diagnostics.warning
+    elif draft.joints[leader].type in ("fixed", "floating", "planar"):
+        message = f"joint {joint.name!r} mimics {leader!r}, which is {draft.joints[leader].type}"
+    elif joint.type in ("fixed", "floating", "planar"):
+        draft.diagnostics.warning(
+            "SK-URDF-015", f"{joint.type} joint {joint.name!r}: <mimic> has no effect", element.where
+        )
+        return None
+    elif leader == joint.name or _in_ring(draft, joint.name):
+        message = f"joint {joint.name!r} mimics itself"
+    if message:
+        moving = [n for n, j in draft.joints.items() if j.type not in ("fixed", "floating", "planar")]
+        said("SK-URDF-015", message, element.where, did_you_mean(leader, moving))
+        return None
+    return Mimic(draft.own(leader), 0, multiplier, offset)
+
+
+def _in_ring(draft: Draft, start: str) -> bool:
+    name, steps = start, 0
+    while steps <= len(draft.joints):
+        joint = draft.joints.get(name)
+        element = None if joint is None else joint.element.child("mimic")
+        if element is None:
+            return False
+        name, steps = text(element, "joint"), steps + 1
+        if name == start:
+            return True
+    return False
+
+
+def _safety(element: Params) -> Safety | None:
+    block = element.child("safety_controller")
+    if block is None:
+        return None
+    return Safety(
+        number(block, "soft_lower_limit", 0.0, finite=False),
+        number(block, "soft_upper_limit", 0.0, finite=False),
+        number(block, "k_position", 0.0),
+        number(block, "k_velocity", owner="safety_controller"),
+    )
+
+
+def _calibration(element: Params) -> Calibration | None:
+    block = element.child("calibration")
+    if block is None:
+        return None
+    rising = number(block, "rising", 0.0) if text(block, "rising") else None
+    falling = number(block, "falling", 0.0) if text(block, "falling") else None
+    if text(block, "reference_position") and rising is None:  # the spelling of URDF before 1.0
+        rising = parse_number(text(block, "reference_position"))
+    return Calibration(rising, falling)
+
+
+# ---------------------------------------------------------------------- sensors
+
+
+def _sensors(draft: Draft, joint: JointDraft, extension: Params) -> tuple[SceneSensor, ...]:
+    """Sensors of a joint; its frame is that of its child link."""
+    pose, frame = draft.links_world[joint.child], draft.frame(joint.child)
+    own = draft.own(joint.name)
+    return tuple(
+        read_sensor(
+            element,
+            name,
+            own,
+            True,
+            local_pose(element, draft.scope, frame, f"sensor {name!r}"),
+            pose,
+            draft.diagnostics,
+        )
+        for name, element in named(
+            extension.all("sensor"), f"joint {joint.name!r}", draft.diagnostics, draft.file.version
+        )
+    )

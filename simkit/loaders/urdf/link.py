@@ -1,0 +1,224 @@
+"""`<link>`: mass, collisions and visuals, and what `<gazebo>` adds to them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from simkit.loaders.sdf.light import read_light
+from simkit.loaders.sdf.names import named
+from simkit.loaders.sdf.parts import local_pose
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.sensor import read_sensor
+from simkit.loaders.sdf.surface import read_surface
+from simkit.loaders.urdf.draft import Draft
+from simkit.loaders.urdf.extensions import flag, number, vector
+from simkit.loaders.urdf.geometry import read_geometry
+from simkit.loaders.urdf.material import Materials, extended_material
+from simkit.loaders.urdf.reading import number as attribute_number
+from simkit.loaders.urdf.reading import origin, text
+from simkit.params import Params
+from simkit.scene import Inertial, SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface
+
+_MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+NO_MASS = Inertial(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), given=False)
+
+
+def read_link(draft: Draft, name: str, materials: Materials, windy: bool) -> SceneLink:
+    """A link whose place is known; `windy`: whether the wind pushes the links that do not say it themselves."""
+    element, extension = draft.links[name], draft.extensions.of(name)
+    decay = number(extension, "dampingFactor", minimum=0.0)
+    block = extension.block("velocity_decay")
+    wind = flag(extension, "enable_wind")
+    off, gravity = flag(extension, "turnGravityOff"), flag(extension, "gravity")
+    return SceneLink(
+        name=name,
+        scoped=draft.own(name),
+        pose_world=draft.links_world[name],
+        inertial=_inertial(draft, name, element),
+        gravity=(gravity if gravity is not None else True) if off is None else not off,
+        kinematic=bool(flag(extension, "kinematic")),
+        self_collide=bool(flag(extension, "selfCollide", "self_collide")),
+        collisions=_collisions(draft, name, element, extension),
+        visuals=_visuals(draft, name, element, extension, materials),
+        sensors=_sensors(draft, name, extension),
+        lights=_lights(draft, name, extension),
+        plugins=read_plugins(extension.all("plugin"), draft.own(name)),
+        where=element.where,
+        velocity_decay=(
+            block.number("linear", decay or 0.0, minimum=0.0),
+            block.number("angular", decay or 0.0, minimum=0.0),
+        ),
+        enable_wind=windy if wind is None else wind,
+    )
+
+
+def _inertial(draft: Draft, name: str, link: Params) -> Inertial:
+    """Mass properties in link axes; a link without them is a frame without mass."""
+    block = link.child("inertial")
+    if block is None:
+        return NO_MASS
+    pose = origin(block)
+    mass, inertia = block.child("mass"), block.child("inertia")
+    for found, what in ((mass, "mass value="), (inertia, "inertia ixx= iyy= izz= ixy= ixz= iyz=")):
+        if found is None:
+            message = f"link {name!r}: <inertial> needs <{what}...>"
+            draft.diagnostics.error("SK-URDF-001", message, block.where)
+    kilograms = attribute_number(mass, "value", owner=f"link {name!r}") if mass is not None else 0.0
+    if mass is not None and kilograms < 0:
+        message = f"link {name!r} has mass {kilograms:g} kg, it cannot be negative"
+        draft.diagnostics.error("SK-URDF-016", message, mass.where)
+    values = tuple(_moment(inertia, key, name) for key in _MOMENTS) if inertia is not None else (0.0,) * 6
+    x, y, z = (float(v) for v in pose.position)
+    if pose.quaternion[0] != 1.0:
+        turn = pose.matrix
+        a, b, c, d, e, f = values
+        m = turn @ np.array(((a, d, e), (d, b, f), (e, f, c))) @ turn.T
+        values = tuple(float(v) for v in (m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]))
+    a, b, c, d, e, f = values
+    return Inertial(kilograms, (x, y, z), (a, b, c, d, e, f), True)
+
+
+def _moment(inertia: Params, key: str, link: str) -> float:
+    """A moment; the products of inertia may be left out."""
+    default = 0.0 if key[1] != key[2] else None
+    return attribute_number(inertia, key, default, owner=f"link {link!r}")
+
+
+# ---------------------------------------------------------------------- shapes
+
+
+def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
+    """Names of a link's collisions or visuals: as written, else `<link>_<kind>`, `<link>_<kind>_1`, ... as Gazebo's."""
+    written = [text(element, "name") for element in elements]
+    taken = {name for name in written if name}
+    names: list[str] = []
+    used: set[str] = set()
+    for index, name in enumerate(written):
+        stem = name or (f"{link}_{kind}" if index == 0 else f"{link}_{kind}_{index}")
+        count, free = 0, stem
+        while free in used or (not name and free in taken):
+            count += 1
+            free = f"{stem}_{count}"
+        used.add(free)
+        names.append(free)
+    return names
+
+
+def _collisions(draft: Draft, link: str, element: Params, extension: Params) -> tuple[SceneCollision, ...]:
+    elements = element.all("collision")
+    surface, retro = _surface(extension), number(extension, "laserRetro")
+    found = []
+    for name, collision in zip(unique_names(elements, link, "collision"), elements, strict=True):
+        shape = read_geometry(collision, draft, f"collision {name!r} of link {link!r}")
+        pose = origin(collision)
+        collision.attribute("group")
+        if shape is not None:
+            found.append(
+                SceneCollision(
+                    name=name,
+                    scoped=draft.own(link, name),
+                    pose_link=pose,
+                    geometry=shape,
+                    surface=surface,
+                    laser_retro=retro or 0.0,
+                    where=collision.where,
+                )
+            )
+    return tuple(found)
+
+
+def _surface(extension: Params) -> Surface:
+    """Contact properties: SDF's words in `<collision>`, then Gazebo's short ones."""
+    surface = Surface()
+    for blob in extension.all("collision"):
+        surface = read_surface(blob)
+        blob.child("max_contacts")
+    given = {
+        "mu": number(extension, "mu1", minimum=0.0),
+        "mu2": number(extension, "mu2", minimum=0.0),
+        "fdir1": vector(extension, "fdir1"),
+        "kp": number(extension, "kp"),
+        "kd": number(extension, "kd"),
+        "min_depth": number(extension, "minDepth"),
+        "max_vel": number(extension, "maxVel"),
+        "soft_cfm": number(extension, "softCfm"),
+        "soft_erp": number(extension, "softErp"),
+    }
+    known = {key: value for key, value in given.items() if value is not None}
+    return replace(surface, **known, where=extension.where) if known else surface  # type: ignore[arg-type]
+
+
+def _visuals(
+    draft: Draft, link: str, element: Params, extension: Params, materials: Materials
+) -> tuple[SceneVisual, ...]:
+    elements = element.all("visual")
+    blobs = extension.all("visual")
+    retro = number(extension, "laserRetro")
+    found = []
+    for name, visual in zip(unique_names(elements, link, "visual"), elements, strict=True):
+        shape = read_geometry(visual, draft, f"visual {name!r} of link {link!r}")
+        pose = origin(visual)
+        material = materials.of(visual)
+        if shape is None:
+            continue
+        seen = SceneVisual(
+            name=name,
+            scoped=draft.own(link, name),
+            pose_link=pose,
+            geometry=shape,
+            material=extended_material(extension, material, draft),
+            laser_retro=retro or 0.0,
+            where=visual.where,
+        )
+        for blob in blobs:
+            seen = replace(
+                seen,
+                transparency=blob.number("transparency", seen.transparency, minimum=0.0, maximum=1.0),
+                cast_shadows=blob.boolean("cast_shadows", seen.cast_shadows),
+                visibility_flags=blob.integer("visibility_flags", seen.visibility_flags) & 0xFFFFFFFF,
+                laser_retro=blob.number("laser_retro", seen.laser_retro),
+            )
+        found.append(seen)
+    return tuple(found)
+
+
+# ---------------------------------------------------------------------- what hangs on the link
+
+
+def _sensors(draft: Draft, link: str, extension: Params) -> tuple[SceneSensor, ...]:
+    pose, frame = draft.links_world[link], draft.frame(link)
+    return tuple(
+        read_sensor(
+            element,
+            name,
+            draft.own(link),
+            False,
+            local_pose(element, draft.scope, frame, f"sensor {name!r}"),
+            pose,
+            draft.diagnostics,
+        )
+        for name, element in named(extension.all("sensor"), f"link {link!r}", draft.diagnostics, draft.file.version)
+    )
+
+
+def _lights(draft: Draft, link: str, extension: Params) -> tuple[SceneLight, ...]:
+    pose, frame = draft.links_world[link], draft.frame(link)
+    return tuple(
+        read_light(
+            element,
+            name,
+            draft.own(link, name),
+            pose @ local_pose(element, draft.scope, frame, f"light {name!r}"),
+            draft.own(link),
+            draft.diagnostics,
+        )
+        for name, element in named(extension.all("light"), f"link {link!r}", draft.diagnostics, draft.file.version)
+    )
+
+
+def is_massless(link: SceneLink) -> bool:
+    """Whether a link is only a frame."""
+    return not link.inertial.given or math.isclose(link.inertial.mass, 0.0, abs_tol=0.0)

@@ -1,0 +1,122 @@
+"""`<material>`: colours and textures by name, Gazebo's own names and its `<visual>` extensions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.material import GAZEBO_COLOURS, read_material
+from simkit.loaders.urdf.draft import Draft
+from simkit.loaders.urdf.extensions import last
+from simkit.loaders.urdf.reading import bad, missing, numbers, text, value_of
+from simkit.params import Params
+from simkit.scene import Material
+from simkit.scene.model import Colour
+
+_BLACK: Colour = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass
+class Materials:
+    """The named materials of one robot: those of the robot itself, and those that a visual defines in place."""
+
+    draft: Draft
+    named: dict[str, Material] = field(default_factory=dict)
+    _lines: dict[str, int | None] = field(default_factory=dict)
+    _unknown: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        for element in self.draft.element.all("material"):
+            name = text(element, "name")
+            if not name:
+                missing(element, "name", "a text")
+            elif name in self._lines:
+                message = f"two materials are named {name!r}: the other is at line {self._lines[name]}, which is used"
+                self.draft.diagnostics.warning("SK-URDF-026", message, element.where)
+                element.mark_all_read()
+                continue
+            self._define(name, element)
+        for link in self.draft.links.values():
+            for visual in link.all("visual"):
+                inside = visual.child("material")
+                if inside is not None and (inside.has("color") or inside.has("texture")):
+                    name = text(inside, "name")
+                    if name not in self.named:
+                        self._define(name, inside)
+
+    def of(self, visual: Params) -> Material | None:
+        """How a visual looks; None where it says nothing (a mesh then keeps its own colours)."""
+        element = visual.child("material")
+        if element is None:
+            return None
+        name = text(element, "name")
+        own = self._read(element)
+        if own is not None:
+            return own
+        if name in self.named:
+            return self.named[name]
+        colour = GAZEBO_COLOURS.get(name.removeprefix("Gazebo/"))
+        if name.startswith("Gazebo/") and colour is not None:
+            return _plain(colour)
+        if name and name not in self._unknown and name not in self._lines:
+            self._unknown.add(name)
+            message = f"material {name!r} is not defined; a mesh keeps its own colours, a shape is drawn white"
+            self.draft.diagnostics.warning(
+                "SK-URDF-026", message, element.where, did_you_mean(name, [*self.named, *GAZEBO_COLOURS])
+            )
+        return None
+
+    def _define(self, name: str, element: Params) -> None:
+        self._lines.setdefault(name, element.where.line)
+        found = self._read(element)
+        if found is not None and name:
+            self.named[name] = found
+
+    def _read(self, element: Params) -> Material | None:
+        """The colour and texture written in an element; None where it has neither."""
+        colour, texture = element.child("color"), element.child("texture")
+        rgba: Colour | None = None
+        if colour is not None:
+            found = numbers(colour, "rgba", 4, "red green blue alpha")
+            if found is None and "rgba" not in colour.attributes:
+                missing(colour, "rgba", "red green blue alpha")
+            if found is not None:
+                clamped = [min(1.0, max(0.0, v)) for v in found]
+                if clamped != list(found):
+                    bad(colour, "rgba", "4 numbers from 0 to 1")
+                rgba = (clamped[0], clamped[1], clamped[2], clamped[3])
+        path = None
+        if texture is not None:
+            uri = text(texture, "filename")
+            if not uri:
+                missing(texture, "filename", "the URI of an image")
+            path = self.draft.assets.texture(uri, texture) if uri else None
+        if rgba is None and path is None:
+            return None
+        base = rgba or (1.0, 1.0, 1.0, 1.0)
+        return Material(base, base, texture=path)
+
+
+def _plain(colour: Colour) -> Material:
+    return Material(colour, colour)
+
+
+def extended_material(extension: Params, own: Material | None, draft: Draft) -> Material | None:
+    """A visual's material after `<gazebo>` had its say: a script name, or SDF's words in `<visual>`."""
+    script = last(extension, "material")
+    if script is not None:
+        element = _as_sdf(script) if not script.children else Params("visual", children=[script])
+        element.diagnostics = script.diagnostics
+        own = read_material(element, draft.file, draft.workspace) or own
+    for blob in extension.all("visual"):
+        own = read_material(blob, draft.file, draft.workspace) or own
+    return own
+
+
+def _as_sdf(element: Params) -> Params:
+    """`<material>Gazebo/Red</material>` in SDF's words."""
+
+    inner = Params("name", value_of(element), where=element.where, diagnostics=element.diagnostics)
+    for name in ("script", "material", "visual"):
+        inner = Params(name, children=[inner], where=element.where, diagnostics=element.diagnostics)
+    return inner

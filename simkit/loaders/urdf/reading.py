@@ -1,0 +1,133 @@
+"""Attributes of URDF elements: numbers, vectors, texts and poses, each bad one an error with its place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.scene.geometry import Vec3
+
+FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
+_XACRO_HINT = "the file looks like xacro that was not expanded: load the .xacro file itself"
+
+
+def bad(element: Params, attribute: str, allowed: str) -> None:
+    """Records a value that cannot be used."""
+    text = element.attributes.get(attribute, "")
+    shown = text if len(text) <= 60 else text[:57] + "..."
+    hint = _XACRO_HINT if "${" in text or "$(" in text else ""
+    message = f'<{element.name} {attribute}="{shown}">: allowed is {allowed}'
+    element.diagnostics.error("SK-URDF-013", message, element.where, hint)
+
+
+def missing(element: Params, attribute: str, allowed: str, owner: str = "") -> None:
+    """Records an attribute that is not there."""
+    near = did_you_mean(attribute, element.attributes)
+    what = f"{owner}: " if owner else ""
+    message = f"{what}<{element.name}> needs {attribute}= ({allowed})"
+    element.diagnostics.error("SK-URDF-001", message, element.where, near)
+
+
+def text(element: Params, attribute: str) -> str:
+    """An attribute without surrounding white space; empty where absent."""
+    return element.attribute(attribute).strip()
+
+
+def number(
+    element: Params,
+    attribute: str,
+    default: float | None = None,
+    minimum: float | None = None,
+    finite: bool = True,
+    owner: str = "",
+) -> float:
+    """A number; without a default it must be there. Too small, NaN, or infinite where `finite`, is an error."""
+    allowed = "a number" + ("" if minimum is None else f" of at least {minimum:g}")
+    found = text(element, attribute)
+    if attribute not in element.attributes:
+        if default is None:
+            missing(element, attribute, allowed, owner)
+        return 0.0 if default is None else default
+    value = parse_number(found)
+    if value is None or (finite and math.isinf(value)) or (minimum is not None and value < minimum):
+        bad(element, attribute, allowed)
+        return 0.0 if default is None else default
+    return value
+
+
+def parse_number(found: str) -> float | None:
+    """The number that a text is; None where it is none or NaN."""
+    if "_" in found or not found.isascii():
+        return None
+    try:
+        value = float(found)
+    except ValueError:
+        return None
+    return None if math.isnan(value) else value
+
+
+def numbers(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
+    """`count` finite numbers separated by white space; None, with an error recorded where it is there but bad."""
+    if attribute not in element.attributes:
+        element.attribute(attribute)
+        return None
+    parts = [parse_number(part) for part in text(element, attribute).split()]
+    if len(parts) != count or any(p is None or not math.isfinite(p) for p in parts):
+        bad(element, attribute, allowed or f"{count} numbers")
+        return None
+    return tuple(p for p in parts if p is not None)
+
+
+def vector3(element: Params, attribute: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
+    """Three finite numbers."""
+    found = numbers(element, attribute, 3)
+    return default if found is None else (found[0], found[1], found[2])
+
+
+def origin(owner: Params) -> Pose:
+    """The `<origin>` of an element: `xyz` [m] and `rpy` [rad], or `quat_xyzw` (URDF 1.2)."""
+    element = owner.child("origin")
+    if element is None:
+        return IDENTITY
+    xyz = vector3(element, "xyz")
+    if any(abs(v) > FARTHEST for v in xyz):
+        bad(element, "xyz", "numbers that are a place in a world")
+        xyz = (0.0, 0.0, 0.0)
+    if "quat_xyzw" in element.attributes:
+        quat = numbers(element, "quat_xyzw", 4)
+        element.attribute("rpy")
+        if quat is not None and sum(q * q for q in quat) > 1e-12:
+            return Pose(xyz, (quat[3], quat[0], quat[1], quat[2]))
+        if quat is not None:
+            bad(element, "quat_xyzw", "a quaternion that is not zero")
+    return Pose.from_rpy(*xyz, *vector3(element, "rpy"))
+
+
+def value_of(element: Params) -> str:
+    """The value of a Gazebo extension: its text, or its `value=`."""
+    return element.value or text(element, "value")
+
+
+def boolean_of(element: Params) -> bool:
+    """true, yes, 1 or false, no, 0; anything else is an error."""
+    found = value_of(element).lower()
+    if found not in ("true", "yes", "1", "false", "no", "0"):
+        message = f"<{element.name}> is {value_of(element)!r}, allowed is true or false"
+        element.diagnostics.error("SK-URDF-013", message, element.where)
+    return found in ("true", "yes", "1")
+
+
+def numbers_of(element: Params, count: int) -> Sequence[float] | None:
+    """The numbers of a Gazebo extension; None, with an error recorded, where they are not `count` finite ones."""
+    parts = [parse_number(part) for part in value_of(element).split()]
+    kept = [p for p in parts if p is not None and math.isfinite(p)]
+    if len(kept) == len(parts) == count:
+        return kept
+    what = "a number" if count == 1 else f"{count} numbers"
+    hint = _XACRO_HINT if "${" in value_of(element) else ""
+    message = f"<{element.name}> is {value_of(element)!r}, allowed is {what}"
+    element.diagnostics.error("SK-URDF-013", message, element.where, hint)
+    return None

@@ -1,0 +1,176 @@
+"""`<robot>`: a URDF file into one bare model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import ClassVar
+
+from simkit.loaders.base import Loader, LoadRequest
+from simkit.loaders.resolver import Resolver
+from simkit.loaders.sdf.frames import Frame, Scope
+from simkit.loaders.sdf.names import scoped
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.urdf.additions import Additions
+from simkit.loaders.urdf.assets import Assets
+from simkit.loaders.urdf.draft import Draft
+from simkit.loaders.urdf.extensions import Extensions, flag
+from simkit.loaders.urdf.joint import read_joint
+from simkit.loaders.urdf.link import is_massless, read_link
+from simkit.loaders.urdf.material import Materials
+from simkit.loaders.urdf.reading import text
+from simkit.loaders.urdf.transmission import read_controls, read_transmissions
+from simkit.loaders.urdf.tree import declare, place
+from simkit.loaders.urdf.unread import report_unread
+from simkit.loaders.xml import Document
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel
+
+WORLD = "world"
+_SDF_VERSION = (1, 11)  # of the words in <gazebo>
+
+
+class UrdfLoader(Loader):
+    """The Unified Robot Description Format, with Gazebo's extensions."""
+
+    roots: ClassVar[tuple[str, ...]] = ("robot",)
+
+    def load(self, document: Document, request: LoadRequest) -> Scene:
+        resolver = request.resolver.around(document.folder)
+        workspace = Workspace(resolver, request.diagnostics)
+        folder = document.folder or resolver.base
+        file = SdfFile(document.root, _SDF_VERSION, folder, (str(document.path or ""),))
+        draft = declare_robot(file, workspace, resolver)
+        if request.name is not None:
+            draft.name = request.name
+        model = build_robot(draft, "", request.pose, request.base)
+        return Scene((), model, None if document.path is None else str(document.path))
+
+
+def declare_robot(file: SdfFile, workspace: Workspace, resolver: Resolver) -> Draft:
+    """The names in a robot's file; every mistake in its structure is recorded."""
+    element, diagnostics = file.root, workspace.diagnostics
+    name = text(element, "name")
+    if not name:
+        name = Path(file.chain[-1]).name.partition(".")[0] or "robot"
+        message = f"<robot> has no name, URDF requires one; it is called {name!r}"
+        diagnostics.warning("SK-URDF-027", message, element.where)
+    draft = Draft(
+        name=name,
+        scoped="",
+        element=element,
+        file=file,
+        workspace=workspace,
+        assets=Assets(resolver, file.folder, diagnostics),
+        scope=Scope(Frame(name, "model", name), diagnostics),
+        extensions=Extensions(element, diagnostics),
+    )
+    declare(draft)
+    return draft
+
+
+def build_robot(
+    draft: Draft,
+    outer: str,
+    pose: Pose | None = None,
+    base: str = "auto",
+    static: bool | None = None,
+    is_included: bool = False,
+) -> SceneModel:
+    """The model of a robot.
+
+    Args:
+        outer: scoped name of the model that it lies in; empty at the top.
+        pose: of its root link in the world; None for the one that its file gives, or the origin.
+        base: "auto", "fixed" or "floating".
+        static: whether it is static; None for what its file says.
+        is_included: whether an SDF file includes it, whose joints may fix it to the world.
+    """
+    diagnostics, robot = draft.diagnostics, draft.extensions.robot
+    draft.scoped = scoped(outer, draft.name)
+    own_pose = robot.pose("pose", IDENTITY)
+    draft.pose = own_pose if pose is None else pose
+    draft.scope.world = draft.pose
+    place(draft)
+    materials = Materials(draft)
+    windy = bool(flag(robot, "enable_wind"))
+    additions = Additions(draft, robot, windy)
+    links = (*(read_link(draft, name, materials, windy) for name in draft.links), *additions.links())
+    joints = (*(read_joint(draft, joint) for joint in draft.joints.values()), *additions.joints())
+    draft.extensions.report_unknown(draft.links, draft.joints)
+    _check_force_sensors(draft, links, joints)
+    declared = bool(flag(robot, "static"))
+    still = declared if static is None else static
+    model = SceneModel(
+        name=draft.name,
+        scoped=draft.scoped,
+        pose_world=draft.pose,
+        static=still,
+        declared_static=declared,
+        self_collide=bool(flag(robot, "self_collide", "selfCollide")),
+        canonical_link=draft.own(draft.root) if draft.root else "",
+        base=base if still else _base(draft, base, is_included),
+        links=links,
+        joints=joints,
+        frames=additions.frames(),
+        plugins=read_plugins(robot.all("plugin"), draft.scoped),
+        where=draft.element.where,
+        allow_auto_disable=flag(robot, "allow_auto_disable") is not False,
+        transmissions=read_transmissions(draft),
+        controls=read_controls(draft),
+    )
+    draft.assets.report_packages()
+    _report_frames(draft, links)
+    report_unread(draft.element, draft.extensions, diagnostics)
+    return model
+
+
+def _base(draft: Draft, base: str, is_included: bool) -> str:
+    """Gazebo's rule: a robot whose root link is named `world` is fixed to it; any other floats."""
+    diagnostics, where = draft.diagnostics, draft.element.where
+    if draft.root == WORLD:
+        if base == "floating":
+            message = f"robot {draft.name!r} has the root link 'world', which is the world: its base stays fixed"
+            diagnostics.warning("SK-URDF-018", message, where, "take the link 'world' out of the file")
+        elif base == "auto" and not is_included:
+            message = f"robot {draft.name!r}: base is fixed, because its root link is named 'world'"
+            diagnostics.note("SK-URDF-017", message, where)
+        return "fixed"
+    if base == "auto" and not is_included:
+        message = f"robot {draft.name!r}: base is floating, because no link is named 'world'"
+        diagnostics.note("SK-URDF-017", message, where, "base='fixed' holds it where it is")
+    return base
+
+
+def _report_frames(draft: Draft, links: tuple[SceneLink, ...]) -> None:
+    names = [link.name for link in links if not link.inertial.given and link.name != WORLD]
+    if names:
+        listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+        message = f"robot {draft.name!r}: links without <inertial> are frames without mass: {listed}"
+        draft.diagnostics.note("SK-URDF-024", message, draft.links.get(names[0], draft.element).where)
+
+
+def _check_force_sensors(draft: Draft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> None:
+    """A force_torque sensor on a joint that carries neither mass nor collision would read zero for ever."""
+    by_name = {link.scoped: link for link in links}
+    below: dict[str, list[str]] = {}
+    for joint in joints:
+        below.setdefault(joint.parent_link, []).append(joint.child_link)
+    for joint in joints:
+        sensors = [s for s in joint.sensors if s.kind == "force_torque"]
+        if not sensors:
+            continue
+        carried, stack = set[str](), [joint.child_link]
+        while stack:
+            name = stack.pop()
+            if name not in carried:
+                carried.add(name)
+                stack += below.get(name, [])
+        loaded = [by_name[n] for n in carried if n in by_name]
+        if loaded and all(is_massless(link) and not link.collisions for link in loaded):
+            message = (
+                f"sensor {sensors[0].name!r} measures the force on joint {joint.name!r}, which carries only frames "
+                f"without mass ({', '.join(sorted(link.name for link in loaded)[:6])}): it could never read anything"
+            )
+            hint = "give the link an <inertial>, or put the sensor on a joint that carries something"
+            draft.diagnostics.error("SK-URDF-023", message, sensors[0].where, hint)

@@ -1,0 +1,108 @@
+"""`<transmission>` and `<ros2_control>`: kept for the controllers that read them."""
+
+from __future__ import annotations
+
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.urdf.draft import Draft
+from simkit.loaders.urdf.reading import missing, parse_number, text, value_of
+from simkit.params import Params
+from simkit.scene import Transmission, TransmissionEnd
+
+_KINDS = {
+    "simple": ("simple",),
+    "differential": ("differential",),
+    "four_bar_linkage": ("fourbarlinkage", "four_bar_linkage", "four-bar"),
+}
+
+
+def read_transmissions(draft: Draft) -> tuple[Transmission, ...]:
+    """Every transmission, in document order."""
+    return tuple(_transmission(draft, element) for element in draft.element.all("transmission"))
+
+
+def read_controls(draft: Draft) -> tuple[Params, ...]:
+    """The `<ros2_control>` blocks as they stand; a joint that they name and that does not exist is reported."""
+    blocks = draft.element.all("ros2_control")
+    for block in blocks:
+        block.mark_all_read()
+        for owner in (block, *block.all("transmission")):
+            for joint in owner.all("joint"):
+                _known(draft, joint, f"<{block.name} name={text(block, 'name')!r}>")
+    return tuple(blocks)
+
+
+def _transmission(draft: Draft, element: Params) -> Transmission:
+    name = text(element, "name")
+    if not name:
+        missing(element, "name", "a text")
+    written = element.child("type")
+    older = text(element, "type")
+    kind = (written.value if written is not None else "") or older
+    if not kind:
+        message = f"transmission {name!r} needs <type>"
+        draft.diagnostics.warning("SK-URDF-025", message, element.where)
+    common = _reduction(element, 1.0)
+    joints = element.all("joint")
+    for joint in joints:
+        _known(draft, joint, f"transmission {name!r}")
+    if not joints:
+        near = did_you_mean("joint", [c.name for c in element.children])
+        draft.diagnostics.warning("SK-URDF-025", f"transmission {name!r} names no <joint>", element.where, near)
+    return Transmission(
+        name=name,
+        kind=_kind(kind),
+        type=kind,
+        joints=tuple(_end(e, 1.0) for e in joints),
+        actuators=tuple(_end(e, common) for e in element.all("actuator")),
+        params=element,
+        where=element.where,
+    )
+
+
+def _kind(written: str) -> str:
+    """`transmission_interface/SimpleTransmission` is simple."""
+    plain = written.rpartition("/")[2].rpartition("::")[2].lower()
+    for kind, starts in _KINDS.items():
+        if plain.startswith(starts):
+            return kind
+    return written
+
+
+def _end(element: Params, reduction: float) -> TransmissionEnd:
+    role, older = element.child("role"), text(element, "role")
+    return TransmissionEnd(
+        name=text(element, "name"),
+        reduction=_reduction(element, reduction),
+        offset=_number(element, "offset", 0.0),
+        role=role.value if role is not None else older,
+        interfaces=tuple(i.value for i in element.all("hardwareInterface")),
+    )
+
+
+def _reduction(element: Params, default: float) -> float:
+    found = _number(element, "mechanicalReduction", default)
+    if found == 0:
+        place = element.child("mechanicalReduction") or element
+        message = "<mechanicalReduction> is 0, it cannot be"
+        element.diagnostics.error("SK-URDF-013", message, place.where)
+        return default
+    return found
+
+
+def _number(element: Params, name: str, default: float) -> float:
+    found = element.child(name)
+    if found is None:
+        return default
+    value = parse_number(value_of(found))
+    if value is None or abs(value) == float("inf"):
+        message = f"<{name}> is {value_of(found)!r}, allowed is a number"
+        element.diagnostics.error("SK-URDF-013", message, found.where)
+        return default
+    return value
+
+
+def _known(draft: Draft, joint: Params, owner: str) -> None:
+    name = text(joint, "name")
+    if name not in draft.joints:
+        message = f"{owner}: there is no joint {name!r}"
+        draft.diagnostics.warning("SK-URDF-025", message, joint.where, did_you_mean(name, draft.joints))

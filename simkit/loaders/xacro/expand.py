@@ -1,0 +1,385 @@
+"""Expands a xacro file into plain `Params`, every element with the file and line that it was written in."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.loaders.resolver import Resolver
+from simkit.loaders.xacro.bounds import MAX_FILES_DEEP, BoundError, Budget, ExpansionError
+from simkit.loaders.xacro.engine import MACRO_ARGUMENT, own_copy
+from simkit.loaders.xacro.expression import Evaluator, Function
+from simkit.loaders.xacro.files import Files, MissingError
+from simkit.loaders.xacro.functions import direct_names, math_functions, python_functions, tokenize
+from simkit.loaders.xacro.tree import place_of, to_document, to_params
+from simkit.loaders.xml import Document
+
+MAX_EXPANDED = 50_000
+MAX_COPIED = 300_000
+_CALL = 5  # what a macro call costs, in elements
+_TOKEN = re.compile(r"(?P<escaped>\$\$+[{(])|(?P<expression>\$\{[^}]*\})|(?P<command>\$\([^)]*\))|[^$]+|\$[^{($]+|\$$")
+
+
+def needs_expansion(document: Document) -> bool:
+    """Whether a file is xacro: by its name, by its elements, or because it declares the name space and computes."""
+    if document.path is not None and document.path.suffix == ".xacro":
+        return True
+    text = document.text
+    computes = b"${" in text or b"$(" in text
+    return b"<xacro:" in text or (computes and "xmlns:xacro" in document.root.attributes)
+
+
+def expand(
+    document: Document, resolver: Resolver, arguments: Mapping[str, str], diagnostics: Diagnostics
+) -> Document | None:
+    """The expanded file; None, with an error recorded, where it cannot be expanded.
+
+    Args:
+        document: as parsed.
+        resolver: finds packages and included files.
+        arguments: values of the file's `<xacro:arg>`.
+        diagnostics: where problems go; xacro stops at the first error.
+    """
+    try:
+        engine = own_copy()
+    except ImportError as error:
+        hint = "pip install xacro"
+        diagnostics.error(
+            "SK-XACRO-006", f"the file is xacro, and {error.name or error} is not installed", _top(document), hint
+        )
+        return None
+    return _Expansion(engine, document, resolver, arguments, diagnostics).run()
+
+
+def _top(document: Document) -> Where:
+    return document.root.where
+
+
+class _Expansion:
+    """One run over one file."""
+
+    def __init__(
+        self,
+        engine: Any,
+        document: Document,
+        resolver: Resolver,
+        arguments: Mapping[str, str],
+        diagnostics: Diagnostics,
+    ) -> None:
+        self.engine, self.document, self.diagnostics = engine, document, diagnostics
+        self.where = _top(document)
+        self.files = Files(resolver, diagnostics, lambda: self.where)
+        self.budget = Budget()
+        self.given = {str(k): str(v) for k, v in arguments.items()}
+        self.arguments: dict[str, str] = dict(self.given)
+        self.declared: set[str] = set()
+        self.expanded = self.copied = 0
+        self.sizes: dict[int, int] = {}
+        self.calls: list[tuple[str, Where]] = []
+        self.folder = document.folder or resolver.base
+
+    # ------------------------------------------------------------------ the run
+
+    def run(self) -> Document | None:
+        engine, top = self.engine, to_document(self.document.root)
+        self._replace()
+        engine.filestack = [str(self.document.path or (self.folder or Path.cwd()) / "text.xacro")]
+        engine.macrostack = []
+        try:
+            engine.eval_all(top.documentElement, engine.Table(), engine.Table(self._names()))
+        except RecursionError:
+            self._fail("SK-XACRO-003", "the expansion is nested too deeply; a macro or an include calls itself")
+            return None
+        except MissingError as error:
+            self._fail("SK-XACRO-002", str(error), error.hint)
+            return None
+        except BoundError as error:
+            self._fail("SK-XACRO-003", f"the expansion is stopped: {error}")
+            return None
+        except Exception as error:  # noqa: BLE001 - xacro raises what Python raises; the place is known here
+            inner = _cause(error)
+            if isinstance(inner, (MissingError, BoundError)):
+                code = "SK-XACRO-002" if isinstance(inner, MissingError) else "SK-XACRO-003"
+                self._fail(code, str(inner), getattr(inner, "hint", ""))
+            else:
+                self._fail("SK-XACRO-001", " ".join(str(error).split()) or type(error).__name__, self._hint(error))
+            return None
+        self._report_unknown_arguments()
+        return Document(to_params(top.documentElement, self.diagnostics), self.document.path, self.document.text)
+
+    def _fail(self, code: str, message: str, hint: str = "") -> None:
+        """One error, at the element that was being expanded, with the macros that led there."""
+        trail = "".join(f"; in <xacro:{name}> of {where}" for name, where in reversed(self.calls[-4:]))
+        self.diagnostics.error(code, f"xacro: {message}{trail}", self.where, hint)
+
+    def _hint(self, error: Exception) -> str:
+        text = str(error)
+        missing = re.search(r"name '(\w+)' is not defined", text)
+        if missing:
+            return did_you_mean(missing.group(1), self._known)
+        unknown = re.search(r"unknown macro name: xacro:([\w.]+)", text)
+        if unknown:
+            return did_you_mean(unknown.group(1), [*self._macros, *_WORDS])
+        return ""
+
+    def _report_unknown_arguments(self) -> None:
+        for name in self.given:
+            if name not in self.declared:
+                known = ", ".join(sorted(self.declared)) or "none"
+                self.diagnostics.warning(
+                    "SK-XACRO-004",
+                    f"the file has no argument {name!r} (it has: {known}); it has no effect",
+                    _top(self.document),
+                    did_you_mean(name, self.declared),
+                )
+
+    # ------------------------------------------------------------------ what replaces xacro's own
+
+    def _replace(self) -> None:
+        engine = self.engine
+        self._known: set[str] = set()
+        self._macros: set[str] = set()
+        engine.re_macro_arg = MACRO_ARGUMENT
+        engine.warning = engine.message = engine.error = lambda *args, **_: self._said(args)
+        engine.print_location = lambda *_: None
+        engine.eval_text = self._text
+        engine.parse = self._parse
+        engine.get_include_files = self._include_files
+        engine.substitution_args_context = {"arg": self.arguments}
+        for name in ("check_attrs", "reqd_attrs"):
+            setattr(engine, name, self._noting_place(getattr(engine, name)))
+        self._count_work(engine.eval_all, engine.handle_macro_call)
+
+    def _noting_place(self, original: Any) -> Any:
+        def call(tag: Any, *args: Any) -> Any:
+            self.where = place_of(tag) if place_of(tag) is not NOWHERE else self.where
+            found = original(tag, *args)
+            if tag.tagName == "xacro:arg":
+                self.declared.add(str(found[0]))
+            elif tag.tagName == "xacro:macro":
+                self._macros.add(str(found[0]))
+            return found
+
+        return call
+
+    def _count_work(self, eval_all: Any, handle_macro_call: Any) -> None:
+        """Bounds on elements, and the place of each one that is being expanded."""
+
+        def visit(node: Any, macros: Any, symbols: Any) -> None:
+            self._enter(node, 1)
+            eval_all(node, macros, symbols)
+
+        def call(node: Any, macros: Any, symbols: Any) -> bool:
+            if not node.tagName.startswith("xacro:"):
+                return False
+            self._enter(node, _CALL)
+            if node.tagName != "xacro:call":
+                self._count_body(node.tagName[6:], macros, symbols)
+            self.calls.append((node.tagName[6:], self.where))
+            done = bool(handle_macro_call(node, macros, symbols))
+            self.calls.pop()
+            return done
+
+        self.engine.eval_all = visit
+        self.engine.handle_macro_call = call
+
+    def _enter(self, node: Any, elements: int) -> None:
+        where = place_of(node)
+        self.where = self.where if where is NOWHERE else where
+        self.expanded += elements
+        if self.expanded > MAX_EXPANDED:
+            raise BoundError(f"it makes more than {MAX_EXPANDED} elements")
+
+    def _count_body(self, name: str, macros: Any, symbols: Any) -> None:
+        """A macro's body is copied whole at every call, whatever of it is kept."""
+        try:
+            _, _, macro = self.engine.resolve_macro(name, macros, symbols)
+        except KeyError:
+            return
+        if id(macro.body) not in self.sizes:
+            self.sizes[id(macro.body)] = len(macro.body.getElementsByTagName("*"))
+        self.copied += self.sizes[id(macro.body)]
+        if self.copied > MAX_COPIED:
+            raise BoundError(f"macros bring more than {MAX_COPIED} elements")
+
+    def _said(self, args: tuple[Any, ...]) -> None:
+        """What the file, or xacro about the file, wants to tell."""
+        self.diagnostics.warning("SK-XACRO-005", "xacro: " + " ".join(map(str, args)), self.where)
+
+    # ------------------------------------------------------------------ files
+
+    def _here(self) -> Path | None:
+        """The folder of the file that is being expanded."""
+        return Path(self.engine.filestack[-1]).parent
+
+    def _include_files(self, spec: str, symbols: Any) -> list[str]:
+        text = str(self._text(spec, symbols))
+        if re.search(r"[*?\[]", text):
+            return self.files.several(text, self._here())
+        return [text]
+
+    def _parse(self, _text: Any, filename: str) -> Any:
+        if len(self.engine.filestack) > MAX_FILES_DEEP:
+            raise BoundError(f"files include one another more than {MAX_FILES_DEEP} deep: {filename}")
+        self.engine.filestack.pop()
+        try:
+            path = self.files.path(filename, self._here())
+        except MissingError as error:
+            raise self.engine.XacroException(str(error), exc=_MissingFile(error)) from error
+        self.engine.filestack.append(str(path))
+        root = self.files.read(path)
+        if not root.name:
+            raise ExpansionError(f"{path} is empty")
+        return to_document(root)
+
+    def _yaml(self, filename: str) -> Any:
+        path = self.files.path(str(filename), self._here())
+        evaluator = Evaluator({}, self.budget)
+        content = self.files.yaml(path, evaluator.run, self.budget)
+        return self.engine.YamlListWrapper.wrap(content)
+
+    # ------------------------------------------------------------------ texts
+
+    def _text(self, text: str, symbols: Any) -> Any:
+        """A text with its `${...}` and `$(...)` replaced; the typed value where it is nothing else."""
+        if "$" not in text:
+            return text
+        results: list[Any] = []
+        position = 0
+        while position < len(text):
+            found = _TOKEN.match(text, position)
+            if found is None:
+                raise ExpansionError(f"it cannot be read: {text[position : position + 60]}")
+            position = found.end()
+            if found.lastgroup == "expression":
+                results.append(self._expression(found.group()[2:-1], symbols))
+            elif found.lastgroup == "command":
+                results.append(self._command(str(self._text(found.group()[2:-1], symbols)), symbols))
+            elif found.lastgroup == "escaped":
+                results.append(found.group()[1:])
+            else:
+                results.append(found.group())
+        if len(results) == 1:
+            return self.budget.value(results[0])
+        self.budget.weigh(results)
+        joined = "".join(map(str, results)).replace("file://package://", "package://")
+        return self.budget.value(joined)
+
+    def _expression(self, text: str, symbols: Any) -> Any:
+        inner = str(self._text(text, symbols))
+        try:
+            return Evaluator(symbols, self.budget).run(inner)
+        except (BoundError, MissingError):
+            raise
+        except ExpansionError as error:
+            self._known |= _names(symbols)
+            where = "" if "when evaluating" in str(error) else f", when evaluating ${{{inner}}}"
+            raise ExpansionError(f"{error}{where}") from None
+
+    def _command(self, text: str, symbols: Any) -> Any:
+        words = text.split()
+        name, rest = (words[0], words[1:]) if words else ("", [])
+        if name == "find" and len(rest) == 1:
+            return self.files.package(rest[0], self._here())
+        if name == "arg" and len(rest) == 1:
+            return self._argument(rest[0])
+        if name == "env" and len(rest) == 1:
+            if rest[0] not in os.environ:
+                raise ExpansionError(f"the environment variable {rest[0]} is not set")
+            return os.environ[rest[0]]
+        if name == "optenv" and rest:
+            return os.environ.get(rest[0], " ".join(rest[1:]))
+        if name in ("dirname", "cwd") and not rest:
+            return str(self._here() if name == "dirname" else Path.cwd())
+        if name == "eval" and rest:
+            return Evaluator({**_literals(self.arguments), **self._names()}, self.budget).run(text[4:])
+        known = ("find", "arg", "env", "optenv", "dirname", "cwd", "eval")
+        raise ExpansionError(f"$({text}) is not known, known are {', '.join(known)}")
+
+    def _argument(self, name: str) -> str:
+        if name not in self.arguments:
+            known = ", ".join(sorted(self.arguments)) or "none"
+            raise ExpansionError(f"the argument {name!r} has no value (there are: {known}); give it with xacro_args")
+        return self.arguments[name]
+
+    def _names(self) -> dict[str, Any]:
+        """What every expression can use: xacro's own names."""
+        evaluator = Evaluator({}, self.budget)
+        space = self.engine.NameSpace
+        python, mathematics = python_functions(evaluator), math_functions()
+        spaces = {"python": space(), "math": space(), "xacro": space()}
+        own = {
+            "load_yaml": Function(self._yaml),
+            "abs_filename": Function(lambda spec: str((self._here() or Path.cwd()) / str(spec))),
+            "dotify": Function(self.engine.YamlDictWrapper),
+            "arg": Function(self._argument),
+            "tokenize": Function(tokenize),
+            "fatal": Function(self._fatal),
+            "print_location": Function(lambda: ""),
+        }
+        for said in ("message", "warning", "error"):
+            own[said] = Function(self._told)
+        for name, table in (("python", python), ("math", mathematics), ("xacro", own)):
+            dict.update(spaces[name], table)
+        direct = {name: python[name] for name in direct_names()}
+        commands = {
+            "find": Function(lambda name: self.files.package(str(name), self._here())),
+            "env": Function(lambda name: self._command(f"env {name}", None)),
+            "optenv": Function(lambda name, default="": os.environ.get(str(name), default)),
+        }
+        shared = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify", "arg")}
+        return {**mathematics, **direct, **shared, **commands, **spaces, "true": True, "false": False}
+
+    def _told(self, *args: Any, **_: Any) -> str:
+        self._said(args)
+        return ""
+
+    def _fatal(self, *args: Any) -> None:
+        raise ExpansionError(" ".join(map(str, args)))
+
+
+class _MissingFile(OSError):
+    """Tells xacro that an include is only missing, which `optional` forgives."""
+
+    def __init__(self, error: MissingError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+def _cause(error: BaseException) -> BaseException:
+    """The expansion's own error inside xacro's."""
+    inner: Any = getattr(error, "exc", None)
+    if isinstance(inner, _MissingFile):
+        return inner.error
+    return inner if isinstance(inner, BaseException) else error
+
+
+def _names(symbols: Any) -> set[str]:
+    """Names in a table of xacro and those around it."""
+    found: set[str] = set()
+    while isinstance(symbols, dict):
+        found |= {str(k) for k in dict.keys(symbols)}
+        symbols = getattr(symbols, "parent", None)
+    return found
+
+
+def _literals(arguments: Mapping[str, str]) -> dict[str, Any]:
+    """Arguments as numbers and booleans where they are such, for `$(eval ...)`."""
+    found: dict[str, Any] = {}
+    for name, text in arguments.items():
+        value: Any = text
+        for read in (int, float):
+            try:
+                value = read(text)
+                break
+            except ValueError:
+                continue
+        found[name] = {"true": True, "false": False}.get(str(text).lower(), value)
+    return found
+
+
+_WORDS = ("include", "property", "macro", "arg", "if", "unless", "insert_block", "call", "element", "attribute")

@@ -1,0 +1,348 @@
+"""Expressions of xacro (`${2 * length}`): Python's, walked by hand, so that a file can compute and do nothing else.
+
+No attribute of a Python object can be reached, nothing is called that is not in the table of functions, and every
+step, text, list and number is bounded.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from simkit.loaders.xacro.bounds import MAX_BITS, MAX_ITEMS, MAX_TEXT, BoundError, Budget, ExpansionError
+
+MAX_EXPRESSION = 20_000
+
+_BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+    ast.Pow: operator.pow,
+    ast.BitAnd: operator.and_,
+    ast.BitOr: operator.or_,
+    ast.BitXor: operator.xor,
+    ast.LShift: operator.lshift,
+    ast.RShift: operator.rshift,
+}
+_UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {
+    ast.UAdd: operator.pos,
+    ast.USub: operator.neg,
+    ast.Not: operator.not_,
+    ast.Invert: operator.invert,
+}
+_COMPARE: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.In: lambda a, b: a in b,
+    ast.NotIn: lambda a, b: a not in b,
+}
+_TEXT_METHODS = """capitalize casefold count endswith find index isalnum isalpha isdecimal isdigit isidentifier islower
+isnumeric isspace istitle isupper join lower lstrip partition removeprefix removesuffix replace rfind rindex rpartition
+rsplit rstrip split splitlines startswith strip swapcase title upper zfill format"""
+METHODS: dict[type, frozenset[str]] = {
+    str: frozenset(_TEXT_METHODS.split()),
+    list: frozenset(("append", "copy", "count", "extend", "index", "insert", "pop", "remove", "reverse")),
+    tuple: frozenset(("count", "index")),
+    dict: frozenset(("copy", "get", "items", "keys", "values", "update", "pop")),
+    set: frozenset(("add", "difference", "intersection", "issubset", "issuperset", "union")),
+    float: frozenset(("is_integer",)),
+}
+_SPACES = ("Table", "NameSpace")  # of xacro: their names are not methods
+_WIDE = re.compile(r"\d{4,}|\*")
+_FIELD = re.compile(r"\{([^{}]*)\}")
+
+
+class Function:
+    """A function that expressions may call."""
+
+    def __init__(self, call: Callable[..., Any], kind: type | None = None) -> None:
+        self.call, self.kind = call, kind
+
+
+class Evaluator:
+    """Evaluates expressions over a table of names.
+
+    Args:
+        names: what a name stands for; a missing one raises KeyError.
+        budget: of the whole expansion.
+    """
+
+    def __init__(self, names: Mapping[str, Any], budget: Budget) -> None:
+        self.names, self.budget = names, budget
+
+    def run(self, text: str) -> Any:
+        """The value of an expression; raises ExpansionError with a text for the user."""
+        if len(text) > MAX_EXPRESSION:
+            raise BoundError(f"an expression has more than {MAX_EXPRESSION} characters")
+        try:
+            tree = ast.parse(text.strip(), "<expression>", "eval")
+            return self._visit(tree.body, {})
+        except ExpansionError:
+            raise
+        except SyntaxError as error:
+            raise ExpansionError(f"it is not an expression: {error.msg}") from None
+        except RecursionError:
+            raise BoundError("an expression is nested too deeply") from None
+        except KeyError as error:
+            raise ExpansionError(f"there is no {error}") from None
+        except MemoryError:
+            raise BoundError("an expression needs too much memory") from None
+        except Exception as error:  # noqa: BLE001 - whatever Python says of the file's own arithmetic
+            raise ExpansionError(f"{type(error).__name__}: {error}") from None
+
+    def call(self, function: Any, *args: Any, **options: Any) -> Any:
+        """Calls a function of the table (or a lambda of the file) within bounds."""
+        if not isinstance(function, Function):
+            raise ExpansionError("only functions can be called")
+        self.budget.weigh(args, options)
+        options = {k: self._callable(v) if isinstance(v, Function) else v for k, v in options.items()}
+        return self.budget.value(function.call(*args, **options))
+
+    def _callable(self, function: Function) -> Callable[..., Any]:
+        return lambda *args: self.call(function, *args)
+
+    # ------------------------------------------------------------------ the tree
+
+    def _visit(self, node: ast.AST, local: Mapping[str, Any]) -> Any:
+        self.budget.spend()
+        visit = _VISITORS.get(type(node))
+        if visit is None:
+            raise ExpansionError(f"{type(node).__name__} has no place in an expression")
+        return self.budget.value(visit(self, node, local))
+
+    def _constant(self, node: ast.Constant, local: Mapping[str, Any]) -> Any:
+        return node.value
+
+    def _name(self, node: ast.Name, local: Mapping[str, Any]) -> Any:
+        if node.id in local:
+            return local[node.id]
+        if node.id.startswith("__"):
+            raise ExpansionError(f"the name {node.id!r} is not allowed")
+        try:
+            return self.names[node.id]
+        except KeyError:
+            raise ExpansionError(f"name {node.id!r} is not defined") from None
+
+    def _binary(self, node: ast.BinOp, local: Mapping[str, Any]) -> Any:
+        a, b = self._visit(node.left, local), self._visit(node.right, local)
+        apply = _BINARY.get(type(node.op))
+        if apply is None:
+            raise ExpansionError("this operator has no place in an expression")
+        if isinstance(node.op, ast.Mult):
+            for sequence, count in ((a, b), (b, a)):
+                if isinstance(sequence, (str, list, tuple)) and isinstance(count, int):
+                    most = MAX_TEXT if isinstance(sequence, str) else MAX_ITEMS
+                    if len(sequence) * count > most:
+                        raise BoundError("a list or text is too long")
+        elif isinstance(node.op, ast.Pow) and isinstance(a, int) and isinstance(b, int):
+            if b > 0 and abs(a) > 1 and a.bit_length() * b > MAX_BITS:
+                raise BoundError("a number is too large")
+        elif isinstance(node.op, ast.LShift) and isinstance(b, int) and b > MAX_BITS:
+            raise BoundError("a number is too large")
+        elif isinstance(node.op, ast.Mod) and isinstance(a, str):
+            if _WIDE.search(a):
+                raise BoundError("a format is too wide")
+            self.budget.weigh(b)
+        return apply(a, b)
+
+    def _unary(self, node: ast.UnaryOp, local: Mapping[str, Any]) -> Any:
+        return _UNARY[type(node.op)](self._visit(node.operand, local))
+
+    def _logic(self, node: ast.BoolOp, local: Mapping[str, Any]) -> Any:
+        value: Any = None
+        for one in node.values:
+            value = self._visit(one, local)
+            if bool(value) is isinstance(node.op, ast.Or):
+                return value
+        return value
+
+    def _comparison(self, node: ast.Compare, local: Mapping[str, Any]) -> Any:
+        left = self._visit(node.left, local)
+        for operation, right_node in zip(node.ops, node.comparators, strict=True):
+            right = self._visit(right_node, local)
+            if not isinstance(left, (int, float)) or not isinstance(right, (int, float)):
+                self.budget.weigh(left, right)
+            if not _COMPARE[type(operation)](left, right):
+                return False
+            left = right
+        return True
+
+    def _choice(self, node: ast.IfExp, local: Mapping[str, Any]) -> Any:
+        return self._visit(node.body if self._visit(node.test, local) else node.orelse, local)
+
+    def _sequence(self, node: ast.List | ast.Tuple | ast.Set, local: Mapping[str, Any]) -> Any:
+        values: list[Any] = []
+        for one in node.elts:
+            if isinstance(one, ast.Starred):
+                values += list(self._visit(one.value, local))
+            else:
+                values.append(self._visit(one, local))
+        return {ast.List: list, ast.Tuple: tuple, ast.Set: set}[type(node)](values)
+
+    def _dict(self, node: ast.Dict, local: Mapping[str, Any]) -> Any:
+        found: dict[Any, Any] = {}
+        for key, value in zip(node.keys, node.values, strict=True):
+            if key is None:
+                found.update(self._visit(value, local))
+            else:
+                found[self._visit(key, local)] = self._visit(value, local)
+        return found
+
+    def _subscript(self, node: ast.Subscript, local: Mapping[str, Any]) -> Any:
+        return self._visit(node.value, local)[self._visit(node.slice, local)]
+
+    def _slice(self, node: ast.Slice, local: Mapping[str, Any]) -> Any:
+        ends = (node.lower, node.upper, node.step)
+        return slice(*(None if end is None else self._visit(end, local) for end in ends))
+
+    def _attribute(self, node: ast.Attribute, local: Mapping[str, Any]) -> Any:
+        """A name in a name space, or a key of a dictionary from a YAML file; never an attribute of a Python object."""
+        owner = self._visit(node.value, local)
+        if isinstance(owner, dict):
+            try:
+                return owner[node.attr]
+            except (KeyError, AttributeError):
+                raise ExpansionError(f"there is no {node.attr!r} in it") from None
+        raise ExpansionError(f"a {type(owner).__name__} has no {node.attr!r} that could be used here")
+
+    def _call(self, node: ast.Call, local: Mapping[str, Any]) -> Any:
+        args: list[Any] = []
+        for one in node.args:
+            if isinstance(one, ast.Starred):
+                args += list(self._visit(one.value, local))
+            else:
+                args.append(self._visit(one, local))
+        options = {k.arg: self._visit(k.value, local) for k in node.keywords if k.arg is not None}
+        if isinstance(node.func, ast.Attribute):
+            owner = self._visit(node.func.value, local)
+            for kind, allowed in METHODS.items():
+                if isinstance(owner, kind) and node.func.attr in allowed and type(owner).__name__ not in _SPACES:
+                    return self._method(owner, node.func.attr, args, options)
+            return self.call(self._attribute(node.func, local), *args, **options)
+        return self.call(self._visit(node.func, local), *args, **options)
+
+    def _method(self, owner: Any, name: str, args: list[Any], options: dict[str, Any]) -> Any:
+        self.budget.weigh(owner, args, options)
+        if isinstance(owner, str):
+            if name == "join":
+                args = [[str(one) if not isinstance(one, str) else one for one in args[0]]] if args else args
+                if args and sum(len(one) + len(owner) for one in args[0]) > MAX_TEXT:
+                    raise BoundError("a text is too long")
+            elif name == "replace" and len(args) > 1:
+                if owner.count(str(args[0])) * len(str(args[1])) > MAX_TEXT:
+                    raise BoundError("a text is too long")
+            elif name == "zfill":
+                if args and isinstance(args[0], int) and args[0] > 1000:
+                    raise BoundError("a text is too long")
+            elif name == "format":
+                _check_format(owner)
+        result = getattr(owner, name)(*args, **options)
+        if name in ("items", "keys", "values"):
+            return list(result)
+        self.budget.value(owner)
+        return result
+
+    def _lambda(self, node: ast.Lambda, local: Mapping[str, Any]) -> Any:
+        names = [a.arg for a in node.args.args]
+
+        def call(*args: Any) -> Any:
+            if len(args) != len(names):
+                raise ExpansionError(f"the lambda takes {len(names)} values, it was given {len(args)}")
+            return self._visit(node.body, {**local, **dict(zip(names, args, strict=True))})
+
+        return Function(call)
+
+    def _comprehension(self, node: Any, local: Mapping[str, Any]) -> Any:
+        rows: list[Any] = []
+
+        def go(index: int, scope: dict[str, Any]) -> None:
+            if index == len(node.generators):
+                self.budget.spend()
+                if isinstance(node, ast.DictComp):
+                    rows.append((self._visit(node.key, scope), self._visit(node.value, scope)))
+                else:
+                    rows.append(self._visit(node.elt, scope))
+                self.budget.value(rows)
+                return
+            generator = node.generators[index]
+            for item in self._visit(generator.iter, scope):
+                inner = {**scope, **_bound(generator.target, item)}
+                if all(self._visit(test, inner) for test in generator.ifs):
+                    go(index + 1, inner)
+
+        go(0, dict(local))
+        return {ast.DictComp: dict, ast.SetComp: set}.get(type(node), list)(rows)
+
+    def _text(self, node: ast.JoinedStr, local: Mapping[str, Any]) -> Any:
+        return "".join(str(self._visit(one, local)) for one in node.values)
+
+    def _formatted(self, node: ast.FormattedValue, local: Mapping[str, Any]) -> Any:
+        value = self._visit(node.value, local)
+        width = "" if node.format_spec is None else self._visit(node.format_spec, local)
+        if _WIDE.search(width):
+            raise BoundError("a format is too wide")
+        self.budget.weigh(value)
+        return format(repr(value) if node.conversion == ord("r") else value, width)
+
+
+def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
+    """The names that a `for` of a comprehension binds."""
+    if isinstance(target, ast.Name):
+        return {target.id: item}
+    if isinstance(target, (ast.Tuple, ast.List)):
+        items = list(item)
+        if len(items) != len(target.elts):
+            raise ExpansionError(f"{len(target.elts)} names cannot hold {len(items)} values")
+        bound: dict[str, Any] = {}
+        for one, value in zip(target.elts, items, strict=True):
+            bound.update(_bound(one, value))
+        return bound
+    raise ExpansionError("a 'for' binds names only")
+
+
+def _check_format(template: str) -> None:
+    """Only plain fields: no attributes, no indices, no wide paddings."""
+    for field in _FIELD.findall(template):
+        name, _, width = field.partition(":")
+        if not re.fullmatch(r"\w*(![rs])?", name) or _WIDE.search(width):
+            raise ExpansionError(f"the format {{{field}}} is not allowed")
+    if re.search(r"\{[^{}]*\{", template):
+        raise ExpansionError("a format within a format is not allowed")
+
+
+_VISITORS: dict[type[ast.AST], Callable[[Evaluator, Any, Mapping[str, Any]], Any]] = {
+    ast.Constant: Evaluator._constant,
+    ast.Name: Evaluator._name,
+    ast.BinOp: Evaluator._binary,
+    ast.UnaryOp: Evaluator._unary,
+    ast.BoolOp: Evaluator._logic,
+    ast.Compare: Evaluator._comparison,
+    ast.IfExp: Evaluator._choice,
+    ast.List: Evaluator._sequence,
+    ast.Tuple: Evaluator._sequence,
+    ast.Set: Evaluator._sequence,
+    ast.Dict: Evaluator._dict,
+    ast.Subscript: Evaluator._subscript,
+    ast.Slice: Evaluator._slice,
+    ast.Attribute: Evaluator._attribute,
+    ast.Call: Evaluator._call,
+    ast.Lambda: Evaluator._lambda,
+    ast.ListComp: Evaluator._comprehension,
+    ast.SetComp: Evaluator._comprehension,
+    ast.GeneratorExp: Evaluator._comprehension,
+    ast.DictComp: Evaluator._comprehension,
+    ast.JoinedStr: Evaluator._text,
+    ast.FormattedValue: Evaluator._formatted,
+}

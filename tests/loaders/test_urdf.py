@@ -1,0 +1,291 @@
+"""URDF: links, joints, materials, and what is said about mistakes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from urdf_robots import ARM, LIMIT, MASS, errors, joint, link, robot, said
+
+import simkit
+from simkit.scene import Box, Capsule, Cylinder, Mesh, Sphere
+
+
+def test_links_and_joints_stand_where_the_origins_say(load):
+    text = robot(
+        link("a")
+        + link("b")
+        + link("c")
+        + joint("ab", "a", "b", f'<origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/><axis xyz="2 0 0"/>{LIMIT}')
+        + joint("bc", "b", "c", '<origin xyz="1 0 0"/>', "continuous")
+    )
+    model = load(text)[0].model
+    places = {x.name: x.pose_world.position for x in model.links}
+    np.testing.assert_allclose(places["c"], (0, 1, 1), atol=1e-15)
+    ab, bc = model.joints
+    np.testing.assert_allclose(ab.axes[0].xyz_world, (0, 1, 0), atol=1e-15)
+    axis = ab.axes[0]
+    assert (axis.lower, axis.upper, axis.effort, axis.velocity) == (-1, 2, 3, 4)
+    assert (bc.parent_link, bc.child_link) == ("r::b", "r::c")
+    assert (bc.axes[0].lower, bc.axes[0].upper, bc.axes[0].xyz_joint) == (-math.inf, math.inf, (1.0, 0.0, 0.0))
+
+
+def test_the_name_and_pose_of_the_caller_replace_those_of_the_file(load):
+    model = load(ARM, name="left", pose=simkit.Pose((1, 2, 3)))[0].model
+    assert [x.scoped for x in model.links] == ["left::base", "left::arm"]
+    np.testing.assert_allclose(model.links[0].pose_world.position, (1, 2, 3))
+
+
+def test_the_origin_of_an_inertial_turns_its_tensor_into_link_axes(load):
+    text = robot(
+        link(
+            "a",
+            '<inertial><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/><mass value="2"/>'
+            '<inertia ixx="1" iyy="2" izz="3"/></inertial>',
+        )
+    )
+    inertial = load(text)[0].model.links[0].inertial
+    assert (inertial.mass, inertial.com) == (2, (1, 0, 0))
+    np.testing.assert_allclose(inertial.inertia, (2, 1, 3, 0, 0, 0), atol=1e-15)
+
+
+def test_a_link_without_inertial_is_a_frame_without_mass(load):
+    scene, found = load(robot(link("a") + link("frame", "") + joint("j", "a", "frame", "", "fixed")))
+    frame = scene.model.links[1]
+    assert (frame.inertial.mass, frame.inertial.given) == (0, False)
+    assert "frame" in said(found, "SK-URDF-024")[0].message
+
+
+def test_shapes_have_the_sizes_and_names_that_gazebo_gives_them(load):
+    shapes = (
+        '<box size="1 2 3"/>',
+        '<cylinder radius="1" length="2"/>',
+        '<sphere radius="3"/>',
+        '<capsule radius="1" length="2"/>',
+    )
+    content = "".join(f"<collision><geometry>{s}</geometry></collision>" for s in shapes)
+    content += '<collision name="lid"><origin xyz="0 0 1"/><geometry><sphere radius="1"/></geometry></collision>'
+    found = load(robot(link("l", MASS + content)))[0].model.links[0].collisions
+    assert [c.name for c in found] == ["l_collision", "l_collision_1", "l_collision_2", "l_collision_3", "lid"]
+    wanted = [Box((1, 2, 3)), Cylinder(1, 2), Sphere(3), Capsule(1, 2), Sphere(1)]
+    assert [c.geometry for c in found] == wanted
+    np.testing.assert_allclose(found[-1].pose_link.position, (0, 0, 1))
+
+
+def test_names_of_collisions_are_unique_whatever_the_file_says(load):
+    sphere = '<geometry><sphere radius="1"/></geometry></collision>'
+    content = f'<collision>{sphere}<collision name="l_collision">{sphere}<collision name="l_collision">{sphere}'
+    found = load(robot(link("l", MASS + content)))[0].model.links[0].collisions
+    assert len({c.scoped for c in found}) == 3
+    assert "l_collision" in [c.name for c in found]
+
+
+def test_a_mesh_keeps_its_scale_even_a_negative_one(load, write):
+    file = write(
+        "pkg/urdf/r.urdf",
+        robot(link("l", '<visual><geometry><mesh filename="../meshes/m.stl" scale="1 -1 0.001"/></geometry></visual>')),
+    )
+    write("pkg/meshes/m.stl", "solid")
+    write("pkg/package.xml", "<package><name>pkg</name></package>")
+    shape = load(file)[0].model.links[0].visuals[0].geometry
+    assert isinstance(shape, Mesh)
+    assert (shape.scale, shape.file.name, shape.missing) == ((1, -1, 0.001), "m.stl", False)
+
+
+def test_materials_are_found_by_name_wherever_they_are_defined(load):
+    visual = '<visual><geometry><sphere radius="1"/></geometry>{}</visual>'
+    text = robot(
+        link("a", visual.format('<material name="red"/>'))
+        + link("b", visual.format('<material name="own"><color rgba="0 1 0 0.5"/></material>'))
+        + link("c", visual.format('<material name="own"/>'))
+        + link("d", visual.format('<material name="Gazebo/Blue"/>'))
+        + link("e", visual.format('<material name="rde"/>'))
+        + "".join(joint(f"j{n}", "a", n, "", "fixed") for n in "bcde")
+        + '<material name="red"><color rgba="1 0 0 1"/></material>'
+    )
+    scene, found = load(text)
+    colours = [x.visuals[0].material and x.visuals[0].material.diffuse for x in scene.model.links]
+    assert colours == [(1, 0, 0, 1), (0, 1, 0, 0.5), (0, 1, 0, 0.5), (0, 0, 1, 1), None]
+    assert said(found, "SK-URDF-026")[0].hint == "did you mean 'red'?"
+
+
+def test_floating_and_planar_joints_and_what_controllers_need(load):
+    text = robot(
+        link("a")
+        + link("b")
+        + link("c")
+        + link("d")
+        + joint("free", "a", "b", "", "floating")
+        + joint("plane", "a", "c", '<axis xyz="0 0 1"/>', "planar")
+        + joint(
+            "j",
+            "a",
+            "d",
+            LIMIT + '<safety_controller soft_lower_limit="-0.9" soft_upper_limit="1.9" '
+            'k_position="10" k_velocity="20"/><calibration rising="0.1"/>',
+        )
+    )
+    free, plane, j = load(text)[0].model.joints
+    assert free.axes == ()
+    assert [a.xyz_joint for a in plane.axes] == [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    assert (j.safety.lower, j.safety.upper, j.safety.k_position, j.safety.k_velocity) == (-0.9, 1.9, 10, 20)
+    assert (j.calibration.rising, j.calibration.falling) == (0.1, None)
+
+
+@pytest.mark.parametrize("normal", [(1, 0, 0), (0, 1, 0), (0, 0, -1), (0.6, 0, 0.8), (-0.5, 0.5, 0.70710678)])
+def test_the_axes_of_a_planar_joint_are_a_right_handed_frame(load, normal):
+    axis = '<axis xyz="{} {} {}"/>'.format(*normal)
+    axes = load(robot(link("a") + link("b") + joint("p", "a", "b", axis, "planar")))[0].model.joints[0].axes
+    x, y, z = (np.array(a.xyz_joint) for a in axes)
+    np.testing.assert_allclose(np.cross(x, y), z, atol=1e-12)
+    np.testing.assert_allclose(z, np.array(normal) / np.linalg.norm(normal), atol=1e-9)
+
+
+def test_mimic_joints_follow_in_chains_and_never_in_rings(load):
+    links = link("a") + "".join(link(n) for n in "bcd")
+    chain = (
+        joint("b", "a", "b")
+        + joint("c", "a", "c", LIMIT + '<mimic joint="b" multiplier="-2" offset="0.5"/>')
+        + joint("d", "a", "d", LIMIT + '<mimic joint="c"/>')
+    )
+    scene, found = load(robot(links + chain))
+    mimics = [j.axes[0].mimic for j in scene.model.joints]
+    assert (mimics[1].joint, mimics[1].multiplier, mimics[1].offset) == ("r::b", -2, 0.5)
+    assert mimics[2].joint == "r::c"
+    assert not errors(found)
+    ring = chain.replace(
+        f'name="b" type="revolute"><parent link="a"/><child link="b"/>{LIMIT}',
+        f'name="b" type="revolute"><parent link="a"/><child link="b"/>{LIMIT}<mimic joint="d"/>',
+    )
+    assert any("mimics itself" in e for e in errors(load(robot(links + ring))[1]))
+
+
+def test_transmissions_keep_joints_actuators_and_reductions(load):
+    text = robot(
+        link("a")
+        + link("b")
+        + link("c")
+        + joint("j1", "a", "b")
+        + joint("j2", "a", "c")
+        + '<transmission name="t"><type>transmission_interface/DifferentialTransmission</type>'
+        '<joint name="j1"><hardwareInterface>EffortJointInterface</hardwareInterface><role>joint1</role>'
+        "<mechanicalReduction>2</mechanicalReduction><offset>0.1</offset></joint>"
+        '<joint name="j2"/><actuator name="m"><mechanicalReduction>-50</mechanicalReduction></actuator></transmission>'
+        '<ros2_control name="c" type="system"><joint name="j11"/></ros2_control>'
+    )
+    scene, found = load(text)
+    (t,) = scene.model.transmissions
+    assert (t.kind, [j.name for j in t.joints], t.actuators[0].reduction) == ("differential", ["j1", "j2"], -50)
+    first = t.joints[0]
+    assert (first.reduction, first.offset, first.role, first.interfaces) == (
+        2,
+        0.1,
+        "joint1",
+        ("EffortJointInterface",),
+    )
+    assert [c.attribute("name") for c in scene.model.controls] == ["c"]
+    assert said(found, "SK-URDF-025")[0].hint.startswith("did you mean 'j")
+    assert not said(found, "SK-URDF-010")
+
+
+@pytest.mark.parametrize(
+    ("base", "links", "wanted", "code"),
+    [
+        ("auto", "base", "auto", "SK-URDF-017"),
+        ("fixed", "base", "fixed", ""),
+        ("floating", "base", "floating", ""),
+        ("auto", "world", "fixed", "SK-URDF-017"),
+        ("floating", "world", "fixed", "SK-URDF-018"),
+    ],
+)
+def test_the_base_floats_unless_the_root_is_the_world(load, base, links, wanted, code):
+    scene, found = load(robot(link(links, "") + link("b") + joint("j", links, "b")), base=base)
+    assert scene.model.base == wanted
+    assert {d.code for d in found} & {"SK-URDF-017", "SK-URDF-018"} == ({code} if code else set())
+
+
+def test_a_link_named_world_keeps_its_name_and_holds_the_robot():
+    with simkit.load(
+        robot(link("world", "") + link("b") + joint("j", "world", "b", LIMIT + '<axis xyz="0 1 0"/>'))
+    ) as sim:
+        assert sim.mj_model.nv == 1
+        np.testing.assert_allclose(sim.link("r::world").pose.position, 0)
+        sim.joint("r::j").set_position(0.5)
+        np.testing.assert_allclose(sim.link("r::b").pose.rpy, (0, 0.5, 0), atol=1e-12)
+
+
+# ---------------------------------------------------------------------- mistakes
+
+
+def test_every_mistake_of_a_file_is_said_in_one_pass_with_its_line(load):
+    text = """<robot name="r">
+      <link name="a"><inertial><mass value="1,5"/><inertia ixx="nan" iyy="1" izz="1"/></inertial></link>
+      <link name="a"/>
+      <link name="b"><colision><geometry><sphere radius="1"/></geometry></colision></link>
+      <joint name="j" type="revolut"><parent link="a"/><child link="b"/></joint>
+      <joint name="k" type="revolute"><parent link="aa"/><child link="b"/><axis xyz="0 0 0"/></joint>
+      <joint name="l" type="fixed"><parent link="a"/></joint>
+      <gazebo reference="bb"><mu1>1</mu1></gazebo>
+    </robot>"""
+    found = load(text)[1]
+    wanted = {
+        ("SK-URDF-013", 2),
+        ("SK-URDF-002", 3),
+        ("SK-URDF-010", 4),
+        ("SK-URDF-004", 5),
+        ("SK-URDF-003", 6),
+        ("SK-URDF-001", 7),
+        ("SK-URDF-021", 8),
+    }
+    assert wanted <= {(d.code, d.line) for d in found}
+    hints = {d.code: d.hint for d in found}
+    assert hints["SK-URDF-004"] == "did you mean 'revolute'?"
+    assert hints["SK-URDF-003"] == "did you mean 'a'?"
+    assert hints["SK-URDF-010"] == "did you mean 'collision'?"
+    assert "line 2" in said(found, "SK-URDF-002")[0].message
+    assert len(said(found, "SK-URDF-013")) == 2
+
+
+def test_what_is_no_tree_is_an_error(load):
+    two_roots = robot(link("a") + link("b"))
+    assert "'a' (line 1), 'b' (line 2)" in errors(load(two_roots)[1])[0]
+    ring = robot(link("a") + link("b") + joint("j", "a", "b") + joint("k", "b", "a"))
+    assert any(e.startswith("SK-URDF-007") and "circle" in e for e in errors(load(ring)[1]))
+    twice = robot(
+        link("a") + link("b") + link("c") + joint("j", "a", "b") + joint("k", "a", "c") + joint("m", "c", "b")
+    )
+    assert any("hangs on two joints, 'j' (line 4) and 'm'" in e for e in errors(load(twice)[1]))
+    assert errors(load(robot(""))[1])[0].startswith("SK-URDF-008")
+
+
+def test_a_file_with_expressions_in_it_looks_like_xacro(load):
+    text = robot(link("a", '<inertial><mass value="${mass}"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'))
+    (problem,) = said(load(text)[1], "SK-URDF-013")
+    assert "xacro" in problem.hint
+
+
+def test_missing_limits_are_said_and_mean_none(load):
+    scene, found = load(robot(link("a") + link("b") + joint("j", "a", "b", "")))
+    assert scene.model.joints[0].axes[0].upper == math.inf
+    assert said(found, "SK-URDF-020")[0].severity == "warning"
+
+
+def test_a_flat_shape_gets_a_tenth_of_a_millimetre_and_a_negative_one_is_refused(load):
+    shape = '<collision><geometry><box size="1 1 {}"/></geometry></collision>'
+    scene, found = load(robot(link("l", MASS + shape.format(0))))
+    assert scene.model.links[0].collisions[0].geometry == Box((1, 1, 1e-4))
+    assert said(found, "SK-URDF-028")
+    assert said(load(robot(link("l", MASS + shape.format(-1))))[1], "SK-URDF-009")
+
+
+def test_words_of_other_tools_are_one_note_and_prefixed_ones_are_silent(load):
+    text = robot(link("l", MASS + '<contact><lateral_friction value="1"/></contact><drake:thing/>'))
+    found = load(text)[1]
+    assert [d.severity for d in said(found, "SK-URDF-011")] == ["note"]
+    assert not [d for d in found if "drake" in d.message]
+
+
+def test_a_robot_is_the_same_every_time(load):
+    first, second = (load(ARM)[0].model for _ in range(2))
+    assert [(x.scoped, x.pose_world) for x in first.links] == [(x.scoped, x.pose_world) for x in second.links]

@@ -1,0 +1,147 @@
+"""`package://` and its kin without ROS: where packages are looked for, in which order, and what is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from urdf_robots import MASS, errors, link, robot, said
+
+import simkit
+from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders import Resolver, load_scene
+
+
+@pytest.fixture(autouse=True)
+def _no_search_paths(monkeypatch):
+    for name in ("SIMKIT_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "ROS_PACKAGE_PATH"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+
+
+def with_mesh(uri: str) -> str:
+    return robot(link("l", f'{MASS}<visual><geometry><mesh filename="{uri}"/></geometry></visual>'))
+
+
+def package(write, path: str, name: str = "") -> Path:
+    """A package with one mesh."""
+    write(f"{path}/meshes/m.stl", path)
+    return write(f"{path}/package.xml", f"<package><name>{name or Path(path).name}</name></package>").parent
+
+
+def found_mesh(load, file, paths=()) -> str:
+    """The content of the mesh that a robot found: the path of its package in these tests."""
+    scene, found = load(file, paths)
+    assert not errors(found), errors(found)
+    shapes = scene.model.links[0].visuals
+    return shapes[0].geometry.file.read_text() if shapes else "nothing"
+
+
+def test_a_package_is_found_around_the_file(load, write):
+    package(write, "ws/src/arm")
+    own = write("ws/src/arm/urdf/r.urdf", with_mesh("package://arm/meshes/m.stl"))
+    assert found_mesh(load, own) == "ws/src/arm"
+    package(write, "ws/src/hand")
+    sibling = write("ws/src/arm/urdf/s.urdf", with_mesh("package://hand/meshes/m.stl"))
+    assert found_mesh(load, sibling) == "ws/src/hand"
+    package(write, "ws/src/repo/head")
+    further = write("ws/src/arm/urdf/f.urdf", with_mesh("package://head/meshes/m.stl"))
+    assert found_mesh(load, further) == "ws/src/repo/head"
+
+
+def test_the_name_in_package_xml_counts_not_only_that_of_the_folder(load, write):
+    package(write, "arm-main", "arm")
+    file = write("arm-main/urdf/r.urdf", with_mesh("package://arm/meshes/m.stl"))
+    assert found_mesh(load, file) == "arm-main"
+
+
+@pytest.mark.parametrize("variable", ["ROS_PACKAGE_PATH", "GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH"])
+def test_the_path_variables_are_searched(load, write, monkeypatch, variable):
+    folder = package(write, "elsewhere/deep/arm")
+    monkeypatch.setenv(variable, str(folder.parents[1]))
+    file = write("here/r.urdf", with_mesh("package://arm/meshes/m.stl"))
+    assert found_mesh(load, file) == "elsewhere/deep/arm"
+
+
+def test_ament_prefixes_have_their_packages_in_share(load, write, monkeypatch):
+    folder = package(write, "opt/share/arm")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(folder.parents[1]))
+    assert found_mesh(load, write("here/r.urdf", with_mesh("package://arm/meshes/m.stl"))) == "opt/share/arm"
+
+
+def test_a_folder_named_by_the_user_comes_before_all(write):
+    package(write, "ws/arm")
+    other = package(write, "other/arm")
+    file = write("ws/arm/urdf/r.urdf", with_mesh("package://arm/meshes/m.stl"))
+    found = simkit.describe(file, package_paths={"arm": other})
+    assert found["model"]["links"][0]["visuals"][0]["geom"]["file"] == str(other / "meshes/m.stl")
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "$(find arm)/meshes/m.stl",
+        "file://$(find arm)/meshes/m.stl",
+        "model://arm/meshes/m.stl",
+        "file:///home/somebody/ws/install/arm/share/arm/meshes/m.stl",
+        "../meshes/m.stl",
+    ],
+)
+def test_other_ways_to_say_it(load, write, uri):
+    package(write, "ws/arm")
+    scene, found = load(write("ws/arm/urdf/r.urdf", with_mesh(uri)))
+    assert scene.model.links[0].visuals[0].geometry.file.read_text() == "ws/arm"
+    assert bool(said(found, "SK-URI-010")) == uri.startswith("file:///home")
+
+
+def test_a_missing_package_is_said_once_with_every_place_and_the_flag(write):
+    meshes = "".join(
+        f'<collision><geometry><mesh filename="package://nope/m{i}.stl"/></geometry></collision>\n' for i in range(3)
+    )
+    file = write("ws/arm/urdf/r.urdf", robot(link("l", MASS + "\n" + meshes)))
+    write("ws/arm/package.xml", "<package><name>arm</name></package>")
+    with pytest.raises(simkit.LoadError) as raised:
+        simkit.load(file)
+    (problem,) = (d for d in raised.value.diagnostics if d.severity == "error")
+    assert (problem.code, problem.line) == ("SK-URI-009", 2)
+    assert "3 files" in problem.message and "lines 2, 3, 4" in problem.message
+    assert str(file.parents[2] / "nope") in problem.message
+    assert "--package-path nope=DIR" in problem.hint
+
+
+def test_a_missing_picture_of_a_robot_is_a_warning_and_its_body_an_error(load, write):
+    mesh = '<{0}><geometry><mesh filename="gone.stl"/></geometry></{0}>'
+    found = load(write("r.urdf", robot(link("l", MASS + mesh.format("visual")))))[1]
+    assert [d.severity for d in said(found, "SK-URI-001")] == ["warning"]
+    found = load(write("s.urdf", robot(link("l", MASS + mesh.format("collision")))))[1]
+    assert [d.severity for d in said(found, "SK-URI-001")] == ["error"]
+
+
+@pytest.mark.parametrize(
+    "uri",
+    ["package://../secret.stl", "package://arm/../../secret.stl", "../../../secret.stl", "file:///etc/hostname"],
+)
+def test_no_uri_leaves_its_folders(load, write, uri):
+    package(write, "ws/src/arm")
+    write("secret.stl", "secret")
+    found = load(write("ws/src/arm/urdf/r.urdf", with_mesh(uri)))[1]
+    assert {d.code for d in found} & {"SK-URI-003", "SK-URI-009", "SK-URI-001"}
+    assert not load(write("ws/src/arm/urdf/r.urdf", with_mesh(uri)))[0].model.links[0].visuals
+
+
+def test_a_folder_without_package_xml_is_no_package_further_up(write):
+    write("data/secret.stl", "secret")
+    write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
+    file = write("ws/src/arm/urdf/r.urdf", with_mesh("package://data/secret.stl"))
+    diagnostics = Diagnostics()
+    load_scene(file, resolver=Resolver(), diagnostics=diagnostics)
+    assert said(list(diagnostics), "SK-URI-009")
+
+
+def test_what_find_package_found_may_be_read_from_then_on(write):
+    folder = package(write, "ws/arm")
+    base = write("ws/hand/package.xml", "<package><name>hand</name></package>").parent
+    resolver = Resolver(base=base)
+    assert resolver.find_package("arm", base)[0] == folder
+    diagnostics = Diagnostics()
+    assert resolver.resolve(f"file://{folder}/meshes/m.stl", Where(), diagnostics, base) == folder / "meshes/m.stl"
