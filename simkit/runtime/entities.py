@@ -25,6 +25,7 @@ _PREFIX = {
     "body": mujoco.mjtObj.mjOBJ_BODY,
     "jnt": mujoco.mjtObj.mjOBJ_JOINT,
     "light": mujoco.mjtObj.mjOBJ_LIGHT,
+    "eq": mujoco.mjtObj.mjOBJ_EQUALITY,
 }
 
 
@@ -56,8 +57,10 @@ class Entities:
                     handle._bind(names)
                 tables[type(handle).__name__.lower()][handle.scoped] = handle
         for name, joint in self._world_joints.items():
-            joint._bind(names)
-            tables["joint"][name] = joint
+            joint._there = joint.scoped in names.joints
+            if joint._there:
+                joint._bind(names)
+                tables["joint"][name] = joint
         tables["sensor"] = {s.scoped: s for s in structure.all_sensors()}
         self.tables = tables
         if self._world_lights is None:

@@ -9,8 +9,19 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
+from simkit.errors import InputError
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.handles import Handle
+from simkit.runtime.joint_motion import (
+    ball_quaternion,
+    ball_turn,
+    relative_pose,
+    relative_velocity,
+    set_relative_pose,
+    set_relative_velocity,
+    settle_loops,
+    stored_quaternion,
+)
 from simkit.runtime.physics import CONTROL, STALE, VELOCITY
 
 if TYPE_CHECKING:
@@ -41,8 +52,10 @@ class Joint(Handle):
         self._qpos = np.array(binding.qpos, dtype=int)
         self._dofs = np.array(binding.dofs, dtype=int)
         self._is_ball = len(self._dofs) == 3 and len(self._qpos) == 1
+        self._is_floating = self.type == "floating"
         self._one_qpos = int(self._qpos[0]) if len(self._qpos) == len(self._dofs) == 1 else -1
         self._one_dof = int(self._dofs[0]) if len(self._dofs) == 1 else -1
+        self._body = int(self._sim.mj_model.dof_bodyid[self._dofs[0]]) if len(self._dofs) else 0
 
     # ------------------------------------------------------------------ readings
 
@@ -58,25 +71,37 @@ class Joint(Handle):
 
     @property
     def position(self) -> Value:
-        """Angle [rad] or length [m]; a rotation vector (3,) for a ball joint; x y z qw qx qy qz for a floating one."""
+        """Angle [rad] or length [m] of the child's joint frame in the parent's.
+
+        A rotation vector (3,) for a ball joint; x, y and angle for a planar one; x y z qw qx qy qz for a floating one.
+        """
         self._check()
         qpos = self._sim.mj_data.qpos
         if self._one_qpos >= 0:
             return float(qpos[self._one_qpos])
         if self._is_ball:
             out = np.zeros(3)
-            mujoco.mju_quat2Vel(out, self._ball_quat(), 1.0)
+            mujoco.mju_quat2Vel(out, ball_quaternion(self._binding, self._ball_quat()), 1.0)
             return out
-        if len(self._dofs) == 6:
-            return np.array(qpos[self._qpos[0] : self._qpos[0] + 7])
+        if self._is_floating:
+            pose = relative_pose(self._sim, self._binding)
+            return np.concatenate([pose.position, pose.quaternion])
         return np.array(qpos[self._qpos])
 
     @property
     def velocity(self) -> Value:
-        """[rad/s] or [m/s]."""
+        """[rad/s] or [m/s]; a ball joint's in the child's joint frame.
+
+        A floating one's is that of the child's joint origin in the parent's joint frame (3), then the turning in the
+        child's joint frame (3).
+        """
         self._check()
         qvel = self._sim.mj_data.qvel
-        return float(qvel[self._one_dof]) if self._one_dof >= 0 else np.array(qvel[self._dofs])
+        if self._one_dof >= 0:
+            return float(qvel[self._one_dof])
+        if self._is_floating:
+            return relative_velocity(self._sim, self._binding)
+        return self._to_joint(np.array(qvel[self._dofs]))
 
     @property
     def effort(self) -> Value:
@@ -89,7 +114,7 @@ class Joint(Handle):
             limit = float(self._effort_limit[0])
             return max(-limit, min(limit, float(pending[self._one_dof] + data.qfrc_actuator[self._one_dof])))
         total = pending[self._dofs] + data.qfrc_actuator[self._dofs]
-        clipped: Vector = np.clip(total, -self._limit(), self._limit())
+        clipped: Vector = np.clip(self._to_joint(total), -self._limit(), self._limit())
         return clipped
 
     @property
@@ -99,16 +124,20 @@ class Joint(Handle):
         What motors and springs on the joint's own axis give is part of it only as far as constraints carry it.
         """
         self._check()
-        data = self._sim.physics.fresh_accelerations()
-        names, binding = self._sim.names, self._binding
+        physics = self._sim.physics
+        binding = self._binding
         # the body below the joint in the engine's tree carries the force; it may be the file's parent
         sign = -1.0 if binding.is_reversed else 1.0
-        child = names.link(self.scene.parent_link if binding.is_reversed else self.scene.child_link)
-        body = int(child.body)
-        if not body or binding.is_loop:
+        body = binding.moved_body
+        if not body:
             return np.zeros(3), np.zeros(3)
-        in_link = binding.pose_parent if binding.is_reversed else binding.pose_child
-        frame = Pose(data.xpos[body], data.xquat[body]) @ child.offset @ in_link
+        # the engine computes no forces for a sleeper; a copy that is awake has those of rest
+        is_asleep = physics.sleep.is_asleep(body, physics.fresh())
+        data = physics.data_of(physics.hold()) if is_asleep else physics.fresh_accelerations()
+        child = self._sim.names.links.get(self.scene.child_link)
+        frame = binding.pose_child
+        if child is not None:
+            frame = Pose(data.xpos[child.body], data.xquat[child.body]) @ child.offset @ frame
         com = data.subtree_com[self._sim.mj_model.body_rootid[body]]
         wrench = sign * data.cfrc_int[body]
         force = wrench[3:]
@@ -119,42 +148,57 @@ class Joint(Handle):
     # ------------------------------------------------------------------ commands
 
     def set_position(self, position: float | Sequence[float] | Vector) -> None:
-        """Puts the joint at a position, once; visible in every pose read afterwards."""
+        """Puts the joint at a position, once; visible in every pose read afterwards.
+
+        What mimics it goes along. Raises InputError for a joint that closes a loop.
+        """
         self._check()
+        self._check_settable()
         qpos = self._sim.mj_data.qpos
-        values = self._shaped(position)
-        if self._is_ball:
+        values = self._shaped(position, 7 if self._is_floating else self.dof)
+        if self._is_floating:
+            set_relative_pose(self._sim, self._binding, Pose(values[:3], values[3:]))
+        elif self._is_ball:
             quat = np.array((1.0, 0.0, 0.0, 0.0))
             mujoco.mju_quatIntegrate(quat, values, 1.0)
             start = int(self._qpos[0])
-            qpos[start : start + 4] = quat
+            qpos[start : start + 4] = stored_quaternion(self._binding, quat)
         else:
             qpos[self._qpos] = values
-        for follower in self._binding.followers:
-            qpos[follower.qpos] = self._sim.mj_model.qpos0[follower.qpos] + follower.ratio * values[0]
-        self._sim.physics.changed(STALE)
+        for f in self._binding.followers:
+            qpos[f.qpos] = self._sim.mj_model.qpos0[f.qpos] + f.offset + f.ratio * values[f.axis]
+        settle_loops(self._sim)
+        self._sim.physics.changed_body(STALE, self._body)
 
     def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
-        """Gives the joint a velocity, once."""
+        """Gives the joint a velocity, once. Raises InputError for a joint that closes a loop."""
         self._check()
-        values = self._shaped(velocity)
-        self._sim.mj_data.qvel[self._dofs] = values
+        self._check_settable()
+        values = self._shaped(velocity, self.dof)
+        if self._is_floating:
+            set_relative_velocity(self._sim, self._binding, values)
+        else:
+            self._sim.mj_data.qvel[self._dofs] = self._from_joint(values)
         for follower in self._binding.followers:
-            self._sim.mj_data.qvel[follower.dof] = follower.ratio * values[0]
-        self._sim.physics.changed(VELOCITY)
+            self._sim.mj_data.qvel[follower.dof] = follower.ratio * values[follower.axis]
+        settle_loops(self._sim)
+        self._sim.physics.changed_body(VELOCITY, self._body)
 
     def set_effort(self, effort: float | Sequence[float] | Vector) -> None:
-        """Applies an effort in the next step only, clipped to the effort limit."""
+        """Applies an effort in the next step only, clipped to the effort limit; InputError for a floating joint."""
         self._check()
+        if self._is_floating:
+            raise InputError(f"joint {self.scoped!r} is floating; Link.apply_wrench pushes its child", "SK-JOINT-012")
         physics = self._sim.physics
         if self._one_dof >= 0 and isinstance(effort, float) and math.isfinite(effort):
             most = self._effort_limit.item(0)
             physics.data.qfrc_applied[self._one_dof] = max(-most, min(most, effort))
         else:
             limit = self._limit()
-            physics.data.qfrc_applied[self._dofs] = np.clip(self._shaped(effort), -limit, limit)
+            values = np.clip(self._shaped(effort, self.dof), -limit, limit)
+            physics.data.qfrc_applied[self._dofs] = self._from_joint(values)
         physics.one_shot = True
-        physics.changed(CONTROL)
+        physics.changed_body(CONTROL, self._body)
 
     # ------------------------------------------------------------------ limits
 
@@ -202,7 +246,7 @@ class Joint(Handle):
             limit = self._velocity_limit[min(i, len(self._velocity_limit) - 1)]
             if abs(qvel[dof]) > limit:
                 qvel[dof] = math.copysign(limit, qvel[dof])
-                self._sim.physics.changed(VELOCITY)
+                self._sim.physics.changed_body(VELOCITY, self._body)
 
     def get_state(self) -> tuple[Vector, Vector]:
         """The limits that were set, for a snapshot."""
@@ -219,11 +263,27 @@ class Joint(Handle):
             return self._effort_limit
         return np.full(len(self._dofs), self._effort_limit[0])
 
-    def _shaped(self, value: float | Sequence[float] | Vector) -> Vector:
+    def _shaped(self, value: float | Sequence[float] | Vector, count: int) -> Vector:
         values = np.atleast_1d(np.asarray(value, dtype=float))
-        if len(values) != self.dof or not np.isfinite(values).all():
-            raise ValueError(f"joint {self.scoped!r} takes {self.dof} finite number(s), got {value}")
+        if len(values) != count or not np.isfinite(values).all():
+            raise ValueError(f"joint {self.scoped!r} takes {count} finite number(s), got {value}")
         return values
+
+    def _check_settable(self) -> None:
+        if self._binding.is_loop:
+            raise InputError(
+                f"joint {self.scoped!r} closes a loop: it follows the other joints of the loop; set those",
+                "SK-JOINT-012",
+            )
+        if self._is_floating and not self._binding.free:
+            raise InputError(f"joint {self.scoped!r} is floating, but another joint holds its child", "SK-JOINT-012")
+
+    def _to_joint(self, stored: Vector) -> Vector:
+        """Velocities or efforts of the engine in the joint's own frame; only a ball joint's differ."""
+        return ball_turn(self._binding, self._ball_quat()) @ stored if self._is_ball else stored
+
+    def _from_joint(self, values: Vector) -> Vector:
+        return ball_turn(self._binding, self._ball_quat()).T @ values if self._is_ball else values
 
     def _ball_quat(self) -> Vector:
         start = int(self._qpos[0])

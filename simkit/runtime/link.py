@@ -64,10 +64,12 @@ class Link(Handle):
     def linear_acceleration(self) -> Vector:
         """Of the link origin [m/s²], world frame, gravity not included (0 at rest), shape (3,)."""
         self._check()
-        data = self._sim.physics.fresh_accelerations()
         out = np.zeros(6)
-        if not self._body:
+        physics = self._sim.physics
+        # the engine leaves a sleeper's numbers at those of the last time somebody asked
+        if not self._body or physics.sleep.is_asleep(self._body, physics.fresh()):
             return out[3:]
+        data = physics.fresh_accelerations()
         mujoco.mj_objectAcceleration(self._sim.mj_model, data, _BODY, self._body, out, 0)
         linear: Vector = out[3:] + self._sim.mj_model.opt.gravity
         return linear
@@ -89,7 +91,7 @@ class Link(Handle):
         row[:3] += force
         row[3:] += torque
         physics.one_shot = True
-        physics.changed(CONTROL)
+        physics.changed_body(CONTROL, self._body)
 
     @property
     def collisions_enabled(self) -> bool:

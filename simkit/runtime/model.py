@@ -11,6 +11,7 @@ from simkit.compiler import LinkBinding
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.handles import Handle, look_up
 from simkit.runtime.joint import Joint
+from simkit.runtime.joint_motion import settle_loops
 from simkit.runtime.link import Link
 from simkit.runtime.physics import STALE, VELOCITY
 
@@ -79,10 +80,13 @@ class Model(Handle):
         shift = pose @ self.pose.inverse()
         names = self._sim.names
         for link in self.scene.all_links():
-            self._shift_link(names.link(link.scoped), shift)
+            binding = names.link(link.scoped)
+            self._shift_link(binding, shift)
+            self._sim.physics.changed_body(STALE, binding.body)
         for model in self.scene.all_models():
             handle = self._sim.model(model.scoped)
             handle._rest = shift @ handle._rest
+        settle_loops(self._sim)
         self._sim.physics.changed(STALE)
 
     def _shift_link(self, binding: LinkBinding, shift: Pose) -> None:
@@ -116,7 +120,8 @@ class Model(Handle):
             arm = data.qpos[start : start + 3] - origin
             data.qvel[dof : dof + 3] = linear + np.cross(angular, arm)
             data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(data.qpos[start + 3 : start + 7]), angular)
-        self._sim.physics.changed(VELOCITY)
+            self._sim.physics.changed_body(VELOCITY, binding.body)
+        settle_loops(self._sim)
 
     def set_joint_positions(self, positions: Mapping[str, float | Sequence[float]]) -> None:
         """Puts several joints at positions, once."""

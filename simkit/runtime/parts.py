@@ -44,3 +44,24 @@ class Structure:
 
     def all_plugins(self) -> list[Any]:
         return [plugin for p in self.parts.values() for plugin, _ in p.plugins]
+
+
+def awake_bodies(structure: Structure) -> set[int]:
+    """Ids of the bodies that must never sleep, or somebody could tell: a model with a plugin, a link with a sensor.
+
+    Of a sensor that measures contacts on something static that is everything: the contacts of a sleeper are not there.
+    """
+    links = structure.compiled.names.links
+    bodies: set[int] = set()
+    for name, scene in structure.models.items():
+        parts = structure.parts.get(name, Parts())
+        for model in scene.all_models():
+            if parts.plugins or not getattr(model, "allow_auto_disable", True):
+                bodies |= {int(links[link.scoped].body) for link in model.links}
+        for sensor in parts.sensors:
+            joint = structure.compiled.names.joints.get(sensor.scene.parent)
+            link = links.get(joint.scene.child_link if joint else sensor.scene.parent)
+            if link is None or (sensor.reads_contacts and link.static):
+                return {int(link.body) for link in links.values()}
+            bodies.add(int(link.body))
+    return bodies

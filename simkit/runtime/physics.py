@@ -8,6 +8,7 @@ stepping k-1 times, gives the bits of k steps.
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from typing import Any
 
 import mujoco
@@ -16,6 +17,7 @@ import numpy.typing as npt
 
 from simkit.errors import SimulationDiverged
 from simkit.runtime.clock import Clock
+from simkit.runtime.sleep import Sleep
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)
 """How much of the forward pass is out of date: nothing, accelerations, velocities on, all."""
@@ -63,9 +65,9 @@ class HeldState:
 class Physics:
     """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date."""
 
-    def __init__(self, model: Any, data: Any, clock: Clock) -> None:
+    def __init__(self, model: Any, data: Any, clock: Clock, may_sleep: bool = True) -> None:
         mujoco.set_mju_user_warning(_hear_engine)
-        self.clock = clock
+        self.clock, self._may_sleep = clock, may_sleep
         self.tick = 0
         self._chunk = 256
         self.rebind(model, data)
@@ -73,9 +75,11 @@ class Physics:
     def rebind(self, model: Any, data: Any) -> None:
         """Other engine objects (after a spawn, a removal, a restore)."""
         self.model, self.data = model, data
+        self.sleep = Sleep(model, data, self._may_sleep)
         self.stage = STALE
         self.one_shot = False
         self.last_applied = np.zeros(model.nv)
+        self.standing = np.zeros((model.nbody, 6))
         self._shows_applied = True
         self._accelerations_tick = -1
         self._held: HeldState | None = None
@@ -83,6 +87,8 @@ class Physics:
         self._second: Any = None
         self._second_of: HeldState | None = None
         self._warnings = data.warning.number
+        self.hears_controls = False  # whether the user may write to `data.ctrl` without a word
+        self._controls = data.ctrl.copy()
         self._integrate = _INTEGRATORS.get(int(model.opt.integrator))
 
     # ------------------------------------------------------------------ writing
@@ -92,18 +98,57 @@ class Physics:
         self.stage = max(self.stage, stage)
         self._held = None
         self._accelerations_tick = -1
+        self.sleep.rests = False
+
+    def changed_body(self, stage: int, body: int) -> None:
+        """The same of one body, which wakes where it sleeps."""
+        self.changed(STALE if self.sleep.watches and self.sleep.rouse(body) else stage)
+
+    def stand(self, wrenches: Mapping[int, npt.NDArray[np.float64]], *, are_applied: bool = False) -> None:
+        """Wrenches (force, torque) on bodies that hold until they are set anew; all others are let go.
+
+        Args:
+            are_applied: the data have them already (a restored state).
+        """
+        before = self.standing
+        self.standing = np.zeros_like(before)
+        for body, wrench in wrenches.items():
+            self.standing[body] = wrench
+            if are_applied and not self.data.xfrc_applied[body].any():
+                self.data.xfrc_applied[body] = wrench  # a link that came back by its name
+        if not are_applied:
+            self.data.xfrc_applied += self.standing - before
+            for changed in np.flatnonzero((self.standing != before).any(axis=1)):
+                self.changed_body(CONTROL, int(changed))
+
+    def changed_model(self) -> None:
+        """Says that the model itself is about to be written to: everything wakes."""
+        self.sleep.wake_all()
+        self._second = None
+        self.changed(STALE)
 
     # ------------------------------------------------------------------ reading
 
     def fresh(self) -> Any:
         """The data with a forward pass of the state at this tick."""
+        if self.hears_controls:
+            self._hear_controls()
         stage = self.stage
         if stage == STALE:
-            mj_forward(self.model, self.data)
+            if self.sleep.wants_all_awake:
+                self.sleep.forward()
+            else:
+                mj_forward(self.model, self.data)
         elif stage:
             mj_forward_skip(self.model, self.data, _SKIP[stage], 1)
         self.stage = FRESH
         return self.data
+
+    def _hear_controls(self) -> None:
+        """Notices controls that were written to the engine's data directly."""
+        if not np.array_equal(self._controls, self.data.ctrl):
+            self._controls[:] = self.data.ctrl
+            self.changed(CONTROL)
 
     def fresh_accelerations(self) -> Any:
         """The same, with body accelerations and the forces between bodies."""
@@ -142,6 +187,12 @@ class Physics:
         if self._shows_applied:
             self.last_applied[:] = 0
             self._shows_applied = False
+        sleep = self.sleep
+        if sleep.watches and sleep.notice_gravity():
+            self.changed(STALE)
+        if sleep.rests and sleep.still_rests():
+            self._rest(count)
+            return
         if self.one_shot:
             self._run(1)
             self._clear_one_shot()
@@ -163,13 +214,42 @@ class Physics:
 
     def single(self) -> None:
         """One step."""
-        if self.stage == STALE and not (self.one_shot or self._shows_applied):
+        if self.stage == STALE and not (self.one_shot or self._shows_applied or self.sleep.watches):
             mj_step(self.model, self.data)
             self.tick += 1
         else:
             self.advance(1)
 
+    def _rest(self, count: int) -> None:
+        """Time goes on, added up as the engine does."""
+        data, step = self.data, self.clock.timestep
+        if count < _SHORT:
+            now = data.time
+            for _ in range(count):
+                now += step
+            data.time = now
+        else:
+            times = np.full(count + 1, step)
+            times[0] = data.time
+            data.time = times.cumsum()[-1]
+        self.tick += count
+
     def _run(self, count: int) -> None:
+        sleep = self.sleep
+        if sleep.wants_all_awake:
+            self.fresh()
+        if sleep.is_drowsy:
+            sleep.open_eyes()
+            self._steps(1)
+            sleep.close_eyes()
+            count -= 1
+        if count:
+            self._steps(count)
+        sleep.settle()
+
+    def _steps(self, count: int) -> None:
+        if self.hears_controls:
+            self._hear_controls()
         model, data, stage = self.model, self.data, self.stage
         if stage != STALE and self._integrate is not None:
             if stage:
@@ -187,7 +267,7 @@ class Physics:
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied
         self.data.qfrc_applied[:] = 0
-        self.data.xfrc_applied[:] = 0
+        self.data.xfrc_applied[:] = self.standing
         self.one_shot = False
 
     def _tune(self, chunk: int, wall: float) -> None:
@@ -198,6 +278,8 @@ class Physics:
 
     def check(self) -> None:
         """Raises SimulationDiverged where the engine met a bad number since the last reset of its counters."""
+        if self.sleep.rests:  # found sound before
+            return
         data = self.data
         mj_check_pos(self.model, data)
         mj_check_vel(self.model, data)

@@ -9,7 +9,8 @@ from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, PluginError, SimkitError
 from simkit.pose import Pose
 from simkit.runtime.entities import carry_fields
-from simkit.runtime.parts import Parts, Structure
+from simkit.runtime.overlap import soften
+from simkit.runtime.parts import Parts, Structure, awake_bodies
 from simkit.scene import SceneModel
 
 if TYPE_CHECKING:
@@ -50,6 +51,8 @@ class Population:
         compiled = builder.recompile(old.compiled, sim.mj_data)
         models, all_parts = {**old.models, scene.name: scene}, {**old.parts, scene.name: parts}
         self.switch(Structure(builder, compiled, models, old.movable, all_parts))
+        own = {link.scoped for link in scene.all_links()}
+        soften(sim, {g for n, link in compiled.names.links.items() if n in own for g in link.geoms})
         try:
             self.start([parts], found)
         except SimkitError:
@@ -84,6 +87,14 @@ class Population:
         self.switch(Structure(builder, compiled, old.models, old.movable | {name}, old.parts))
         return True
 
+    def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
+        """Adds a weld, let go at first, between two links."""
+        old = self.structure
+        builder = old.builder.copy()
+        builder.add_weld(name, parent_link, child_link, active=False)
+        compiled = builder.recompile(old.compiled, self._sim.mj_data)
+        self.switch(Structure(builder, compiled, old.models, old.movable, old.parts))
+
     def switch(self, structure: Structure) -> None:
         """Goes on with another structure, the changed model fields carried over."""
         sim = self._sim
@@ -102,7 +113,10 @@ class Population:
         sim.bus.settle()
         self.structure = structure
         sim.physics.rebind(compiled.model, compiled.data)
+        sim.physics.sleep.restrict(awake_bodies(structure))
+        sim.physics.hears_controls = any(n.mjcf for m in structure.models.values() for n in m.all_models())
         sim.entities.bind(structure)
+        sim.stand_wrenches(are_applied=True)
         sim.bus.set_active([*structure.all_sensors(), *structure.all_plugins()])
         for sensor in structure.all_sensors():
             if sensor in self._attached:

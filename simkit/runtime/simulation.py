@@ -8,10 +8,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError
 from simkit.pose import Pose
+from simkit.runtime import sleep
 from simkit.runtime.clock import Clock
 from simkit.runtime.entities import Entities, place_light
 from simkit.runtime.joint import Joint
@@ -19,6 +21,7 @@ from simkit.runtime.light import Light
 from simkit.runtime.link import Link
 from simkit.runtime.loop import Loop, guarded
 from simkit.runtime.model import Model
+from simkit.runtime.overlap import RATE, harden, is_any_gentle, soften
 from simkit.runtime.parts import Structure
 from simkit.runtime.physics import CONTROL, STALE, HeldState, Physics
 from simkit.runtime.population import ModelLoader, PartsMaker, Population
@@ -26,6 +29,7 @@ from simkit.runtime.random import RandomStreams
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.snapshot import Snapshot
 from simkit.runtime.topics import Callback, Subscription, TopicBus
+from simkit.runtime.weld import set_weld
 from simkit.scene import SceneLink, SceneWorld
 
 _LIMIT_GRID = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
@@ -55,13 +59,15 @@ class Simulation:
         self._diagnostics = diagnostics
         self.originals: dict[str, Any] = {}
         self._exact_limits: list[Joint] = []
+        self._standing: dict[str, dict[str, Any]] = {}
         self._closed = False
-        self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock)
+        self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
         self._loop = Loop(self.physics, self.bus, self._fill)
         self.entities = Entities(self, world)
         self._population = Population(self, load_model, make_parts)
         self._population.adopt(structure)
         self._population.start(list(structure.parts.values()), diagnostics)
+        soften(self)
         self.reschedule()
         self._loaded = self.snapshot()
 
@@ -152,6 +158,7 @@ class Simulation:
             inbox=tuple(self.bus.inbox),
             one_shot=physics.one_shot,
             last_applied=physics.last_applied.copy(),
+            sleep=physics.sleep.get_state(),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -173,6 +180,7 @@ class Simulation:
         physics.clear_warnings()
         physics.one_shot = snapshot.one_shot
         physics.last_applied = snapshot.last_applied.copy()
+        physics.sleep.set_state(snapshot.sleep)
         self.bus.inbox.clear()
         self.bus.inbox.extend(snapshot.inbox)
         for handle, state in snapshot.handles:
@@ -321,6 +329,8 @@ class Simulation:
     def touch(self, field: str) -> Any:
         """A model field to be written to; snapshots and restores cover it from now on."""
         values = getattr(self.mj_model, field)
+        if not field.startswith("light_"):
+            self.physics.changed_model()
         if field not in self.originals:
             self.originals[field] = values.copy()
         return values
@@ -359,6 +369,36 @@ class Simulation:
         if self._population.make_movable(name):
             self.reschedule()
 
+    def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
+        """Adds a weld between two links while time goes on; `set_weld` closes it. Raises KeyError for unknown links."""
+        self._population.add_weld(name, parent_link, child_link)
+        self.reschedule()
+
+    def set_weld(self, name: str, closed: bool) -> None:
+        """Closes a weld with its links as they stand now, or lets it go. Raises KeyError."""
+        set_weld(self, name, closed)
+
+    def set_standing_wrenches(self, owner: str, wrenches: Mapping[str, Any], *, are_applied: bool = False) -> None:
+        """Wrenches (force [N], torque [N·m], world frame, at the centre of mass) by link that hold until set anew.
+
+        Args:
+            owner: who sets them; what others set holds too.
+            wrenches: by scoped link name; a link that is not there is waited for.
+            are_applied: the state has them already (it was restored).
+        """
+        self._standing[owner] = dict(wrenches)
+        self.stand_wrenches(are_applied)
+
+    def stand_wrenches(self, are_applied: bool = False) -> None:
+        """Lets the standing wrenches push the links that are there now."""
+        links = self.names.links
+        total: dict[int, Any] = {}
+        for wrenches in self._standing.values():
+            for name, wrench in wrenches.items():
+                if name in links and links[name].body > 0:
+                    total[links[name].body] = total.get(links[name].body, 0.0) + np.asarray(wrench, float)
+        self.physics.stand(total, are_applied=are_applied)
+
     # ------------------------------------------------------------------ schedule
 
     @property
@@ -372,6 +412,10 @@ class Simulation:
 
     def _fill(self, scheduler: Scheduler) -> None:
         """Fills the scheduler from what is there, in document order."""
+        if self.physics.sleep.watches:
+            scheduler.every(sleep.RATE, self._look_for_rest, "after")
+        if is_any_gentle(self.mj_model):
+            scheduler.every(RATE, lambda _: harden(self), "sense")
         for joint in self.entities.tables["joint"].values():
             if joint in self._exact_limits:
                 scheduler.every(None, joint.clamp_velocity, "sense")
@@ -386,6 +430,10 @@ class Simulation:
             ):
                 if plugin.has_hook(hook):
                     scheduler.every(rate, guarded(self, plugin, hook), phase)  # type: ignore[arg-type]
+
+    def _look_for_rest(self, _tick: int) -> None:
+        if not self.physics.sleep.rests:
+            self.physics.sleep.look(self.physics.fresh())
 
     def _coasts_over_limit(self, joint: Joint) -> bool:
         """Whether a joint has a velocity limit of the file that no servo keeps."""

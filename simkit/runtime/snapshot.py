@@ -27,6 +27,7 @@ class Snapshot:
     inbox: tuple[tuple[str, Any], ...]
     one_shot: bool
     last_applied: Any
+    sleep: tuple[Any, ...] = (False,)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Snapshot:
         return self

@@ -66,6 +66,7 @@ class Sensor(abc.ABC):
         kinds: `<sensor type>` names in files.
         is_deferred: whether noise and message of a captured sample may wait until somebody looks.
         needs_acceleration: whether `measure` reads body accelerations or forces between bodies.
+        reads_contacts: whether `measure` reads contacts; what rests on a static link with such a sensor never sleeps.
         name, scoped, kind: as in the file.
         update_rate: [Hz]; 0 is every step. Change it with `set_rate`.
         frame_id: of the messages.
@@ -74,6 +75,7 @@ class Sensor(abc.ABC):
 
     kinds: ClassVar[tuple[str, ...]] = ()
     needs_acceleration: ClassVar[bool] = False
+    reads_contacts: ClassVar[bool] = False
     is_deferred: bool = False
 
     sim: Simulation

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit import msgs
-from simkit.compiler.groups import COLLISION, COLLISION_RAY, VISUAL
+from simkit.compiler.groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION, VISUAL
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
@@ -136,7 +136,7 @@ class Lidar(Sensor):
         super().__init__(scene, diagnostics)
         self.options = options = read_options(scene.params)
         self.sees_visuals = scene.kind.startswith("gpu_")
-        groups = (VISUAL,) if self.sees_visuals else (COLLISION, COLLISION_RAY)
+        groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
         self._directions = fan_directions(options.horizontal.angles, options.vertical.angles)
         self._fan = RayFan(self._directions, groups, options.range_max)
         self._retro: Vector | None = None

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.groups import VISUAL
+from simkit.compiler.groups import DRAWN_COLLISION, VISUAL
 from simkit.errors import RenderError
 from simkit.pose import Vector
 from simkit.sensors import gl
@@ -345,7 +345,7 @@ def _visuals_only() -> Any:
     for groups in (option.geomgroup, option.sitegroup, option.jointgroup, option.tendongroup, option.actuatorgroup):
         groups[:] = 0
     option.flexgroup[:] = option.skingroup[:] = 0
-    option.geomgroup[VISUAL] = 1
+    option.geomgroup[[DRAWN_COLLISION, VISUAL]] = 1
     return option
 
 

@@ -1,0 +1,64 @@
+"""Loading beside bare MuJoCo, which reads and compiles the same model from MJCF text.
+
+python benchmarks/loading.py [WORLD [RESOURCE_PATH ...]]
+
+Without a world: a thousand boxes, and gz-sim's 3003 shapes where they lie beside the checkout. A first load of each is
+not counted: it imports what is needed and converts meshes, which later loads find in the cache.
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import measure  # noqa: F401 - finds simkit in the checkout
+import mujoco
+
+import simkit
+from worlds import SHAPES, boxes
+
+ROUNDS = 5
+
+
+def timed(action: Callable[[], Any]) -> float:
+    """CPU time [s] of one call; what it returns is let go outside."""
+    start = time.process_time()
+    kept = action()
+    taken = time.process_time() - start
+    del kept
+    return taken
+
+
+def loading(source: str, paths: list[str]) -> str:
+    """One line: load, bare read and compile, bare compile of a finished specification."""
+    with simkit.load(source, resource_paths=paths) as sim:
+        spec = sim.structure.builder.spec.copy()
+
+    def compile_only() -> Any:
+        model = spec.copy().compile()
+        return model, mujoco.MjData(model)
+
+    sides: list[Callable[[], Any]] = [lambda: simkit.load(source, resource_paths=paths), compile_only]
+    if not spec.meshes and not spec.textures:  # whose data MJCF text does not hold
+        text = spec.to_xml()
+        sides.append(lambda: mujoco.MjData(mujoco.MjModel.from_xml_string(text)))
+    rows = [[timed(side) for side in sides] for _ in range(ROUNDS)]
+    ours, *bare = (statistics.median(column) for column in zip(*rows, strict=True))
+    whole = f", MJCF text read and compiled {bare[1]:.3f} s, ratio {ours / bare[1]:.2f}" if len(bare) > 1 else ""
+    return f"load {ours:.3f} s, compile alone {bare[0]:.3f} s, ratio {ours / bare[0]:.2f}{whole}"
+
+
+def main() -> None:
+    if len(sys.argv) > 1:
+        print(sys.argv[1], loading(sys.argv[1], sys.argv[2:]))
+        return
+    print("1000 boxes:", loading(boxes(1000), []), flush=True)
+    if SHAPES.is_file():
+        print("3003 shapes:", loading(str(SHAPES), []), "  aim <= 2")
+
+
+if __name__ == "__main__":
+    main()

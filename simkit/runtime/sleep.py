@@ -1,0 +1,242 @@
+"""Trees that rest are left out of the physics until something reaches them.
+
+The engine can freeze a tree and wakes it when something awake touches it, or when its position, velocity or applied
+force is set. Its own rule for falling asleep, ten steps below a speed, would also stop a ball at the top of a slow
+throw, a slow roller and a drifting satellite. So that rule is off (its tolerance is negative), and the decision is made
+here, by what nobody can tell from rest:
+
+- the tree is in contact, or held by another constraint, and nothing drives or measures it,
+- it has stayed within 1 nm (1 nrad) for 0.1 s, twice, and the second time no less than the first, or within 10 µm for
+  1 s, twice (the tremor of a pile, which the solver makes),
+- and so has every tree that it touches.
+
+Windows lie on the grid of simulated time, so chunks, readers and processes make no difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+RATE: Final = 10.0
+"""[Hz] at which trees are looked at."""
+
+_STILL, _STILL_FLOOR = 1e-9, 1e-10  # [m or rad] in one look
+_CALM, _CALM_FLOOR = 1e-5, 2e-6  # [m or rad] in one long look
+_LONG = 10  # looks
+_TWICE = 2
+
+_LEAST_SPEED = 1e-3  # [m/s] below which the engine carries out what was decided here
+_NO_SPEED = -1.0  # of zero it would still put to sleep what stands exactly still
+_AWAKE = -(1 + mujoco.mjMINAWAKE)
+_READY = -1
+_FLAG = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+_NO_ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+_MAY = (int(mujoco.mjtSleepPolicy.mjSLEEP_AUTO_ALLOWED), int(mujoco.mjtSleepPolicy.mjSLEEP_ALLOWED))
+
+Floats = npt.NDArray[np.float64]
+
+
+class Sleep:
+    """Which trees of a model may sleep, which do, and when nothing at all can move.
+
+    Args:
+        model, data: the engine's; the flag for sleeping is set in them.
+        enabled: whether anything may sleep at all.
+
+    Attributes:
+        watches: whether there is anything that could fall asleep; then `look` is wanted at `RATE`.
+        is_drowsy: the next step is the one in which the engine puts to sleep what has been found to rest.
+        rests: every tree sleeps, and nothing has been changed since.
+        wants_all_awake: the next forward pass wakes everything.
+    """
+
+    def __init__(self, model: Any, data: Any, enabled: bool) -> None:
+        self._model, self._data = model, data
+        self.enabled = enabled
+        self.is_drowsy = self.rests = self.wants_all_awake = self.watches = self._can_rest = False
+        self._gravity = model.opt.gravity.tolist()
+        self._places = [data.qpos, *((data.mocap_pos, data.mocap_quat) if model.nmocap else ())]
+        self._pushes = [data.qvel, data.qfrc_applied, data.xfrc_applied]
+        if not enabled:
+            model.opt.enableflags &= ~_FLAG
+            return
+        if not model.opt.enableflags & _FLAG:
+            # things that never move are computed once, and that must have happened before the flag is set
+            mujoco.mj_forward(model, data)
+            model.opt.enableflags |= _FLAG
+        model.opt.sleep_tolerance = _NO_SPEED
+        self.restrict(())
+
+    def restrict(self, bodies: Iterable[int]) -> None:
+        """Says that the trees of these bodies never sleep, besides those that an actuator drives."""
+        model = self._model
+        self._may = np.isin(model.tree_sleep_policy, _MAY)
+        for body in bodies:
+            tree = int(model.body_treeid[body])
+            if tree >= 0:
+                self._may[tree] = False
+        has_islands = not model.opt.disableflags & _NO_ISLANDS
+        self.watches = self.enabled and bool(self._may.any()) and has_islands
+        self._can_rest = self.enabled and bool(self._may.all()) and (self.watches or not model.ntree)
+        first_joint = model.dof_jntid[model.tree_dofadr] if model.ntree else np.zeros(0, int)
+        self._starts = model.jnt_qposadr[first_joint] if model.ntree else first_joint
+        self._begin()
+
+    def _begin(self) -> None:
+        """Looks at everything as if for the first time."""
+        trees = self._model.ntree
+        self._looks = 0
+        self._last = self._data.qpos.copy()
+        self._long_ago = self._last
+        self._still, self._calm = np.zeros(trees, int), np.zeros(trees, int)
+        self._moved, self._moved_long = np.full(trees, np.inf), np.full(trees, np.inf)
+        self._slept = self._data.tree_asleep >= 0
+
+    # ------------------------------------------------------------------ falling asleep
+
+    def look(self, data: Any) -> None:
+        """Compares with the last look, and makes ready for sleep what rests; `data` has a fresh forward pass."""
+        qpos = data.qpos.copy()
+        asleep = data.tree_asleep >= 0
+        self._looks += 1
+        moved = self._distance(qpos, self._last)
+        is_still = (moved <= _STILL) & (moved <= np.maximum(self._moved, _STILL_FLOOR))
+        self._still = np.where(is_still, self._still + 1, 0)
+        self._calm[moved > _CALM] = 0
+        self._moved, self._last = moved, qpos
+        if self._looks % _LONG == 0:
+            moved = self._distance(qpos, self._long_ago)
+            is_calm = (moved <= _CALM) & (moved <= np.maximum(2.0 * self._moved_long, _CALM_FLOOR))
+            self._calm = np.where(is_calm, self._calm + 1, 0)
+            self._moved_long, self._long_ago = moved, qpos
+        woken = self._slept & ~asleep
+        self._still[woken] = self._calm[woken] = 0
+        self._slept = asleep
+        rests = (self._still >= _TWICE) | (self._calm >= _TWICE)
+        ready = self._may & rests & ~asleep & (data.tree_island >= 0)
+        if ready.any():
+            ready[self._pushed()] = False
+        if ready.any():
+            data.tree_asleep[ready] = _READY
+            self.is_drowsy = True
+
+    def _pushed(self) -> npt.NDArray[np.intp]:
+        """Trees that a force is applied to."""
+        model, data = self._model, self._data
+        bodies, dofs = np.flatnonzero(data.xfrc_applied.any(axis=1)), np.flatnonzero(data.qfrc_applied)
+        trees = np.concatenate((model.body_treeid[bodies], model.dof_treeid[dofs]))
+        return trees[trees >= 0]
+
+    def _distance(self, a: Floats, b: Floats) -> Floats:
+        distance: Floats = np.maximum.reduceat(np.abs(a - b), self._starts)
+        return distance
+
+    def open_eyes(self) -> None:
+        """Before the step in which the engine puts to sleep what is ready."""
+        self._model.opt.sleep_tolerance = _LEAST_SPEED
+
+    def close_eyes(self) -> None:
+        """After that step."""
+        self._model.opt.sleep_tolerance = _NO_SPEED
+        self.is_drowsy = False
+
+    # ------------------------------------------------------------------ waking
+
+    def rouse(self, body: int) -> bool:
+        """Says that something of a body is set; True where it slept, so that positions must be computed anew."""
+        tree = int(self._model.body_treeid[body])
+        if tree < 0 or not self._may[tree]:
+            return False
+        self._still[tree] = self._calm[tree] = 0
+        asleep = self._data.tree_asleep
+        if asleep[tree] >= 0:
+            # the engine wakes what has a velocity, and takes the negative zero for one
+            dof = int(self._model.tree_dofadr[tree])
+            if self._data.qvel[dof] == 0.0:
+                self._data.qvel[dof] = -0.0
+            return True
+        if self.is_drowsy:
+            asleep[tree] = _AWAKE
+        return False
+
+    def is_asleep(self, body: int, data: Any) -> bool:
+        """Whether a body sleeps, of data with a fresh forward pass."""
+        tree = int(self._model.body_treeid[body])
+        return tree >= 0 and bool(data.tree_asleep[tree] >= 0)
+
+    def wake_all(self) -> None:
+        """Before a change of the model: everything is awake from the next forward pass on."""
+        if self.enabled:
+            self.wants_all_awake = True
+            self.rests = self.is_drowsy = False
+
+    def forward(self) -> None:
+        """A forward pass that wakes everything, and computes anew what never moves."""
+        model, data = self._model, self._data
+        model.opt.enableflags &= ~_FLAG
+        mujoco.mj_forward(model, data)
+        model.opt.enableflags |= _FLAG
+        data.tree_asleep[:] = _AWAKE
+        self.wants_all_awake = False
+        self._begin()
+
+    # ------------------------------------------------------------------ when all is quiet
+
+    def settle(self) -> None:
+        """After steps: notes whether all is asleep."""
+        if self._can_rest and self._data.ntree_awake == 0:
+            self.rests = True
+            self._rest = [(now, now.copy()) for now in self._places]
+
+    def still_rests(self) -> bool:
+        """Whether nothing was written to the engine's objects behind our back either."""
+        for values in self._pushes:
+            if values.any():
+                self.rests = False
+        for now, then in self._rest:
+            if not (now == then).all():
+                self.rests = False
+        return self.rests
+
+    def notice_gravity(self) -> bool:
+        """Wakes everything where gravity is another than before; True then."""
+        gravity = self._model.opt.gravity.tolist()
+        if gravity == self._gravity:
+            return False
+        self._gravity = gravity
+        self.wake_all()
+        return self.enabled
+
+    # ------------------------------------------------------------------ snapshots
+
+    def get_state(self) -> tuple[Any, ...]:
+        """What a restored run needs besides the engine's data."""
+        if not self.watches:
+            return (self.wants_all_awake,)
+        return (
+            self.wants_all_awake,
+            self.is_drowsy,
+            self._looks,
+            self._last,
+            self._long_ago,
+            self._moved,
+            self._moved_long,
+            self._slept,
+            self._still.copy(),
+            self._calm.copy(),
+        )
+
+    def set_state(self, state: tuple[Any, ...]) -> None:
+        """Back to `get_state`; the engine's data are those of then already."""
+        self.rests = self.is_drowsy = False
+        self.wants_all_awake = state[0]
+        self._gravity = self._model.opt.gravity.tolist()
+        if len(state) > 1:
+            self.is_drowsy, self._looks, self._last, self._long_ago = state[1:5]
+            self._moved, self._moved_long, self._slept = state[5:8]
+            self._still, self._calm = state[8].copy(), state[9].copy()
