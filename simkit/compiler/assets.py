@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from simkit.compiler.mesh_files import Pixels, pixels_of
 from simkit.compiler.mesh_part import Floats, Ints
 
 AssetKey = tuple[str, str]
@@ -21,6 +23,7 @@ class Assets:
         self.spec = spec
         self.known: set[AssetKey] = set(known or ())
         self.used: set[AssetKey] = set()
+        self._pictures: dict[Path, Pixels] = {}
 
     def _is_new(self, kind: str, name: str) -> bool:
         key = (kind, name)
@@ -30,83 +33,57 @@ class Assets:
         self.known.add(key)
         return True
 
-    def surface(self, vertices: Floats, faces: Ints, uv: Floats | None = None, collides: bool = False) -> str:
-        """A triangle mesh; one that does not collide may be flat or open."""
-        name = "mesh#" + _digest(vertices, faces, uv, collides)
+    def surface(self, vertices: Floats, faces: Ints, uv: Floats | None = None) -> str:
+        """A triangle mesh, which may be flat or open."""
+        name = "mesh#" + _digest(vertices, faces, uv)
         if self._is_new("mesh", name):
-            if len(vertices) < 4:  # MuJoCo wants four; the last is in no face
-                vertices = np.vstack([vertices, vertices[:1], vertices[:1]])
-                uv = None if uv is None else np.vstack([uv, uv[:1], uv[:1]])
-            mesh = self.spec.add_mesh(name=name)
-            mesh.inertia = (
-                mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX if collides else mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
-            )
-            mesh.uservert = np.ascontiguousarray(vertices, np.float64).reshape(-1)
-            mesh.userface = np.ascontiguousarray(faces, np.int32).reshape(-1)
-            if uv is not None:
-                mesh.usertexcoord = np.column_stack([uv[:, 0], 1.0 - uv[:, 1]]).reshape(-1)
-                mesh.userfacetexcoord = np.ascontiguousarray(faces, np.int32).reshape(-1)
+            self._add_mesh(name, mesh_bytes(vertices, faces, uv))
         return name
 
-    def hull(self, points: Floats) -> str:
-        """The convex hull of points. Raises QhullError where they are all in one plane."""
-        from scipy.spatial import ConvexHull
+    def _add_mesh(self, name: str, content: bytes) -> None:
+        """A mesh by way of a file in memory: MuJoCo keeps what it made of a file and does not repeat that work.
 
-        if _is_stout_prism(points):
-            return self._corners(points)
-        hull = ConvexHull(points)
-        used, inverse = np.unique(hull.simplices, return_inverse=True)
-        vertices = np.asarray(points, float)[used]
-        faces = np.asarray(inverse).reshape(-1, 3)
-        middle = vertices.mean(axis=0)
-        corners = vertices[faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        inwards = np.einsum("ij,ij->i", normals, corners[:, 0] - middle) < 0.0
-        faces[inwards] = faces[inwards][:, ::-1]
-        return self.surface(vertices, faces.astype(np.int32), collides=True)
+        Its inertia as a shell is never used (masses are given), is cheap, and exists for open and flat meshes too.
+        """
+        mesh = self.spec.add_mesh(name=name)
+        mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+        mesh.file = file_of(name)
+        self.spec.assets[mesh.file] = content
 
-    def _corners(self, points: Floats) -> str:
-        """A convex mesh that MuJoCo itself finds the faces of."""
-        name = "mesh#" + _digest(points)
-        if self._is_new("mesh", name):
-            mesh = self.spec.add_mesh(name=name)
-            mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
-            mesh.uservert = np.ascontiguousarray(points, np.float64).reshape(-1)
-        return name
+    def picture(self, file: Path) -> Pixels:
+        """A texture file, read once. Raises MeshFileError."""
+        if file not in self._pictures:
+            self._pictures[file] = pixels_of(file)
+        return self._pictures[file]
 
-    def texture(self, pixels: Any, on_mesh: bool) -> str:
-        """An image. Meshes and planes map it by coordinates, other shapes wear it on every side."""
-        if not on_mesh:
-            side = int(min(max(pixels.shape[:2]), 1024))
-            from PIL import Image
-
-            pixels = np.asarray(Image.fromarray(pixels).resize((side, side)), np.uint8)
-        name = "texture#" + _digest(pixels, on_mesh)
+    def texture(self, pixels: Pixels) -> str:
+        """An image that is mapped by texture coordinates."""
+        name = "texture#" + _digest(pixels)
         if self._is_new("texture", name):
             texture = self.spec.add_texture(name=name)
-            texture.type = mujoco.mjtTexture.mjTEXTURE_2D if on_mesh else mujoco.mjtTexture.mjTEXTURE_CUBE
-            texture.height, texture.width, texture.nchannel = (
-                pixels.shape[0] * (1 if on_mesh else 6),
-                pixels.shape[1],
-                3,
-            )
-            texture.data = (
-                np.ascontiguousarray(pixels) if on_mesh else np.ascontiguousarray(np.tile(pixels, (6, 1, 1)))
-            ).tobytes()
+            texture.type = mujoco.mjtTexture.mjTEXTURE_2D
+            texture.height, texture.width, texture.nchannel = pixels.shape
+            texture.data = np.ascontiguousarray(pixels).tobytes()
         return name
 
-    def material(self, emission: float, specular: float, texture: str = "") -> str:
+    def material(self, emission: float, specular: float, shininess: float = 0.3, texture: str = "") -> str:
         """How a geom reflects; its colour stays with the geom."""
-        name = "material#" + _digest(round(emission, 4), round(specular, 4), texture)
+        values = (round(emission, 4), round(specular, 4), round(shininess, 4))
+        name = "material#" + _digest(*values, texture) + ("#textured" if texture else "")
         if texture:
             self.used.add(("texture", texture))
         if self._is_new("material", name):
             material = self.spec.add_material(name=name)
-            material.emission, material.specular, material.shininess = emission, specular, 0.3
+            material.emission, material.specular, material.shininess = values
             material.rgba = (1.0, 1.0, 1.0, 1.0)
             if texture:
                 material.textures[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)] = texture
         return name
+
+    @staticmethod
+    def has_texture(material: str) -> bool:
+        """Whether a material, by its name, wears an image."""
+        return material.endswith("#textured")
 
     def heights(self, rows: Any, size: tuple[float, float, float]) -> str:
         """A height field over `size` (x, y, highest); rows from -y to +y, values from 0 to 1."""
@@ -123,20 +100,55 @@ class Assets:
         order = {"material": 0, "mesh": 1, "hfield": 2, "texture": 3}
         for kind, name in sorted(keys & self.known, key=lambda k: (order[k[0]], k[1])):
             self.spec.delete(getattr(self.spec, kind)(name))
+            self.spec.assets.pop(file_of(name), None)
             self.known.discard((kind, name))
 
 
-def _is_stout_prism(points: Floats) -> bool:
-    """Whether six points are a triangle and its shifted copy, and far from flat: the usual case, quickly told."""
-    if len(points) != 6:
-        return False
-    shift = points[3:] - points[:3]
-    if np.abs(shift - shift[0]).max() > 1e-9:
-        return False
-    u, v = points[1] - points[0], points[2] - points[0]
-    area = float(np.linalg.norm(np.cross(u, v)))
-    edge = float(max(u @ u, v @ v, (u - v) @ (u - v)))
-    return area > 1e-3 * edge and float(shift[0] @ shift[0]) > 1e-8 * edge
+def file_of(name: str) -> str:
+    """Name of the file in memory (`spec.assets`) that a mesh is read from."""
+    return name.replace("#", "_") + ".msh"
+
+
+def mesh_bytes(vertices: Floats, faces: Ints, uv: Floats | None = None) -> bytes:
+    """A mesh in MuJoCo's MSH format: counts, then vertices and texture coordinates in single precision, then faces."""
+    if len(vertices) < 4:  # MuJoCo wants four; the last are in no face
+        vertices = np.vstack([vertices, np.repeat(vertices[:1], 4 - len(vertices), axis=0)])
+        uv = None if uv is None else np.vstack([uv, np.repeat(uv[:1], len(vertices) - len(uv), axis=0)])
+    counts = np.array([len(vertices), 0, 0 if uv is None else len(uv), len(faces)], "<i4")
+    content = [counts.tobytes(), vertices.astype("<f4").tobytes()]
+    if uv is not None:  # the first row of an image is its top
+        content.append(np.column_stack([uv[:, 0], 1.0 - uv[:, 1]]).astype("<f4").tobytes())
+    content.append(faces.astype("<i4").tobytes())
+    return b"".join(content)
+
+
+def mesh_arrays(content: bytes) -> tuple[Floats, Ints, Floats | None]:
+    """Vertices, faces and texture coordinates (as MuJoCo counts them, from the top) of a mesh in memory."""
+    n, _, n_uv, n_faces = (int(v) for v in np.frombuffer(content, "<i4", 4))
+    vertices = np.frombuffer(content, "<f4", 3 * n, 16).reshape(-1, 3).astype(float)
+    uv = np.frombuffer(content, "<f4", 2 * n_uv, 16 + 12 * n).reshape(-1, 2).astype(float) if n_uv else None
+    faces = np.frombuffer(content, "<i4", 3 * n_faces, 16 + 12 * n + 8 * n_uv).reshape(-1, 3).astype(np.int32)
+    return vertices, faces, uv
+
+
+def with_inline_meshes(spec: mujoco.MjSpec) -> mujoco.MjSpec:
+    """The same specification (changed in place) with every mesh of this module written out instead of in a file.
+
+    For whoever writes XML: its text then needs no files in memory.
+    """
+    for mesh in spec.meshes:
+        content = spec.assets.get(mesh.file)
+        if content is None or not mesh.name.startswith("mesh#"):
+            continue
+        vertices, faces, uv = mesh_arrays(content)
+        del spec.assets[mesh.file]
+        mesh.file, mesh.content_type = "", ""
+        mesh.uservert = vertices.reshape(-1)
+        mesh.userface = faces.reshape(-1)
+        if uv is not None:
+            mesh.usertexcoord = uv.reshape(-1)
+            mesh.userfacetexcoord = faces.reshape(-1)
+    return spec
 
 
 def _digest(*values: Any) -> str:

@@ -6,63 +6,91 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.diagnostics import Diagnostics
+from simkit.compiler.inertia import LEAST_MASS, Written
 from simkit.pose import Pose
 from simkit.scene import Inertial, SceneLink
 
-LEAST_MASS: Final = 1e-9
 LEAST_INERTIA: Final = 1e-12
 
 
-def add_body(parent: Any, link: SceneLink, pose: Pose, diagnostics: Diagnostics) -> Any:
-    """A body whose frame is the link frame, `pose` in the parent body's frame; returns MuJoCo's handle."""
+KINEMATIC_ARMATURE: Final = 1e9
+"""[kg and kg·m²] added to the inertia, not to the weight, of a free kinematic link."""
+
+TWIN_SHARE: Final = 0.1
+"""Part of a link's mass that the twin of a loop joint takes over. A lighter twin makes the loop softer: under a load
+the weld gives way in proportion to 1 / mass."""
+
+
+def add_body(parent: Any, link: SceneLink, pose: Pose, written: Written | None, *, needs_mass: bool = True) -> Any:
+    """A body whose frame is the link frame, `pose` in the parent body's frame; returns MuJoCo's handle.
+
+    Args:
+        written: its mass and inertia (`simkit.compiler.inertia.plan_inertials`); None for a link without mass.
+        needs_mass: whether it moves by itself; a link without mass that does not is a frame and weighs nothing.
+    """
     body = parent.add_body(name=link.scoped, pos=pose.position, quat=pose.quaternion)
     body.explicitinertial = True
-    inertial = mended(link.inertial, link, diagnostics)
-    body.mass = inertial.mass
-    body.ipos = inertial.com
-    body.fullinertia = inertial.inertia
+    if written is None:
+        least = needs_mass
+        body.mass, body.inertia = (LEAST_MASS, (LEAST_INERTIA,) * 3) if least else (0.0, (0.0, 0.0, 0.0))
+        return body
+    body.mass, body.ipos = written.mass, written.com
+    if any(written.inertia):
+        body.fullinertia = written.inertia
+    else:
+        body.inertia = (0.0, 0.0, 0.0)
     if not link.gravity or link.kinematic:
         body.gravcomp = 1.0
-    if link.kinematic:
-        diagnostics.warning(
-            "SK-PHYS-012",
-            f"kinematic: link {link.scoped} is not pulled by gravity, but contacts still push it",
-            link.where,
-        )
     return body
 
 
-def mended(inertial: Inertial, link: SceneLink, diagnostics: Diagnostics) -> Inertial:
-    """The inertial with the smallest change that makes it one of a real body (A + B >= C, all positive)."""
-    ixx, iyy, izz, ixy, ixz, iyz = inertial.inertia
-    matrix = np.array(((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))
-    mass = inertial.mass
-    if not (np.isfinite(matrix).all() and np.isfinite(mass) and np.isfinite(inertial.com).all()):
-        diagnostics.error(
-            "SK-PHYS-018", f"link {link.scoped}: mass, centre of mass or inertia is not finite", link.where
-        )
-        return Inertial()
-    values, axes = np.linalg.eigh(matrix)
-    moments = np.maximum(values, LEAST_INERTIA)
-    lack = moments[2] - (moments[0] + moments[1])
-    if lack > 1e-9 * moments[2]:
-        moments[:2] += (0.5 + 1e-9) * lack
-    is_same = bool((abs(moments - values) <= 1e-9 * abs(values)).all()) and mass >= LEAST_MASS
-    if is_same:
-        return inertial
-    diagnostics.note(
-        "SK-PHYS-011",
-        f"link {link.scoped}: mass {mass:g} kg with principal moments {_text(values)} kg m² is that of no body; "
-        f"{max(mass, LEAST_MASS):g} kg with {_text(moments)} is used",
-        link.where,
-    )
-    m = (axes * moments) @ axes.T
-    full = tuple(float(v) for v in (m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]))
-    return Inertial(
-        max(mass, LEAST_MASS), inertial.com, (full[0], full[1], full[2], full[3], full[4], full[5]), inertial.given
-    )
+def is_massless(inertial: Inertial) -> bool:
+    """Whether a link is but a frame: without mass and without inertia."""
+    return inertial.mass == 0.0 and not any(inertial.inertia)
 
 
-def _text(values: Any) -> str:
-    return "(" + ", ".join(f"{v:.3g}" for v in values) + ")"
+def add_twin(spec: Any, name: str, body: str, under: str, pose: Pose, has_motion: bool) -> Any:
+    """A second body for a link, hung `under` another body; it takes over a part of the link's mass.
+
+    Args:
+        spec: MuJoCo's specification.
+        body: MuJoCo body of the link.
+        pose: of the link's body in that of `under`.
+        has_motion: whether joints will move it; a twin that is rigidly one with `under` needs no mass.
+    """
+    twin = spec.body(under).add_body(name=name, pos=pose.position, quat=pose.quaternion)
+    twin.explicitinertial = True
+    source = spec.body(body)
+    twin.gravcomp = source.gravcomp
+    if not has_motion:
+        twin.mass, twin.inertia = 0.0, (0.0, 0.0, 0.0)
+        return twin
+    twin.ipos = source.ipos
+    is_full = bool(np.isfinite(source.fullinertia[0]))
+    twin.mass = max(LEAST_MASS, TWIN_SHARE * source.mass)
+    if is_full:
+        twin.fullinertia = TWIN_SHARE * np.array(source.fullinertia)
+    else:
+        twin.iquat = source.iquat
+        twin.inertia = np.maximum(LEAST_INERTIA, TWIN_SHARE * np.array(source.inertia))
+    _scale(source, 1.0 - TWIN_SHARE)
+    return twin
+
+
+def drop_twin(spec: Any, name: str, body: str) -> None:
+    """Takes a twin out again, and gives the link its mass back where that is still there."""
+    twin = spec.body(name)
+    has_motion = twin is not None and len(twin.joints) > 0
+    if twin is not None:
+        spec.delete(twin)
+    source = spec.body(body)
+    if source is not None and has_motion:
+        _scale(source, 1.0 / (1.0 - TWIN_SHARE))
+
+
+def _scale(body: Any, factor: float) -> None:
+    body.mass *= factor
+    if np.isfinite(body.fullinertia[0]):
+        body.fullinertia = factor * np.array(body.fullinertia)
+    else:
+        body.inertia = factor * np.array(body.inertia)

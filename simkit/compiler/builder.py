@@ -8,8 +8,23 @@ from typing import Any
 
 import mujoco
 
-from simkit.compiler.assets import Assets
+from simkit.compiler.assets import Assets, with_inline_meshes
+from simkit.compiler.bodies import drop_twin
+from simkit.compiler.first_state import damp, place_followers, report_idle
+from simkit.compiler.inertia import put_back
 from simkit.compiler.lights import add_light
+from simkit.compiler.masks import FIRST_OWN_BIT, PAIRS_MOST
+from simkit.compiler.mjcf import (
+    adopt_settings,
+    attach_model,
+    attach_world,
+    detach,
+    is_expected,
+    quietly,
+    regroup,
+    stands_in,
+    without_attached,
+)
 from simkit.compiler.model_writer import ModelWriter
 from simkit.compiler.names import (
     ActuatorRef,
@@ -58,12 +73,20 @@ class SpecBuilder:
         self.records: dict[str, ModelRecord] = {"": ModelRecord(SceneModel(name="", scoped="", pose_world=Pose()))}
         self._names: NameMap | None = None
         self._is_compiled = False
+        self._cut: list[tuple[SceneJoint, bool]] = []
         apply_options(self.spec, world, diagnostics)
+        own = stands_in(world)
+        adopt_settings(self.spec, world)
         for light in world.lights:
-            add_light(self.spec.worldbody, light, light.pose_world, world.surroundings.shadows)
+            if not own:
+                add_light(self.spec.worldbody, light, light.pose_world, world.surroundings.shadows)
             self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
+        if own:
+            self.records.update({model.scoped: ModelRecord(model) for model in own})
+            attach_world(self.spec, [self.records[model.scoped] for model in own])
         for model in world.models:
-            self.add_model(model)
+            if model not in own:
+                self.add_model(model)
         self._join_models()
 
     # ------------------------------------------------------------------ models
@@ -80,7 +103,35 @@ class SpecBuilder:
         self.records[model.scoped] = record
         self._names = None
         self.assets.used = record.assets
-        ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).write(self._joints_of(model))
+        if model.mjcf is not None:
+            attach_model(self.spec, record, model, self.diagnostics)
+        else:
+            links = len(list(model.all_links()))
+            if links * (links - 1) // 2 > PAIRS_MOST:  # else nobody wants it, and there may be thousands of models
+                record.own_bit = self._free_bit()
+            self._write(record)
+        if movable:
+            self._join_again(model)
+
+    def _write(self, record: ModelRecord) -> None:
+        """Writes a model, then those nested in it that have a specification of their own, then what joins them."""
+        model = record.scene
+        joints = self._joints_of(model)
+        attached = [nested for nested in model.all_models() if nested.mjcf is not None]
+        inside = {link.scoped for nested in attached for link in nested.links}
+        own = {joint.scoped for nested in attached for joint in nested.joints}
+        rest = [j for j in joints if j.scoped not in own and {j.parent_link, j.child_link} & inside]
+        record.scene = without_attached(model)
+        writer = ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
+        writer.write([j for j in joints if j.scoped not in own and j not in rest])
+        record.scene = model
+        for nested in attached:
+            done = attach_model(self.spec, record, nested, self.diagnostics, rest)
+            rest = [j for j in rest if j not in done]
+        if rest:
+            links = dict(record.links)
+            ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).join(rest, links)
+            record.links.update(links)
 
     def remove_model(self, scoped: str) -> None:
         """Takes a top-level model out again, with all that was added to it. Raises KeyError."""
@@ -103,6 +154,7 @@ class SpecBuilder:
                 spec.delete(spec.geom(name))
         for name in record.root_bodies:
             spec.delete(spec.body(name))
+        detach(spec, record)
         del self.records[scoped]
         still = set().union(*(r.assets for r in self.records.values()))
         self.assets.drop(record.assets - still)
@@ -120,24 +172,48 @@ class SpecBuilder:
             ),
         ]
 
-    def _join_models(self) -> None:
-        """Joints of the world between two models, as constraints."""
+    def _join_models(self, only: set[str] | None = None) -> None:
+        """Joints of the world between two models, as constraints; `only` some of them by name."""
         record = self.records[""]
         done = {name for r in self.records.values() for name in r.joints}
-        rest = [j for j in self.world.joints if j.scoped not in done]
+        rest = [j for j in self.world.joints if j.scoped not in done and (only is None or j.scoped in only)]
         if rest:
             writer = ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
             writer.join(rest, {n: b for r in self.records.values() for n, b in r.links.items()})
             self._names = None
 
+    def _join_again(self, model: SceneModel) -> None:
+        """Ties a model that was written anew to the others as before."""
+        own = {link.scoped for link in model.all_links()}
+        cut, self._cut = self._cut, []
+        self._join_models({joint.scoped for joint, _ in cut})
+        known = {j.scoped for j in self.world.joints}
+        for joint, active in cut:
+            if joint.scoped not in known and {joint.parent_link, joint.child_link} & own:
+                self.add_weld(joint.scoped, joint.parent_link, joint.child_link, active=active)
+
     def _cut_joints_to(self, record: ModelRecord) -> None:
         world = self.records[""]
+        self._cut = []
         for scoped, joint in list(world.joints.items()):
             if {joint.scene.parent_link, joint.scene.child_link} & set(record.links):
+                active = all(bool(self.spec.equality(name).active) for name in joint.equalities)
+                self._cut.append((joint.scene, active))
                 for name in joint.equalities:
                     self.spec.delete(self.spec.equality(name))
                     world.equalities.remove(name)
+                if scoped in world.excludes:
+                    self.spec.delete(self.spec.exclude(scoped))
+                    world.excludes.remove(scoped)
+                if joint.twin:
+                    drop_twin(self.spec, joint.twin, self.names.link(joint.carried).body_name)
+                    world.root_bodies = [b for b in world.root_bodies if b != joint.twin]
                 del world.joints[scoped]
+
+    def _free_bit(self) -> int:
+        """A collision bit that no model has, above those of the files' masks; 0 when they are used up."""
+        taken = {record.own_bit for record in self.records.values()}
+        return next((1 << i for i in range(FIRST_OWN_BIT, 31) if 1 << i not in taken), 0)
 
     # ------------------------------------------------------------------ what sensors and plugins add
 
@@ -202,6 +278,13 @@ class SpecBuilder:
         record = self.records[joint.model]
         if axis < len(joint.scene.axes):
             max_effort = min(max_effort, joint.scene.axes[axis].effort)
+        if max_effort == 0.0:
+            self.diagnostics.warning(
+                "SK-JOINT-011",
+                f"joint {scoped} is driven by {owner}, but its effort limit is 0: nothing moves it",
+                joint.scene.where,
+                "leave <effort> out for a joint without a limit",
+            )
         base, k = f"{owner}/{joint.joint_names[axis]}/{kind}", 1
         taken = {ref.name for r in self.records.values() for ref in r.actuators}
         name = base
@@ -234,19 +317,21 @@ class SpecBuilder:
     def compile(self) -> Compiled:
         """The model with its first state. Raises LoadError when MuJoCo refuses it."""
         self._before()
-        if not self._is_compiled:
+        if not self._is_compiled and self.world.mjcf is None:
             choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
         self._is_compiled = True
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             try:
-                model = self.spec.compile()
+                with quietly():
+                    model = self.spec.compile()
             except ValueError as problem:
                 self._refused(problem)
             compiled = self._finished(model, None)
             report_overlaps(compiled.model, compiled.names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in said):
-            self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
+            if not is_expected(text):
+                self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
         return compiled
 
     def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:
@@ -263,7 +348,8 @@ class SpecBuilder:
 
         self._before()
         try:
-            model = self.spec.compile()
+            with quietly():
+                model = self.spec.compile()
         except ValueError as problem:
             self._refused(problem)
         fresh = mujoco.MjData(model)
@@ -279,8 +365,13 @@ class SpecBuilder:
         other.assets = Assets(other.spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}
         other._names = None
+        other._cut = list(self._cut)
         other._is_compiled = self._is_compiled
         return other
+
+    def written_out(self) -> mujoco.MjSpec:
+        """A copy of the specification with its meshes inside instead of in files in memory, to be written as XML."""
+        return with_inline_meshes(self.spec.copy())
 
     def _before(self) -> None:
         colliding = sum(not o.is_visual for r in self.records.values() for o in r.geoms.values())
@@ -292,7 +383,15 @@ class SpecBuilder:
         raise AssertionError("unreachable")
 
     def _finished(self, model: mujoco.MjModel, data: mujoco.MjData | None) -> Compiled:
+        put_back(model, {name: exact for r in self.records.values() for name, exact in r.exact.items()})
         set_extent(model)
-        tune(self.spec, model, [ref for r in self.records.values() for ref in r.actuators])
-        names = NameMap.of(self.records.values(), model)
-        return Compiled(model, data if data is not None else mujoco.MjData(model), names, self)
+        records = list(self.records.values())
+        regroup(model, records)
+        damp(model, records)
+        report_idle(model, records, self.diagnostics)
+        tune(self.spec, model, [ref for r in records for ref in r.actuators])
+        names = NameMap.of(records, model)
+        if data is None:
+            data = mujoco.MjData(model)
+            place_followers(data, names.joints.values())
+        return Compiled(model, data, names, self)

@@ -27,7 +27,7 @@ STIFF_KP: Final = 1e5
 """From this stiffness [N/m] on a contact counts as rigid: the world-wide softness stands."""
 
 _ALL_BITS: Final = 0xFFFF
-_TORSION, _ROLL = 0.005, 0.0001
+_TORSION, _ROLL, _LEAST = 0.005, 0.0001, 1e-5
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +64,10 @@ def contact_of(surface: Surface, timestep: float, mass: float, diagnostics: Diag
             "SK-PHYS-014", "collide_without_contact: the collision is left out of all contacts", surface.where
         )
         contype = conaffinity = 0
+    torsion, roll = _turning(surface, diagnostics) if mu > 0.0 else (0.0, 0.0)
     return Contact(
-        friction=(mu, _TORSION, _ROLL),
-        condim=3 if mu > 0.0 else 1,
+        friction=(mu, torsion or _TORSION, roll or _ROLL),
+        condim=1 if mu == 0.0 else 6 if roll > 0.0 else 4 if torsion > 0.0 else 3,
         priority=priority_of(mu),
         solref=solref,
         solimp=CONTACT_SOLIMP,
@@ -103,9 +104,29 @@ def _sliding(surface: Surface, diagnostics: Diagnostics) -> float:
         diagnostics.note(
             "SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip with the force", surface.where
         )
-    if surface.torsional:
-        diagnostics.note("SK-PHYS-007", "torsional friction is not used: contacts resist sliding only", surface.where)
     return min(mu, mu2)
+
+
+def _turning(surface: Surface, diagnostics: Diagnostics) -> tuple[float, float]:
+    """Torque per normal force [m] against spinning on the spot and against rolling; 0 where the file asks for none.
+
+    A patch of radius a under Hertz' pressure resists spinning with 3π/16 · a · coefficient · N, as Gazebo has it.
+    """
+    roll = max(0.0, surface.rolling or 0.0)
+    torsion = 0.0
+    if surface.torsional:
+        if surface.use_patch_radius:
+            torsion = 3.0 * math.pi / 16.0 * max(0.0, surface.patch_radius) * surface.torsional
+        elif surface.surface_radius > 0.0:
+            diagnostics.note(
+                "SK-PHYS-007",
+                "torsional friction of a patch that grows with the depth (surface_radius) is not used; that of a fixed "
+                "patch_radius is",
+                surface.where,
+            )
+    if roll > 0.0 and torsion == 0.0:
+        torsion = _LEAST
+    return torsion, roll
 
 
 def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagnostics) -> tuple[float, float]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import mujoco
 import numpy as np
@@ -12,25 +13,22 @@ import numpy as np
 from simkit.compiler.assets import Assets
 from simkit.compiler.friction import Contact, contact_of
 from simkit.compiler.groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, VISUAL
-from simkit.compiler.mesh import MeshFileError, load_mesh, pixels_of
-from simkit.compiler.mesh_part import Floats, Ints, MeshPart, joined
+from simkit.compiler.heightmap import heights
+from simkit.compiler.looks import look_of
+from simkit.compiler.mesh import load_mesh, once
+from simkit.compiler.mesh_collision import bodies_of, hull_of
+from simkit.compiler.mesh_part import Floats, Ints, MeshFileError, MeshPart, joined
 from simkit.compiler.names import GeomOwner, ModelRecord
-from simkit.compiler.shapes import cone, heights, polyline, primitive_of, sizes_of
-from simkit.compiler.static import (
-    PRISMS_MOST,
-    convex_pieces,
-    hull_volume,
-    hulls,
-    is_convex,
-    is_inside_out,
-    prisms,
-    thinned,
-)
+from simkit.compiler.shapes import cone, polyline, polyline_pieces, primitive_of, sizes_of
+from simkit.compiler.shapes_textured import textured
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
 
 _HALF_SPACE = (50.0, 50.0, 0.05)
+_HEIGHTS_HINT = "save the heights as an 8- or 16-bit grey PNG"
+LEAST_AREA: Final = 1e-12
+"""[m²]; triangles with less in all are not drawn."""
 
 
 @dataclass(slots=True)
@@ -89,103 +87,48 @@ class GeomWriter:
             self._add(place, owner, pose, type=primitive.type, size=primitive.size, **_colliding(contact, COLLISION))
         elif isinstance(shape, Heightmap):
             self._heightmap(place, owner, collision.pose_link, shape, collision.where, _colliding(contact, COLLISION))
+        elif isinstance(shape, Polyline):
+            self._outlines(place, owner, collision, shape, contact)
         else:
             parts = self._parts(shape, collision.where)
             if parts:
                 self._mesh_collision(place, owner, collision, parts, contact)
 
+    def _outlines(
+        self, place: Place, owner: GeomOwner, collision: SceneCollision, shape: Polyline, contact: Contact
+    ) -> None:
+        """Extruded outlines, which fall into convex pieces exactly."""
+        try:
+            pieces = polyline_pieces(shape)
+        except ValueError as problem:
+            self.diagnostics.error("SK-MESH-009", f"polyline: {problem}", collision.where)
+            return
+        for points in pieces:
+            body = hull_of(points)
+            if body is not None:
+                name, settings = self.assets.surface(*body), _colliding(contact, COLLISION)
+                self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
+
     def _mesh_collision(
         self, place: Place, owner: GeomOwner, collision: SceneCollision, parts: list[MeshPart], contact: Contact
     ) -> None:
+        shape = collision.geometry
         vertices, faces = joined(parts)
-        pose, where = collision.pose_link, collision.where
-        if not len(faces):
-            self.diagnostics.error(
-                "SK-MESH-003", f"{_title(collision.geometry)}: all triangles are without area", where
-            )
-        elif hull_volume(vertices) <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
-            self._flat_collision(place, owner, collision, vertices, faces, contact)
-        elif is_convex(vertices, faces) and not (place.fixed and is_inside_out(vertices, faces)):
-            self._hull(place, owner, pose, vertices, contact, COLLISION)
-        elif place.fixed:
-            self._static_collision(place, owner, collision, vertices, faces, contact)
-        else:
-            self._moving_collision(place, owner, collision, vertices, faces, contact)
-
-    def _moving_collision(
-        self, place: Place, owner: GeomOwner, collision: SceneCollision, vertices: Floats, faces: Ints, contact: Contact
-    ) -> None:
-        sets = [points for points in hulls(vertices, faces) if hull_volume(points) > 0.0] or [vertices]
-        import trimesh
-
-        whole = sum(hull_volume(points) for points in sets)
-        mesh = trimesh.Trimesh(vertices, faces, process=False)
-        own = abs(float(mesh.volume)) if mesh.is_watertight else 0.0
-        if not own or whole > 1.05 * own:
-            found = f"{whole / own:.2f} times its volume" if own else "the mesh is not closed"
-            self.diagnostics.note(
-                "SK-MESH-004",
-                f"{_title(collision.geometry)} collides as the convex hull of each of its {len(sets)} pieces ({found})",
-                collision.where,
-            )
-        for points in sets:
-            self._hull(place, owner, collision.pose_link, points, contact, COLLISION)
-
-    def _static_collision(
-        self, place: Place, owner: GeomOwner, collision: SceneCollision, vertices: Floats, faces: Ints, contact: Contact
-    ) -> None:
-        if len(faces) > PRISMS_MOST:
-            coarse_vertices, coarse_faces = thinned(vertices, faces, PRISMS_MOST)
-            self.diagnostics.warning(
-                "SK-MESH-005",
-                f"{_title(collision.geometry)}: for contacts {len(faces)} triangles become {len(coarse_faces)}",
-                collision.where,
-            )
-            pieces = convex_pieces(coarse_vertices, coarse_faces)
-        else:
-            pieces = convex_pieces(vertices, faces)
-        for piece in pieces:
-            self._hull(place, owner, collision.pose_link, piece.points, contact, COLLISION_CONTACT)
-        self._ray_copy(place, owner, collision.pose_link, vertices, faces)
-        thin = sum(not p.exact for p in pieces)
-        self.diagnostics.note(
-            "SK-MESH-006",
-            f"{_title(collision.geometry)} is not convex: it collides as {len(pieces) - thin} convex pieces "
-            f"and {thin} prisms on its surface",
-            collision.where,
-        )
-
-    def _flat_collision(
-        self, place: Place, owner: GeomOwner, collision: SceneCollision, vertices: Floats, faces: Ints, contact: Contact
-    ) -> None:
-        self.diagnostics.note(
-            "SK-MESH-007", f"{_title(collision.geometry)} is flat: it collides as a thin plate", collision.where
-        )
-        for points in prisms(vertices, faces):
-            self._hull(place, owner, collision.pose_link, points, contact, COLLISION_CONTACT)
-        self._ray_copy(place, owner, collision.pose_link, vertices, faces)
-
-    def _hull(self, place: Place, owner: GeomOwner, pose: Pose, points: Floats, contact: Contact, group: int) -> None:
-        from scipy.spatial import QhullError
-
-        try:
-            name = self.assets.hull(points)
-        except QhullError:
-            return  # a sliver without volume touches nothing
-        self._add(place, owner, pose, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **_colliding(contact, group))
+        optimization, most = (shape.optimization, shape.max_hulls) if isinstance(shape, Mesh) else ("", 16)
+        bodies = bodies_of(vertices, faces, fixed=place.fixed, optimization=optimization, most=most)
+        for severity, code, text, hint in bodies.findings:
+            once(self.diagnostics, severity, code, f"{_title(shape)} {text}", collision.where, hint)
+        settings = _colliding(contact, COLLISION if bodies.is_exact else COLLISION_CONTACT)
+        for corners, triangles in bodies.shapes:
+            name = self.assets.surface(corners, triangles)
+            self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
+        if not bodies.is_exact:
+            self._ray_copy(place, owner, collision.pose_link, vertices, faces)
 
     def _ray_copy(self, place: Place, owner: GeomOwner, pose: Pose, vertices: Floats, faces: Ints) -> None:
         name = self.assets.surface(vertices, faces)
-        self._add(
-            place,
-            owner,
-            pose,
-            type=mujoco.mjtGeom.mjGEOM_MESH,
-            meshname=name,
-            contype=0,
-            conaffinity=0,
-            group=COLLISION_RAY,
-        )
+        mesh = mujoco.mjtGeom.mjGEOM_MESH
+        self._add(place, owner, pose, type=mesh, meshname=name, contype=0, conaffinity=0, group=COLLISION_RAY)
 
     # ------------------------------------------------------------------ visuals
 
@@ -195,67 +138,68 @@ class GeomWriter:
         if isinstance(shape, Empty) or not self._has_size(shape, visual.where):
             return
         owner = GeomOwner(place.link, visual.scoped, True)
-        primitive = primitive_of(shape, True)
-        if primitive is not None:
+        pixels = self._pixels(visual.material, visual.where)
+        worn = textured(shape) if pixels is not None else None
+        primitive = primitive_of(shape, True) if worn is None else None
+        pose = visual.pose_link
+        if isinstance(shape, Heightmap):
+            self._heightmap(place, owner, pose, shape, visual.where, self._drawn(visual, None, pixels))
+        elif primitive is None:
+            for part in self._parts(shape, visual.where) if worn is None else [worn]:
+                self._part(place, owner, visual, part, pixels)
+        else:
+            size, kind = primitive.size, primitive.type
             if isinstance(shape, Plane) and not place.fixed:
-                size = (primitive.size[0], primitive.size[1], 1e-4)
-                look = self._look(visual, None, on_mesh=False)
-                self._add(
-                    place, owner, visual.pose_link @ primitive.pose, type=mujoco.mjtGeom.mjGEOM_BOX, size=size, **look
-                )
-                return
-            look = self._look(visual, None, on_mesh=isinstance(shape, Plane))
-            self._add(place, owner, visual.pose_link @ primitive.pose, type=primitive.type, size=primitive.size, **look)
-        elif isinstance(shape, Heightmap):
-            self._heightmap(place, owner, visual.pose_link, shape, visual.where, self._look(visual, None, on_mesh=True))
-        else:
-            for part in self._parts(shape, visual.where):
-                look = self._look(visual, part, on_mesh=True)
-                textured = part.uv if "material" in look and part.uv is not None else None
-                name = self.assets.surface(part.vertices, part.faces, textured)
-                self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **look)
+                size, kind = (size[0], size[1], 1e-4), mujoco.mjtGeom.mjGEOM_BOX
+                pixels = None
+            self._add(place, owner, pose @ primitive.pose, type=kind, size=size, **self._drawn(visual, None, pixels))
 
-    def _look(self, visual: SceneVisual, part: MeshPart | None, on_mesh: bool) -> dict[str, Any]:
-        """Colour, material and mask settings of a drawn geom; the file's material wins over the mesh's own."""
-        material = visual.material
-        pixels = None
-        if material is not None:
-            colour = material.diffuse
-            if material.texture is not None and (part is None or part.uv is not None):
-                pixels = self._pixels(material, visual.where)
-        else:
-            colour = part.colour if part is not None and part.colour is not None else (0.7, 0.7, 0.7, 1.0)
-            pixels = part.texture if part is not None else None
-        emission = float(np.dot(material.emissive[:3], (0.2126, 0.7152, 0.0722))) if material is not None else 0.0
-        specular = float(max(material.specular[:3])) if material is not None else 0.0
-        texture = self.assets.texture(pixels, on_mesh) if pixels is not None else ""
-        r, g, b, a = colour
-        rgba = [r, g, b, a * (1.0 - min(1.0, max(0.0, visual.transparency)))]
-        if rgba == [0.5, 0.5, 0.5, 1.0]:
-            rgba[0] = 0.5001  # exactly MuJoCo's default would be taken for "not given"
+    def _part(self, place: Place, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any) -> None:
+        """Triangles of one material: the file's material wins over the mesh's own."""
+        corners = part.vertices[part.faces]
+        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        if not float(area.sum()) > LEAST_AREA:
+            name = f" ({part.name})" if part.name else ""
+            text = f"{_title(visual.geometry)}: a part{name} whose triangles have no area is not drawn"
+            once(self.diagnostics, "note", "SK-MESH-013", text, visual.where)
+            return
+        look = self._drawn(visual, part, pixels if part.uv is not None else None)
+        vertices, faces, uv = part.vertices, part.faces, part.uv if self.assets.has_texture(look["material"]) else None
+        if visual.material is not None and visual.material.double_sided:
+            faces = np.vstack([faces, faces[:, ::-1] + len(vertices)])
+            vertices, uv = np.vstack([vertices, vertices]), None if uv is None else np.vstack([uv, uv])
+        mesh = self.assets.surface(vertices, faces, uv)
+        self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
+
+    def _drawn(self, visual: SceneVisual, part: MeshPart | None, pixels: Any) -> dict[str, Any]:
+        """Settings of a drawn geom; `pixels` is the file's texture where it can be worn."""
+        look = look_of(visual, part)
+        if visual.material is None and part is not None:
+            pixels = part.texture
+        texture = self.assets.texture(pixels) if pixels is not None else ""
         return {
-            "rgba": rgba,
-            "material": self.assets.material(min(1.0, emission), min(1.0, specular), texture),
+            "rgba": look.rgba,
+            "material": self.assets.material(look.emission, look.specular, look.shininess, texture),
             "contype": 0,
             "conaffinity": 0,
             "group": VISUAL,
             "castshadow": visual.cast_shadows,
         }
 
-    def _pixels(self, material: Material, where: Where) -> Any:
-        from PIL import Image
-
+    def _pixels(self, material: Material | None, where: Where) -> Any:
+        """The texture that the file names for a visual; None where it names none or it cannot be read."""
+        if material is None or material.texture is None:
+            return None
         try:
-            with Image.open(str(material.texture)) as image:
-                return pixels_of(image)
-        except (OSError, ValueError, Image.DecompressionBombError) as problem:
-            self.diagnostics.warning("SK-MESH-008", f"texture {material.texture} cannot be read: {problem}", where)
+            return self.assets.picture(material.texture)
+        except MeshFileError as problem:
+            once(self.diagnostics, "warning", "SK-MESH-008", f"texture {material.texture} {problem}", where)
             return None
 
     # ------------------------------------------------------------------ shared
 
     def _has_size(self, shape: Geometry, where: Where) -> bool:
-        if all(np.isfinite(s) and s > 0.0 for s in sizes_of(shape)):
+        if all(0.0 < s < math.inf for s in sizes_of(shape)):
             return True
         self.diagnostics.warning(
             "SK-PHYS-017", f"a {type(shape).__name__.lower()} without size is left out: {shape}", where
@@ -282,16 +226,15 @@ class GeomWriter:
             return
         try:
             rows = heights(shape)
-        except (OSError, ValueError) as problem:
-            self.diagnostics.error("SK-MESH-011", f"heightmap {shape.uri}: {problem}", where)
+        except MeshFileError as problem:
+            once(self.diagnostics, "error", "SK-MESH-011", f"heightmap {shape.uri} {problem}", where, _HEIGHTS_HINT)
             return
         low, high = float(rows.min()), float(rows.max())
-        name = self.assets.heights(
-            (rows - low) / max(high - low, 1e-12), (*shape.size[:2], (high - low) * shape.size[2])
-        )
+        z_size = shape.size[2]
+        name = self.assets.heights((rows - low) / max(high - low, 1e-12), (*shape.size[:2], (high - low) * z_size))
         x, y, z = shape.position
-        place_at = pose @ Pose((x, y, z + low * shape.size[2]))
-        self._add(place, owner, place_at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
+        at = pose @ Pose((x, y, z + low * z_size))
+        self._add(place, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
 
 
 def _colliding(contact: Contact, group: int) -> dict[str, Any]:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+DRAWN_COLLISION: Final = 1
+"""Drawn, and collides: one geom for both, seen by cameras and by every ray."""
+
 VISUAL: Final = 2
 """Drawn, never collides."""
 

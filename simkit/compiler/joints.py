@@ -1,14 +1,18 @@
-"""Joints of the file as MuJoCo's joints and equality constraints."""
+"""Joints of the file as MuJoCo's joints, in the tree or closing loops."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import mujoco
 import numpy as np
 
+from simkit.compiler.bodies import add_twin
+from simkit.compiler.couplings import Couplings
+from simkit.compiler.joint_checks import is_sound
 from simkit.compiler.names import Follower, JointBinding, ModelRecord
 from simkit.compiler.options import CONTACT_SOLIMP, contact_time_constant
 from simkit.compiler.tree import WORLD, Edge
@@ -16,70 +20,138 @@ from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Axis, SceneJoint, SceneLink
 
-STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""Impedance of equality constraints that stand for a mechanism: as hard as the solver takes."""
-
-_UNBOUNDED: Final = 1e10
+UNBOUNDED: Final = 1e10
 _LOCKED: Final = 1e-6
+_HINGE, _SLIDE, _BALL = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_BALL
+_KINDS: Final = {
+    "fixed": (),
+    "revolute": (_HINGE,),
+    "continuous": (_HINGE,),
+    "prismatic": (_SLIDE,),
+    "universal": (_HINGE, _HINGE),
+    "revolute2": (_HINGE, _HINGE),
+    "screw": (_HINGE,),
+    "ball": (_BALL,),
+    "planar": (_SLIDE, _SLIDE, _HINGE),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """One MuJoCo joint to be: its axis in the moved body's frame, and the file's axis whose dynamics it has."""
+
+    name: str
+    kind: Any
+    direction: Any
+    axis: Axis | None
 
 
 class JointWriter:
-    """Writes the joints of one top-level model and notes where each of them lives."""
+    """Writes the joints of one top-level model and notes where each of them lives.
+
+    Attributes:
+        links: the links that joints may name, by scoped name.
+        carriers: of each link the heaviest that is rigidly one with it.
+    """
 
     def __init__(self, spec: mujoco.MjSpec, record: ModelRecord, timestep: float, diagnostics: Diagnostics) -> None:
         self.spec, self.record, self.timestep, self.diagnostics = spec, record, timestep, diagnostics
-        self.links: dict[str, SceneLink] = {}
+        self.couplings = Couplings(spec, record, timestep, diagnostics)
+        self.links: Mapping[str, SceneLink] = {}
+        self.carriers: Mapping[str, str] = {}
 
-    # ------------------------------------------------------------------ tree joints
+    # ------------------------------------------------------------------ in the tree
 
     def hang(self, body: Any, link: SceneLink, edge: Edge) -> None:
         """Adds the joint by which `link` hangs in the tree to its body."""
         joint = edge.joint
-        frame = link.pose_world.inverse() @ joint.pose_world
-        axes = [self._axis_of(link, a, edge.is_reversed) for a in joint.axes]
-        kind = mujoco.mjtJoint
-        names: list[str] = []
+        names, followers = self._move(body, joint, link.pose_world, edge.is_reversed)
+        self._note(
+            replace(
+                self._binding(joint),
+                joint_names=names,
+                followers=followers,
+                is_reversed=edge.is_reversed,
+                carried=link.scoped,
+                pose_moved=link.pose_world.inverse() @ joint.pose_world,
+            )
+        )
+
+    def floating(self, joint: SceneJoint) -> None:
+        """A floating joint: it binds nothing, and reads and sets how its child stands to its parent."""
+        child, parent = (self.record.links.get(n) for n in (joint.child_link, joint.parent_link))
+        is_reversed = not (child and child.free_joint) and bool(parent and parent.free_joint)
+        free = parent if is_reversed else child
+        if free is not None and free.free_joint:
+            binding = replace(self._binding(joint), joint_names=(free.free_joint,), free=free.scoped)
+            self._note(replace(binding, is_reversed=is_reversed))
+            return
+        self.diagnostics.warning(
+            "SK-JOINT-005",
+            f"floating joint {joint.scoped} can be read but not set: another joint holds {joint.child_link}",
+            joint.where,
+        )
+        self._note(self._binding(joint))
+
+    def unmoving(self, joint: SceneJoint, is_expected: bool = True) -> None:
+        """Notes a joint between links that never move: it is there by name and has no degree of freedom."""
+        if not is_expected and joint.type != "fixed":
+            self.diagnostics.warning(
+                "SK-JOINT-004",
+                f"joint {joint.scoped} ({joint.type}) joins {joint.parent_link} and {joint.child_link}, "
+                "which are both static: it never moves",
+                joint.where,
+            )
+        self._note(self._binding(joint))
+
+    def _move(self, body: Any, joint: SceneJoint, at: Pose, is_reversed: bool) -> tuple[Any, tuple[Follower, ...]]:
+        """Adds the motions of a joint to a body that stands `at` a pose in the world.
+
+        Turned round, the body is the file's parent: the same motions in the other order and direction.
+
+        Returns:
+            Names of the MuJoCo joints in the order of the file's axes, and the hidden ones that follow.
+        """
+        motions = self._motions(joint, at, is_reversed)
+        frame = at.inverse() @ joint.pose_world
         followers: tuple[Follower, ...] = ()
-        hinges = {"revolute": 1, "continuous": 1, "universal": 2, "revolute2": 2}.get(joint.type, 0)
-        if hinges:
-            names = self._scalars(body, joint, frame, axes, [kind.mjJNT_HINGE] * hinges)
-        elif joint.type == "prismatic":
-            names = self._scalars(body, joint, frame, axes, [kind.mjJNT_SLIDE])
-        elif joint.type == "ball":
-            names = [self._joint(body, joint.scoped, kind.mjJNT_BALL, frame, (0, 0, 1)).name]
-            self._loss(body, joint)
-        elif joint.type == "screw":
-            names, followers = self._screw(body, joint, frame, axes)
-        elif joint.type == "planar":
-            names = self._planar(body, joint, frame, axes)
-        elif joint.type == "floating":
-            names = self._floating(body, joint, frame, edge)
-        elif joint.type != "fixed":
+        for motion in reversed(motions) if is_reversed else motions:
+            made = self._joint(body, motion.name, motion.kind, frame, motion.direction)
+            if motion.axis is not None:
+                self._dynamics(made, motion.axis)
+        if joint.type == "screw" and motions:
+            followers = (self._thread(body, joint, frame, motions[0].direction),)
+        return tuple(m.name for m in motions), followers
+
+    def _motions(self, joint: SceneJoint, at: Pose, is_reversed: bool) -> list[_Motion]:
+        if joint.type not in _KINDS:
             self.diagnostics.warning(
                 "SK-PHYS-013", f"joint {joint.scoped}: type {joint.type} is taken as fixed", joint.where
             )
-        self._note(
-            replace(self._binding(joint), joint_names=tuple(names), followers=followers, is_reversed=edge.is_reversed)
-        )
-
-    def _axis_of(self, link: SceneLink, axis: Axis, is_reversed: bool) -> tuple[float, float, float]:
-        x, y, z = link.pose_world.inverse().rotate(axis.xyz_world)
+            return []
+        kinds = _KINDS[joint.type]
+        axes: list[Axis | None] = list(joint.axes)
         sign = -1.0 if is_reversed else 1.0
-        return sign * float(x), sign * float(y), sign * float(z)
-
-    def _scalars(self, body: Any, joint: SceneJoint, frame: Pose, axes: list[Any], kinds: list[Any]) -> list[str]:
-        names: list[str] = []
-        for i, kind in enumerate(kinds):
-            if i >= len(axes):
-                self.diagnostics.error(
-                    "SK-PHYS-019", f"joint {joint.scoped} ({joint.type}) needs {len(kinds)} axes", joint.where
-                )
-                return names
-            name = joint.scoped if i == 0 else f"{joint.scoped}#{i}"
-            made = self._joint(body, name, kind, frame, axes[i])
-            self._dynamics(made, joint.axes[i])
-            names.append(name)
-        return names
+        if joint.type == "ball":
+            directions = [np.array((0.0, 0.0, 1.0))]
+            axes = [*axes, None]
+        elif joint.type == "planar" and len(axes) < 3:
+            directions = _plane(joint, at)
+            axes = [*axes, None, None, None] if len(axes) != 1 else [*axes, *axes, *axes]
+        elif len(axes) < len(kinds):
+            self.diagnostics.error(
+                "SK-PHYS-019", f"joint {joint.scoped} ({joint.type}) needs {len(kinds)} axes", joint.where
+            )
+            return []
+        else:
+            directions = [at.inverse().rotate(a.xyz_world) for a in joint.axes]
+        if not all(is_sound(joint, a, self.diagnostics) for a in joint.axes):
+            return []
+        names = [joint.scoped if i == 0 else f"{joint.scoped}#{i}" for i in range(len(kinds))]
+        return [
+            _Motion(name, kind, sign * direction, axis)
+            for name, kind, direction, axis in zip(names, kinds, directions, axes, strict=False)
+        ]
 
     def _joint(self, body: Any, name: str, kind: Any, frame: Pose, axis: Any) -> Any:
         joint = body.add_joint(name=name, type=kind, pos=frame.position, axis=axis)
@@ -93,202 +165,85 @@ class JointWriter:
     def _dynamics(self, made: Any, axis: Axis) -> None:
         made.damping[0] = max(0.0, axis.damping)
         made.frictionloss = max(0.0, axis.friction)
+        if made.type == _BALL:
+            return
         if axis.stiffness > 0.0:
             made.stiffness[0] = axis.stiffness
             made.springref = axis.spring_ref
-        lower, upper = max(axis.lower, -_UNBOUNDED), min(axis.upper, _UNBOUNDED)
-        if lower > -_UNBOUNDED or upper < _UNBOUNDED:
+        lower, upper = max(axis.lower, -UNBOUNDED), min(axis.upper, UNBOUNDED)
+        if lower <= upper and (lower > -UNBOUNDED or upper < UNBOUNDED):
             if upper - lower < 2 * _LOCKED:
                 middle = (lower + upper) / 2
                 lower, upper = middle - _LOCKED, middle + _LOCKED
             made.limited = mujoco.mjtLimited.mjLIMITED_TRUE
             made.range = (lower, upper)
 
-    def _loss(self, body: Any, joint: SceneJoint) -> None:
-        """Damping and friction of a ball joint, where the file gives it an axis with dynamics."""
-        if joint.axes:
-            body.joints[-1].damping[0] = max(0.0, joint.axes[0].damping)
-            body.joints[-1].frictionloss = max(0.0, joint.axes[0].friction)
-
-    def _screw(
-        self, body: Any, joint: SceneJoint, frame: Pose, axes: list[Any]
-    ) -> tuple[list[str], tuple[Follower, ...]]:
-        names = self._scalars(body, joint, frame, axes, [mujoco.mjtJoint.mjJNT_HINGE])
-        if not names:
-            return [], ()
-        slide = f"{joint.scoped}#slide"
-        self._joint(body, slide, mujoco.mjtJoint.mjJNT_SLIDE, frame, axes[0])
-        ratio = joint.thread_pitch / (2.0 * math.pi)
-        self._couple(f"{joint.scoped}#thread", slide, joint.scoped, 0.0, ratio)
+    def _thread(self, body: Any, joint: SceneJoint, frame: Pose, direction: Any) -> Follower:
+        """The sliding of a screw, tied to its turning."""
+        slide, ratio = f"{joint.scoped}#slide", joint.thread_pitch / (2.0 * math.pi)
+        self._joint(body, slide, _SLIDE, frame, direction)
+        self.couplings.couple(f"{joint.scoped}#thread", slide, joint.scoped, 0.0, ratio)
         self.diagnostics.note(
             "SK-PHYS-009",
             f"screw joint {joint.scoped} is a stiff constraint between turning and sliding",
             joint.where,
         )
-        return names, (Follower(slide, ratio),)
+        return Follower(slide, ratio)
 
-    def _planar(self, body: Any, joint: SceneJoint, frame: Pose, axes: list[Any]) -> list[str]:
-        normal = np.asarray(axes[0] if axes else (0.0, 0.0, 1.0))
-        x = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-        x /= np.linalg.norm(x)
-        y = np.cross(normal, x)
-        kinds = (mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE)
-        names = [joint.scoped, f"{joint.scoped}#1", f"{joint.scoped}#2"]
-        for name, kind, axis in zip(names, kinds, (x, y, normal), strict=True):
-            made = self._joint(body, name, kind, frame, axis)
-            if joint.axes:
-                made.damping[0] = max(0.0, joint.axes[0].damping)
-        return names
-
-    def _floating(self, body: Any, joint: SceneJoint, frame: Pose, edge: Edge) -> list[str]:
-        if edge.parent == WORLD:
-            body.add_freejoint(name=joint.scoped)
-            return [joint.scoped]
-        names = [joint.scoped, f"{joint.scoped}#1", f"{joint.scoped}#2", f"{joint.scoped}#3"]
-        for name, axis in zip(names, np.eye(3), strict=False):
-            self._joint(body, name, mujoco.mjtJoint.mjJNT_SLIDE, frame, axis)
-        self._joint(body, names[3], mujoco.mjtJoint.mjJNT_BALL, frame, (0, 0, 1))
-        return names
-
-    # ------------------------------------------------------------------ constraints
+    # ------------------------------------------------------------------ loops
 
     def close(self, joint: SceneJoint) -> None:
-        """Adds the equality constraints of a joint that closes a loop."""
-        kinds = mujoco.mjtEq
-        points: list[Any] = [joint.pose_world.position]
-        kind = kinds.mjEQ_CONNECT
-        if joint.type == "fixed":
-            kind = kinds.mjEQ_WELD
-        elif joint.type in ("revolute", "continuous") and joint.axes:
-            points.append(joint.pose_world.position + 0.1 * np.asarray(joint.axes[0].xyz_world))
-        elif joint.type not in ("ball", "universal"):
-            self.diagnostics.warning(
-                "SK-PHYS-013", f"joint {joint.scoped}: a {joint.type} joint that closes a loop is left out", joint.where
-            )
-            self._note(replace(self._binding(joint), is_loop=True))
-            return
-        names = []
-        for i, point in enumerate(points):
-            name = f"{joint.scoped}#loop{i}"
-            self.tie(name, kind, joint.parent_link, joint.child_link, point)
-            names.append(name)
-        self.diagnostics.note(
-            "SK-PHYS-020",
-            f"joint {joint.scoped} closes a loop: it is held by a constraint, its position cannot be read",
-            joint.where,
-        )
-        self._note(replace(self._binding(joint), is_loop=True, equalities=tuple(names)))
+        """A joint that closes a loop: it moves a twin of its child link, and a weld holds the twin on the link.
 
-    def tie(
-        self, name: str, kind: mujoco.mjtEq, parent: str, child: str, point_world: Any, active: bool = True
-    ) -> None:
-        """A connect or weld equality between two links as they stand in the file."""
-        equality = self.spec.add_equality(name=name)
-        equality.type = kind
-        equality.objtype = mujoco.mjtObj.mjOBJ_BODY
-        equality.name1, equality.name2 = self._body(child), self._body(parent)
-        data = np.zeros(len(equality.data))
-        if kind == mujoco.mjtEq.mjEQ_CONNECT:
-            data[:3] = self._pose_of(child).inverse().transform(point_world)
-        else:
-            # A relative pose of zeros lets MuJoCo take the one of the file.
-            data[:3] = self._pose_of(parent).inverse().transform(point_world)
-            data[10] = 1.0
-        equality.data = data
-        equality.active = active
-        self._stiff(equality)
-        self.record.equalities.append(name)
+        So the joint has a coordinate, limits, dynamics and drives like any other. The twin has a part of the link's
+        mass, which the link gives up.
+        """
+        is_reversed = self._body(joint.child_link) == WORLD
+        moved, under = (joint.parent_link, joint.child_link) if is_reversed else (joint.child_link, joint.parent_link)
+        carrier = self.carriers.get(moved, moved)
+        at, twin = self._body_pose(carrier), f"{joint.scoped}#twin"
+        has_motion = bool(_KINDS.get(joint.type))
+        pose = self._body_pose(under).inverse() @ at
+        body = add_twin(self.spec, twin, self._body(carrier), self._body(under), pose, has_motion)
+        if self._body(under) == WORLD:
+            self.record.root_bodies.append(twin)
+        names, followers = self._move(body, joint, at, is_reversed)
+        weld, thread = f"{joint.scoped}#loop", f"{joint.scoped}#thread"
+        anchor = at.inverse() @ joint.pose_world
+        self.couplings.weld(weld, twin, self._body(carrier), anchor.position)
+        self.diagnostics.note(
+            "SK-PHYS-020", f"joint {joint.scoped} closes a loop: it is held by a constraint", joint.where
+        )
+        self._note(
+            replace(
+                self._binding(joint),
+                joint_names=names,
+                followers=followers,
+                is_loop=True,
+                is_reversed=is_reversed,
+                equalities=(weld, thread) if followers else (weld,),
+                twin=twin,
+                carried=carrier,
+                pose_moved=anchor,
+            )
+        )
 
     def gear(self, joint: SceneJoint) -> None:
-        """A gearbox: theta_2 = −ratio · theta_1, both measured from the reference link (SDF's definition)."""
-        first = self._turning(joint, joint.parent_link, 0)
-        second = self._turning(joint, joint.child_link, 1)
-        names: tuple[str, ...] = ()
-        if first is None or second is None:
-            self.diagnostics.warning(
-                "SK-PHYS-021",
-                f"gearbox {joint.scoped} is left out: its links need a revolute joint to the reference link "
-                f"{joint.gearbox_reference or '(none)'} along its axes",
-                joint.where,
-            )
-        else:
-            name = f"{joint.scoped}#gear"
-            self._couple(name, second[0], first[0], 0.0, -joint.gearbox_ratio * first[1] * second[1])
-            self.diagnostics.note(
-                "SK-PHYS-009", f"gearbox {joint.scoped} is a stiff constraint between two joints", joint.where
-            )
-            names = (name,)
+        """A gearbox, as a constraint between two joints."""
+        names = self.couplings.gear(joint)
         self._note(replace(self._binding(joint), equalities=names))
 
-    def _turning(self, joint: SceneJoint, link: str, axis: int) -> tuple[str, float] | None:
-        """The hinge between the reference link and `link`, and the sign of its angle along the gearbox' axis."""
-        for other in self.record.joints.values():
-            ends = {other.scene.parent_link, other.scene.child_link}
-            if (
-                other.type in ("revolute", "continuous")
-                and ends == {joint.gearbox_reference, link}
-                and other.joint_names
-            ):
-                along = joint.axes[axis].xyz_world if axis < len(joint.axes) else other.scene.axes[0].xyz_world
-                sign = 1.0 if float(np.dot(along, other.scene.axes[0].xyz_world)) >= 0.0 else -1.0
-                return other.joint_names[0], sign if other.scene.child_link == link else -sign
-        return None
-
-    def mimics(self, joints: list[SceneJoint]) -> None:
-        """Couples every axis with a `<mimic>` to its leader."""
-        for joint in joints:
-            for i, axis in enumerate(joint.axes):
-                if axis.mimic is None:
-                    continue
-                follower = self.record.joints.get(joint.scoped)
-                leader = self.record.joints.get(axis.mimic.joint) or self.record.joints.get(
-                    joint.scoped.removesuffix(joint.name) + axis.mimic.joint
-                )
-                if (
-                    follower is None
-                    or leader is None
-                    or i >= len(follower.joint_names)
-                    or axis.mimic.axis >= len(leader.joint_names)
-                ):
-                    self.diagnostics.warning(
-                        "SK-PHYS-022",
-                        f"joint {joint.scoped} mimics {axis.mimic.joint}, which has no such axis; left out",
-                        joint.where,
-                    )
-                    continue
-                m = axis.mimic
-                self._couple(
-                    f"{joint.scoped}#mimic{i}",
-                    follower.joint_names[i],
-                    leader.joint_names[m.axis],
-                    m.offset - m.multiplier * m.reference,
-                    m.multiplier,
-                )
-
-    def _couple(self, name: str, follower: str, leader: str, offset: float, ratio: float) -> None:
-        equality = self.spec.add_equality(name=name)
-        equality.type = mujoco.mjtEq.mjEQ_JOINT
-        equality.objtype = mujoco.mjtObj.mjOBJ_JOINT
-        equality.name1, equality.name2 = follower, leader
-        data = np.zeros(len(equality.data))
-        data[:2] = offset, ratio
-        equality.data = data
-        self._stiff(equality)
-        self.record.equalities.append(name)
-
-    def _stiff(self, equality: Any) -> None:
-        equality.solref = (max(2.0 * self.timestep, 0.002), 1.0)
-        equality.solimp = STIFF_SOLIMP
+    def tie(self, name: str, parent: str, child: str, active: bool) -> None:
+        """A weld between two links as they stand in the file, without a joint."""
+        anchor = self._body_pose(parent).inverse() @ self.links[child].pose_world
+        self.couplings.weld(name, self._body(child), self._body(parent), anchor.position, active)
 
     # ------------------------------------------------------------------ bindings
 
-    def unmoving(self, joint: SceneJoint) -> None:
-        """Notes a joint of a static model: it is there by name and has no degree of freedom."""
-        self._note(self._binding(joint))
-
-    def _pose_of(self, link: str) -> Pose:
-        """World pose of the body that carries a link."""
-        return self.links[link].pose_world if self._body(link) != WORLD else IDENTITY
+    def _body_pose(self, link: str) -> Pose:
+        """World pose, in the file, of the body that carries a link."""
+        binding = self.record.links.get(link)
+        return self.links[link].pose_world @ binding.offset.inverse() if binding else IDENTITY
 
     def _body(self, link: str) -> str:
         binding = self.record.links.get(link)
@@ -307,3 +262,15 @@ class JointWriter:
 
     def _note(self, binding: JointBinding) -> None:
         self.record.joints[binding.scoped] = binding
+
+
+def _plane(joint: SceneJoint, at: Pose) -> list[Any]:
+    """x, y and normal of a plane of which the file names the normal alone: the joint frame's axes as near as can be."""
+    back = at.inverse()
+    normal = np.asarray(joint.axes[0].xyz_world if joint.axes else joint.pose_world.rotate((0.0, 0.0, 1.0)))
+    x = joint.pose_world.rotate((1.0, 0.0, 0.0))
+    if abs(float(x @ normal)) > 0.9:
+        x = joint.pose_world.rotate((0.0, 1.0, 0.0))
+    x = x - float(x @ normal) * normal
+    x = x / np.linalg.norm(x)
+    return [back.rotate(x), back.rotate(np.cross(normal, x)), back.rotate(normal)]

@@ -16,6 +16,8 @@ FARTHEST: Final = 100.0
 """Directional lights are drawn from at most this far [m]: their place only frames the shadow map."""
 
 _FARTHEST_LAMP: Final = 1e4
+_EVERYWHERE: Final = 180.0  # the cutoff at which OpenGL's spot is a point light
+_SPOT: Final = (math.radians(30.0), math.radians(40.0))  # the renderers' own cone where a file gives none
 
 
 def drawn_position(light: SceneLight, position: Any) -> npt.NDArray[np.float64]:
@@ -32,14 +34,14 @@ def drawn_position(light: SceneLight, position: Any) -> npt.NDArray[np.float64]:
 def add_light(body: Any, light: SceneLight, pose: Pose, shadows: bool) -> None:
     """Adds a light at `pose` in the frame of `body`."""
     made = body.add_light(name=light.scoped)
-    made.type = {
-        "directional": mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
-        "spot": mujoco.mjtLightType.mjLIGHT_SPOT,
-    }.get(light.type, mujoco.mjtLightType.mjLIGHT_POINT)
+    kinds = mujoco.mjtLightType
+    # the renderer knows no point lights: one is a spot that is open all around
+    made.type = kinds.mjLIGHT_DIRECTIONAL if light.type == "directional" else kinds.mjLIGHT_SPOT
     made.pos = drawn_position(light, pose.position)
     made.dir = pose.rotate(light.direction)
     made.active = light.on
-    made.castshadow = bool(shadows and light.cast_shadows)
+    # the renderer's shadow map is one cone, which for a lamp that shines all around would leave out most of its light
+    made.castshadow = bool(shadows and light.cast_shadows and light.type != "point")
     made.ambient = (0.0, 0.0, 0.0)
     made.diffuse = np.clip(np.asarray(light.diffuse[:3]) * light.intensity, 0.0, 10.0)
     made.specular = np.clip(np.asarray(light.specular[:3]) * light.intensity, 0.0, 10.0)
@@ -47,7 +49,23 @@ def add_light(body: Any, light: SceneLight, pose: Pose, shadows: bool) -> None:
         reach, constant, linear, quadratic = light.attenuation
         made.range = max(reach, 1e-3)
         made.attenuation = (constant, linear, quadratic) if constant + linear + quadratic > 0.0 else (1.0, 0.0, 0.0)
+        made.cutoff = _EVERYWHERE
     if light.type == "spot":
-        _, outer, falloff = light.spot
-        made.cutoff = min(90.0, max(1.0, math.degrees(outer) / 2))
-        made.exponent = max(0.0, falloff)
+        made.cutoff, made.exponent = spot_of(light)
+
+
+def spot_of(light: SceneLight) -> tuple[float, float]:
+    """Cutoff [degrees, half of the cone] and exponent of a spot.
+
+    Gazebo's light falls from full at half the inner angle to none at half the outer one, as a straight line to the
+    power of `falloff`; OpenGL's is the cosine to the power of `exponent`. They agree half-way between the two angles.
+    """
+    inner, outer, falloff = light.spot
+    if outer <= 0.0:
+        inner, outer = _SPOT
+    inner = min(max(inner, 0.0), outer)
+    cutoff = min(90.0, max(1.0, math.degrees(outer) / 2))
+    middle = (inner + outer) / 4
+    share = math.cos(min(middle, math.radians(89.0)))
+    exponent = falloff * math.log(0.5) / math.log(share) if share < 1.0 - 1e-9 else 0.0
+    return cutoff, min(128.0, max(0.0, exponent))

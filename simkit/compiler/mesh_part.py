@@ -10,6 +10,11 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
+Colour = tuple[float, float, float, float]
+
+
+class MeshFileError(Exception):
+    """A mesh file that cannot be used; the text says why."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,14 +28,19 @@ class MeshPart:
         uv: shape (n, 2), v upwards, or None.
         colour: RGBA from 0 to 1, or None where the file gives none.
         texture: image rows from the top, shape (h, w, 3), uint8, or None.
+        specular, emission: how strongly it mirrors and glows, from 0 to 1.
+        aliases: further names that the sub-mesh goes by in its file.
     """
 
     name: str
     vertices: Floats
     faces: Ints
     uv: Floats | None = None
-    colour: tuple[float, float, float, float] | None = None
+    colour: Colour | None = None
     texture: npt.NDArray[np.uint8] | None = None
+    specular: float = 0.0
+    emission: float = 0.0
+    aliases: tuple[str, ...] = ()
 
     def scaled(self, scale: tuple[float, float, float]) -> MeshPart:
         """Stretched along the axes; a mirroring scale turns the faces over again."""
@@ -44,6 +54,8 @@ class MeshPart:
 
 def joined(parts: list[MeshPart]) -> tuple[Floats, Ints]:
     """Vertices and faces of all parts as one mesh; equal vertices are one, faces without area are left out."""
+    if not parts:
+        return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
     offsets = np.cumsum([0, *(len(p.vertices) for p in parts[:-1])])
     vertices = np.concatenate([p.vertices for p in parts])
     faces = np.concatenate([p.faces + o for p, o in zip(parts, offsets, strict=True)])

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import combinations
-from typing import Any
+from typing import Any, Final
 
 import mujoco
 
 from simkit.compiler.assets import Assets
-from simkit.compiler.bodies import add_body
+from simkit.compiler.bodies import KINEMATIC_ARMATURE, add_body, is_massless
 from simkit.compiler.geoms import GeomWriter, Place
+from simkit.compiler.inertia import Written, plan_inertials
 from simkit.compiler.joints import JointWriter
 from simkit.compiler.lights import add_light
+from simkit.compiler.masks import keep_apart
 from simkit.compiler.names import LightBinding, LinkBinding, ModelRecord
 from simkit.compiler.tree import WORLD, Tree, plan_tree
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
 from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneWorld
+
+DEEPEST: Final = 1000
+"""Links below each other; MuJoCo takes 1024 bodies."""
 
 
 class ModelWriter:
@@ -43,31 +47,51 @@ class ModelWriter:
                 self._static_link(link)
         for joint in joints:
             if {joint.parent_link, joint.child_link} <= static | {WORLD}:
-                self.joints.unmoving(joint)
+                self.joints.unmoving(joint, is_expected=model.static)
         joints = [j for j in joints if not {j.parent_link, j.child_link} <= static | {WORLD}]
         tree = plan_tree(moving, joints, static)
+        if tree.depth > DEEPEST:
+            self._too_deep(tree)
+            return
+        self.joints.carriers = tree.carriers
         self._bodies(tree)
         for joint in tree.loops:
             self.joints.close(joint)
         for joint in tree.constraints:
             self.joints.gear(joint)
-        self.joints.mimics(joints)
-        self._excludes(moving, joints)
+        self.joints.couplings.mimics(joints)
+        keep_apart(self.spec, self.record, moving, joints)
 
     def join(self, joints: list[SceneJoint], links: Mapping[str, LinkBinding]) -> None:
         """Adds joints between models as constraints."""
         self._know(links)
         for joint in joints:
-            if joint.parent_link in (WORLD, *links) and joint.child_link in (WORLD, *links):
+            ends = {joint.parent_link, joint.child_link}
+            if not ends <= {WORLD, *links}:
+                continue
+            if all(end == WORLD or links[end].static for end in ends):
+                self.joints.unmoving(joint, is_expected=False)
+            elif joint.type == "floating":
+                self.joints.floating(joint)
+            elif joint.type == "gearbox":
+                self.joints.gear(joint)
+            else:
                 self.joints.close(joint)
+                self._exclude(joint, links)
         self._forget(links)
+
+    def _exclude(self, joint: SceneJoint, links: Mapping[str, LinkBinding]) -> None:
+        """Links across a joint never touch; of a static link that cannot be told from the rest of the world."""
+        bodies = [links[end].body_name for end in (joint.parent_link, joint.child_link) if end != WORLD]
+        if len(bodies) == 2 and WORLD not in bodies:
+            self.spec.add_exclude(name=joint.scoped, bodyname1=bodies[0], bodyname2=bodies[1])
+            self.record.excludes.append(joint.scoped)
 
     def weld(self, name: str, parent: str, child: str, links: Mapping[str, LinkBinding], active: bool) -> None:
         """Adds a weld between two links, of this model or of others."""
         known = dict(self.record.links)
         self._know(links)
-        point = links[child].scene.pose_world.position
-        self.joints.tie(name, mujoco.mjtEq.mjEQ_WELD, parent, child, point, active)
+        self.joints.tie(name, parent, child, active)
         self._forget({n: b for n, b in links.items() if n not in known})
 
     def _know(self, links: Mapping[str, LinkBinding]) -> None:
@@ -94,33 +118,143 @@ class ModelWriter:
 
     def _bodies(self, tree: Tree) -> None:
         model = self.record.scene
-        mass: dict[str, float] = {}
-        for link in tree.order:
-            root = tree.root_of(link.scoped)
-            mass[root] = mass.get(root, 0.0) + link.inertial.mass
         bodies: dict[str, Any] = {}
-        base = tree.root_of(model.canonical_link) if model.canonical_link else ""
+        base = tree.root_of(model.canonical_link) if tree.roots.get(model.canonical_link) else ""
+        afloat = {end for j in tree.floating for end in (j.child_link,)}
+        free = {
+            link.scoped
+            for link in tree.order
+            if link.scoped not in tree.edges
+            and (model.base != "fixed" or link.scoped not in (base, tree.order[0].scoped) or link.scoped in afloat)
+        }
+        inertials = self._inertials(tree, free)
         for link in tree.order:
             edge = tree.edges.get(link.scoped)
             parent = edge.parent if edge is not None else WORLD
+            is_free = link.scoped in free
+            needs_mass = self._needs_mass(link, tree, is_free)
             if parent == WORLD:
-                body = add_body(self.spec.worldbody, link, link.pose_world, self.diagnostics)
+                pose, above = link.pose_world, self.spec.worldbody
                 self.record.root_bodies.append(link.scoped)
             else:
-                above = self.joints.links[parent].pose_world
-                body = add_body(bodies[parent], link, above.inverse() @ link.pose_world, self.diagnostics)
-            bodies[link.scoped] = body
+                pose, above = self.joints.links[parent].pose_world.inverse() @ link.pose_world, bodies[parent]
+            body = bodies[link.scoped] = add_body(above, link, pose, inertials.get(link.scoped), needs_mass=needs_mass)
             binding = LinkBinding(link.scoped, link.scoped, IDENTITY, link, model.scoped, False)
-            if edge is None and not (model.base == "fixed" and link.scoped in (base, tree.order[0].scoped)):
-                free = f"{link.scoped}#free"
-                body.add_freejoint(name=free)
-                binding = replace(binding, free_joint=free)
+            if is_free:
+                binding = replace(binding, free_joint=self._free(body, link))
+            elif link.kinematic or any(link.velocity_decay):
+                self._only_when_free(link)
             self.record.links[link.scoped] = binding
-            self._fill(Place(body, IDENTITY, False, mass[tree.root_of(link.scoped)], link.scoped), link)
+            self._fill(Place(body, IDENTITY, False, tree.masses[tree.root_of(link.scoped)], link.scoped), link)
         for link in tree.order:
             edge = tree.edges.get(link.scoped)
             if edge is not None:
                 self.joints.hang(bodies[link.scoped], link, edge)
+        for joint in tree.floating:
+            self.joints.floating(joint)
+
+    def _inertials(self, tree: Tree, free: set[str]) -> dict[str, Written]:
+        """Mass and inertia of every link that has any, as the compiler takes them; exact ones go to the record."""
+        rigid: dict[str, str] = {}
+        still = set()
+        for link in tree.order:
+            edge = tree.edges.get(link.scoped)
+            is_fixed = edge is not None and edge.joint.type == "fixed"
+            if edge is not None and is_fixed and edge.parent != WORLD:
+                rigid[link.scoped] = rigid[edge.parent]
+                continue
+            rigid[link.scoped] = link.scoped
+            if is_fixed or (edge is None and link.scoped not in free):
+                still.add(link.scoped)
+        massive = [link for link in tree.order if not is_massless(link.inertial)]
+        written = plan_inertials(massive, rigid, frozenset(still), self.diagnostics)
+        self.record.exact = {name: (w.mass, w.exact) for name, w in written.items() if w.exact is not None}
+        return written
+
+    def _free(self, body: Any, link: SceneLink) -> str:
+        """Lets a link move freely; returns the name of the joint."""
+        name = f"{link.scoped}#free"
+        joint = body.add_freejoint(name=name)
+        if link.kinematic:
+            # so heavy to push that nothing moves it but a velocity that is set
+            joint.armature = KINEMATIC_ARMATURE
+        if any(link.velocity_decay):
+            step = float(self.spec.option.timestep)
+            # an implicit step with damping c divides the velocity by 1 + c·step
+            parts = (min(0.999, max(0.0, part)) for part in link.velocity_decay)
+            linear, angular = (part / (1.0 - part) / step for part in parts)
+            self.record.damped[name] = (linear, angular)
+            self.diagnostics.note(
+                "SK-PHYS-026",
+                f"velocity_decay of link {link.scoped} is a damping of {linear:g}/s along and {angular:g}/s in turning",
+                link.where,
+            )
+        return name
+
+    def _only_when_free(self, link: SceneLink) -> None:
+        if link.kinematic:
+            self.diagnostics.warning(
+                "SK-PHYS-012",
+                f"kinematic: link {link.scoped} hangs on a joint; it is not pulled by gravity, but it can be pushed",
+                link.where,
+            )
+        if any(link.velocity_decay):
+            self.diagnostics.warning(
+                "SK-PHYS-027",
+                f"velocity_decay of link {link.scoped} is not used: the link hangs on a joint",
+                link.where,
+                "<dynamics><damping> of the joint slows it down",
+            )
+
+    def _too_deep(self, tree: Tree) -> None:
+        """An error instead of a model; its links and joints are noted, for whoever looks for them meanwhile."""
+        last = self.joints.links[tree.deepest]
+        self.diagnostics.error(
+            "SK-JOINT-015",
+            f"link {last.scoped} hangs on a chain of {tree.depth} links; at most {DEEPEST} can be simulated",
+            last.where,
+        )
+        for link in tree.order:
+            self.record.links[link.scoped] = LinkBinding(
+                link.scoped, WORLD, link.pose_world, link, self.record.scene.scoped, True
+            )
+        for joint in (*(e.joint for e in tree.edges.values()), *tree.loops, *tree.constraints, *tree.floating):
+            self.joints.unmoving(joint)
+
+    def _needs_mass(self, link: SceneLink, tree: Tree, is_free: bool) -> bool:
+        """Whether a link has to weigh something: it moves by itself, and no link that is one with it has mass.
+
+        Without mass anywhere below there is nothing that an effort could move, which is an error.
+        """
+        edge = tree.edges.get(link.scoped)
+        moves = is_free or (edge is not None and edge.joint.type != "fixed")
+        if not moves or not is_massless(link.inertial):
+            return moves
+        if tree.carried[link.scoped] <= 0.0:
+            how = f"moves on joint {edge.joint.scoped} ({edge.joint.type})" if edge else "moves freely"
+            self.diagnostics.error(
+                "SK-JOINT-010",
+                f"link {link.scoped} {how} and has no mass, nor has anything that it carries",
+                edge.joint.where if edge and edge.joint.where.line else link.where,
+                "give the link an <inertial>, or fix it"
+                + ("" if edge else ": it belongs to a model whose base can be 'fixed'"),
+            )
+            return True
+        if not self._has_rigid_mass(link.scoped, tree):
+            self.record.massless[link.scoped] = edge.joint.scoped if edge else ""
+            return True
+        return False
+
+    def _has_rigid_mass(self, link: str, tree: Tree) -> bool:
+        """Whether a link below by fixed joints alone has mass; that is all that the engine asks for."""
+        stack = list(tree.children.get(link, ()))
+        while stack:
+            name = stack.pop()
+            if tree.edges[name].joint.type == "fixed":
+                if not is_massless(self.joints.links[name].inertial):
+                    return True
+                stack += tree.children.get(name, ())
+        return False
 
     def _fill(self, place: Place, link: SceneLink) -> None:
         for collision in link.collisions:
@@ -132,21 +266,6 @@ class ModelWriter:
             pose = link.pose_world.inverse() @ light.pose_world
             add_light(place.body, light, place.offset @ pose, self.world.surroundings.shadows)
             self.record.lights[light.scoped] = LightBinding(light.scoped, light, self.record.scene.scoped, body_name)
-
-    # ------------------------------------------------------------------ who never touches whom
-
-    def _excludes(self, moving: list[SceneLink], joints: list[SceneJoint]) -> None:
-        """Links of one model touch only where one of them collides with its own model, and never across a joint."""
-        model = self.record.scene
-        joined = {frozenset((j.parent_link, j.child_link)) for j in joints}
-        owns = {link.scoped: m.self_collide for m in model.all_models() for link in m.links}
-        solid = [link for link in moving if link.collisions]
-        for a, b in combinations(solid, 2):
-            collide = model.self_collide or any(k.self_collide or owns[k.scoped] for k in (a, b))
-            if not collide or frozenset((a.scoped, b.scoped)) in joined:
-                name = f"{a.scoped}|{b.scoped}"
-                self.spec.add_exclude(name=name, bodyname1=a.scoped, bodyname2=b.scoped)
-                self.record.excludes.append(name)
 
 
 def _links(model: SceneModel, in_static: bool) -> Iterator[tuple[SceneLink, bool]]:

@@ -51,15 +51,21 @@ class LinkBinding:
 
 @dataclass(frozen=True, slots=True)
 class Follower:
-    """A hidden degree of freedom that an equality ties to a joint's first: value = ratio · leader.
+    """A degree of freedom that an equality ties to an axis of a joint: value = offset + ratio · leader.
 
     Whoever sets the leader's state sets this one too, so that the equality starts without an error.
+
+    Attributes:
+        name: MuJoCo joint.
+        axis: which axis of the leader.
     """
 
     name: str
     ratio: float
     qpos: int = -1
     dof: int = -1
+    offset: float = 0.0
+    axis: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +79,14 @@ class JointBinding:
         pose_child: the joint frame in the file's child link frame at load.
         pose_parent: the joint frame in the file's parent link frame at load (in the world for `world`).
         is_reversed: the tree hangs the parent link under the child; positions and axes keep the file's meaning.
-        is_loop: the joint closes a loop by an equality constraint; it has no coordinate of its own.
+        is_loop: the joint closes a loop: it moves a twin of its child link, which a weld holds on the link itself.
         equalities: names of the equality constraints that stand for it.
+        twin: name of that body; empty where the joint is part of the tree.
+        carried: scoped name of the link whose body the joint moves in the tree (or whose twin); it is rigidly one with
+            the file's child link, or with its parent link where the joint is turned round.
+        moved_body: id of the body that the joint moves (the twin's for a loop); 0 where it moves none.
+        pose_moved: the joint frame in that body's frame.
+        free: a floating joint: scoped name of the link whose free joint it reads and sets; empty where none is free.
     """
 
     scoped: str
@@ -87,7 +99,12 @@ class JointBinding:
     is_reversed: bool = False
     is_loop: bool = False
     equalities: tuple[str, ...] = ()
+    twin: str = ""
+    carried: str = ""
+    free: str = ""
     followers: tuple[Follower, ...] = ()
+    pose_moved: Pose = IDENTITY
+    moved_body: int = -1
     joint_ids: tuple[int, ...] = ()
     qpos: tuple[int, ...] = ()
     dofs: tuple[int, ...] = ()
@@ -139,7 +156,15 @@ class GeomOwner:
 
 @dataclass(slots=True)
 class ModelRecord:
-    """All that a top-level model put into the spec, by name, so that it can be taken out again."""
+    """All that a top-level model put into the spec, by name, so that it can be taken out again.
+
+    Attributes:
+        damped: free joint -> decay rates [1/s] of its linear and angular velocity.
+        exact: link -> the mass it was written with [kg] and the tensor [kg·m²] that the compiled model gets.
+        massless: link without mass on a moving joint -> that joint's scoped name.
+        own_bit: the collision bit by which the model's links know each other; 0 where excludes do that.
+        attached: of models in MuJoCo's own format: scoped name -> prefix of what they brought.
+    """
 
     scene: SceneModel
     movable: bool = False
@@ -155,6 +180,11 @@ class ModelRecord:
     equalities: list[str] = field(default_factory=list)
     actuators: list[ActuatorRef] = field(default_factory=list)
     assets: set[tuple[str, str]] = field(default_factory=set)
+    damped: dict[str, tuple[float, float]] = field(default_factory=dict)
+    massless: dict[str, str] = field(default_factory=dict)
+    exact: dict[str, tuple[float, tuple[float, float, float, float, float, float]]] = field(default_factory=dict)
+    own_bit: int = 0
+    attached: dict[str, str] = field(default_factory=dict)
 
     def copy(self) -> ModelRecord:
         """A record of its own; the bindings in it are immutable and shared."""
@@ -172,6 +202,10 @@ class ModelRecord:
             equalities=list(self.equalities),
             actuators=list(self.actuators),
             assets=set(self.assets),
+            damped=dict(self.damped),
+            massless=dict(self.massless),
+            exact=dict(self.exact),
+            attached=dict(self.attached),
         )
 
 
@@ -260,7 +294,7 @@ class NameMap:
     def _bind(self, records: list[ModelRecord], model: mujoco.MjModel) -> None:
         import mujoco
 
-        from simkit.compiler.groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY
+        from simkit.compiler.groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION
 
         def number(kind: mujoco.mjtObj, name: str) -> int:
             return int(mujoco.mj_name2id(model, kind, name))
@@ -277,9 +311,11 @@ class NameMap:
                 if owner.is_visual:
                     drawn.setdefault(owner.link, []).append(i)
                 else:
-                    if group[i] in (COLLISION, COLLISION_CONTACT):
+                    if group[i] == DRAWN_COLLISION:
+                        drawn.setdefault(owner.link, []).append(i)
+                    if group[i] in (COLLISION, COLLISION_CONTACT, DRAWN_COLLISION):
                         collide.setdefault(owner.link, []).append(i)
-                    if group[i] in (COLLISION, COLLISION_RAY):
+                    if group[i] in (COLLISION, COLLISION_RAY, DRAWN_COLLISION):
                         seen.setdefault(owner.link, []).append(i)
         for scoped, link in self.links.items():
             body = number(mujoco.mjtObj.mjOBJ_BODY, link.body_name)
@@ -312,12 +348,18 @@ class NameMap:
             i = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f.name))
             followers.append(replace(f, qpos=int(model.jnt_qposadr[i]), dof=int(model.jnt_dofadr[i])))
         parent, child = self.links.get(joint.scene.parent_link), self.links.get(joint.scene.child_link)
+        carried = self.links.get(joint.carried)
+
+        def number_of(body: str) -> int:
+            return int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, body))
+
         return replace(
             joint,
             joint_ids=ids,
             qpos=tuple(int(model.jnt_qposadr[i]) for i in ids),
             dofs=tuple(dofs),
             followers=tuple(followers),
+            moved_body=number_of(joint.twin) if joint.twin else (carried.body if carried else 0),
             parent_body=parent.body if parent else 0,
             child_body=child.body if child else 0,
         )

@@ -1,4 +1,4 @@
-"""What starts inside something else, which throws it out at the first steps."""
+"""What starts inside something else, and is reported; the runtime lets it out slowly."""
 
 from __future__ import annotations
 
@@ -24,12 +24,14 @@ def report_overlaps(model: mujoco.MjModel, names: NameMap, diagnostics: Diagnost
     deepest: dict[tuple[str, str], float] = {}
     for i in (data.contact.dist < -DEEP).nonzero()[0] if data.ncon else ():
         first, second = (names.geom_owner(g)[1] for g in data.contact.geom[i])
+        if not (first and second):  # a cloth or the like, of a file of the engine's own
+            continue
         pair = (first, second)
         deepest[pair] = max(deepest.get(pair, 0.0), -float(data.contact.dist[i]))
     for (first, second), depth in sorted(deepest.items(), key=lambda item: -item[1])[:_REPORTED_MOST]:
         diagnostics.warning(
             "SK-PHYS-024",
-            f"{second} starts {depth * 1e3:.0f} mm inside {first}: contact throws them apart",
+            f"{second} starts {depth * 1e3:.0f} mm inside {first}: contact moves them apart, slowly",
             names.link(names.geom_owner_link(second)).scene.where if names.geom_owner_link(second) else where,
             "move one of them in the file",
         )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -97,20 +96,68 @@ def polyline(shape: Polyline) -> tuple[Floats, Ints]:
     """Triangles of extruded outlines; an outline inside another is a hole. Raises ValueError."""
     import trimesh
 
+    meshes = [trimesh.creation.extrude_triangulation(*flat, shape.height) for flat in _areas(shape)]
+    whole = trimesh.util.concatenate(meshes)
+    return np.asarray(whole.vertices, float), np.asarray(whole.faces, np.int32)
+
+
+def polyline_pieces(shape: Polyline) -> list[Floats]:
+    """Convex bodies that together are the extruded outlines, exactly: corners of each. Raises ValueError."""
+    pieces = []
+    for points, faces in _areas(shape):
+        for polygon in _convex_polygons(points, faces):
+            flat = points[polygon]
+            pieces.append(np.vstack([np.column_stack([flat, np.full(len(flat), z)]) for z in (0.0, shape.height)]))
+    return pieces
+
+
+def _areas(shape: Polyline) -> list[tuple[Floats, Ints]]:
+    """Triangles in the plane of each outline that is no hole, without its holes."""
     rings = [np.asarray(outline, float) for outline in shape.outlines]
     rings = [r[:-1] if len(r) > 1 and np.array_equal(r[0], r[-1]) else r for r in rings]
     rings = [r for r in rings if len(r) >= 3 and abs(_signed_area(r)) > 0.0]
     around = [[o for o, other in enumerate(rings) if o != i and _encloses(other, r[0])] for i, r in enumerate(rings)]
-    meshes = []
+    areas = []
     for i, outer in enumerate(rings):
         if len(around[i]) % 2 == 0:
             holes = [rings[k] for k in range(len(rings)) if i in around[k] and len(around[k]) == len(around[i]) + 1]
-            flat, faces = _filled([outer, *holes])
-            meshes.append(trimesh.creation.extrude_triangulation(flat, faces, shape.height))
-    if not meshes:
+            areas.append(_filled([outer, *holes]))
+    if not areas:
         raise ValueError("the outlines enclose no area")
-    whole = trimesh.util.concatenate(meshes)
-    return np.asarray(whole.vertices, float), np.asarray(whole.faces, np.int32)
+    return areas
+
+
+def _convex_polygons(points: Floats, faces: Ints) -> list[list[int]]:
+    """Triangles joined across their common edges as long as what comes of it is convex (Hertel and Mehlhorn)."""
+    polygons: dict[int, list[int]] = dict(enumerate(faces.tolist()))
+    for i, (a, b, c) in polygons.items():
+        if _turn(points[a], points[b], points[c]) < 0.0:
+            polygons[i] = [a, c, b]
+    of_edge = {(p[k], p[(k + 1) % 3]): i for i, p in polygons.items() for k in range(3)}
+    for (a, b), first in list(of_edge.items()):
+        first, second = of_edge[(a, b)], of_edge.get((b, a), -1)
+        if second < 0 or first == second:
+            continue
+        one, other = polygons[first], polygons[second]
+        at, there = one.index(b), other.index(a)
+        merged = one[at:] + one[:at] + (other[there:] + other[:there])[1:-1]
+        if len(set(merged)) == len(merged) and _is_convex(points[merged]):
+            polygons[first] = merged
+            del polygons[second]
+            for edge in zip(other, other[1:] + other[:1], strict=True):
+                of_edge[edge] = first
+    return list(polygons.values())
+
+
+def _turn(a: Floats, b: Floats, c: Floats) -> float:
+    return float((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]))
+
+
+def _is_convex(ring: Floats) -> bool:
+    before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
+    u, v = ring - before, after - ring
+    turns = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    return bool((turns >= -1e-12 * float(np.abs(ring).max()) ** 2).all())
 
 
 def _filled(rings: list[Floats]) -> tuple[Floats, Ints]:
@@ -137,17 +184,3 @@ def _encloses(ring: Floats, point: Floats) -> bool:
     rise = np.where(b[:, 1] == a[:, 1], 1.0, b[:, 1] - a[:, 1])
     at = a[:, 0] + (point[1] - a[:, 1]) / rise * (b[:, 0] - a[:, 0])
     return bool(np.count_nonzero(crosses & (at > point[0])) % 2)
-
-
-def heights(shape: Heightmap) -> Any:
-    """Rows from -y to +y of a grey image, scaled so that its brightest pixel is 1. Raises OSError or ValueError."""
-    from PIL import Image
-
-    with Image.open(shape.file) as image:
-        if image.width > 4097 or image.height > 4097:
-            raise ValueError(f"is {image.width}×{image.height}; at most 4097×4097 is taken")
-        grey = np.asarray(image if image.mode in ("L", "I", "I;16", "F") else image.convert("L"), np.float32)
-    if grey.shape[0] < 2 or grey.shape[1] < 2:
-        raise ValueError("is smaller than 2×2")
-    most = float(grey.max())
-    return np.ascontiguousarray(grey[::-1] / (most if most > 0.0 else 1.0))

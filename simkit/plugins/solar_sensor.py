@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit import msgs
+from simkit.diagnostics import NOWHERE
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_light, find_link
@@ -90,8 +91,12 @@ class SolarSensor(ModelPlugin):
 
 
 def _light(sim: Simulation, params: Params) -> Light | None:
-    """The light that `<light_name>` names, or None after an error that lists the lights."""
+    """The light that `<light_name>` names; None after an error that lists the lights, or a note for a bare model."""
     name = params.text("light_name", "")
+    if name and not sim.lights and sim.world.where == NOWHERE:
+        message = f"a bare model has no light {name!r}: no reading is published until it stands in a world that has it"
+        params.diagnostics.note("SK-PLUGIN-009", message, params.where)
+        return None
     if name:
         return find_light(sim, name, params)
     listed = ", ".join(repr(n) for n in sorted(sim.lights)) or "none"

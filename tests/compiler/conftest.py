@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,9 @@ from simkit.scene import (
     SceneWorld,
     Surface,
 )
+
+
+sys.path.insert(0, str(Path(__file__).parent))  # the makers of mesh files
 
 
 @pytest.fixture(autouse=True)

@@ -105,3 +105,118 @@ def test_a_deep_overlap_at_the_start_is_reported(make):
     box = make.solid("box", Box((0.2, 0.2, 0.2)), Pose((0, 0, 0.05)))
     SpecBuilder(make.world(make.ground(), box), found).compile()
     assert "SK-PHYS-024" in [d.code for d in found]
+
+
+# ------------------------------------------------------------------ spinning and rolling
+
+
+def test_a_torsional_patch_stops_a_spinning_body_evenly(make, compiled):
+    """The torque is 3 pi / 16 · radius · coefficient · N."""
+    surface = Surface(torsional=0.8, patch_radius=0.05)
+    ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=surface)
+    c = compiled(make.ground(), ball)
+    mujoco.mj_step(c.model, c.data, 300)
+    c.data.qvel[5] = 20.0
+    mujoco.mj_step(c.model, c.data, 500)
+    torque = 3 * math.pi / 16 * 0.05 * 0.8 * 1.0 * G
+    assert c.data.qvel[5] == pytest.approx(20.0 - torque / 0.01 * 0.5, rel=0.01)
+
+
+def test_rolling_friction_slows_a_rolling_ball_evenly(make, compiled):
+    """Of the torque μ N [m · N] and the friction at the ground: a = μ g / r / (1 + I / (m r²))."""
+    ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(rolling=0.002), inertia=0.004)
+    c = compiled(make.ground(), ball)
+    mujoco.mj_step(c.model, c.data, 300)
+    c.data.qvel[0], c.data.qvel[4] = 1.0, 10.0
+    mujoco.mj_step(c.model, c.data, 1000)
+    slowed = 0.002 * G / 0.1 / (1 + 0.004 / 0.01)
+    assert c.data.qvel[0] == pytest.approx(1.0 - slowed, rel=0.01)
+
+
+def test_without_a_patch_spinning_goes_on(make, compiled):
+    ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(torsional=1.0))
+    c = compiled(make.ground(), ball)
+    c.data.qvel[5] = 20.0
+    mujoco.mj_step(c.model, c.data, 500)
+    assert c.data.qvel[5] == pytest.approx(20.0, rel=1e-3)
+
+
+# ------------------------------------------------------------------ who touches whom
+
+
+def test_links_of_a_large_model_pass_through_each_other_but_not_through_others(make, compiled):
+    """Beyond some number of pairs a bit of the mask stands for the excludes."""
+    stack = [make.link(f"m::l{i}", Sphere(0.1), Pose((0.3 * i, 0, 0.1))) for i in range(80)]
+    inside = make.link("m::inside", Sphere(0.1), Pose((0.05, 0, 0.1)))
+    other = make.solid("other", Sphere(0.1), Pose((0.6, 0, 0.35)))
+    twin = [make.link(f"n::l{i}", Sphere(0.1), Pose((0.3 * i, 0, 1.1))) for i in range(80)]
+    c = compiled(make.ground(), make.model("m", *stack, inside), make.model("n", *twin), other)
+    assert c.model.nexclude == 0
+    mujoco.mj_step(c.model, c.data, 1500)
+
+    def height(name):
+        return float(c.data.xpos[c.names.link(name).body][2])
+
+    assert height("m::l0") == pytest.approx(0.1, abs=2e-3)
+    assert height("m::inside") == pytest.approx(0.1, abs=2e-3)
+    assert height("other::link") > 0.09
+    # the upper model's links came to rest on the lower one's, or beside them on the ground, but not within them
+    apart = [
+        np.linalg.norm(c.data.xpos[c.names.link(f"m::l{i}").body] - c.data.xpos[c.names.link(f"n::l{i}").body])
+        for i in range(80)
+    ]
+    assert min(apart) > 0.195
+
+
+@pytest.mark.parametrize("on", ["model", "link"])
+def test_self_collision_is_asked_for_by_the_model_or_by_a_link(make, compiled, on):
+    a = make.link("m::a", Sphere(0.5), self_collide=on == "link")
+    b = make.link("m::b", Sphere(0.5), Pose((0.8, 0, 0)))
+    c = compiled(make.model("m", a, b, self_collide=on == "model"))
+    mujoco.mj_forward(c.model, c.data)
+    assert c.data.ncon == 1
+
+
+def test_category_and_collide_masks_meet_either_way(make, compiled):
+    """ODE's rule: one's category is in what the other collides with."""
+    ball = make.solid(
+        "ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(category_bitmask=0x4, collide_bitmask=0x1)
+    )
+    for mask, rests in ((0x4, True), (0x2, False)):
+        c = compiled(make.ground(category_bitmask=0x8, collide_bitmask=mask), ball)
+        mujoco.mj_step(c.model, c.data, 500)
+        assert bool(c.data.qpos[2] > 0.09) is rests
+
+
+# ------------------------------------------------------------------ links of a kind
+
+
+def test_a_kinematic_link_moves_as_it_was_set_and_nothing_stops_it(make, compiled):
+    wall = make.solid("wall", Box((0.2, 2.0, 2.0)), Pose((1.0, 0, 1.0)), mass=1.0)
+    pusher = make.solid("pusher", Box((0.2, 0.2, 0.2)), Pose((0, 0, 1.0)), kinematic=True)
+    c = compiled(make.ground(), wall, pusher)
+    start = c.names.link("pusher::link").root_joint_qpos
+    c.data.qvel[c.names.link("pusher::link").root_joint_dof] = 1.0
+    mujoco.mj_step(c.model, c.data, 1500)
+    assert c.data.qpos[start] == pytest.approx(1.5, abs=1e-5)
+    assert c.data.qpos[start + 2] == pytest.approx(1.0, abs=1e-6)
+    assert c.data.qpos[c.names.link("wall::link").root_joint_qpos] > 1.5
+    assert c.model.body_mass.sum() == pytest.approx(2.0)
+
+
+def test_velocity_decay_takes_its_part_at_every_step(make, compiled):
+    body = make.solid("b", Box((0.1,) * 3), gravity=False, velocity_decay=(0.002, 0.004), inertia=0.02, mass=3.0)
+    c = compiled(body)
+    c.data.qvel[:] = (1, 0, 0, 0, 2, 0)
+    mujoco.mj_step(c.model, c.data, 500)
+    assert c.data.qvel[0] == pytest.approx(0.998**500, rel=1e-6)
+    assert c.data.qvel[4] == pytest.approx(2 * 0.996**500, rel=1e-6)
+
+
+def test_collide_without_contact_is_reported_and_touches_nothing(make):
+    found = Diagnostics()
+    ball = make.solid("ball", Sphere(0.1), Pose((0, 0, 0.1)), surface=Surface(collide_without_contact=True))
+    c = SpecBuilder(make.world(make.ground(), ball), found).compile()
+    mujoco.mj_step(c.model, c.data, 500)
+    assert c.data.qpos[2] < -1.0
+    assert "SK-PHYS-014" in [d.code for d in found]

@@ -10,9 +10,9 @@ import pytest
 
 from simkit.compiler import SpecBuilder
 from simkit.compiler.tree import plan_tree
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import IDENTITY, Pose
-from simkit.scene import Axis, Mimic, SceneJoint
+from simkit.scene import Axis, Inertial, Mimic, SceneJoint, Sphere
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
@@ -173,7 +173,8 @@ def test_a_loop_is_closed_by_a_constraint_and_reported(make):
     )
     c = SpecBuilder(make.world(model), found).compile()
     assert c.names.joint("m::top").is_loop
-    assert c.model.neq == 2
+    assert c.model.neq == 1
+    assert c.model.body_mass.sum() == pytest.approx(3.0)
     mujoco.mj_step(c.model, c.data, 500)
     b, top = c.names.link("m::b").body, c.names.link("m::c").body
     on_b = c.data.xpos[b] + c.data.xmat[b].reshape(3, 3) @ (0, 0, 0.5)
@@ -193,3 +194,170 @@ def test_joints_of_a_static_model_are_known_by_name(make, compiled):
     c = compiled(chain(make, joint("j", "revolute", "a", "b", Pose(), Z), static=True))
     assert c.names.joint("m::j").dofs == ()
     assert c.model.nv == 0
+
+
+# ------------------------------------------------------------------ links without mass
+
+
+NOTHING = Inertial(0.0, (0.0, 0.0, 0.0), (0.0,) * 6, given=False)
+
+
+def found_of(make, model, **more):
+    found = Diagnostics()
+    compiled = SpecBuilder(make.world(model, **more), found).compile()
+    return compiled, [d.code for d in found]
+
+
+def test_a_frame_on_a_fixed_joint_weighs_nothing_and_stands_where_it_should(make, compiled):
+    frame = make.link("m::f", pose=Pose.from_rpy(0.5, 0, 0, 0, 0, 0.3), inertial=NOTHING)
+    model = make.model("m", make.link("m::a"), frame, joints=(joint("j", "fixed", "a", "f"),))
+    c = compiled(model)
+    assert c.model.body_mass.sum() == pytest.approx(1.0)
+    mujoco.mj_step(c.model, c.data, 100)
+    a, f = c.names.link("m::a").body, c.names.link("m::f").body
+    np.testing.assert_allclose(c.data.xpos[f] - c.data.xpos[a], (0.5, 0, 0), atol=1e-12)
+
+
+def test_a_root_frame_floats_on_the_mass_that_is_fixed_to_it(make, compiled):
+    root = make.link("m::root", inertial=NOTHING)
+    deeper = make.link("m::mid", inertial=NOTHING)
+    joints = (joint("j", "fixed", "root", "mid"), joint("k", "fixed", "mid", "a"))
+    c = compiled(make.model("m", root, deeper, make.link("m::a", pose=Pose((0, 0, 1)), mass=3.0), joints=joints))
+    mujoco.mj_step(c.model, c.data, 1000)
+    assert c.model.body_mass.sum() == pytest.approx(3.0)
+    assert c.data.qpos[2] == pytest.approx(-4.9, abs=0.01)
+
+
+def test_a_massless_link_between_two_moving_joints_carries_what_hangs_on_it(make, compiled):
+    """Two crossed hinges with nothing between them swing like the universal joint they are."""
+    between = make.link("m::x", inertial=NOTHING)
+    load = make.link("m::b", pose=Pose((0.3, 0, -1)), inertial=Inertial(2.0, (0, 0, 0), (0.1, 0.2, 0.3, 0, 0, 0)))
+    hinges = make.model(
+        "m",
+        between,
+        load,
+        joints=(joint("j", "revolute", "world", "x", Pose(), X), joint("k", "revolute", "x", "b", Pose(), Y)),
+    )
+    cross = make.model("m", load, joints=(joint("j", "universal", "world", "b", Pose(), X, Y),))
+    one, two = compiled(hinges), compiled(cross)
+    for c in (one, two):
+        c.data.qvel[:] = (0.4, -0.3)
+        mujoco.mj_step(c.model, c.data, 1000)
+    np.testing.assert_allclose(one.data.qpos, two.data.qpos, atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic", "ball"])
+def test_a_massless_link_that_nothing_hangs_on_is_an_error_that_names_the_joint(make, kind):
+    axes = () if kind == "ball" else (Z,)
+    tip = make.link("m::tip", inertial=NOTHING)
+    where = Where("robot.urdf", 17)
+    hinge = joint("j", kind, "a", "tip", Pose(), *axes, where=where)
+    found = Diagnostics()
+    SpecBuilder(make.world(make.model("m", make.link("m::a"), tip, joints=(hinge,))), found)
+    (problem,) = [d for d in found if d.severity == "error"]
+    assert (problem.code, problem.file, problem.line) == ("SK-JOINT-010", "robot.urdf", 17)
+    assert "m::tip" in problem.message
+    assert "m::j" in problem.message
+
+
+def test_a_massless_link_whose_load_turns_by_itself_is_an_error(make):
+    """Both hinges have one axis, so nothing that hangs on the frame weighs on its own hinge."""
+    frame = make.link("m::f", inertial=NOTHING)
+    hinges = (joint("j", "revolute", "a", "f", Pose(), Z), joint("k", "revolute", "f", "b", Pose(), Z))
+    model = make.model("m", make.link("m::a"), frame, make.link("m::b"), joints=hinges)
+    assert "SK-JOINT-010" in found_of(make, model)[1]
+
+
+def test_a_model_without_any_mass_is_an_error_unless_its_base_is_fixed(make):
+    a, b = make.link("m::a", inertial=NOTHING), make.link("m::b", inertial=NOTHING)
+    fix = (joint("j", "fixed", "a", "b"),)
+    assert "SK-JOINT-010" in found_of(make, make.model("m", a, b, joints=fix))[1]
+    assert "SK-JOINT-010" not in found_of(make, make.model("m", a, b, joints=fix, base="fixed"))[1]
+
+
+# ------------------------------------------------------------------ nonsense
+
+
+def hinged(make, axis):
+    return chain(make, joint("base", "fixed", "world", "a"), joint("j", "revolute", "a", "b", Pose(), axis))
+
+
+@pytest.mark.parametrize(
+    ("axis", "code"),
+    [
+        (Axis((0.0, 0.0, 0.0), Z), "SK-JOINT-002"),
+        (Axis((0.0, 0.0, math.nan), Z), "SK-JOINT-003"),
+        (Axis(Z, Z, damping=math.inf), "SK-JOINT-003"),
+        (Axis(Z, Z, lower=math.nan), "SK-JOINT-003"),
+        (Axis(Z, Z, lower=1.0, upper=-1.0), "SK-JOINT-006"),
+        (Axis(Z, Z, lower=0.5, upper=1.0), "SK-JOINT-007"),
+        (Axis(Z, Z, velocity=0.0), "SK-JOINT-008"),
+        (Axis(Z, Z, friction=-1.0), "SK-JOINT-009"),
+        (Axis(Z, Z, lower=-1.0, upper=1.0, limit_stiffness=10.0), "SK-JOINT-014"),
+    ],
+)
+def test_an_axis_that_cannot_be_meant_is_reported(make, axis, code):
+    assert code in found_of(make, hinged(make, axis))[1]
+
+
+def test_a_motor_without_effort_is_reported(make):
+    found = Diagnostics()
+    builder = SpecBuilder(make.world(hinged(make, Axis(Z, Z, effort=0.0))), found)
+    builder.add_velocity_servo("m::j", max_effort=5.0, owner="drive")
+    assert "SK-JOINT-011" in [d.code for d in found]
+
+
+def test_joints_that_mimic_each_other_are_an_error(make):
+    a, b = (Axis(Z, Z, mimic=Mimic(f"m::{n}")) for n in ("second", "first"))
+    model = chain(
+        make,
+        joint("first", "revolute", "world", "a", Pose(), a),
+        joint("second", "revolute", "world", "b", Pose(), b),
+    )
+    codes = found_of(make, model)[1]
+    assert "SK-JOINT-001" in codes
+
+
+def test_a_gearbox_whose_axes_lie_across_its_joints_is_left_out(make):
+    model = chain(
+        make,
+        joint("base", "fixed", "world", "a"),
+        joint("in", "revolute", "a", "b", Pose((1, 0, 0)), X),
+        joint("out", "revolute", "a", "c", Pose((2, 0, 0)), Z),
+        joint("gear", "gearbox", "b", "c", Pose(), Z, Z, gearbox_ratio=5.0, gearbox_reference="m::a"),
+        links=("a", "b", "c"),
+    )
+    c, codes = found_of(make, model)
+    assert "SK-PHYS-021" in codes
+    assert c.model.neq == 0
+
+
+def test_a_joint_between_two_static_links_is_reported(make):
+    door = SceneJoint("door", "door", "revolute", "a::link", "b::link", Pose(), (Axis(Z, Z),))
+    a, b = (make.model(n, make.link(f"{n}::link"), static=True) for n in "ab")
+    found = Diagnostics()
+    c = SpecBuilder(make.world(a, b, joints=(door,)), found).compile()
+    assert "SK-JOINT-004" in [d.code for d in found]
+    assert c.names.joint("door").dofs == ()
+
+
+# ------------------------------------------------------------------ large models
+
+
+def test_long_chains_and_many_joints_are_built_within_seconds(make, compiled):
+    long = [make.link(f"m::l{i}", pose=Pose((0.1 * i, 0, 0))) for i in range(300)]
+    ties = tuple(joint(f"j{i}", "revolute", f"l{i}", f"l{i + 1}", Pose((0.1 * i, 0, 0)), Y) for i in range(299))
+    assert compiled(make.model("m", *long, joints=ties)).model.nv == 305
+    many = [make.link(f"m::l{i}", Sphere(0.01), pose=Pose((0.1 * i, 0, 0))) for i in range(2001)]
+    star = tuple(joint(f"j{i}", "revolute", "l0", f"l{i}", Pose((0.1 * i, 0, 0)), Y) for i in range(1, 2001))
+    c = compiled(make.model("m", *many, joints=star))
+    assert c.model.njnt == 2001
+    assert c.model.nexclude == 0
+
+
+def test_a_chain_deeper_than_the_engine_takes_is_an_error(make):
+    long = [make.link(f"m::l{i}") for i in range(1200)]
+    ties = tuple(joint(f"j{i}", "fixed", f"l{i}", f"l{i + 1}") for i in range(1199))
+    found = Diagnostics()
+    SpecBuilder(make.world(make.model("m", *long, joints=ties)), found)
+    assert [d.code for d in found] == ["SK-JOINT-015"]

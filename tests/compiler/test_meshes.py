@@ -99,14 +99,14 @@ def test_the_cache_gives_the_same_and_does_without(dae, own_mesh_cache, monkeypa
     from simkit.compiler import mesh
 
     first = load_file(dae)[0]
-    assert len(list((own_mesh_cache / "meshes").glob("*.npz"))) == 1
-    mesh._load.cache_clear()
+    assert len(list((own_mesh_cache / "meshes").glob("*.bin"))) == 1
+    mesh._converted.cache_clear()
     monkeypatch.setattr(mesh, "_convert", lambda *_: pytest.fail("converted again"))
     second = load_file(dae)[0]
     np.testing.assert_array_equal(first.vertices, second.vertices)
     assert first.colour == second.colour
     monkeypatch.undo()
-    mesh._load.cache_clear()
+    mesh._converted.cache_clear()
     monkeypatch.setenv("SIMKIT_CACHE_DIR", os.devnull)
     assert len(load_file(dae)[0].faces) == 4
 

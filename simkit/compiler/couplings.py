@@ -1,0 +1,159 @@
+"""Constraints between bodies and between joints: welds, gearboxes, mimics, threads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit.compiler.names import Follower, JointBinding, ModelRecord
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.scene import Mimic, SceneJoint
+
+STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""Impedance of equality constraints that stand for a mechanism: as hard as the solver takes."""
+
+_ONE_NUMBER: Final = ("revolute", "continuous", "prismatic", "universal", "revolute2", "screw", "planar")
+_ALONG: Final = 1.0 - 1e-6
+
+
+class Couplings:
+    """Writes equality constraints and notes them in the record of their model."""
+
+    def __init__(self, spec: mujoco.MjSpec, record: ModelRecord, timestep: float, diagnostics: Diagnostics) -> None:
+        self.spec, self.record, self.timestep, self.diagnostics = spec, record, timestep, diagnostics
+
+    def couple(self, name: str, follower: str, leader: str, offset: float, ratio: float) -> None:
+        """Ties one MuJoCo joint to another: follower = offset + ratio · leader."""
+        equality = self._equality(name, mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT, follower, leader)
+        data = np.zeros(len(equality.data))
+        data[:2] = offset, ratio
+        equality.data = data
+
+    def weld(self, name: str, body: str, other: str, anchor_in_other: Any, active: bool = True) -> None:
+        """Holds two MuJoCo bodies as they stand in the specification."""
+        equality = self._equality(name, mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY, body, other)
+        data = np.zeros(len(equality.data))
+        # a relative pose of zeros lets MuJoCo take the one of the specification
+        data[:3] = anchor_in_other
+        data[10] = 1.0
+        equality.data = data
+        equality.active = active
+
+    def _equality(self, name: str, kind: Any, of: Any, first: str, second: str) -> Any:
+        equality = self.spec.add_equality(name=name)
+        equality.type, equality.objtype = kind, of
+        equality.name1, equality.name2 = first, second
+        equality.solref = (max(2.0 * self.timestep, 0.002), 1.0)
+        equality.solimp = STIFF_SOLIMP
+        self.record.equalities.append(name)
+        return equality
+
+    # ------------------------------------------------------------------ gearboxes
+
+    def gear(self, joint: SceneJoint) -> tuple[str, ...]:
+        """A gearbox: theta_2 = −ratio · theta_1, both measured from the reference link (SDF's definition).
+
+        Returns:
+            Names of the constraints that stand for it.
+        """
+        first = self._turning(joint, joint.parent_link, 0)
+        second = self._turning(joint, joint.child_link, 1)
+        if first is None or second is None:
+            self.diagnostics.warning(
+                "SK-PHYS-021",
+                f"gearbox {joint.scoped} is left out: its links need a revolute joint to the reference link "
+                f"{joint.gearbox_reference or '(none)'} along its axes",
+                joint.where,
+            )
+            return ()
+        name = f"{joint.scoped}#gear"
+        ratio = -joint.gearbox_ratio * first[1] * second[1]
+        self.couple(name, second[0], first[0], 0.0, ratio)
+        self._follow(first[2], Follower(second[0], ratio))
+        self.diagnostics.note(
+            "SK-PHYS-009", f"gearbox {joint.scoped} is a stiff constraint between two joints", joint.where
+        )
+        return (name,)
+
+    def _turning(self, joint: SceneJoint, link: str, axis: int) -> tuple[str, float, JointBinding] | None:
+        """The hinge between reference and `link`, the sign of its angle along the gearbox' axis, its binding."""
+        for other in self.record.joints.values():
+            ends = {other.scene.parent_link, other.scene.child_link}
+            turns = other.type in ("revolute", "continuous") and bool(other.joint_names)
+            if not turns or ends != {joint.gearbox_reference, link}:
+                continue
+            own = other.scene.axes[0].xyz_world
+            along = float(np.dot(joint.axes[axis].xyz_world, own)) if axis < len(joint.axes) else 1.0
+            if abs(along) < _ALONG:
+                continue
+            sign = 1.0 if along > 0.0 else -1.0
+            return other.joint_names[0], (sign if other.scene.child_link == link else -sign), other
+        return None
+
+    # ------------------------------------------------------------------ mimics
+
+    def mimics(self, joints: list[SceneJoint]) -> None:
+        """Couples every axis with a `<mimic>` to the axis at the head of its chain of leaders."""
+        wanted = {(j.scoped, i): (j, a.mimic) for j in joints for i, a in enumerate(j.axes) if a.mimic is not None}
+        for (scoped, axis), (joint, _) in wanted.items():
+            law = self._head(joint, axis, wanted)
+            if law is None:
+                continue
+            leader, of, ratio, offset = law
+            follower = self.record.joints[scoped].joint_names[axis]
+            self.couple(f"{scoped}#mimic{axis}", follower, leader.joint_names[of], offset, ratio)
+            self._follow(leader, Follower(follower, ratio, offset=offset, axis=of))
+
+    def _head(
+        self, joint: SceneJoint, axis: int, wanted: dict[tuple[str, int], tuple[SceneJoint, Mimic]]
+    ) -> tuple[JointBinding, int, float, float] | None:
+        """The axis that leads in the end, with ratio and offset of the whole chain; None, reported, without one."""
+        ratio, offset = 1.0, 0.0
+        at, seen = (joint.scoped, axis), {(joint.scoped, axis)}
+        while at in wanted:
+            follower, law = wanted[at]
+            leader = self._leader(follower, at[1], law)
+            if leader is None:
+                return None
+            offset += ratio * (law.offset - law.multiplier * law.reference)
+            ratio *= law.multiplier
+            at = (leader.scoped, law.axis)
+            if at in seen:
+                ring = " -> ".join(name for name, _ in sorted(seen))
+                self.diagnostics.error(
+                    "SK-JOINT-001", f"joint {joint.scoped} mimics itself in a ring: {ring}", joint.where
+                )
+                return None
+            seen.add(at)
+        if not (np.isfinite(ratio) and np.isfinite(offset)):
+            self.diagnostics.error(
+                "SK-JOINT-003", f"joint {joint.scoped}: multiplier, offset or reference is not finite", joint.where
+            )
+            return None
+        return self.record.joints[at[0]], at[1], ratio, offset
+
+    def _leader(self, joint: SceneJoint, axis: int, law: Mimic) -> JointBinding | None:
+        known = self.record.joints
+        leader = known.get(law.joint) or known.get(joint.scoped.removesuffix(joint.name) + law.joint)
+        own = known.get(joint.scoped)
+        if own is not None and leader is not None and _has_axis(own, axis) and _has_axis(leader, law.axis):
+            return leader
+        hint = did_you_mean(law.joint, [j.name for j in (b.scene for b in known.values())]) if leader is None else ""
+        self.diagnostics.warning(
+            "SK-PHYS-022",
+            f"joint {joint.scoped} mimics {law.joint}, which has no such axis; left out",
+            joint.where,
+            hint,
+        )
+        return None
+
+    def _follow(self, leader: JointBinding, follower: Follower) -> None:
+        current = self.record.joints[leader.scoped]
+        self.record.joints[leader.scoped] = replace(current, followers=(*current.followers, follower))
+
+
+def _has_axis(binding: JointBinding, axis: int) -> bool:
+    return binding.type in _ONE_NUMBER and 0 <= axis < len(binding.joint_names)

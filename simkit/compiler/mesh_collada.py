@@ -1,0 +1,296 @@
+"""COLLADA (`.dae`), as Gazebo reads it: the unit counts, the up axis does not; one part for each node and material."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.compiler.mesh_collada_look import Looks
+from simkit.compiler.mesh_files import Companions
+from simkit.compiler.mesh_part import Floats, MeshFileError, MeshPart
+from simkit.compiler.mesh_text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan, indexed, integers_of, numbers_of
+
+_PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
+
+
+def read_collada(content: bytes, companions: Companions) -> list[MeshPart]:
+    """The parts of the file's scene, in metres. Raises MeshFileError."""
+    return _Collada(_root(content), companions).parts()
+
+
+def _root(content: bytes) -> Any:
+    """The document without entities: nothing outside of the file is read and nothing in it multiplies."""
+    from lxml import etree
+
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, recover=True, remove_comments=True
+    )
+    try:
+        root = etree.fromstring(content, parser)
+    except (etree.XMLSyntaxError, ValueError) as problem:
+        raise MeshFileError(f"is not readable XML: {problem}") from None
+    if root is None or not isinstance(root.tag, str):
+        raise MeshFileError("is not readable XML")
+    if root.getroottree().docinfo.internalDTD is not None:
+        raise MeshFileError("has a document type definition, which is refused")
+    if etree.QName(root).localname != "COLLADA":
+        raise MeshFileError(f"begins with <{etree.QName(root).localname}>, a COLLADA file with <COLLADA>")
+    return root
+
+
+class _Collada:
+    """One document; elements by id, and what has been read of them."""
+
+    def __init__(self, root: Any, companions: Companions) -> None:
+        self.root, self.companions = root, companions
+        self.by_id: dict[str, Any] = {}
+        for element in root.iter("{*}*"):
+            name = element.get("id")
+            if name:
+                self.by_id.setdefault(name, element)
+        self.looks = Looks(self.by_id, companions)
+        self.arrays: dict[Any, Floats] = {}
+        self.geometries: dict[str, list[tuple[MeshPart, str]]] = {}
+        self.out: list[MeshPart] = []
+        self.faces = self.nodes = 0
+
+    def parts(self) -> list[MeshPart]:
+        unit = self._unit()
+        scenes = [self._target(e) for e in self.root.iterfind("{*}scene/{*}instance_visual_scene")]
+        scenes = [s for s in scenes if s is not None] or list(self.root.iterfind(".//{*}visual_scene"))[:1]
+        for scene in scenes:
+            for node in scene.iterfind("{*}node"):
+                self._node(node, np.diag([unit, unit, unit, 1.0]), "", 0)
+        return self.out
+
+    def _unit(self) -> float:
+        for element in self.root.iterfind("{*}asset/{*}unit"):
+            try:
+                metres = float(element.get("meter", "1"))
+            except ValueError:
+                break
+            if math.isfinite(metres) and metres > 0.0:
+                return metres
+            break
+        return 1.0
+
+    def _target(self, element: Any, attribute: str = "url") -> Any:
+        return self.by_id.get(element.get(attribute, "").lstrip("#"))
+
+    # ------------------------------------------------------------------ nodes
+
+    def _node(self, node: Any, above: Floats, named: str, depth: int) -> None:
+        self.nodes += 1
+        if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
+            raise MeshFileError(f"has nodes nested deeper than {DEEPEST_NODE} or more than {MOST_NODES} of them")
+        name = node.get("name") or named
+        matrix = above @ _transform(node)
+        for child in node.iterfind("{*}node"):
+            self._node(child, matrix, name, depth + 1)
+        for instance in node.iterfind("{*}instance_node"):
+            target = self._target(instance)
+            if target is not None:
+                self._node(target, matrix, name, depth + 1)
+        for instance in node.iterfind("{*}instance_geometry"):
+            self._place(self._target(instance), instance, node, name, matrix)
+        for instance in node.iterfind("{*}instance_controller"):
+            self._place(self._skinned(self._target(instance)), instance, node, name, matrix)
+
+    def _skinned(self, controller: Any) -> Any:
+        """The geometry under skins and morphs, in its bind pose."""
+        for _ in range(8):
+            if controller is None or not controller.tag.endswith("controller"):
+                return controller
+            source = controller.find("{*}skin")
+            source = controller.find("{*}morph") if source is None else source
+            controller = None if source is None else self._target(source, "source")
+        return None
+
+    def _place(self, geometry: Any, instance: Any, node: Any, name: str, matrix: Floats) -> None:
+        if geometry is None:
+            self.companions.note(f"places {instance.get('url', '')[:80]!r}, which it does not have")
+            return
+        bound = {
+            e.get("symbol", ""): e.get("target", "").lstrip("#")
+            for e in instance.iterfind("{*}bind_material/{*}technique_common/{*}instance_material")
+        }
+        mirrored = float(np.linalg.det(matrix[:3, :3])) < 0.0
+        names = (node.get("id"), node.get("name"), geometry.get("id"), geometry.get("name"))
+        aliases = tuple(n for n in dict.fromkeys(names) if n and n != name)
+        for part, symbol in self._geometry(geometry):
+            self.faces += len(part.faces)
+            if self.faces > LARGEST_FACES:
+                raise MeshFileError(f"has more than {LARGEST_FACES} faces")
+            look = self.looks.of(bound.get(symbol, symbol))
+            faces = np.ascontiguousarray(part.faces[:, ::-1]) if mirrored else part.faces
+            texture = look.texture if part.uv is not None else None
+            self.out.append(
+                MeshPart(
+                    name or part.name,
+                    part.vertices @ matrix[:3, :3].T + matrix[:3, 3],
+                    faces,
+                    part.uv,
+                    look.colour,
+                    texture,
+                    look.specular,
+                    look.emission,
+                    aliases,
+                )
+            )
+
+    # ------------------------------------------------------------------ geometry
+
+    def _geometry(self, geometry: Any) -> list[tuple[MeshPart, str]]:
+        """The parts of a `<geometry>` in its own frame, each with its material's symbol."""
+        key = geometry.get("id", "") or str(id(geometry))
+        if key not in self.geometries:
+            mesh = geometry.find("{*}mesh")
+            found = [] if mesh is None else [self._primitives(e) for e in mesh if _local(e) in _PRIMITIVES]
+            name = geometry.get("name") or geometry.get("id") or ""
+            self.geometries[key] = [(MeshPart(name, *mesh_arrays), s) for mesh_arrays, s in filter(None, found)]
+        return self.geometries[key]
+
+    def _primitives(self, element: Any) -> Any:
+        """Vertices, faces and texture coordinates of one list of primitives, and its material's symbol."""
+        inputs = [
+            (e.get("semantic"), e, _whole(e, "offset", 0), _whole(e, "set", 0)) for e in element.iterfind("{*}input")
+        ]
+        if not inputs:
+            return None
+        width = 1 + max(offset for _, _, offset, _ in inputs)
+        corners, triangles = _corners(element, width)
+        if not len(triangles):
+            return None
+        vertex = next(((e, offset) for s, e, offset, _ in inputs if s == "VERTEX"), None)
+        if vertex is None:
+            raise MeshFileError(f"has <{_local(element)}> without vertices")
+        points = self._positions(self._target(vertex[0], "source"))
+        at = corners[:, vertex[1]]
+        if len(at) and (at.min() < 0 or at.max() >= len(points)):
+            raise MeshFileError(f"has a face with vertex {int(at.max())}; there are {len(points)}")
+        coordinates = sorted((k, offset, e) for s, e, offset, k in inputs if s == "TEXCOORD")[:1]
+        uv = None
+        for _, offset, e in coordinates:
+            found = self._source(self._target(e, "source"))
+            at_uv = corners[:, offset]
+            if found.shape[1] >= 2 and len(found) and at_uv.min() >= 0 and at_uv.max() < len(found):
+                pairs, inverse = indexed(np.column_stack([at, at_uv]))
+                uv = found[pairs[:, 1], :2]
+        if uv is None:
+            pairs, inverse = indexed(at[:, None])
+        faces = inverse[triangles].astype(np.int32)
+        return (points[pairs[:, 0]], faces, uv), element.get("material", "")
+
+    def _positions(self, vertices: Any) -> Floats:
+        if vertices is not None:
+            for entry in vertices.iterfind("{*}input"):
+                if entry.get("semantic") == "POSITION":
+                    found = self._source(self._target(entry, "source"))
+                    if found.shape[1] >= 3:
+                        return found[:, :3]
+        raise MeshFileError("has faces without vertex positions")
+
+    def _source(self, source: Any) -> Floats:
+        """Rows of a `<source>`, as its accessor cuts them."""
+        if source is None:
+            raise MeshFileError("names a source that it does not have")
+        if source not in self.arrays:
+            array = source.find("{*}float_array")
+            if array is None:
+                raise MeshFileError("has a source without numbers")
+            numbers = numbers_of(array.text or "", "coordinates")
+            accessor = source.find("{*}technique_common/{*}accessor")
+            stride = 3 if accessor is None else _whole(accessor, "stride", 1)
+            offset = 0 if accessor is None else _whole(accessor, "offset", 0)
+            if not 0 < stride <= 64 or not 0 <= offset <= len(numbers):
+                raise MeshFileError("has a source with an impossible stride")
+            rows = (len(numbers) - offset) // stride
+            self.arrays[source] = numbers[offset : offset + rows * stride].reshape(rows, stride)
+        return self.arrays[source]
+
+
+def _corners(element: Any, width: int) -> tuple[Any, Any]:
+    """Indices of all corners, shape (c, width), and triangles as positions in that list."""
+    kind = _local(element)
+    lists = [integers_of(p.text or "", "faces") for p in element.iterfind("{*}p")]
+    lists += [integers_of(p.text or "", "faces") for p in element.iterfind("{*}ph/{*}p")]
+    lists = [p[: len(p) // width * width].reshape(-1, width) for p in lists]
+    if not lists:
+        return np.zeros((0, width), np.int64), np.zeros((0, 3), np.int64)
+    counts = np.array([len(p) for p in lists], np.int64)
+    corners = np.concatenate(lists)
+    if kind == "polygons" or kind == "trifans":
+        return corners, fan(counts)
+    if kind == "tristrips":
+        return corners, strips(counts)
+    if kind == "polylist":
+        listed = element.find("{*}vcount")
+        counts = integers_of("" if listed is None else listed.text or "", "polygon sizes")
+        if len(counts) and (counts.min() < 0 or int(counts.sum()) > len(corners)):
+            raise MeshFileError("promises more corners than it has")
+        return corners, fan(counts)
+    whole = len(corners) // 3
+    return corners, np.arange(3 * whole).reshape(-1, 3)
+
+
+def strips(counts: Any) -> Any:
+    """Triangles of strips that lie one behind the other: every second one turned round."""
+    out, start = [], 0
+    for count in np.asarray(counts).tolist():
+        i = start + np.arange(max(0, count - 2))
+        odd = (i - start) % 2
+        out.append(np.column_stack([i, i + 1 + odd, i + 2 - odd]))
+        start += count
+    return np.concatenate(out) if out else np.zeros((0, 3), np.int64)
+
+
+def _transform(node: Any) -> Floats:
+    """A node's transform as Gazebo takes it: its matrix alone, else move, then turn, then stretch."""
+    found = node.find("{*}matrix")
+    if found is not None:
+        return _exactly(found, 16).reshape(4, 4)
+    matrix = np.eye(4)
+    move = node.find("{*}translate")
+    if move is not None:
+        matrix[:3, 3] = _exactly(move, 3)
+    for turn in node.iterfind("{*}rotate"):
+        x, y, z, degrees = _exactly(turn, 4)
+        matrix = matrix @ _rotation((x, y, z), math.radians(degrees))
+    stretch = node.find("{*}scale")
+    if stretch is not None:
+        matrix = matrix @ np.diag([*_exactly(stretch, 3), 1.0])
+    return matrix
+
+
+def _rotation(axis: tuple[float, float, float], angle: float) -> Floats:
+    """Rodrigues' formula."""
+    length = math.sqrt(sum(c * c for c in axis))
+    matrix = np.eye(4)
+    if length > 0.0 and math.isfinite(angle):
+        x, y, z = (c / length for c in axis)
+        cross = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+        matrix[:3, :3] += math.sin(angle) * cross + (1.0 - math.cos(angle)) * (cross @ cross)
+    return matrix
+
+
+def _exactly(element: Any, count: int) -> Floats:
+    numbers = numbers_of(element.text or "", f"<{_local(element)}>")
+    if len(numbers) != count or not np.isfinite(numbers).all():
+        raise MeshFileError(f"has <{_local(element)}> with {len(numbers)} numbers, it needs {count}")
+    return numbers
+
+
+def _whole(element: Any, name: str, default: int) -> int:
+    try:
+        value = int(element.get(name, default))
+    except ValueError:
+        value = -1
+    if not 0 <= value <= 1_000_000:
+        raise MeshFileError(f"has {name}={element.get(name)[:40]!r} in <{_local(element)}>")
+    return value
+
+
+def _local(element: Any) -> str:
+    return str(element.tag).rpartition("}")[2]

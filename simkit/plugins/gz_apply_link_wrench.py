@@ -1,0 +1,161 @@
+"""gz's forces on links: `gz::sim::systems::ApplyLinkWrench`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime import Link, Simulation
+
+ENTITY: Final = "ros_gz_interfaces/msg/Entity"
+ENTITY_WRENCH: Final = "ros_gz_interfaces/msg/EntityWrench"
+_MODEL, _LINK = 2, 3
+_TYPES: Final = {"model": _MODEL, "link": _LINK}
+_NEVER: Final = 1e-9  # [Hz]
+
+
+@dataclass(frozen=True)
+class _Wrench:
+    """A persistent wrench: force [N] and torque [N·m] in the world frame on what `name` and `type` say."""
+
+    name: str
+    type: int
+    force: tuple[float, float, float]
+    torque: tuple[float, float, float]
+
+
+class ApplyLinkWrench(WorldPlugin):
+    """Pushes links at their centre of mass, or models at their canonical link's, in the world frame.
+
+    `<persistent>` elements and messages on `/world/<world>/wrench/persistent` push at every step until the entity is
+    named on `/world/<world>/wrench/clear`; a message on `/world/<world>/wrench` pushes in the next step only. An entity
+    that is not there is waited for.
+    """
+
+    filenames = ("gz-sim-apply-link-wrench-system",)
+    names = ("gz::sim::systems::ApplyLinkWrench",)
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self._verbose = params.boolean("verbose", True)
+        self._persistent = [w for e in params.all("persistent") if (w := self._read(e)) is not None]
+        self._stand()
+        base = f"/world/{parent.world.name}/wrench"
+        self.listen(valid_topic(params.text("topic", base)), ENTITY_WRENCH, self._on_wrench)
+        self.listen(
+            valid_topic(params.text("topic_persistent", f"{base}/persistent")), ENTITY_WRENCH, self._on_persistent
+        )
+        self.listen(valid_topic(params.text("topic_clear", f"{base}/clear")), ENTITY, self._on_clear)
+
+    def _read(self, element: Params) -> _Wrench | None:
+        name = element.text("entity_name", required=True)
+        kind = element.choice("entity_type", tuple(_TYPES), "link" if element.has("entity_type") else "")
+        force, torque = (element.vector3(n, (0.0, 0.0, 0.0)) for n in ("force", "torque"))
+        if not name or kind not in _TYPES:
+            if kind not in _TYPES and not element.has("entity_type"):
+                element.error("SK-PARAM-001", "<persistent> needs <entity_type>: model or link")
+            return None
+        wrench = _Wrench(name, _TYPES[kind], force, torque)
+        if self._target(name, wrench.type) is None:
+            element.diagnostics.warning(
+                "SK-JOINT-013",
+                f"plugin {self.name!r}: there is no {kind} {name!r} to push; it is waited for",
+                self.where,
+            )
+        return wrench
+
+    def _target(self, name: str, kind: int) -> Link | None:
+        """The link that a name means: exactly, or the first whose scoped name ends so."""
+        tables = self.sim.entities.tables
+        if kind != _MODEL:
+            link: Link | None = _named(tables["link"], name)
+            if link is not None or kind == _LINK:
+                return link
+        model = _named(tables["model"], name)
+        if model is None or not model.scene.canonical_link:
+            return None
+        return self.sim.link(model.scene.canonical_link)
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Back to a state from `get_state`."""
+        super().set_state(state)
+        self._stand(are_applied=True)
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_wrench(self, message: Any) -> None:
+        wrench = self._of(message)
+        link = self._target(wrench.name, wrench.type)
+        if link is None:
+            self.log.warning("%s: there is no entity %r to push", self.name, wrench.name)
+            return
+        link.apply_wrench(wrench.force, wrench.torque)
+        self._say("pushes %s for one step", wrench.name)
+
+    def _on_persistent(self, message: Any) -> None:
+        self._persistent = [*self._persistent, self._of(message)]
+        self._say("pushes %s until it is cleared", message.entity.name)
+        self._stand()
+
+    def _on_clear(self, message: Any) -> None:
+        cleared = self._target(message.name, message.type)
+        kept = []
+        for wrench in self._persistent:
+            target = self._target(wrench.name, wrench.type)
+            is_same = target is cleared if cleared is not None else wrench.name == message.name
+            if not is_same:
+                kept.append(wrench)
+        self._say("no longer pushes %s", message.name)
+        self._persistent = kept
+        self._stand()
+
+    def before_step(self) -> None:
+        self._stand()
+
+    # ------------------------------------------------------------------ inside
+
+    def _of(self, message: Any) -> _Wrench:
+        return _Wrench(message.entity.name, message.entity.type, *(_xyz(v) for v in _parts(message.wrench)))
+
+    def _stand(self, *, are_applied: bool = False) -> None:
+        """Sets all wrenches that last; asked again at every step only while an entity is waited for."""
+        total: dict[str, Vector] = {}
+        is_missing = False
+        for wrench in self._persistent:
+            link = self._target(wrench.name, wrench.type)
+            if link is None:
+                is_missing = True
+            else:
+                both = np.array((*wrench.force, *wrench.torque))
+                total[link.scoped] = total.get(link.scoped, np.zeros(6)) + both
+        self.sim.set_standing_wrenches(f"{self.scoped}/{self.name}/{self.where}", total, are_applied=are_applied)
+        pace = None if is_missing else _NEVER
+        if pace != self.before_step_rate:
+            self.before_step_rate = pace
+            self.sim.reschedule()
+
+    def _say(self, text: str, name: str) -> None:
+        if self._verbose:
+            self.log.info("%s: " + text, self.name, name)
+
+
+def _parts(wrench: Any) -> tuple[Any, Any]:
+    return wrench.force, wrench.torque
+
+
+def _xyz(vector: Any) -> tuple[float, float, float]:
+    return float(vector.x), float(vector.y), float(vector.z)
+
+
+def _named(table: dict[str, Any], name: str) -> Any:
+    if name in table:
+        return table[name]
+    return next((handle for scoped, handle in table.items() if scoped.endswith("::" + name)), None)

@@ -1,0 +1,137 @@
+"""gz's joint that lets go: `gz::sim::systems::DetachableJoint`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_link
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+EMPTY: Final = "std_msgs/msg/Empty"
+STRING: Final = "std_msgs/msg/String"
+_NEVER: Final = 1e-9  # [Hz]
+
+
+class DetachableJoint(ModelPlugin):
+    """Holds a link of another model on a link of this one until a message lets it go; another message holds it again.
+
+    The links are held as they stand at that moment. A child model that is not there (yet) is waited for. Each change
+    is told on the output topic, "attached" or "detached".
+    """
+
+    filenames = ("gz-sim-detachable-joint-system",)
+    names = ("gz::sim::systems::DetachableJoint",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        parent = find_link(scene, name, params) if (name := params.text("parent_link", required=True)) else None
+        self._own = scene.scoped
+        self._parent = parent.scoped if parent else ""
+        self._child_model = params.text("child_model", required=True)
+        self._child_link = params.text("child_link", required=True)
+        self._wanted = params.boolean("initial_attach", True)
+        self._quiet = params.boolean("suppress_child_warning", False)
+        taken = {name for record in builder.records.values() for name in record.equalities}
+        base = f"{scene.scoped}#detachable"
+        self._weld = next(name for k in range(len(taken) + 1) if (name := f"{base}{k}") not in taken)
+        self._child = self._find((r.scene for r in builder.records.values()), params)
+        if self._parent and self._child:
+            builder.add_weld(self._weld, self._parent, self._child, active=self._wanted)
+
+    def _find(self, models: Iterable[SceneModel], params: Params) -> str:
+        """Scoped name of the child link; empty, with a report, where it is not there."""
+        found = {m.scoped: m for top in models for m in top.all_models()}
+        name = self._own if self._child_model == "__model__" else self._child_model
+        named = [m for scoped, m in found.items() if scoped == name or scoped.endswith("::" + name)]
+        # of several of that name, one within this model
+        inner = [m for m in named if m.scoped == name or m.scoped.startswith(self._own)] or named[:1]
+        links = [link.scoped for m in inner for link in m.all_links() if link.scoped.endswith("::" + self._child_link)]
+        if links:
+            return links[0]
+        if not self._quiet and not self._told_missing:
+            what = f"link {self._child_link!r} of model {name!r}" if inner else f"model {name!r}"
+            self._told_missing = True
+            params.diagnostics.warning(
+                "SK-JOINT-013",
+                f"plugin {self.name!r}: there is no {what} to attach; it is waited for",
+                self.where,
+                "<suppress_child_warning> says that this is meant",
+            )
+        return ""
+
+    _told_missing = False
+
+    def load(self, parent: Any, params: Params) -> None:
+        own = f"/model/{parent.name}/detachable_joint"
+        old = params.text("topic", "")
+        detach = params.text("detach_topic", old or f"{own}/detach")
+        if old and old != detach:
+            params.diagnostics.warning(
+                "SK-PARAM-004", f"<topic> is {old!r} and <detach_topic> is {detach!r}: the latter counts", self.where
+            )
+        state = params.text("output_topic", f"/model/{self._child_model}/detachable_joint/state")
+        self.listen(valid_topic(detach), EMPTY, self._on_detach)
+        self.listen(valid_topic(params.text("attach_topic", f"{own}/attach")), EMPTY, self._on_attach)
+        self._state = self.advertise(valid_topic(state), STRING)
+        # what was attached from the start is told with the first step
+        self._is_attached = False
+
+    def reset(self) -> None:
+        self.sim.reschedule()
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_detach(self, _: Any) -> None:
+        if self._is_attached and self._is_there():
+            self.sim.set_weld(self._weld, False)
+            self._is_attached = False
+            self._tell("detached")
+
+    def _on_attach(self, _: Any) -> None:
+        if not (self._is_attached and self._is_there()):
+            self._wanted, self._is_attached = True, False
+            self._set_pace()
+
+    def before_step(self) -> None:
+        if self._is_attached and not self._is_there():
+            self._is_attached = False
+        if not self._wanted or self._is_attached or not self._parent:
+            self._set_pace()
+            return
+        if not self._is_there():
+            models = self.sim.structure.models.values()
+            self._child = self._find(models, self.params)
+            if not self._child:
+                return
+            self.sim.add_weld(self._weld, self._parent, self._child)
+        self.sim.set_weld(self._weld, True)
+        self._wanted, self._is_attached = False, True
+        self._tell("attached")
+        self._set_pace()
+
+    # ------------------------------------------------------------------ inside
+
+    def _is_there(self) -> bool:
+        try:
+            self.sim.names.equality(self._weld)
+        except KeyError:
+            return False
+        return True
+
+    def _set_pace(self) -> None:
+        """Asked at every step only while there is something to attach."""
+        pace = None if self._wanted and not self._is_attached else _NEVER
+        if pace != self.before_step_rate:
+            self.before_step_rate = pace
+            self.sim.reschedule()
+
+    def _tell(self, state: str) -> None:
+        if self._state.wanted:
+            self._state.publish(msgs.type_of(STRING)(state))

@@ -1,0 +1,63 @@
+"""Odometry from the true motion."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import simkit
+
+
+def load(parameters: str = "", seed: int = 0) -> simkit.Simulation:
+    text = f"""<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="m"><pose>1 2 3 0 0 0.5</pose>
+    <link name="base"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>
+    <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">{parameters}</plugin>
+    </model></world></sdf>"""
+    return simkit.load(text, seed=seed)
+
+
+def test_in_the_plane_pose_and_twist_are_those_of_the_world_and_of_the_body() -> None:
+    sim = load()
+    odometry, tf = sim.subscribe("/model/m/odometry"), sim.subscribe("/model/m/pose")
+    sim.model("m").set_velocity((0.3, 0.4, 0.2), (0, 0, 0.6))
+    sim.run(1.0)
+    message = odometry.latest
+    assert len(odometry.messages) == 50
+    assert (message.header.frame_id, message.child_frame_id) == ("m/odom", "m/base_footprint")
+    point, linear = message.pose.pose.position, message.twist.twist.linear
+    assert (point.x, point.y, point.z) == pytest.approx((1.3, 2.4, 0.0), abs=1e-9)
+    yaw = 0.5 + 0.6
+    ahead = 0.3 * math.cos(yaw) + 0.4 * math.sin(yaw)
+    assert (linear.x, linear.y, linear.z) == pytest.approx((ahead, 0.4 * math.cos(yaw) - 0.3 * math.sin(yaw), 0))
+    assert message.twist.twist.angular.z == pytest.approx(0.6)
+    assert tf.latest.transforms[0].transform.translation.x == pytest.approx(1.3, abs=1e-9)
+
+
+def test_in_space_with_an_offset_the_base_moves_on_its_arm() -> None:
+    offset = "<dimensions>3</dimensions><xyz_offset>0.5 0 0</xyz_offset><rpy_offset>0 0 1.5707963267948966</rpy_offset>"
+    sim = load(offset + "<robot_base_frame>tool</robot_base_frame><odom_frame>map</odom_frame>")
+    odometry = sim.subscribe("/model/m/odometry")
+    sim.model("m").set_velocity((0, 0, 0.2), (0, 0, 2.0))
+    sim.step(20)
+    linear = odometry.latest.twist.twist.linear
+    # 0.5 m · 2 rad/s to the left, which the turned base has ahead
+    assert (linear.x, linear.y, linear.z) == pytest.approx((1.0, 0.0, 0.2), abs=1e-9)
+    assert odometry.latest.pose.pose.position.z == pytest.approx(3 + 0.2 * 0.02)
+    assert (odometry.latest.header.frame_id, odometry.latest.child_frame_id) == ("map", "tool")
+
+
+def test_noise_is_on_the_twist_and_its_variance_in_the_covariance() -> None:
+    sim = load("<gaussian_noise>0.1</gaussian_noise><odom_publish_frequency>500</odom_publish_frequency>")
+    odometry = sim.subscribe("/model/m/odometry_with_covariance")
+    sim.run(2.0)
+    xs = [m.twist.twist.linear.x for m in odometry.messages]
+    assert len(xs) == 1000
+    assert np.std(xs) == pytest.approx(0.1, rel=0.1)
+    assert odometry.latest.twist.covariance[::7] == pytest.approx([0.01] * 6)
+
+
+def test_dimensions_other_than_two_or_three_are_an_error() -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
+        load("<dimensions>4</dimensions>")
