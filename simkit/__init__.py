@@ -27,7 +27,7 @@ from simkit.params import Params
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
-    from simkit.build import describe, load
+    from simkit.build import check, describe, load
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, WorldPlugin
     from simkit.runtime import Simulation
 
@@ -50,6 +50,7 @@ __all__ = [
     "SimulationDiverged",
     "WorldPlugin",
     "__version__",
+    "check",
     "describe",
     "load",
 ]
@@ -58,6 +59,7 @@ __all__ = [
 _LAZY = {
     "load": "simkit.build",
     "describe": "simkit.build",
+    "check": "simkit.build",
     "Simulation": "simkit.runtime",
     "Plugin": "simkit.plugins.base",
     "WorldPlugin": "simkit.plugins.base",

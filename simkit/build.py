@@ -2,26 +2,47 @@
 
 from __future__ import annotations
 
+import gc
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import Diagnostics, Where, did_you_mean, follows_from
 from simkit.engine import import_engine
+from simkit.errors import SimkitError
 from simkit.loaders import Resolver, load_scene
 from simkit.params import Params
 from simkit.pose import Pose
-from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
+from simkit.scene import Mesh, Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
 
 if TYPE_CHECKING:
     from simkit.plugins.base import ParentKind, Plugin
     from simkit.runtime import Parts, Simulation
 
 Source = str | os.PathLike[str]
+_ENGINE = frozenset(("SK-PHYS-023", "SK-PHYS-025"))  # what the engine says of a world that lacks its faulty parts
 
 
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Leaves the garbage collector off: a load makes hundreds of thousands of objects, and nearly all of them stay.
+
+    Looking through them again and again took a seventh of the load of 3000 models.
+    """
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
+
+
+@_no_collection()
 def load(
     source: Source,
     *,
@@ -33,6 +54,8 @@ def load(
     xacro_args: Mapping[str, str] | None = None,
     strict: bool = False,
     overrides: Sequence[str] = (),
+    sleep: bool = True,
+    package_paths: Mapping[str, Source] | None = None,
 ) -> Simulation:
     """Opens a world or a bare model and makes it ready to step.
 
@@ -46,6 +69,8 @@ def load(
         xacro_args: arguments for xacro files.
         strict: warnings are errors.
         overrides: `PATH=VALUE` texts as for `--set`.
+        sleep: whether what rests is left out of the physics until something reaches it; see `docs/sleeping.md`.
+        package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`.
 
     Returns:
         The simulation at t = 0.
@@ -59,9 +84,9 @@ def load(
     from simkit.runtime import Simulation, Structure
 
     diagnostics = Diagnostics()
-    resolver = Resolver([Path(p) for p in resource_paths])
+    resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
     scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides)
-    world = scene.world
+    world = scene.world if sleep else _sleepless(scene.world)
     allowed = [Path(p) for p in plugin_paths]
     if diagnostics.has_errors:
         _look_further(world, diagnostics, allowed)
@@ -71,6 +96,8 @@ def load(
     for model in world.models:
         parts[model.name] = _parts_of_model(model, builder, diagnostics, allowed)
     parts[""] = _parts_of_world(world, builder, diagnostics, allowed, plugins)
+    if diagnostics.has_errors:
+        _load_the_rest(world, builder, parts, diagnostics)
     diagnostics.raise_if_errors(strict)
     compiled = builder.compile()
     diagnostics.raise_if_errors(strict)
@@ -89,7 +116,12 @@ def load(
 
 
 def describe(
-    source: Source, *, resource_paths: Sequence[Source] = (), xacro_args: Mapping[str, str] | None = None
+    source: Source,
+    *,
+    resource_paths: Sequence[Source] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    package_paths: Mapping[str, Source] | None = None,
+    base: str = "auto",
 ) -> dict[str, Any]:
     """What a file means once resolved: the object that `simkit inspect --json` prints.
 
@@ -99,22 +131,37 @@ def describe(
     from simkit.description import describe_scene
 
     diagnostics = Diagnostics()
-    resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True)
-    scene = _scene(source, resolver, diagnostics, xacro_args, "auto", ())
+    resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True, package_paths=package_paths)
+    scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
     diagnostics.raise_if_errors()
     return describe_scene(scene, diagnostics)
 
 
 def check(
-    source: Source, *, resource_paths: Sequence[Source] = (), plugin_paths: Sequence[Source] = ()
+    source: Source,
+    *,
+    resource_paths: Sequence[Source] = (),
+    plugin_paths: Sequence[Source] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    package_paths: Mapping[str, Source] | None = None,
+    base: str = "auto",
 ) -> Diagnostics:
     """Every problem of a file, also of compiling it and of loading its plugins; never raises for one."""
     from simkit.errors import LoadError, PluginError
+    from simkit.lint import lint
 
     diagnostics = Diagnostics()
     try:
-        with load(source, resource_paths=resource_paths, plugin_paths=plugin_paths) as simulation:
+        with load(
+            source,
+            resource_paths=resource_paths,
+            plugin_paths=plugin_paths,
+            xacro_args=xacro_args,
+            package_paths=package_paths,
+            base=base,
+        ) as simulation:
             diagnostics.extend(simulation.diagnostics)
+            diagnostics.extend(lint(simulation))
     except LoadError as error:
         diagnostics.extend(error.diagnostics)
     except PluginError as error:
@@ -137,7 +184,14 @@ def _scene(
     base: str,
     overrides: Sequence[str],
 ) -> Scene:
-    scene = load_scene(source, resolver=resolver, diagnostics=diagnostics, xacro_args=dict(xacro_args or {}), base=base)
+    scene = load_scene(
+        source,
+        resolver=resolver,
+        diagnostics=diagnostics,
+        xacro_args=dict(xacro_args or {}),
+        base=base,
+        mesh_reader=_triangles,
+    )
     if overrides:
         from simkit.overrides import apply_overrides
 
@@ -146,26 +200,88 @@ def _scene(
     return scene
 
 
-def _look_further(world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
-    """What the sensors and plugin names of a file with errors have to say, so that all of it comes in one pass."""
-    from simkit.plugins import find_plugin
+def _triangles(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:
+    """The triangles of a mesh, for the loaders' automatic inertia."""
+    from simkit.compiler.mesh import load_mesh
 
-    for plugin in world.plugins:
-        find_plugin(plugin, plugin_paths, diagnostics, "world")
-    for model in world.models:
-        for scene in model.all_sensors():
-            _sensor(scene, diagnostics)
-            for plugin in scene.plugins:
-                find_plugin(plugin, plugin_paths, diagnostics, "sensor")
-        for plugin in (plugin for nested in model.all_models() for plugin in nested.plugins):
-            find_plugin(plugin, plugin_paths, diagnostics, "model")
+    return load_mesh(mesh, diagnostics, where)
+
+
+def _sleepless(world: SceneWorld) -> SceneWorld:
+    return replace(world, physics=replace(world.physics, sleep=False))
+
+
+def _look_further(world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
+    """What else is wrong with a file that has errors: it is built without its faulty parts, as far as that goes.
+
+    So everything comes in one pass: meshes, inertias, and what plugins find in `prepare` and `load`. What only follows
+    from an error that is said already (a plugin's joint that was left out because of its own fault) is dropped.
+    """
+    from simkit.compiler import SpecBuilder
+
+    before = tuple(diagnostics)
+    try:
+        builder = SpecBuilder(world, diagnostics)
+        parts = {m.name: _parts_of_model(m, builder, diagnostics, plugin_paths) for m in world.models}
+        parts[""] = _parts_of_world(world, builder, diagnostics, plugin_paths, ())
+        _load_the_rest(world, builder, parts, diagnostics)
+    except Exception:  # noqa: BLE001 - on a file with errors anything may be missing; what was found by then counts
+        pass
+    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE or follows_from(d, before))
+
+
+def _load_the_rest(world: SceneWorld, builder: Any, parts: dict[str, Any], diagnostics: Diagnostics) -> None:
+    """What the sound parts of a faulty world say when they are compiled and loaded; nobody steps it."""
+    from simkit.runtime import Simulation, Structure
+
+    before = tuple(diagnostics)
+    with suppress(SimkitError, ValueError, KeyError, AttributeError, TypeError):
+        compiled = builder.compile()
+        structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
+        with Simulation(world, structure, diagnostics, 0, _nothing, _nothing):
+            _report_unread(parts.values())
+    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE)
+
+
+def read_scene(
+    source: Source,
+    *,
+    resource_paths: Sequence[Source] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    package_paths: Mapping[str, Source] | None = None,
+    base: str = "auto",
+    missing_meshes: bool = False,
+) -> tuple[Scene, Diagnostics]:
+    """What a file means once resolved, before anything is built from it, and what reading it found.
+
+    Raises:
+        LoadError: the file has errors.
+    """
+    diagnostics = Diagnostics()
+    paths = [Path(p) for p in resource_paths]
+    resolver = Resolver(paths, missing_meshes=missing_meshes, package_paths=package_paths)
+    scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
+    diagnostics.raise_if_errors()
+    return scene, diagnostics
+
+
+def _nothing(*_: Any, **__: Any) -> Any:
+    """Stands for what a simulation that nobody steps never asks for."""
 
 
 def _model_to_spawn(
     source: Source, *, resolver: Resolver, name: str | None, pose: Pose | None, taken: set[str]
 ) -> tuple[SceneModel, Diagnostics]:
     diagnostics = Diagnostics()
-    scene = load_scene(source, resolver=resolver, diagnostics=diagnostics, name=name, pose=pose)
+    scene = load_scene(
+        source,
+        resolver=resolver,
+        diagnostics=diagnostics,
+        name=name,
+        pose=pose,
+        as_model=True,
+        mesh_reader=_triangles,
+    )
     diagnostics.raise_if_errors()
     models = [scene.model] if scene.model else list(scene.world.models)
     if len(models) != 1 or models[0] is None:
@@ -184,11 +300,13 @@ def _parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, p
 
     parts = Parts()
     for scene in model.all_sensors():
+        faults = diagnostics.error_count
         sensor = _sensor(scene, diagnostics)
         if sensor is None:
             continue
         sensor.build(builder)
-        parts.sensors.append(sensor)
+        if diagnostics.error_count == faults:
+            parts.sensors.append(sensor)
         for plugin in scene.plugins:
             parent = _sensor_parent(scene.scoped)
             _add_plugin(parts, plugin, "sensor", scene, builder, diagnostics, plugin_paths, parent)
@@ -247,8 +365,10 @@ def _add_plugin(
         return
     instance = cls()
     instance.source = plugin
+    faults = diagnostics.error_count
     instance.prepare(scene, plugin.params, builder)
-    parts.plugins.append((instance, parent))
+    if diagnostics.error_count == faults:  # a faulty one would only say more of the same when it is loaded
+        parts.plugins.append((instance, parent))
 
 
 def _sensor_parent(scoped: str) -> Callable[[Any], Any]:

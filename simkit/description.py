@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import Diagnostics
+from simkit.params import Params
 from simkit.scene import (
     Axis,
     Geometry,
@@ -59,7 +60,40 @@ def _registered_block(sensor: SceneSensor, diagnostics: Diagnostics) -> Block:
     from simkit.sensors import sensor_kinds
 
     kind = sensor_kinds().get(sensor.kind)
-    return {} if kind is None else kind(sensor, diagnostics).describe()
+    return _block_of_unknown(sensor) if kind is None else kind(sensor, diagnostics).describe()
+
+
+def _block_of_unknown(sensor: SceneSensor) -> Block:
+    """What a kind that nothing simulates yet has in common with those that are: its camera or its scan."""
+    block: Block = {}
+    camera = sensor.params.child("camera")
+    if camera is not None:
+        image, clip = camera.block("image"), camera.block("clip")
+        block["camera"] = {
+            "width": image.integer("width", 320, minimum=1),
+            "height": image.integer("height", 240, minimum=1),
+            "hfov": camera.number("horizontal_fov", 1.047, minimum=0.0),
+            "near": clip.number("near", 0.1),
+            "far": clip.number("far", 100.0),
+        }
+    lidar = sensor.params.child("lidar") or sensor.params.child("ray")
+    if lidar is not None:
+        scan, limits = lidar.block("scan"), lidar.block("range")
+        block["lidar"] = {
+            **_sweep("h", scan.block("horizontal"), 640),
+            **_sweep("v", scan.block("vertical"), 1),
+            "range_min": limits.number("min", 0.0),
+            "range_max": _number(limits.number("max", 0.0, finite=False)),
+        }
+    return block
+
+
+def _sweep(prefix: str, block: Params, samples: int) -> Block:
+    return {
+        f"{prefix}_samples": block.integer("samples", samples, minimum=1),
+        f"{prefix}_min": block.number("min_angle", 0.0),
+        f"{prefix}_max": block.number("max_angle", 0.0),
+    }
 
 
 def _world(world: SceneWorld, diagnostics: Diagnostics, block: SensorBlock) -> Block:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import difflib
+import functools
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
@@ -24,6 +26,7 @@ class Where:
 
 
 NOWHERE = Where()
+_QUOTED = re.compile(r"'([^']+)'")
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +72,11 @@ class Diagnostics:
     def has_errors(self) -> bool:
         return any(d.severity == "error" for d in self._items)
 
+    @property
+    def error_count(self) -> int:
+        """How many errors there are so far."""
+        return sum(d.severity == "error" for d in self._items)
+
     def add(self, severity: Severity, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
         self._items.setdefault(Diagnostic(code, severity, message, where.file, where.line, hint))
 
@@ -85,15 +93,35 @@ class Diagnostics:
         for item in items:
             self._items.setdefault(item)
 
+    def drop(self, items: Iterable[Diagnostic]) -> None:
+        """Forgets some that were found."""
+        for item in tuple(items):
+            self._items.pop(item, None)
+
     def raise_if_errors(self, strict: bool = False) -> None:
         """Raises LoadError with everything found so far; `strict` counts warnings as errors."""
         if self.has_errors or (strict and any(d.severity == "warning" for d in self._items)):
             raise LoadError(tuple(self._items))
 
 
+def follows_from(found: Diagnostic, earlier: Iterable[Diagnostic]) -> bool:
+    """Whether an error misses something that is missing because of an earlier error's own fault.
+
+    Messages begin with whose fault it is (`joint 'elbow' has type ...`) and end their first clause with what is missed
+    (`model 'robot' has no joint 'elbow'; it has ...`).
+    """
+    faulty = {name.group(1) for d in earlier if d.severity == "error" and (name := _QUOTED.search(d.message))}
+    missed = _QUOTED.findall(found.message.split(";")[0])
+    return found.severity == "error" and bool(missed) and missed[-1] in faulty
+
+
 def closest(name: str, allowed: Iterable[str]) -> str | None:
     """The known name most like `name`, or None when none is near."""
-    names = sorted(set(allowed))
+    return _closest(name, tuple(sorted(set(allowed))))
+
+
+@functools.lru_cache(maxsize=256)  # one misspelling often stands in a file a hundred times, and a search takes 3 ms
+def _closest(name: str, names: tuple[str, ...]) -> str | None:
     found = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
     if not found:
         folded = {n.lower(): n for n in names}

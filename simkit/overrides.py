@@ -20,10 +20,10 @@ from simkit.scene import Scene, SceneJoint, SceneLight, SceneLink, SceneModel, S
 _CODE = "SK-CLI-014"
 _PLACE = "--set "
 
-_PHYSICS = ("max_step_size", "real_time_factor")
+_PHYSICS = ("max_step_size", "real_time_factor", "sleep")
 _WORLD = {"gravity": 3, "magnetic_field": 3}
 _LINK = ("gravity", "self_collide", "kinematic", "inertial.mass")
-_MODEL = ("static", "self_collide")
+_MODEL = ("static", "self_collide", "allow_auto_disable")
 _LIGHT = ("intensity", "cast_shadows", "on", "direction")
 _AXIS = {
     "limit.lower": "lower",
@@ -160,6 +160,8 @@ class _Override:
         room, _, element = path.partition(".")
         if room == "physics":
             self._known(element, _PHYSICS)
+            if element == "sleep":
+                return replace(world, physics=replace(world.physics, sleep=self._boolean()))
             positive = element == "max_step_size"
             number = self._number(lambda v: math.isfinite(v) and (v > 0 if positive else v >= 0), "a positive number")
             return replace(world, physics=replace(world.physics, **_change(element, number)))

@@ -53,3 +53,18 @@ def test_a_world_lists_lights_and_diagnostics():
     assert [(d["code"], d["severity"], d["hint"]) for d in out["diagnostics"]] == [
         ("SK-SDF-011", "warning", "did you mean 'light'?")
     ]
+
+
+def test_a_kind_that_nothing_simulates_shows_its_camera_and_its_scan():
+    diagnostics = Diagnostics()
+    text = """<sdf version="1.9"><model name="m"><link name="l">
+      <sensor name="eye" type="odd_camera"><camera><horizontal_fov>2</horizontal_fov>
+        <image><width>640</width><height>480</height></image><clip><near>0.2</near><far>9</far></clip></camera></sensor>
+      <sensor name="old" type="odd_lidar"><ray><scan><horizontal><samples>5</samples><min_angle>-1</min_angle>
+        <max_angle>1</max_angle></horizontal></scan><range><min>0.1</min><max>inf</max></range></ray></sensor>
+      </link></model></sdf>"""
+    found = describe_scene(load_scene(text, resolver=Resolver(), diagnostics=diagnostics), diagnostics)
+    eye, old = found["model"]["links"][0]["sensors"]
+    assert eye["camera"] == {"width": 640, "height": 480, "hfov": 2.0, "near": 0.2, "far": 9.0}
+    scan = {"h_samples": 5, "h_min": -1.0, "h_max": 1.0, "v_samples": 1, "v_min": 0.0, "v_max": 0.0}
+    assert old["lidar"] == {**scan, "range_min": 0.1, "range_max": "inf"}

@@ -1,4 +1,4 @@
-"""The documents say what the code does: every diagnostic code, every link, no path of somebody's machine."""
+"""The documents say what the code does: every link, no path of somebody's machine."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-CODE = re.compile(r"\bSK-[A-Z]+-\d{3}\b")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "benchmarks").glob("*.md")])
 TEXTS = [
@@ -17,33 +16,6 @@ TEXTS = [
     for path in sorted((ROOT / folder).rglob("*"))
     if path.suffix in {".py", ".md", ".sdf", ".yaml", ".config", ".obj", ".world"}
 ]
-
-
-def codes_in(text: str) -> set[str]:
-    return set(CODE.findall(text))
-
-
-def codes_in_source() -> set[str]:
-    return set().union(*(codes_in(p.read_text(encoding="utf-8")) for p in (ROOT / "simkit").rglob("*.py")))
-
-
-def codes_in_table() -> list[str]:
-    """The codes that have a row of their own."""
-    table = (ROOT / "docs" / "diagnostics.md").read_text(encoding="utf-8")
-    return re.findall(r"^\| `(SK-[A-Z]+-\d{3})` \|", table, flags=re.MULTILINE)
-
-
-def test_every_code_in_the_source_is_explained() -> None:
-    assert codes_in_source() - set(codes_in_table()) == set()
-
-
-def test_every_explained_code_is_in_the_source() -> None:
-    assert set(codes_in_table()) - codes_in_source() == set()
-
-
-def test_a_code_is_explained_once() -> None:
-    rows = codes_in_table()
-    assert len(rows) == len(set(rows))
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda p: str(p.relative_to(ROOT)))

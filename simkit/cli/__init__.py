@@ -13,8 +13,10 @@ from simkit.cli.bench import bench
 from simkit.cli.check import check
 from simkit.cli.convert import convert
 from simkit.cli.doctor import doctor
+from simkit.cli.explain import explain
 from simkit.cli.inspect import inspect
 from simkit.cli.run import run
+from simkit.cli.vendor import vendor
 
 app = typer.Typer(
     name="simkit",
@@ -24,7 +26,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for _command in (run, check, inspect, convert, bench, doctor):
+for _command in (run, check, explain, inspect, convert, vendor, bench, doctor):
     app.command()(_command)
 app.add_typer(bag, name="bag")
 

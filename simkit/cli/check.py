@@ -4,9 +4,27 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from simkit.cli.console import guarded, out, print_diagnostics
-from simkit.cli.options import File, Json, PluginPaths, ResourcePaths, Strict
+from simkit.cli.options import (
+    Base,
+    File,
+    Force,
+    Json,
+    PackagePaths,
+    PluginPaths,
+    ResourcePaths,
+    Strict,
+    XacroArgs,
+    source,
+)
+from simkit.diagnostics import Diagnostic
+from simkit.errors import InputError
 
 
 @guarded
@@ -14,18 +32,66 @@ def check(
     file: File,
     json_: Json = False,
     strict: Strict = False,
+    every: Annotated[bool, typer.Option("--all", help="Lists repeats one by one.")] = False,
+    fix_inertia: Annotated[
+        bool, typer.Option("--fix-inertia", help="Shows new numbers for inertias that no solid has.")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="With --fix-inertia: the file with them.", metavar="OUT")
+    ] = None,
+    force: Force = False,
     resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
     plugin_path: PluginPaths = [],
+    xacro_arg: XacroArgs = [],
+    base: Base = "auto",
 ) -> int:
     """Prints every problem of a file, not only the first; runs nothing."""
     from simkit.build import check as check_file
 
-    found = list(check_file(file, resource_paths=resource_path, plugin_paths=plugin_path))
+    if fix_inertia:
+        return _fix_inertia(file, output, force, resource_path, json_)
+    if output is not None:
+        raise InputError("SK-CLI-018 check writes a file only with --fix-inertia", "SK-CLI-018")
+    found = list(check_file(file, plugin_paths=plugin_path, **source(resource_path, package_path, xacro_arg, base)))
     if json_:
         out().file.write(json.dumps([d.as_dict() for d in found], indent=2) + "\n")
     else:
-        print_diagnostics(found, verbose=True, console=out())
-        counts = Counter(d.severity for d in found)
-        out().print(", ".join(f"{counts[s]} {s}{'' if counts[s] == 1 else 's'}" for s in ("error", "warning", "note")))
+        print_diagnostics(found, verbose=True, console=out(), every=every)
+        out().print(_counts(found))
     bad = {"error", "warning"} if strict else {"error"}
     return 2 if any(d.severity in bad for d in found) else 0
+
+
+def _counts(found: Sequence[Diagnostic]) -> str:
+    counts = Counter(d.severity for d in found)
+    return ", ".join(f"{counts[s]} {s}{'' if counts[s] == 1 else 's'}" for s in ("error", "warning", "note"))
+
+
+def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: list[Path], json_: bool) -> int:
+    from simkit.fix_inertia import find_fixes
+
+    found = find_fixes(Path(file), resource_paths)
+    if output is not None and output.exists() and not force:
+        raise InputError(
+            f"SK-CLI-016 {output} exists already and is not overwritten\n    help: --force replaces it", "SK-CLI-016"
+        )
+    if json_:
+        fixes = [
+            {"file": str(f.file), "line": f.line, "link": f.link, "mass": f.mass, "old": f.before, "new": f.numbers,
+             "moments_old": f.old, "moments_new": f.new, "why": f.why}
+            for f in found.fixes
+        ]  # fmt: skip
+        out().file.write(json.dumps(fixes, indent=2) + "\n")
+    else:
+        for fix in found.fixes:
+            out().print(str(fix))
+        for problem in found.problems:
+            out().print(problem)
+        out().print(f"{len(found.fixes)} inertias that no solid has")
+    if output is not None:
+        count = found.write(output)
+        rest = f"; {len(found.elsewhere)} stand in other files" if found.elsewhere else ""
+        if not json_:
+            out().print(f"{output}: {count} links changed{rest}")
+    return 0

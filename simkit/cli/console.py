@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 INTERRUPTED = 130
+_MOST, _MOST_ERRORS = 12, 200  # entries of one code that are listed
+_PLACES = 8  # further places of equal ones that are listed
 _STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 
 
@@ -44,26 +46,60 @@ def say(text: str) -> None:
     err().print(text)
 
 
-def print_diagnostics(found: Iterable[Diagnostic], *, verbose: bool, console: Console | None = None) -> None:
-    """Errors and warnings one by one; notes too where `verbose`, else how many there are."""
-    from rich.text import Text
+def print_diagnostics(
+    found: Iterable[Diagnostic], *, verbose: bool, console: Console | None = None, every: bool = False
+) -> None:
+    """Errors and warnings one by one; notes too where `verbose`, else how many there are.
 
+    Equal ones are one entry with all its places, and of one code no more than some are listed, unless `every`.
+    """
     target = console or err()
     notes: Counter[str] = Counter()
+    shown: dict[tuple[str, str, str], list[Diagnostic]] = {}
     for d in found:
         if d.severity == "note" and not verbose:
             notes[d.code] += 1
+        else:
+            key = (d.code, d.message, str(len(shown)) if every else d.hint)
+            shown.setdefault(key, []).append(d)
+    listed, left_out = Counter[tuple[str, str]](), Counter[tuple[str, str]]()
+    for equal in shown.values():
+        kind = (equal[0].severity, equal[0].code)
+        if listed[kind] >= (_MOST_ERRORS if kind[0] == "error" else _MOST) and not every:
+            left_out[kind] += len(equal)
             continue
-        place = f"{d.file or '<text>'}:{d.line}" if d.line else (d.file or "")
-        line = Text(f"{place}: " if place else "")
-        line.append(d.severity, style=_STYLES[d.severity])
-        line.append(f" {d.code}: {d.message}")
-        if d.hint:
-            line.append(f"\n    help: {d.hint}", style="dim")
-        target.print(line)
+        listed[kind] += 1
+        _print_entry(equal, target)
+    for (severity, code), count in left_out.items():
+        target.print(
+            f"{count} more {severity}{'s' if count > 1 else ''} {code}; simkit check --all lists them", style="dim"
+        )
     if notes:
-        listed = ", ".join(f"{code} × {count}" if count > 1 else code for code, count in sorted(notes.items()))
-        target.print(f"{sum(notes.values())} notes ({listed}); --verbose shows them", style="dim")
+        names = ", ".join(f"{code} × {count}" if count > 1 else code for code, count in sorted(notes.items()))
+        target.print(f"{sum(notes.values())} notes ({names}); --verbose shows them", style="dim")
+
+
+def _print_entry(equal: list[Diagnostic], target: Console) -> None:
+    """One problem with the places it was found at."""
+    from rich.text import Text
+
+    d = equal[0]
+    place = _place(d)
+    line = Text(f"{place}: " if place else "")
+    line.append(d.severity, style=_STYLES[d.severity])
+    line.append(f" {d.code}: {d.message}")
+    if d.hint:
+        line.append(f"\n    help: {d.hint}", style="dim")
+    if len(equal) > 1:
+        others = [f":{o.line}" if o.file == d.file and o.line else _place(o) for o in equal[1 : _PLACES + 1]]
+        rest = len(equal) - 1 - len(others)
+        more = f" and {rest} more" if rest else ""
+        line.append(f"\n    the same at {', '.join(others)}{more}", style="dim")
+    target.print(line)
+
+
+def _place(d: Diagnostic) -> str:
+    return f"{d.file or '<text>'}:{d.line}" if d.line else (d.file or "")
 
 
 def show_error(error: SimkitError) -> None:

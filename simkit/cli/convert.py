@@ -1,4 +1,4 @@
-"""`simkit convert`: the engine's own format."""
+"""`simkit convert`: the same in another format."""
 
 from __future__ import annotations
 
@@ -7,8 +7,20 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out, print_diagnostics
-from simkit.cli.options import File, Force, ResourcePaths, Verbose
+from simkit.cli.console import guarded, out, print_diagnostics, say
+from simkit.cli.options import (
+    Base,
+    File,
+    Force,
+    PackagePaths,
+    ResourcePaths,
+    Source,
+    Strict,
+    Verbose,
+    XacroArgs,
+    source,
+)
+from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 
 
@@ -18,25 +30,64 @@ def convert(
     output: Annotated[
         Path,
         typer.Option(
-            "--output", "-o", help="The MJCF file; its textures go beside it.", metavar="OUT.xml", show_default=False
+            "--output",
+            "-o",
+            help="OUT.xml is MJCF, OUT.sdf (or .world) SDF; meshes and pictures go beside it.",
+            metavar="OUT",
+            show_default=False,
         ),
     ],
+    keep_uris: Annotated[
+        bool, typer.Option("--keep-uris", help="SDF: writes model:// and package:// as they are, copies nothing.")
+    ] = False,
+    strict: Strict = False,
     resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
+    xacro_arg: XacroArgs = [],
+    base: Base = "auto",
     force: Force = False,
     verbose: Verbose = False,
 ) -> int:
-    """Writes what would be simulated as MJCF, to be opened by MuJoCo alone."""
+    """Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file."""
+    options = source(resource_path, package_path, xacro_arg, base)
+    if output.suffix.lower() in (".sdf", ".world"):
+        return _to_sdf(file, output, options, keep_uris=keep_uris, strict=strict, force=force, verbose=verbose)
+    if output.suffix.lower() not in (".xml", ".mjcf"):
+        raise InputError(
+            f"SK-CLI-018 --output {output}: found the ending {output.suffix!r}, allowed is .xml, .mjcf, .sdf or .world",
+            "SK-CLI-018",
+        )
+    return _to_mjcf(file, output, options, strict=strict, force=force, verbose=verbose)
+
+
+def _to_mjcf(file: str, output: Path, options: Source, *, strict: bool, force: bool, verbose: bool) -> int:
     from simkit.build import load
     from simkit.sinks.mjcf import write_mjcf
+    from simkit.writers.staging import check_target
 
-    if output.exists() and not force:
-        raise InputError(
-            f"SK-CLI-016 {output} exists already and is not overwritten\n    help: --force replaces it", "SK-CLI-016"
-        )
-    if not output.absolute().parent.is_dir():
-        raise InputError(f"SK-CLI-016 there is no folder {output.absolute().parent}", "SK-CLI-016")
-    with load(file, resource_paths=resource_path) as sim:
+    check_target(output, f"{output.stem}_assets", overwrite=force)
+    with load(file, strict=strict, **options) as sim:
         print_diagnostics(sim.diagnostics, verbose=verbose)
-        written = write_mjcf(sim, output)
-    out().print(f"{output}" + (f" and {written} textures beside it" if written else ""))
+        written = write_mjcf(sim, output, overwrite=force)
+    if written.balanced:
+        say(
+            f"MuJoCo's compiler refuses the inertia of {', '.join(written.balanced[:6])}"
+            f"{' and others' if len(written.balanced) > 6 else ''}; the file has the nearest that it takes"
+        )
+    out().print(f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else ""))
+    return 0
+
+
+def _to_sdf(
+    file: str, output: Path, options: Source, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
+) -> int:
+    from simkit.build import read_scene
+    from simkit.writers.convert import write_sdf
+
+    scene, found = read_scene(file, missing_meshes=keep_uris, **options)
+    lost = Diagnostics(found)
+    lost.raise_if_errors(strict)
+    written = write_sdf(scene, output, lost, keep_uris=keep_uris, overwrite=force)
+    print_diagnostics(lost, verbose=verbose)
+    out().print(f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else ""))
     return 0

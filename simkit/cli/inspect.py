@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from simkit.cli.console import guarded, out
-from simkit.cli.options import File, Json, ResourcePaths
+from simkit.cli.options import Base, File, Json, PackagePaths, ResourcePaths, XacroArgs, source
 
 
 @guarded
@@ -15,11 +15,14 @@ def inspect(
     file: File,
     json_: Json = False,
     resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
+    xacro_arg: XacroArgs = [],
+    base: Base = "auto",
 ) -> int:
     """Shows what a file means once it is resolved."""
     from simkit.build import describe
 
-    found = describe(file, resource_paths=resource_path)
+    found = describe(file, **source(resource_path, package_path, xacro_arg, base))
     if json_:
         out().file.write(json.dumps(found, indent=2) + "\n")
     else:

@@ -14,7 +14,19 @@ import typer
 from simkit.cli.console import err, guarded, out, print_diagnostics, say
 from simkit.cli.interrupts import Interrupts
 from simkit.cli.loop import Loop
-from simkit.cli.options import Force, PluginPaths, ResourcePaths, Strict, Verbose, World
+from simkit.cli.options import (
+    Base,
+    Force,
+    PackagePaths,
+    PluginPaths,
+    ResourcePaths,
+    Source,
+    Strict,
+    Verbose,
+    World,
+    XacroArgs,
+    source,
+)
 from simkit.errors import RenderError
 
 if TYPE_CHECKING:
@@ -40,10 +52,10 @@ class Request:
     picture: Path | None = None
     cmd_vel: str | None = None
     script: Path | None = None
-    resource_paths: tuple[Path, ...] = ()
     plugin_paths: tuple[Path, ...] = ()
     verbose: bool = False
-    quiet: bool = field(default=False)
+    quiet: bool = False
+    source: Source = field(default_factory=lambda: source((), (), ()))
 
 
 @guarded
@@ -78,14 +90,18 @@ def run(
     ] = None,
     script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
     resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
     plugin_path: PluginPaths = [],
+    xacro_arg: XacroArgs = [],
+    base: Base = "auto",
     verbose: Verbose = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     request = Request(
         world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, _finite(rtf), tuple(set_), strict,
-        view, picture, cmd_vel, script, tuple(resource_path), tuple(plugin_path), verbose, quiet,
+        view, picture, cmd_vel, script, tuple(plugin_path), verbose, quiet,
+        source(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
     return execute(request)
 
@@ -114,10 +130,10 @@ def execute(request: Request) -> int:
     sim = load(
         request.world,
         seed=request.seed,
-        resource_paths=request.resource_paths,
         plugin_paths=request.plugin_paths,
         strict=request.strict,
         overrides=request.overrides,
+        **request.source,
     )
     with sim:
         check_used(sim.diagnostics)
@@ -148,9 +164,7 @@ class _Run:
             recording = None
             if request.record is not None:
                 recording = stack.enter_context(
-                    Recorder(
-                        sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip
-                    )
+                    Recorder(sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip)
                 )
             counter = TopicCounter(sim, () if recording and not (request.topics or request.skip) else RENDERED)
             watch = Stopwatch()

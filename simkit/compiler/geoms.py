@@ -208,7 +208,7 @@ class GeomWriter:
 
     def _parts(self, shape: Geometry, where: Where) -> list[MeshPart]:
         if isinstance(shape, Mesh):
-            return load_mesh(shape, self.diagnostics, where)
+            return [] if shape.missing else load_mesh(shape, self.diagnostics, where)
         if isinstance(shape, Cone):
             return [MeshPart("cone", *cone(shape))]
         if isinstance(shape, Polyline):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from urllib.parse import unquote
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.loaders.packages import package_of, package_places
 from simkit.loaders.uris import escapes, first_of, is_elsewhere, is_there, listed, normal, without_find
 from simkit.params import Params
@@ -22,6 +23,7 @@ _SEARCH_VARIABLES = (
     "ROS_PACKAGE_PATH",
 )
 _CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
+_NOT_HERE = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
 _PATH_HINT = "name the folder that holds it with --resource-path or SIMKIT_RESOURCE_PATH"
 NEWEST_SDF = (1, 12)
 
@@ -32,7 +34,8 @@ class Resolver:
     Args:
         paths: folders for `model://`, `package://` and relative URIs, searched before those of the environment.
         base: the folder of the file being loaded; searched last.
-        missing_meshes: whether a mesh that is not found is only a warning (to inspect a file without its meshes).
+        missing_meshes: whether any mesh that cannot be had is only a warning (to inspect a file without its meshes),
+            also one whose URI is refused.
         anywhere: lets absolute paths and `..` leave the folders named above.
         package_paths: the folder of each ROS package that the caller knows; they come before every other place.
     """
@@ -66,6 +69,28 @@ class Resolver:
         return near
 
     # ------------------------------------------------------------------ URIs
+
+    def mesh(
+        self, uri: str, where: Where, relative_to: Path | None
+    ) -> tuple[Path | None, list[Diagnostic]]:
+        """The mesh file that `uri` names, and what is to be said of it.
+
+        As in Gazebo a world goes on without a mesh that is not there, but that is a warning and so an error where
+        warnings are; a URI that is refused, because it leaves the resource folders or has an unknown scheme, is one
+        always.
+        """
+        found = Diagnostics()
+        path = self.resolve(uri, where, found, relative_to)
+        if path is not None and path.is_dir():
+            found.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", where)
+            path = None
+        said = []
+        for problem in found:
+            if problem.severity == "error" and (self.missing_meshes or problem.code in _NOT_HERE):
+                lost = "; what has this shape is neither drawn nor touched"
+                problem = replace(problem, severity="warning", message=problem.message + lost)
+            said.append(problem)
+        return path, said
 
     def resolve(self, uri: str, where: Where, diagnostics: Diagnostics, relative_to: Path | None) -> Path | None:
         """The existing file or folder that `uri` names; None, with one error recorded, when there is none.

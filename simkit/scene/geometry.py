@@ -62,7 +62,7 @@ class Mesh:
         uri: as written in the file.
         submesh: name of the one sub-mesh to use, or empty for all.
         center: whether that sub-mesh is moved to the origin.
-        missing: the file is not there (only where the caller asked to read on without it).
+        missing: the file is not there; the shape is left out, and that has been said.
         optimization: what a collision that is not convex becomes: "" (the compiler's choice), "convex_hull" or
             "convex_decomposition".
         max_hulls: pieces of a convex decomposition.

@@ -103,13 +103,13 @@ def test_no_uri_leaves_its_folders(load, write, uri):
     assert [d.code for d in found] == ["SK-URI-003"]
 
 
-def test_a_missing_mesh_lists_where_it_was_looked_for(load, write):
+def test_a_missing_mesh_is_a_warning_that_lists_where_it_was_looked_for(load, write):
     path = write(
         "m/model.sdf",
         '<sdf version="1.9"><model name="m"><link name="l"><collision name="c"><geometry><mesh>\n'
         "<uri>meshes/x.dae</uri></mesh></geometry></collision></link></model></sdf>",
     )
     _, found = load(path)
-    (error,) = [d for d in found if d.severity == "error"]
-    assert (error.code, error.file, error.line) == ("SK-URI-001", str(path), 2)
-    assert str(path.parent / "meshes" / "x.dae") in error.message
+    (missing,) = [d for d in found if d.severity == "warning"]
+    assert (missing.code, missing.file, missing.line) == ("SK-URI-001", str(path), 2)
+    assert str(path.parent / "meshes" / "x.dae") in missing.message and "neither drawn nor touched" in missing.message

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
 from simkit.scene import (
@@ -122,8 +121,7 @@ def _mesh(element: Params, file: SdfFile, workspace: Workspace) -> Geometry | No
     place = element.child("uri") or element.child("filename") or element
     path = find_mesh(uri, place, file, workspace)
     if path is None:
-        missing = workspace.resolver.missing_meshes
-        return Mesh(Path(uri), uri, scale, name, center, missing=True) if missing else None
+        return Mesh(Path(uri), uri, scale, name, center, missing=True)
     return Mesh(path.absolute(), uri, scale, name, center, optimization=optimization, max_hulls=most)
 
 
@@ -146,23 +144,12 @@ def _optimization(element: Params) -> tuple[str, int]:
 
 
 def find_mesh(uri: str, place: Params, file: SdfFile, workspace: Workspace) -> Path | None:
-    """The mesh file that a URI names; a missing one is an error, or a warning where the caller reads on without.
-
-    One that is missing is said once, however often it is used.
-    """
-    resolver = workspace.resolver
-    found = Diagnostics()
-    path = resolver.resolve(uri, place.where, found, file.folder)
-    if path is not None and path.is_dir():
-        found.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", place.where)
-        path = None
+    """The mesh file that a URI names; what is to be said of it is said once, however often it is used."""
+    path, said = workspace.resolver.mesh(uri, place.where, file.folder)
+    if path is not None or uri not in workspace.reported:
+        workspace.diagnostics.extend(said)
     if path is None:
-        if uri in workspace.reported:
-            return None
         workspace.reported.add(uri)
-    for problem in found:
-        severity = "warning" if resolver.missing_meshes else problem.severity
-        workspace.diagnostics.extend([replace(problem, severity=severity)])
     return path
 
 

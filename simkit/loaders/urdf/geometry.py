@@ -30,7 +30,7 @@ def read_geometry(owner: Params, draft: Draft, what: str) -> Geometry | None:
             return reader(shape, draft, what)
         if shape.name == "mesh":
             block.child("mesh")
-            return _mesh(shape, draft, what, owner)
+            return _mesh(shape, draft, what)
     known = ", ".join(f"<{name}>" for name in _SHAPES)
     if not shapes:
         draft.diagnostics.error("SK-URDF-009", f"{what} has an empty <geometry>, known are {known}", block.where)
@@ -81,7 +81,7 @@ def _sphere(element: Params, _draft: Draft, what: str) -> Geometry:
     return Sphere(_positive(element, "radius", what))
 
 
-def _mesh(element: Params, draft: Draft, what: str, owner: Params) -> Geometry | None:
+def _mesh(element: Params, draft: Draft, what: str) -> Geometry | None:
     uri = text(element, "filename")
     scale = vector3(element, "scale", (1.0, 1.0, 1.0))
     if any(v == 0 for v in scale):
@@ -90,9 +90,9 @@ def _mesh(element: Params, draft: Draft, what: str, owner: Params) -> Geometry |
     if not uri:
         missing(element, "filename", "the URI of a mesh", what)
         return None
-    path = draft.assets.mesh(uri, element, owner.name == "visual")
+    path = draft.assets.mesh(uri, element)
     if path is None:
-        return Mesh(Path(uri), uri, scale, missing=True) if draft.assets.resolver.missing_meshes else None
+        return Mesh(Path(uri), uri, scale, missing=True)
     return Mesh(path, uri, scale)
 
 

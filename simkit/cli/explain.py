@@ -1,0 +1,46 @@
+"""`simkit explain`: what a diagnostic code means."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
+from simkit.cli.console import guarded, out
+from simkit.cli.options import Json
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+
+
+@guarded
+def explain(
+    code: Annotated[
+        str, typer.Argument(help="A code such as SK-SDF-004, or the beginning of several.", show_default=False)
+    ],
+    json_: Json = False,
+) -> int:
+    """Says what a code means, what helps, and shows an input that brings it about."""
+    from simkit.codes import catalogue
+    from simkit.codes.page import explain as in_words
+
+    known, wanted = catalogue(), code.strip().upper()
+    wanted = wanted if wanted.startswith("SK-") else f"SK-{wanted}"
+    found = [known[wanted]] if wanted in known else [c for name, c in known.items() if name.startswith(wanted)]
+    if not found:
+        hint = did_you_mean(wanted, known) or "docs/diagnostics.md lists them all"
+        raise InputError(f"SK-CLI-017 there is no code {code!r}; {hint}", "SK-CLI-017")
+    if json_:
+        out().file.write(json.dumps([asdict(c) for c in found], indent=2, default=_text) + "\n")
+    elif len(found) == 1:
+        out().print(in_words(found[0]))
+    else:
+        for entry in found:
+            out().print(f"{entry.code}  {entry.severity:<14}  {entry.meaning}")
+    return 0
+
+
+def _text(value: object) -> str:
+    """Bytes of an example's file, which JSON cannot hold."""
+    return f"({len(value)} bytes)" if isinstance(value, bytes) else str(value)

@@ -1,0 +1,29 @@
+"""`simkit vendor`: a world and everything it names in one folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from simkit.cli.console import guarded, out
+from simkit.cli.options import Base, File, PackagePaths, ResourcePaths, XacroArgs, source
+
+
+@guarded
+def vendor(
+    file: File,
+    folder: Annotated[Path, typer.Argument(help="A folder that does not exist yet, or is empty.", show_default=False)],
+    resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
+    xacro_arg: XacroArgs = [],
+    base: Base = "auto",
+) -> int:
+    """Writes a folder that holds a world and everything it names, and that opens anywhere."""
+    from simkit.build import describe
+    from simkit.vendor import vendor as write
+
+    main, count = write(file, folder, describe, **source(resource_path, package_path, xacro_arg, base))
+    out().print(f"{folder / main} and {count - 1} files that it needs")
+    return 0

@@ -1,0 +1,300 @@
+"""What is in a link or joint, as SDF elements: shapes, looks, surfaces, lights, axes, sensors, plugins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from simkit.diagnostics import NOWHERE
+from simkit.params import Params
+from simkit.pose import Pose
+from simkit.scene import (
+    Axis,
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Ellipsoid,
+    Geometry,
+    Heightmap,
+    Inertial,
+    Material,
+    Mesh,
+    Plane,
+    Polyline,
+    SceneCollision,
+    SceneLight,
+    ScenePlugin,
+    SceneSensor,
+    SceneVisual,
+    Sphere,
+    Surface,
+)
+from simkit.writers.text import element, number, numbers, pose
+
+Place = Callable[[Path, str], str]
+"""Gives the URI to write for a file that was named by some other."""
+
+
+def text(name: str, value: str | float | bool | tuple[float, ...]) -> Params:
+    """An element with a value."""
+    if isinstance(value, bool):
+        return element(name, str(value).lower())
+    if isinstance(value, tuple):
+        return element(name, numbers(value))
+    return element(name, value if isinstance(value, str) else number(value))
+
+
+def given(name: str, value: float | None) -> Params | None:
+    """An element for a number that was given."""
+    return None if value is None else text(name, value)
+
+
+def other(name: str, value: str | float | bool | tuple[float, ...], usual: object) -> Params | None:
+    """An element for a value that is not the format's own."""
+    return None if value == usual else text(name, value)
+
+
+def inertial(value: Inertial) -> Params | None:
+    """None where the format's default is meant."""
+    if not value.given and value.mass == 1.0 and value.inertia == (1.0, 1.0, 1.0, 0.0, 0.0, 0.0):
+        return None
+    ixx, iyy, izz, ixy, ixz, iyz = value.inertia
+    names = {"ixx": ixx, "ixy": ixy, "ixz": ixz, "iyy": iyy, "iyz": iyz, "izz": izz}
+    return element(
+        "inertial",
+        "",
+        [
+            pose(Pose(value.com)),
+            text("mass", value.mass),
+            element("inertia", "", [text(k, v) for k, v in names.items()]),
+        ],
+    )
+
+
+def geometry(shape: Geometry, place: Place) -> Params:
+    """`<geometry>`."""
+    return element("geometry", "", _shapes(shape, place))
+
+
+def _shapes(shape: Geometry, place: Place) -> list[Params]:
+    match shape:
+        case Box(size=size):
+            return [element("box", "", [text("size", size)])]
+        case Sphere(radius=r):
+            return [element("sphere", "", [text("radius", r)])]
+        case Cylinder(radius=r, length=h) | Capsule(radius=r, length=h) | Cone(radius=r, length=h):
+            return [element(type(shape).__name__.lower(), "", [text("radius", r), text("length", h)])]
+        case Ellipsoid(radii=radii):
+            return [element("ellipsoid", "", [text("radii", radii)])]
+        case Plane(normal=normal, size=size):
+            return [element("plane", "", [text("normal", normal), text("size", size)])]
+        case Heightmap():
+            uri = text("uri", place(shape.file, shape.uri))
+            return [element("heightmap", "", [uri, text("size", shape.size), text("pos", shape.position)])]
+        case Polyline(outlines=outlines, height=height):
+            return [
+                element("polyline", "", [*(text("point", point) for point in outline), text("height", height)])
+                for outline in outlines
+            ]
+        case Mesh():
+            return [_mesh(shape, place)]
+    return [element("empty")]
+
+
+def _mesh(shape: Mesh, place: Place) -> Params:
+    part = element("submesh", "", [text("name", shape.submesh), text("center", shape.center)])
+    pieces = element("convex_decomposition", "", [text("max_convex_hulls", f"{shape.max_hulls}")])
+    mesh = element(
+        "mesh",
+        "",
+        [
+            text("uri", shape.uri if shape.missing else place(shape.file, shape.uri)),
+            other("scale", shape.scale, (1.0, 1.0, 1.0)),
+            part if shape.submesh or shape.center else None,
+            pieces if shape.max_hulls != 16 else None,
+        ],
+    )
+    if shape.optimization:
+        mesh.attributes["optimization"] = shape.optimization
+    return mesh
+
+
+def collision(value: SceneCollision, place: Place) -> Params:
+    """`<collision>`."""
+    return element(
+        "collision",
+        "",
+        [
+            pose(value.pose_link),
+            geometry(value.geometry, place),
+            surface(value.surface),
+            other("laser_retro", value.laser_retro, 0.0),
+        ],
+        name=value.name,
+    )
+
+
+def surface(value: Surface) -> Params | None:
+    """`<surface>`; None where all is the format's default."""
+    if replace(value, where=NOWHERE) == Surface():
+        return None
+    ode = [
+        text("mu", value.mu),
+        text("mu2", value.mu2),
+        other("fdir1", value.fdir1, (0.0, 0.0, 0.0)),
+        other("slip1", value.slip1, 0.0),
+        other("slip2", value.slip2, 0.0),
+    ]
+    friction = [
+        element("ode", "", ode),
+        _torsional(value),
+        None if value.rolling is None else element("bullet", "", [text("rolling_friction", value.rolling)]),
+    ]
+    names = ("kp", "kd", "soft_cfm", "soft_erp", "min_depth", "max_vel")
+    soft = [e for name in names if (e := given(name, getattr(value, name))) is not None]
+    contact = [
+        element("ode", "", soft) if soft else None,
+        _mask("collide_bitmask", value.collide_bitmask),
+        _mask("category_bitmask", value.category_bitmask),
+        other("collide_without_contact", value.collide_without_contact, False),
+    ]
+    bounce = [text("restitution_coefficient", value.restitution), text("threshold", value.restitution_threshold)]
+    has_bounce = (value.restitution, value.restitution_threshold) != (0.0, 1e5)
+    return element(
+        "surface",
+        "",
+        [
+            element("friction", "", friction),
+            element("contact", "", contact) if any(contact) else None,
+            element("bounce", "", bounce) if has_bounce else None,
+        ],
+    )
+
+
+def _torsional(value: Surface) -> Params | None:
+    children = [
+        given("coefficient", value.torsional),
+        other("use_patch_radius", value.use_patch_radius, True),
+        other("patch_radius", value.patch_radius, 0.0),
+        other("surface_radius", value.surface_radius, 0.0),
+        element("ode", "", [text("slip", value.torsional_slip)]) if value.torsional_slip else None,
+    ]
+    return element("torsional", "", children) if any(children) else None
+
+
+def _mask(name: str, bits: int) -> Params | None:
+    return None if bits == 0xFFFF else element(name, f"0x{bits:x}")
+
+
+def visual(value: SceneVisual, place: Place) -> Params:
+    """`<visual>`."""
+    flags = None if value.visibility_flags == 0xFFFFFFFF else element("visibility_flags", str(value.visibility_flags))
+    return element(
+        "visual",
+        "",
+        [
+            pose(value.pose_link),
+            geometry(value.geometry, place),
+            None if value.material is None else material(value.material, place),
+            other("transparency", value.transparency, 0.0),
+            other("cast_shadows", value.cast_shadows, True),
+            flags,
+            other("laser_retro", value.laser_retro, 0.0),
+        ],
+        name=value.name,
+    )
+
+
+def material(value: Material, place: Place) -> Params:
+    """`<material>`, with every colour written out so that no script is needed for them."""
+    metal = [
+        None if value.texture is None else text("albedo_map", place(value.texture, value.texture.name)),
+        given("roughness", value.roughness),
+    ]
+    return element(
+        "material",
+        "",
+        [
+            element("script", "", [text("name", value.script)]) if value.script else None,
+            text("ambient", value.ambient),
+            text("diffuse", value.diffuse),
+            text("specular", value.specular),
+            text("emissive", value.emissive),
+            text("double_sided", value.double_sided) if value.double_sided else None,
+            element("pbr", "", [element("metal", "", metal)]) if any(metal) else None,
+        ],
+    )
+
+
+def light(value: SceneLight, at: Pose) -> Params:
+    """`<light>`; `at` is its pose in the frame of what holds it."""
+    names = ("range", "constant", "linear", "quadratic")
+    fade = [text(n, v) for n, v in zip(names, value.attenuation, strict=True)]
+    spot = [text(n, v) for n, v in zip(("inner_angle", "outer_angle", "falloff"), value.spot, strict=True)]
+    return element(
+        "light",
+        "",
+        [
+            pose(at),
+            text("diffuse", value.diffuse),
+            text("specular", value.specular),
+            other("intensity", value.intensity, 1.0),
+            text("cast_shadows", value.cast_shadows),
+            other("light_on", value.on, True),
+            element("attenuation", "", fade),
+            element("spot", "", spot) if any(value.spot) else None,
+            text("direction", value.direction),
+        ],
+        name=value.name,
+        type=value.type,
+    )
+
+
+def axis(value: Axis, name: str, kind: str, leader: str) -> Params:
+    """`<axis>` or `<axis2>`; `leader` is the joint that it mimics, seen from its model."""
+    bounds = {} if kind == "continuous" else {"lower": value.lower, "upper": value.upper}
+    limits = {**bounds, "effort": value.effort, "velocity": value.velocity}
+    limit = [text(k, v) for k, v in limits.items() if math.isfinite(v)]
+    limit += [
+        e
+        for e in (given("stiffness", value.limit_stiffness), given("dissipation", value.limit_dissipation))
+        if e is not None
+    ]
+    dynamics = [
+        other("damping", value.damping, 0.0),
+        other("friction", value.friction, 0.0),
+        other("spring_stiffness", value.stiffness, 0.0),
+        other("spring_reference", value.spring_ref, 0.0),
+    ]
+    mimic = None
+    if value.mimic is not None:
+        m = value.mimic
+        parts = [text("multiplier", m.multiplier), text("offset", m.offset), text("reference", m.reference)]
+        mimic = element("mimic", "", parts, joint=leader, **({"axis": "axis2"} if m.axis else {}))
+    return element(
+        name,
+        "",
+        [
+            text("xyz", value.xyz_joint),
+            element("limit", "", limit) if limit else None,
+            element("dynamics", "", dynamics) if any(dynamics) else None,
+            mimic,
+        ],
+    )
+
+
+def sensor(value: SceneSensor, at: Pose) -> Params:
+    """`<sensor>` as it was written, with its own pose; `at` is in the frame of its link or joint."""
+    kept = [c for c in value.params.children if c.name not in ("pose", "plugin")]
+    children = [pose(at), *kept, *(plugin(p) for p in value.plugins)]
+    attributes = {**value.params.attributes, "name": value.name}
+    return element("sensor", value.params.value, children, **attributes)
+
+
+def plugin(value: ScenePlugin) -> Params:
+    """`<plugin>` as it was written."""
+    attributes = {**value.params.attributes, "name": value.name, "filename": value.filename}
+    return element("plugin", value.params.value, value.params.children, **attributes)

@@ -1,0 +1,154 @@
+"""`simkit check`: everything in one pass, readable, and with new numbers for inertias."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+import simkit
+from simkit.cli import app
+from simkit.diagnostics import Diagnostic, follows_from
+
+TWO_FAULTS = """<sdf version="1.9"><world name="w">
+  <light name="lamp" type="spto"/>
+  <model name="robot">
+    <link name="base"/>
+    <link name="left"/>
+    <joint name="lj" type="revolute"><parent>base</parent><child>left</child><axis/></joint>
+    <joint name="rj" type="revolut"><parent>base</parent><child>left</child><axis/></joint>
+    <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+      <left_joint>ljj</left_joint><right_joint>rj</right_joint>
+    </plugin>
+    <plugin filename="libsolar_sensor.so" name="solar"><light_name>sun</light_name></plugin>
+  </model>
+</world></sdf>
+"""
+URDF = """<?xml version="1.0"?>
+<robot name="arm">  <!-- kept -->
+  <link name="base"/>
+  <link name="upper">
+    <inertial>
+      <origin rpy="0 0 0.3"/>
+      <mass value="0.5"/>
+      <inertia ixx="0.001" iyy='0.002' izz="0.0033" ixy="0" ixz="0" iyz="0"/>
+    </inertial>
+  </link>
+  <link name="sound">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <joint name="j" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/></joint>
+  <joint name="k" type="fixed"><parent link="upper"/><child link="sound"/></joint>
+</robot>
+"""
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["check", *map(str, arguments)], catch_exceptions=False)
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_what_plugins_find_comes_with_the_errors_of_the_file(here: Path) -> None:
+    """A joint that a plugin misses, and a light that it misses when it is loaded, beside two faults of the file."""
+    found = [d for d in simkit.check(TWO_FAULTS) if d.severity == "error"]
+    said = sorted(f"{d.code} {d.line}" for d in found)
+    assert said == ["SK-PLUGIN-003 11", "SK-PLUGIN-003 8", "SK-SDF-008 7", "SK-SDF-025 2"]
+
+
+def test_what_only_follows_from_an_error_is_not_said_again(here: Path) -> None:
+    messages = [d.message for d in simkit.check(TWO_FAULTS) if d.code == "SK-PLUGIN-003"]
+    assert not [m for m in messages if "no joint 'rj'" in m]
+    earlier = [Diagnostic("SK-SDF-008", "error", "joint 'rj' has type 'revolut', known are revolute")]
+    assert follows_from(Diagnostic("SK-PLUGIN-003", "error", "model 'm' has no joint 'rj'; it has: 'lj'"), earlier)
+    assert not follows_from(Diagnostic("SK-PLUGIN-003", "error", "model 'm' has no joint 'lj'; it has: 'rj'"), earlier)
+
+
+def test_load_raises_with_the_same_errors(here: Path) -> None:
+    with pytest.raises(simkit.LoadError) as raised:
+        simkit.load(TWO_FAULTS)
+    assert len([d for d in raised.value.diagnostics if d.severity == "error"]) == 4
+
+
+@pytest.mark.parametrize(("strict", "code"), [(False, 0), (True, 2)])
+def test_warnings_are_errors_only_when_asked(here: Path, strict: bool, code: int) -> None:
+    (here / "w.sdf").write_text("<sdf version='1.9'><world name='w'><colour>red</colour></world></sdf>")
+    result = run("w.sdf", *(["--strict"] if strict else []))
+    assert result.exit_code == code
+    assert "w.sdf:1: warning SK-SDF-011" in result.stdout
+    assert result.stdout.splitlines()[-1] == "0 errors, 1 warning, 0 notes"
+
+
+def test_many_equal_notes_are_one_entry_and_all_in_json(here: Path) -> None:
+    surface = "<surface><friction><ode><mu>5000</mu><mu2>5000</mu2></ode></friction></surface>"
+    box = "<geometry><box><size>1 1 1</size></box></geometry>"
+    models = "\n".join(
+        f"<model name='m{i}'><static>1</static>"
+        f"<link name='l'><collision name='c'>{box}{surface}</collision></link></model>"
+        for i in range(300)
+    )
+    (here / "w.sdf").write_text(f"<sdf version='1.9'><world name='w'>\n{models}\n</world></sdf>")
+    text = run("w.sdf").stdout
+    assert text.count("SK-PHYS-002") == 1
+    assert "the same at :3, :4, " in text
+    assert "and 291 more" in text
+    assert text.splitlines()[-1] == "0 errors, 0 warnings, 300 notes"
+    assert len(text.splitlines()) < 8
+    assert run("w.sdf", "--all").stdout.count("SK-PHYS-002") == 300
+    assert len(json.loads(run("w.sdf", "--json").stdout)) == 300
+
+
+def test_new_numbers_are_shown_and_written_and_nothing_else_is_changed(here: Path) -> None:
+    (here / "arm.urdf").write_text(URDF)
+    result = run("arm.urdf", "--fix-inertia", "-o", "new.urdf")
+    assert result.exit_code == 0
+    assert "arm.urdf:8: link 'upper' (0.5 kg): ixx 0.001 -> 0.0011" in result.stdout
+    assert "falls short of C by 9.09 % of C" in result.stdout
+    assert "new.urdf: 1 links changed" in result.stdout
+    old, new = URDF.splitlines(), (here / "new.urdf").read_text().splitlines()
+    assert [i for i, (a, b) in enumerate(zip(old, new, strict=True), 1) if a != b] == [8]
+    assert (here / "arm.urdf").read_text() == URDF
+    assert "0 inertias that no solid has" in run("new.urdf", "--fix-inertia").stdout
+    assert not [d for d in simkit.check("new.urdf") if d.code.startswith("SK-INERTIA")]
+
+
+def test_numbers_that_sdf_leaves_out_are_put_in(here: Path) -> None:
+    text = (
+        "<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>2</mass>"
+        "<inertia><ixx>0</ixx><iyy>0</iyy><izz>0.5</izz></inertia></inertial></link></model></sdf>"
+    )
+    (here / "m.sdf").write_text(text)
+    run("m.sdf", "--fix-inertia", "-o", "n.sdf")
+    link = simkit.describe(here / "n.sdf")["model"]["links"][0]
+    assert link["inertia_com_linkframe"] == pytest.approx([0.25, 0.25, 0.5, 0, 0, 0], rel=1e-5)
+    tilted = text.replace("<ixx>0</ixx>", "<ixx>0.5</ixx>").replace("<izz>0.5</izz>", "<izz>0.5</izz><ixy>0.4</ixy>")
+    (here / "m.sdf").write_text(tilted)
+    run("m.sdf", "--fix-inertia", "-o", "n.sdf", "--force")
+    assert "<iyy>0<" not in (here / "n.sdf").read_text()
+
+
+def test_a_file_that_is_there_is_replaced_only_by_force(here: Path) -> None:
+    (here / "arm.urdf").write_text(URDF)
+    assert run("arm.urdf", "--fix-inertia", "-o", "arm.urdf").exit_code == 2
+    assert (here / "arm.urdf").read_text() == URDF
+    assert run("arm.urdf", "-o", "x.urdf").exit_code == 2
+
+
+def test_options_say_how_a_file_is_read(here: Path) -> None:
+    (here / "arm.xacro").write_text(
+        "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arg name='mass' default='1'/>"
+        "<link name='a'><inertial><mass value='$(arg mass)'/>"
+        "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link></robot>"
+    )
+    result = CliRunner().invoke(app, ["inspect", "arm.xacro", "--json", "--xacro-arg", "mass=7"])
+    assert json.loads(result.stdout)["totals"]["mass"] == 7
+    assert run("arm.xacro", "--xacro-arg", "mass").exit_code == 2
+    wrong = run("arm.xacro", "--base", "flaoting")
+    assert wrong.exit_code == 2
+    assert "did you mean 'floating'?" in wrong.stderr

@@ -1,0 +1,254 @@
+"""`simkit convert` and `simkit vendor`: what comes out opens alone and means the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+from typer.testing import CliRunner, Result
+
+import simkit
+from simkit.cli import app
+
+ROOT = Path(__file__).resolve().parents[2]
+TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+MASS = '<inertial><mass value="1.25"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>'
+MESH = '<geometry><mesh filename="package://arm_description/meshes/base.obj" scale="0.1 0.1 0.1"/></geometry>'
+URDF = f"""<robot name="arm">
+  <link name="base">{MASS}
+    <visual>{MESH}</visual>
+    <collision>{MESH}</collision>
+  </link>
+  <link name="upper">{MASS}</link>
+  <joint name="shoulder" type="revolute">
+    <origin xyz="0.1 0.2 0.333333333333333" rpy="0.1 0.2 0.3"/>
+    <parent link="base"/><child link="upper"/><axis xyz="0 0.6 0.8"/>
+    <limit lower="-1.23456789" upper="2" effort="30" velocity="3"/><dynamics damping="0.7" friction="0.05"/>
+  </joint>
+  <gazebo reference="upper">
+    <sensor name="imu" type="imu"><update_rate>50</update_rate><pose>0 0 0.1 0 0 0</pose></sensor>
+  </gazebo>
+  <gazebo><plugin filename="libgazebo_ros_joint_state_publisher.so" name="states">
+    <joint_name>shoulder</joint_name><update_rate>10</update_rate>
+  </plugin></gazebo>
+</robot>
+"""
+SAME = ("file", "uri", "diagnostics")
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    package = tmp_path / "arm_description"
+    (package / "meshes").mkdir(parents=True)
+    (package / "urdf").mkdir()
+    (package / "package.xml").write_text("<package><name>arm_description</name></package>")
+    (package / "LICENSE").write_text("as you like\n")
+    (package / "meshes" / "base.obj").write_text("mtllib base.mtl\nusemtl red\n" + TETRAHEDRON)
+    (package / "meshes" / "base.mtl").write_text("newmtl red\nKd 0.9 0.1 0.1\n")
+    (package / "urdf" / "arm.urdf").write_text(URDF)
+    return tmp_path
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(a) for a in arguments], catch_exceptions=False)
+
+
+def assert_means_the_same(after: Any, before: Any, path: str = "") -> None:
+    """Two descriptions say the same, the paths of files aside; numbers to 1e-9."""
+    after, before = (_comparable(x) for x in (after, before))
+    if isinstance(before, dict):
+        assert after.keys() == before.keys(), path
+        for key in before:
+            assert_means_the_same(after[key], before[key], f"{path}.{key}")
+    elif isinstance(before, list):
+        assert len(after) == len(before), path
+        for i, (a, b) in enumerate(zip(after, before, strict=True)):
+            assert_means_the_same(a, b, f"{path}[{i}]")
+    elif isinstance(before, float):
+        assert after == pytest.approx(before, rel=1e-9, abs=1e-9), path
+    else:
+        assert after == before, path
+
+
+def _comparable(described: Any) -> Any:
+    """Without the paths of files; the quaternion of a pose with its first part positive."""
+    if isinstance(described, dict):
+        return {k: v for k, v in described.items() if k not in SAME}
+    if isinstance(described, list) and len(described) == 7 and all(isinstance(v, (int, float)) for v in described):
+        first = next((v for v in described[3:] if abs(v) > 1e-6), 1.0)
+        return [float(v) for v in described[:3]] + [float(v) * (1 if first > 0 else -1) for v in described[3:]]
+    return described
+
+
+def assert_opens_alone_with_the_same(sim: simkit.Simulation, path: Path) -> None:
+    model, wanted = mujoco.MjModel.from_xml_path(str(path)), sim.mj_model
+    fields = (
+        "body_pos body_quat body_mass body_ipos body_inertia geom_type geom_pos geom_quat geom_size jnt_pos jnt_axis"
+    )
+    for field in (*fields.split(), "jnt_range", "dof_damping", "geom_friction", "mesh_vertnum", "body_parentid"):
+        np.testing.assert_allclose(getattr(model, field), getattr(wanted, field), rtol=0, atol=1e-9, err_msg=field)
+    names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, i) for i in range(model.nbody)]
+    assert names == [mujoco.mj_id2name(wanted, mujoco.mjtObj.mjOBJ_BODY, i) for i in range(wanted.nbody)]
+
+
+# ---------------------------------------------------------------------- MJCF
+
+
+@pytest.mark.parametrize("name", ["turtlebot3_world", "turtlebot3_empty"])
+def test_a_world_opens_in_mujoco_alone_with_the_same_poses_and_masses(here: Path, name: str) -> None:
+    (here / "out").mkdir()
+    result = run("convert", name, "-o", "out/w.xml")
+    assert result.exit_code == 0
+    with simkit.load(name) as sim:
+        assert_opens_alone_with_the_same(sim, here / "out" / "w.xml")
+    assert not (here / "w_assets").exists()
+    assert [p.name for p in sorted((here / "out").iterdir())] == ["w.xml", "w_assets"]
+
+
+def test_a_robot_with_an_inertia_that_mujoco_refuses_opens_in_it(here: Path) -> None:
+    text = URDF.replace('izz="0.1"', 'izz="0.21"', 1).replace(
+        '<link name="upper">' + MASS, '<link name="upper">' + MASS
+    )
+    (here / "arm_description" / "urdf" / "arm.urdf").write_text(text)
+    result = run("convert", "arm_description/urdf/arm.urdf", "-o", "arm.xml")
+    assert result.exit_code == 0
+    assert "refuses the inertia of arm::base" in result.stderr
+    mujoco.MjModel.from_xml_path("arm.xml")
+
+
+def test_output_is_replaced_only_by_force_and_nothing_is_half_written(here: Path) -> None:
+    arm = "arm_description/urdf/arm.urdf"
+    assert run("convert", arm, "-o", "arm.xml").exit_code == 0
+    before = {p: p.read_bytes() for p in here.rglob("*") if p.is_file()}
+    refused = run("convert", arm, "-o", "arm.xml")
+    assert refused.exit_code == 2
+    assert "--force" in refused.stderr
+    broken = run("convert", "arm_description/meshes/base.mtl", "-o", "arm.xml", "--force")
+    assert broken.exit_code == 2
+    assert {p: p.read_bytes() for p in here.rglob("*") if p.is_file()} == before
+    assert run("convert", arm, "-o", "arm.xml", "--force").exit_code == 0
+    assert {p: p.read_bytes() for p in here.rglob("*") if p.is_file()} == before
+    assert run("convert", arm, "-o", "nowhere/arm.xml").exit_code == 2
+    assert run("convert", arm, "-o", "arm.usd").exit_code == 2
+
+
+# ---------------------------------------------------------------------- SDF
+
+
+def test_a_urdf_becomes_an_sdf_that_says_the_same(here: Path) -> None:
+    (here / "out").mkdir()
+    result = run("convert", "arm_description/urdf/arm.urdf", "-o", "out/arm.sdf")
+    assert result.exit_code == 0
+    before, after = simkit.describe("arm_description/urdf/arm.urdf"), simkit.describe("out/arm.sdf")
+    assert_means_the_same(after, before)
+    copies = sorted(p.relative_to(here / "out").as_posix() for p in (here / "out").rglob("*.*") if p.is_file())
+    assert copies == ["arm.sdf", "arm_assets/arm_description/base.mtl", "arm_assets/arm_description/base.obj"]
+    (here / "arm_description").rename(here / "gone")
+    assert not [d for d in simkit.check("out/arm.sdf") if d.severity == "error"]
+
+
+def test_uris_are_kept_when_asked(here: Path) -> None:
+    run("convert", "arm_description/urdf/arm.urdf", "-o", "arm.sdf", "--keep-uris")
+    assert "package://arm_description/meshes/base.obj" in (here / "arm.sdf").read_text()
+    assert not (here / "arm_assets").exists()
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "worlds").glob("*.sdf")), ids=lambda p: p.name)
+def test_a_world_becomes_one_file_that_says_the_same(here: Path, path: Path) -> None:
+    assert run("convert", path, "-o", "w.sdf").exit_code == 0
+    assert "<include>" not in (here / "w.sdf").read_text()
+    assert_means_the_same(simkit.describe("w.sdf"), simkit.describe(path))
+
+
+def test_rotations_and_numbers_come_back_as_they_were(here: Path) -> None:
+    text = (
+        "<sdf version='1.9'><world name='w &amp; co'><gravity>0 0 -3.7</gravity>"
+        "<model name='m'><pose>1e-7 0.1 123456.789012345 0 1.5707963267948966 0.3</pose>"
+        "<link name='a'><pose degrees='true'>0 0 0 10 20 30</pose></link><frame name='f' attached_to='a'/>"
+        "<model name='n'><link name='b'><visual name='v'><geometry><capsule><radius>0.1</radius><length>0.7</length>"
+        "</capsule></geometry></visual></link></model>"
+        "<joint name='j' type='screw'><parent>a</parent><child>n::b</child>"
+        "<screw_thread_pitch>0.01</screw_thread_pitch>"
+        "<axis><xyz expressed_in='f'>1 2 3</xyz><limit><lower>-1</lower></limit></axis></joint></model></world></sdf>"
+    )
+    (here / "a.sdf").write_text(text)
+    assert run("convert", "a.sdf", "-o", "b.sdf").exit_code == 0
+    assert_means_the_same(simkit.describe("b.sdf"), simkit.describe("a.sdf"))
+
+
+# ---------------------------------------------------------------------- vendor
+
+
+def test_a_vendored_robot_opens_without_its_package(here: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = simkit.describe("arm_description/urdf/arm.urdf")
+    result = run("vendor", "arm_description/urdf/arm.urdf", "box")
+    assert result.exit_code == 0
+    (here / "arm_description").rename(here / "gone")
+    (here / "box").rename(here / "elsewhere")
+    assert_means_the_same(simkit.describe("elsewhere/arm.urdf"), before)
+    files = sorted(p.relative_to(here / "elsewhere").as_posix() for p in (here / "elsewhere").rglob("*") if p.is_file())
+    assert files == [
+        "arm.urdf",
+        "models/arm_description/LICENSE",
+        "models/arm_description/meshes/base.mtl",
+        "models/arm_description/meshes/base.obj",
+        "models/arm_description/package.xml",
+    ]
+
+
+def test_a_vendored_world_brings_its_models_with_their_text(here: Path) -> None:
+    for name in ("table", "lamp"):
+        folder = here / "store" / name
+        folder.mkdir(parents=True)
+        (folder / "model.config").write_text(f"<model><name>{name}</name><sdf version='1.9'>m.sdf</sdf></model>")
+        (folder / "LICENSE.txt").write_text("as you like\n")
+        (folder / "m.sdf").write_text(
+            f"<sdf version='1.9'><!-- {name} --><model name='{name}'><static>true</static><link name='l'>"
+            f"<visual name='v'><geometry><mesh><uri>model://{name}/top.obj</uri></mesh></geometry></visual></link>"
+            f"</model></sdf>"
+        )
+        (folder / "top.obj").write_text(TETRAHEDRON)
+    (here / "worlds").mkdir()
+    (here / "worlds" / "w.sdf").write_text(
+        "<sdf version='1.9'><world name='w'><include><uri>model://sun</uri></include>"
+        "<include><uri>model://table</uri></include>"
+        "<include><uri>model://lamp</uri><pose>0 0 1 0 0 0</pose></include></world></sdf>"
+    )
+    assert run("vendor", "worlds/w.sdf", "box", "--resource-path", "store").exit_code == 0
+    before = simkit.describe("worlds/w.sdf", resource_paths=["store"])
+    (here / "store").rename(here / "gone")
+    assert_means_the_same(simkit.describe("box/w.sdf"), before)
+    assert "<!-- lamp -->" in (here / "box" / "models" / "lamp" / "m.sdf").read_text()
+    assert (here / "box" / "models" / "table" / "LICENSE.txt").is_file()
+
+
+def test_a_vendored_xacro_is_expanded(here: Path) -> None:
+    (here / "r.urdf.xacro").write_text(
+        "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:arg name='mass' default='1'/>"
+        "<link name='a'><inertial><mass value='$(arg mass)'/>"
+        "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link></robot>"
+    )
+    assert run("vendor", "r.urdf.xacro", "box", "--xacro-arg", "mass=3").exit_code == 0
+    assert simkit.describe("box/r.urdf")["totals"]["mass"] == 3
+
+
+def test_a_folder_that_is_not_empty_is_left_alone(here: Path) -> None:
+    (here / "box").mkdir()
+    (here / "box" / "mine.txt").write_text("mine")
+    refused = run("vendor", "arm_description/urdf/arm.urdf", "box")
+    assert refused.exit_code == 2
+    assert "SK-CLI-016" in refused.stderr
+    assert [p.name for p in (here / "box").iterdir()] == ["mine.txt"]
+
+
+def test_a_world_with_errors_leaves_nothing_behind(here: Path) -> None:
+    (here / "w.sdf").write_text(
+        "<sdf version='1.9'><world name='w'><include><uri>model://none</uri></include></world></sdf>"
+    )
+    before = sorted(here.iterdir())
+    assert run("vendor", "w.sdf", "box").exit_code == 2
+    assert sorted(here.iterdir()) == before
