@@ -299,4 +299,14 @@ CODES: tuple[Code, ...] = (
             "<range><min>0.1</min><max>5</max></range></ray></sensor></gazebo>"
         ),
     ),
+    Code(
+        "SK-URDF-029",
+        "error",
+        "an include merges a robot in URDF, or changes it with `experimental:params`: it stays a model of its own",
+        "`simkit convert ROBOT.urdf -o model.sdf` once, and include that; or include it without `merge` and changes",
+        Example(
+            '<sdf version="1.9"><model name="m"><include merge="true"><uri>robot.urdf</uri></include></model></sdf>\n',
+            files={"robot.urdf": f'<robot name="r">{_BASE}</robot>\n'},
+        ),
+    ),
 )

@@ -84,7 +84,7 @@ def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath
             for point in cloud:
                 _add_sphere(scene, point, _SCAN_RADIUS * size, _SCAN_COLOUR)
 
-    eye, target = _viewpoint(points, driven)
+    eye, target = _viewpoint([*points, *_moving_bodies(sim)], driven)
     # drawn larger and shrunk: thin edges come out smooth on any renderer
     width, height = _SIZE
     large = render(sim, _OVERSAMPLED * width, _OVERSAMPLED * height, eye=eye, target=target, decorate=decorate)
@@ -122,6 +122,16 @@ def _last_scans(sim: Simulation) -> list[tuple[Any, Pose]]:
             if hasattr(message, "ranges"):
                 found.append((message, sensor.pose))
     return found
+
+
+def _moving_bodies(sim: Simulation) -> list[Any]:
+    """Corners [m] in the world of the boxes around what can move, shape (2 n, 3), so that none is cut off."""
+    model, data = sim.mj_model, sim.mj_data
+    moves = (np.asarray(model.geom_bodyid) > 0) & (np.asarray(model.geom_rbound) > 0.0)
+    if not moves.any():
+        return []
+    places, reach = np.asarray(data.geom_xpos)[moves], np.asarray(model.geom_rbound)[moves][:, None]
+    return [np.concatenate((places - reach, places + reach))]
 
 
 def _viewpoint(points: list[Any], driven: DrivenPath | None) -> tuple[Any, Any]:

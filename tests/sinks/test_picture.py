@@ -53,6 +53,22 @@ def test_a_path_follows_what_moves_and_leaves_out_what_stands() -> None:
         np.testing.assert_allclose([p[0] for p in driven.tracks["rover"]], np.arange(11) * 0.05, atol=1e-9)
 
 
+def test_a_tall_robot_is_seen_to_its_top(tmp_path: Path) -> None:
+    world = WORLD.replace("<size>0.1 0.1 0.1</size>", "<size>0.1 0.1 3</size>").replace("0 0 0.1 0 0 0", "0 0 1.5 0 0 0")
+    seen: list[tuple[np.ndarray, np.ndarray]] = []
+
+    def render(_sim: object, width: int, height: int, *, eye: np.ndarray, target: np.ndarray, **_: object) -> np.ndarray:
+        seen.append((eye, target))
+        return np.zeros((height, width, 3), np.uint8)
+
+    with simkit.load(world) as sim:
+        save_picture(sim, tmp_path / "tall.png", render, DrivenPath(sim))
+    ((eye, target),) = seen
+    up_to_top = np.array((0.0, 0.0, 3.0)) - eye
+    angle = np.arccos(up_to_top @ (target - eye) / np.linalg.norm(up_to_top) / np.linalg.norm(target - eye))
+    assert angle < np.radians(22.5)  # half the field of view of 45 degrees
+
+
 def test_a_picture_shows_path_and_scan(tmp_path: Path) -> None:
     with simkit.load(WORLD) as sim:
         driven = DrivenPath(sim)
