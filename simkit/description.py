@@ -11,6 +11,7 @@ from typing import Any
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.scene import (
+    Atmosphere,
     Axis,
     Geometry,
     Mimic,
@@ -25,6 +26,7 @@ from simkit.scene import (
     SceneSensor,
     SceneVisual,
     SceneWorld,
+    SphericalCoordinates,
 )
 
 Block = dict[str, Any]
@@ -100,6 +102,10 @@ def _world(world: SceneWorld, diagnostics: Diagnostics, block: SensorBlock) -> B
     return {
         "name": world.name,
         "gravity": list(world.gravity),
+        "magnetic_field": list(world.magnetic_field),
+        "wind": list(world.wind),
+        "atmosphere": _numbers_of(world.atmosphere),
+        "spherical_coordinates": _numbers_of(world.spherical_coordinates),
         "physics": {
             "max_step_size": world.physics.max_step_size,
             "real_time_factor": world.physics.real_time_factor,
@@ -193,6 +199,13 @@ def _axis(axis: Axis) -> Block:
 
 def _mimic(mimic: Mimic) -> Block:
     return asdict(mimic)
+
+
+def _numbers_of(settings: Atmosphere | SphericalCoordinates | None) -> Block | None:
+    """Settings in the units of the scene: angles in rad."""
+    if settings is None:
+        return None
+    return {f.name: _plain(getattr(settings, f.name)) for f in fields(settings) if f.name != "where"}
 
 
 def _frame(frame: SceneFrame) -> Block:

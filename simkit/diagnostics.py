@@ -26,6 +26,10 @@ class Where:
 
 
 NOWHERE = Where()
+MOST_ERRORS = 1000
+LONGEST_MESSAGE = 4000  # characters
+_MOST_NAMES = 5000  # that one is compared with; among more the nearest one is chance
+_LONGEST_NAME = 200
 _QUOTED = re.compile(r"'([^']+)'")
 
 
@@ -57,10 +61,15 @@ class Diagnostic:
 
 
 class Diagnostics:
-    """Collects diagnostics in order; a repeated identical one is kept once."""
+    """Collects diagnostics in order; a repeated identical one is kept once.
+
+    After `MOST_ERRORS` errors LoadError is raised: looking for a hundred thousand more would take minutes.
+    """
 
     def __init__(self, items: Iterable[Diagnostic] = ()) -> None:
-        self._items: dict[Diagnostic, None] = dict.fromkeys(items)
+        self._items: dict[Diagnostic, None] = {}
+        self._errors = 0
+        self.extend(items)
 
     def __iter__(self) -> Iterator[Diagnostic]:
         return iter(self._items)
@@ -70,15 +79,26 @@ class Diagnostics:
 
     @property
     def has_errors(self) -> bool:
-        return any(d.severity == "error" for d in self._items)
+        return self._errors > 0
 
     @property
     def error_count(self) -> int:
         """How many errors there are so far."""
-        return sum(d.severity == "error" for d in self._items)
+        return self._errors
 
     def add(self, severity: Severity, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
-        self._items.setdefault(Diagnostic(code, severity, message, where.file, where.line, hint))
+        if len(message) > LONGEST_MESSAGE:
+            message = f"{message[: LONGEST_MESSAGE // 2]} ... {message[-LONGEST_MESSAGE // 2 :]}"
+        self._put(Diagnostic(code, severity, message, where.file, where.line, hint[:LONGEST_MESSAGE]))
+        if severity == "error" and self._errors >= MOST_ERRORS:
+            text = f"there are {self._errors} errors; the rest is not looked at"
+            self._put(Diagnostic("SK-LOAD-012", "error", text, where.file, where.line))
+            self.raise_if_errors()
+
+    def _put(self, item: Diagnostic) -> None:
+        if item not in self._items:
+            self._items[item] = None
+            self._errors += item.severity == "error"
 
     def error(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
         self.add("error", code, message, where, hint)
@@ -91,12 +111,14 @@ class Diagnostics:
 
     def extend(self, items: Iterable[Diagnostic]) -> None:
         for item in items:
-            self._items.setdefault(item)
+            self._put(item)
 
     def drop(self, items: Iterable[Diagnostic]) -> None:
         """Forgets some that were found."""
         for item in tuple(items):
-            self._items.pop(item, None)
+            if item in self._items:
+                del self._items[item]
+                self._errors -= item.severity == "error"
 
     def raise_if_errors(self, strict: bool = False) -> None:
         """Raises LoadError with everything found so far; `strict` counts warnings as errors."""
@@ -115,17 +137,22 @@ def follows_from(found: Diagnostic, earlier: Iterable[Diagnostic]) -> bool:
     return found.severity == "error" and bool(missed) and missed[-1] in faulty
 
 
-def closest(name: str, allowed: Iterable[str]) -> str | None:
-    """The known name most like `name`, or None when none is near."""
-    return _closest(name, tuple(sorted(set(allowed))))
+def closest(name: str, allowed: Iterable[str], least: float = 0.6) -> str | None:
+    """The known name most like `name`, or None when none is near; `least`: how near, from 0 to 1."""
+    names = list(allowed)
+    if len(names) > _MOST_NAMES or len(name) > _LONGEST_NAME:
+        return None
+    return _closest(name, tuple(sorted({n for n in names if len(n) <= _LONGEST_NAME})), least)
 
 
 @functools.lru_cache(maxsize=256)  # one misspelling often stands in a file a hundred times, and a search takes 3 ms
-def _closest(name: str, names: tuple[str, ...]) -> str | None:
-    found = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+def _closest(name: str, names: tuple[str, ...], least: float) -> str | None:
+    found = difflib.get_close_matches(name, names, n=1, cutoff=least)
     if not found:
         folded = {n.lower(): n for n in names}
-        found = [folded[m] for m in difflib.get_close_matches(name.lower(), list(folded), n=1, cutoff=0.6)]
+        if name == name.lower() and len(folded) == len(names) and all(n in folded for n in names):
+            return None  # the same search again
+        found = [folded[m] for m in difflib.get_close_matches(name.lower(), list(folded), n=1, cutoff=least)]
     return found[0] if found else None
 
 

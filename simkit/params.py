@@ -14,6 +14,7 @@ from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.pose import IDENTITY, Pose
 
 T = TypeVar("T")
+_LARGEST = 1e100  # of a vector's components
 _FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
 _TRUE, _FALSE = {"true", "1"}, {"false", "0"}
 
@@ -30,6 +31,18 @@ class Params:
         diagnostics: where problems go; children share it.
     """
 
+    __slots__ = (
+        "_asked",
+        "_attributes_asked",
+        "_read",
+        "attributes",
+        "children",
+        "diagnostics",
+        "name",
+        "value",
+        "where",
+    )
+
     def __init__(
         self,
         name: str = "",
@@ -43,8 +56,9 @@ class Params:
         self.attributes = dict(attributes or {})
         self.children = list(children)
         self.diagnostics = diagnostics if diagnostics is not None else Diagnostics()
-        self._asked: set[str] = set()
-        self._attributes_asked: set[str] = set()
+        # a file has many more elements than anybody asks for something in
+        self._asked: set[str] | None = None
+        self._attributes_asked: set[str] | None = None
         self._read = False
 
     @classmethod
@@ -76,7 +90,10 @@ class Params:
 
     def child(self, name: str) -> Params | None:
         """The first child of that name, marked as read; None when absent."""
-        self._asked.add(name)
+        if self._asked is None:
+            self._asked = {name}
+        else:
+            self._asked.add(name)
         for c in self.children:
             if c.name == name:
                 c._read = True
@@ -89,7 +106,10 @@ class Params:
 
     def all(self, name: str) -> list[Params]:
         """All children of that name in document order, marked as read."""
-        self._asked.add(name)
+        if self._asked is None:
+            self._asked = {name}
+        else:
+            self._asked.add(name)
         found = [c for c in self.children if c.name == name]
         for c in found:
             c._read = True
@@ -97,7 +117,10 @@ class Params:
 
     def has(self, name: str) -> bool:
         """Whether a child of that name is there (does not count as reading it)."""
-        self._asked.add(name)
+        if self._asked is None:
+            self._asked = {name}
+        else:
+            self._asked.add(name)
         return any(c.name == name for c in self.children)
 
     @property
@@ -108,12 +131,12 @@ class Params:
     @property
     def asked(self) -> set[str]:
         """Names of children that a reader has asked for, present or not."""
-        return set(self._asked)
+        return set(self._asked or ())
 
     @property
     def attributes_asked(self) -> set[str]:
         """Names of attributes that a reader has asked for, present or not."""
-        return set(self._attributes_asked)
+        return set(self._attributes_asked or ())
 
     def copied(self) -> Params:
         """The same tree, unread, that can be changed without changing this one."""
@@ -123,6 +146,8 @@ class Params:
     def mark_all_read(self) -> None:
         """Says that this whole block is understood elsewhere."""
         self._read = True
+        if self.attributes:
+            self._attributes_asked = {*(self._attributes_asked or ()), *self.attributes}
         for c in self.children:
             c.mark_all_read()
 
@@ -142,8 +167,18 @@ class Params:
         finite: bool = True,
     ) -> float:
         """A number; out of `minimum`..`maximum`, NaN, or infinite where `finite`, is an error."""
+        found = self.child(name)
+        if found is None and not required:
+            return 0.0 if default is None else default
+        try:  # most of what files hold, so nothing is made that only a fault needs
+            if found is not None:
+                return _number(found.value, minimum, maximum, finite)
+        except ValueError:
+            pass
         allowed = "a number" + _range_text(minimum, maximum)
-        return self._value(name, default, 0.0, required, lambda p: _number(p.value, minimum, maximum, finite), allowed)
+        return self._value(
+            name, default, 0.0, required, lambda p: _number(" ".join(p.first_of(1)), minimum, maximum, finite), allowed
+        )
 
     def integer(
         self,
@@ -171,13 +206,13 @@ class Params:
     def vector(
         self, name: str, size: int, default: Sequence[float] | None = None, required: bool = False
     ) -> tuple[float, ...]:
-        """`size` finite numbers separated by white space."""
+        """`size` finite numbers separated by white space, none so large that its square is not a number."""
 
         def parse(p: Params) -> tuple[float, ...]:
-            parts = p.value.split()
+            parts = p.first_of(size)
             if len(parts) != size:
                 raise ValueError
-            return tuple(_number(v, None, None, True) for v in parts)
+            return tuple(_number(v, -_LARGEST, _LARGEST, True) for v in parts)
 
         fallback = None if default is None else tuple(float(v) for v in default)
         return self._value(name, fallback, (0.0,) * size, required, parse, f"{size} numbers")
@@ -205,10 +240,24 @@ class Params:
     # ------------------------------------------------------------------ attributes
 
     def attribute(self, name: str, default: str = "") -> str:
-        self._attributes_asked.add(name)
+        if self._attributes_asked is None:
+            self._attributes_asked = {name}
+        else:
+            self._attributes_asked.add(name)
         return self.attributes.get(name, default)
 
     # ------------------------------------------------------------------ this element's own text
+
+    def first_of(self, count: int) -> list[str]:
+        """The first words of this element's text; numbers that are too many are passed over, as Gazebo does."""
+        parts = self.value.split()
+        if len(parts) > count and all(map(_is_number, parts)):
+            shown = self.value if len(self.value) <= 60 else self.value[:57] + "..."
+            what = "number is" if count == 1 else f"{count} numbers are"
+            message = f"<{self.name}>{shown}</{self.name}> has {len(parts)} numbers, the first {what} used"
+            self.diagnostics.warning("SK-PARAM-006", message, self.where)
+            return parts[:count]
+        return parts
 
     def as_pose(self) -> Pose:
         """This element's text as a pose; raises ValueError."""
@@ -241,7 +290,7 @@ class Params:
             if ":" in c.name:
                 continue
             if not c._read:
-                yield c, did_you_mean(c.name, self._asked)
+                yield c, did_you_mean(c.name, self._asked or ())
             else:
                 yield from c.unread()
 
@@ -274,6 +323,14 @@ class Params:
         self.diagnostics.error("SK-PARAM-002", f"found {shown}, allowed is {allowed}", where)
 
 
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def _range_text(minimum: float | None, maximum: float | None) -> str:
     if minimum is not None and maximum is not None:
         return f" from {minimum:g} to {maximum:g}"
@@ -284,7 +341,7 @@ def _range_text(minimum: float | None, maximum: float | None) -> str:
 
 def _number(text: str, minimum: float | None, maximum: float | None, finite: bool) -> float:
     value = float(text)
-    if "_" in text or not text.isascii() or math.isnan(value) or (finite and math.isinf(value)):
+    if "_" in text or not text.isascii() or value != value or (finite and math.isinf(value)):
         raise ValueError(text)
     if (minimum is not None and value < minimum) or (maximum is not None and value > maximum):
         raise ValueError(text)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 Vector = npt.NDArray[np.float64]
+_set = object.__setattr__
 
 
 def _floats(values: Sequence[float] | Vector) -> list[float]:
@@ -106,14 +107,16 @@ class Pose:
         q = np.array(quaternion, dtype=np.float64)
         if p.shape != (3,) or q.shape != (4,):
             raise ValueError(f"Pose needs a position of 3 and a quaternion (w, x, y, z) of 4, got {p.shape}, {q.shape}")
-        norm = math.sqrt(float(q @ q))
-        if not (math.isfinite(norm) and norm > 1e-12 and all(map(math.isfinite, p.tolist()))):
+        norm = math.sqrt(q.dot(q))
+        x, y, z = p.tolist()
+        if not (1e-12 < norm < math.inf and math.isfinite(x) and math.isfinite(y) and math.isfinite(z)):
             raise ValueError(f"Pose needs finite numbers and a quaternion that is not zero, got {p}, {q}")
         if abs(norm - 1.0) > 1e-15:
             q = q / norm
-        p.flags.writeable = q.flags.writeable = False
-        object.__setattr__(self, "position", p)
-        object.__setattr__(self, "quaternion", q)
+        p.setflags(write=False)
+        q.setflags(write=False)
+        _set(self, "position", p)
+        _set(self, "quaternion", q)
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError("a Pose cannot be changed; make a new one")

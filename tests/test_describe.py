@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
+
+import pytest
 
 from simkit.description import describe_scene
 from simkit.diagnostics import Diagnostics
@@ -53,6 +56,22 @@ def test_a_world_lists_lights_and_diagnostics():
     assert [(d["code"], d["severity"], d["hint"]) for d in out["diagnostics"]] == [
         ("SK-SDF-011", "warning", "did you mean 'light'?")
     ]
+
+
+def test_a_world_lists_its_surroundings():
+    world = described(
+        """<sdf version="1.9"><world name="w"><magnetic_field>1e-5 2e-5 3e-5</magnetic_field>
+        <wind><linear_velocity>1 2 0</linear_velocity></wind>
+        <atmosphere type="adiabatic"><temperature>290</temperature><pressure>90000</pressure></atmosphere>
+        <spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>45</latitude_deg>
+        <longitude_deg>90</longitude_deg><elevation>400</elevation><heading_deg>0</heading_deg>
+        </spherical_coordinates></world></sdf>"""
+    )["worlds"][0]
+    assert (world["magnetic_field"], world["wind"]) == ([1e-5, 2e-5, 3e-5], [1, 2, 0])
+    assert (world["atmosphere"]["temperature"], world["atmosphere"]["pressure"]) == (290, 90000)
+    place = world["spherical_coordinates"]
+    assert (place["latitude"], place["elevation"]) == (pytest.approx(math.pi / 4), 400)
+    assert described('<sdf version="1.9"><world name="w"/></sdf>')["worlds"][0]["spherical_coordinates"] is None
 
 
 def test_a_kind_that_nothing_simulates_shows_its_camera_and_its_scan():

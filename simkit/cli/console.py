@@ -76,7 +76,9 @@ def print_diagnostics(
         )
     if notes:
         names = ", ".join(f"{code} × {count}" if count > 1 else code for code, count in sorted(notes.items()))
-        target.print(f"{sum(notes.values())} notes ({names}); --verbose shows them", style="dim")
+        total = sum(notes.values())
+        say = f"{total} notes ({names}); --verbose shows them" if total > 1 else f"1 note ({names}); --verbose shows it"
+        target.print(say, style="dim")
 
 
 def _print_entry(equal: list[Diagnostic], target: Console) -> None:

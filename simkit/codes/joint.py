@@ -6,7 +6,7 @@ from simkit.codes import Code, Example
 from simkit.codes.sketch import INERTIAL, joint, model, python, world
 
 _AXIS = "<axis><xyz>0 0 1</xyz></axis>"
-_HOLLOW = """<robot name="robot">
+_FLAG = """<robot name="robot">
   <link name="base">
     <inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
   </link>
@@ -14,6 +14,7 @@ _HOLLOW = """<robot name="robot">
   <joint name="pole" type="continuous"><parent link="base"/><child link="flag"/><axis xyz="0 0 1"/></joint>
 </robot>
 """
+_HOLLOW = '<robot name="robot"><link name="base"/></robot>'
 _RING = f"""
 <link name="base">{INERTIAL}</link>
 <link name="left">{INERTIAL}</link>
@@ -121,9 +122,9 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-JOINT-010",
         "error",
-        "a link moves by itself and has no mass, and what it carries does not weigh on it",
-        "an `<inertial>`, or a fixed joint",
-        Example(_HOLLOW, suffix=".urdf"),
+        "a link moves freely and has no mass, and what it carries does not weigh on it",
+        "an `<inertial>`, or a base that is fixed",
+        python(f"import simkit\nsimkit.load({_HOLLOW!r}, base='floating')\n"),
     ),
     Code(
         "SK-JOINT-011",
@@ -163,5 +164,12 @@ CODES: tuple[Code, ...] = (
         "a chain of more links below each other than can be simulated",
         "",
         python(_CHAIN),
+    ),
+    Code(
+        "SK-JOINT-016",
+        "warning",
+        "a joint moves nothing that has mass; it gets an armature, so that it can be stepped",
+        "an `<inertial>`, or a fixed joint",
+        Example(_FLAG, suffix=".urdf"),
     ),
 )

@@ -72,4 +72,18 @@ CODES: tuple[Code, ...] = (
         "put it into the element that it is meant for",
         model(f'<link name="base">2.5 {INERTIAL}</link>'),
     ),
+    Code(
+        "SK-SDF-039",
+        "warning",
+        "a light without a type is taken as a point",
+        "",
+        world('<light name="lamp"/>'),
+    ),
+    Code(
+        "SK-PARAM-006",
+        "warning",
+        "more numbers than are needed; the first are used, as Gazebo uses them",
+        "",
+        world("<gravity>0 0 -9.8 1</gravity>"),
+    ),
 )

@@ -309,4 +309,28 @@ CODES: tuple[Code, ...] = (
             files={"robot.urdf": f'<robot name="r">{_BASE}</robot>\n'},
         ),
     ),
+    Code(
+        "SK-URDF-030",
+        "warning",
+        "a link has two sensors of one name, as after a xacro macro that is called twice; the first is used",
+        "",
+        _robot(
+            f'{_BASE}\n  <gazebo reference="base">\n    <sensor name="s" type="imu"/>\n'
+            '    <sensor name="s" type="imu"/>\n  </gazebo>'
+        ),
+    ),
+    Code(
+        "SK-URDF-031",
+        "warning",
+        "a part that other readers of URDF pass over with a message; it says what stands for it here",
+        "",
+        _link('<collision><geometry><plane normal="0 0 1"/></geometry></collision>'),
+    ),
+    Code(
+        "SK-URDF-032",
+        "warning",
+        "no link of the robot has mass, or none that a planar or floating joint does not carry, so its base is fixed",
+        "an `<inertial>`; `base='floating'` is an error for such a robot",
+        _robot('<link name="base"/>'),
+    ),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -66,10 +67,22 @@ class Assets:
             texture.data = np.ascontiguousarray(pixels).tobytes()
         return name
 
-    def material(self, emission: float, specular: float, shininess: float = 0.3, texture: str = "") -> str:
-        """How a geom reflects; its colour stays with the geom."""
+    def material(
+        self,
+        emission: float,
+        specular: float,
+        shininess: float = 0.3,
+        texture: str = "",
+        repeat: tuple[float, float] = (1.0, 1.0),
+    ) -> str:
+        """How a geom reflects; its colour stays with the geom.
+
+        Args:
+            texture: an image that it wears.
+            repeat: how often the image is there, across and up, on shapes without texture coordinates of their own.
+        """
         values = (round(emission, 4), round(specular, 4), round(shininess, 4))
-        name = "material#" + _digest(*values, texture) + ("#textured" if texture else "")
+        name = _material_name(*values, texture, *repeat)
         if texture:
             self.used.add(("texture", texture))
         if self._is_new("material", name):
@@ -78,6 +91,7 @@ class Assets:
             material.rgba = (1.0, 1.0, 1.0, 1.0)
             if texture:
                 material.textures[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)] = texture
+                material.texrepeat = repeat
         return name
 
     @staticmethod
@@ -149,6 +163,12 @@ def with_inline_meshes(spec: mujoco.MjSpec) -> mujoco.MjSpec:
             mesh.usertexcoord = uv.reshape(-1)
             mesh.userfacetexcoord = faces.reshape(-1)
     return spec
+
+
+@lru_cache(maxsize=1024)
+def _material_name(*values: Any) -> str:
+    texture = values[3]
+    return "material#" + _digest(*values) + ("#textured" if texture else "")
 
 
 def _digest(*values: Any) -> str:

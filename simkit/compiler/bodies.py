@@ -35,6 +35,8 @@ def add_body(parent: Any, link: SceneLink, pose: Pose, written: Written | None, 
         body.mass, body.inertia = (LEAST_MASS, (LEAST_INERTIA,) * 3) if least else (0.0, (0.0, 0.0, 0.0))
         return body
     body.mass, body.ipos = written.mass, written.com
+    if written.exact is not None:
+        body.simple = 0  # its axes are turned after the compile, which a body marked as simple does not survive
     if any(written.inertia):
         body.fullinertia = written.inertia
     else:

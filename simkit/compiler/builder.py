@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import mujoco
 
 from simkit.compiler.assets import Assets, with_inline_meshes
 from simkit.compiler.bodies import drop_twin
-from simkit.compiler.first_state import damp, place_followers, report_idle
+from simkit.compiler.first_state import damp, place_followers, steady_idle
 from simkit.compiler.inertia import put_back
-from simkit.compiler.lights import add_light
+from simkit.compiler.lights import add_light, refine_for_lamps
 from simkit.compiler.masks import FIRST_OWN_BIT, PAIRS_MOST
 from simkit.compiler.mjcf import (
     adopt_settings,
@@ -37,10 +37,14 @@ from simkit.compiler.names import (
 from simkit.compiler.options import apply_options, apply_size, choose_islands, set_extent
 from simkit.compiler.overlaps import report_overlaps
 from simkit.compiler.servo import add_actuator, add_armature, tune
+from simkit.compiler.soundness import check_numbers
 from simkit.compiler.tree import WORLD
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import SceneJoint, SceneModel, SceneWorld
+
+MOST_MOVING: Final = 10_000
+"""Links; the engine's compiler takes time in proportion to their square, 7 s for 4000 that are free."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +76,6 @@ class SpecBuilder:
         self.assets = Assets(self.spec)
         self.records: dict[str, ModelRecord] = {"": ModelRecord(SceneModel(name="", scoped="", pose_world=Pose()))}
         self._names: NameMap | None = None
-        self._is_compiled = False
         self._cut: list[tuple[SceneJoint, bool]] = []
         apply_options(self.spec, world, diagnostics)
         own = stands_in(world)
@@ -317,9 +320,6 @@ class SpecBuilder:
     def compile(self) -> Compiled:
         """The model with its first state. Raises LoadError when MuJoCo refuses it."""
         self._before()
-        if not self._is_compiled and self.world.mjcf is None:
-            choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
-        self._is_compiled = True
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             try:
@@ -366,7 +366,6 @@ class SpecBuilder:
         other.records = {name: record.copy() for name, record in self.records.items()}
         other._names = None
         other._cut = list(self._cut)
-        other._is_compiled = self._is_compiled
         return other
 
     def written_out(self) -> mujoco.MjSpec:
@@ -374,8 +373,19 @@ class SpecBuilder:
         return with_inline_meshes(self.spec.copy())
 
     def _before(self) -> None:
+        moving = sum(not link.static for r in self.records.values() for link in r.links.values())
+        if moving > MOST_MOVING:
+            self.diagnostics.error(
+                "SK-PHYS-029",
+                f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute",
+                self.world.where,
+                "make what never moves <static>",
+            )
+            self.diagnostics.raise_if_errors()
         colliding = sum(not o.is_visual for r in self.records.values() for o in r.geoms.values())
         apply_size(self.spec, colliding)
+        if self.world.mjcf is None:
+            choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
 
     def _refused(self, problem: ValueError) -> Any:
         self.diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {problem}", self.world.where)
@@ -384,11 +394,14 @@ class SpecBuilder:
 
     def _finished(self, model: mujoco.MjModel, data: mujoco.MjData | None) -> Compiled:
         put_back(model, {name: exact for r in self.records.values() for name, exact in r.exact.items()})
+        check_numbers(model, self.diagnostics, self.world.where)
         set_extent(model)
+        if self.world.mjcf is None:
+            refine_for_lamps(model)
         records = list(self.records.values())
         regroup(model, records)
         damp(model, records)
-        report_idle(model, records, self.diagnostics)
+        steady_idle(self.spec, model, records, self.diagnostics)
         tune(self.spec, model, [ref for r in records for ref in r.actuators])
         names = NameMap.of(records, model)
         if data is None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -43,6 +44,7 @@ class Contact:
     conaffinity: int
 
 
+@lru_cache(maxsize=1024)
 def priority_of(mu: float) -> int:
     """A rank that rises strictly as `mu` [0, 10] falls: the order of float32 numbers is that of their bits."""
     return int(np.float32(MU_MOST).view(np.int32)) - int(np.float32(max(0.0, min(mu, MU_MOST))).view(np.int32))

@@ -17,7 +17,7 @@ from simkit.compiler.heightmap import heights
 from simkit.compiler.looks import look_of
 from simkit.compiler.mesh import load_mesh, once
 from simkit.compiler.mesh_collision import bodies_of, hull_of
-from simkit.compiler.mesh_part import Floats, Ints, MeshFileError, MeshPart, joined
+from simkit.compiler.mesh_part import Floats, Ints, MeshFileError, MeshPart, has_area, joined
 from simkit.compiler.names import GeomOwner, ModelRecord
 from simkit.compiler.shapes import cone, polyline, polyline_pieces, primitive_of, sizes_of
 from simkit.compiler.shapes_textured import textured
@@ -156,15 +156,15 @@ class GeomWriter:
 
     def _part(self, place: Place, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any) -> None:
         """Triangles of one material: the file's material wins over the mesh's own."""
-        corners = part.vertices[part.faces]
-        area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-        if not float(area.sum()) > LEAST_AREA:
+        if not has_area(part, LEAST_AREA):
             name = f" ({part.name})" if part.name else ""
             text = f"{_title(visual.geometry)}: a part{name} whose triangles have no area is not drawn"
             once(self.diagnostics, "note", "SK-MESH-013", text, visual.where)
             return
         look = self._drawn(visual, part, pixels if part.uv is not None else None)
         vertices, faces, uv = part.vertices, part.faces, part.uv if self.assets.has_texture(look["material"]) else None
+        if uv is not None and visual.material is not None:
+            uv = 0.5 + (uv - 0.5) / visual.material.texture_scale
         if visual.material is not None and visual.material.double_sided:
             faces = np.vstack([faces, faces[:, ::-1] + len(vertices)])
             vertices, uv = np.vstack([vertices, vertices]), None if uv is None else np.vstack([uv, uv])
@@ -177,9 +177,11 @@ class GeomWriter:
         if visual.material is None and part is not None:
             pixels = part.texture
         texture = self.assets.texture(pixels) if pixels is not None else ""
+        scale = visual.material.texture_scale if visual.material is not None and part is None else (1.0, 1.0)
+        repeat = (1.0 / abs(scale[0]), 1.0 / abs(scale[1]))
         return {
             "rgba": look.rgba,
-            "material": self.assets.material(look.emission, look.specular, look.shininess, texture),
+            "material": self.assets.material(look.emission, look.specular, look.shininess, texture, repeat),
             "contype": 0,
             "conaffinity": 0,
             "group": VISUAL,

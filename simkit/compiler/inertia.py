@@ -37,8 +37,9 @@ SLIGHT: Final = 0.01
 MENDED: Final = 0.01
 """A negative moment of at most this part of the largest is repaired; beyond it is an error."""
 
-LEAST_RADIUS: Final = 1e-3
-"""Radius of gyration [m] of the smallest body that a moment is raised to."""
+LEAST_RADIUS: Final = 1e-4
+"""Radius of gyration [m] of the smallest body that a moment is raised to: a robot of point masses keeps its dynamics
+to a millionth."""
 
 LEAST_MASS: Final = 1e-9
 """[kg]; MuJoCo moves nothing lighter than 1e-15."""

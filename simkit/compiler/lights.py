@@ -16,7 +16,11 @@ FARTHEST: Final = 100.0
 """Directional lights are drawn from at most this far [m]: their place only frames the shadow map."""
 
 _FARTHEST_LAMP: Final = 1e4
+_MOST_FADING: Final = 1e9  # of ranges and attenuations, which the engine holds in single precision
 _EVERYWHERE: Final = 180.0  # the cutoff at which OpenGL's spot is a point light
+_FINEST, _COARSEST, _SQUARES = 0.1, 1.0, 200  # [m], [m], along a plane
+_MOST_QUADS: Final = 20_000  # of all boxes
+_LEAST_SLICES, _MOST_SLICES = 4, 16  # along an edge of a box; the renderer's own are 4
 _SPOT: Final = (math.radians(30.0), math.radians(40.0))  # the renderers' own cone where a file gives none
 
 
@@ -46,8 +50,9 @@ def add_light(body: Any, light: SceneLight, pose: Pose, shadows: bool) -> None:
     made.diffuse = np.clip(np.asarray(light.diffuse[:3]) * light.intensity, 0.0, 10.0)
     made.specular = np.clip(np.asarray(light.specular[:3]) * light.intensity, 0.0, 10.0)
     if light.type != "directional":
-        reach, constant, linear, quadratic = light.attenuation
-        made.range = max(reach, 1e-3)
+        reach, *parts = light.attenuation
+        made.range = min(max(reach, 1e-3), _MOST_FADING)
+        constant, linear, quadratic = (min(max(part, -_MOST_FADING), _MOST_FADING) for part in parts)
         made.attenuation = (constant, linear, quadratic) if constant + linear + quadratic > 0.0 else (1.0, 0.0, 0.0)
         made.cutoff = _EVERYWHERE
     if light.type == "spot":
@@ -69,3 +74,19 @@ def spot_of(light: SceneLight) -> tuple[float, float]:
     share = math.cos(min(middle, math.radians(89.0)))
     exponent = falloff * math.log(0.5) / math.log(share) if share < 1.0 - 1e-9 else 0.0
     return cutoff, min(128.0, max(0.0, exponent))
+
+
+def refine_for_lamps(model: mujoco.MjModel) -> None:
+    """Divides planes and boxes more finely where there are lamps: the renderer lights corners, and blends between them.
+
+    A spot that falls between the corners of the squares of 1 m would not be seen at all.
+    """
+    lamps = np.asarray(model.light_type) != int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
+    if not lamps.any():
+        return
+    planes = np.flatnonzero(model.geom_type == int(mujoco.mjtGeom.mjGEOM_PLANE))
+    longest = 2.0 * model.geom_size[planes, :2].max(axis=1)
+    model.geom_size[planes, 2] = np.clip(longest / _SQUARES, _FINEST, _COARSEST)
+    boxes = max(1, int(np.count_nonzero(model.geom_type == int(mujoco.mjtGeom.mjGEOM_BOX))))
+    slices = int(math.sqrt(_MOST_QUADS / (6 * boxes)))
+    model.vis.quality.numquads = min(_MOST_SLICES, max(_LEAST_SLICES, slices))

@@ -17,6 +17,7 @@ import tempfile
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -48,23 +49,27 @@ class Converted:
 
 def cache_directory() -> Path:
     """`SIMKIT_CACHE_DIR`, else the platform's own place for caches."""
-    given = os.environ.get("SIMKIT_CACHE_DIR")
+    return _directory(*map(os.environ.get, ("SIMKIT_CACHE_DIR", "XDG_CACHE_HOME", "LOCALAPPDATA", "HOME")))
+
+
+@lru_cache(maxsize=8)
+def _directory(given: str | None, caches: str | None, windows: str | None, _home: str | None) -> Path:
     if given:
         return Path(given)
     if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", str(Path.home()))) / "simkit"
+        return Path(windows or Path.home()) / "simkit"
     if sys.platform == "darwin":
         return Path.home() / "Library" / "Caches" / "simkit"
-    return Path(os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))) / "simkit"
+    return Path(caches if caches is not None else Path.home() / ".cache") / "simkit"
 
 
 def mesh_key(file: Path, content: bytes) -> str:
     """A name for the conversion of this content; for formats that name further files the folder counts as well."""
     suffix = file.suffix.lower()
     place = "" if suffix in _SELF_CONTAINED else str(file.parent)
-    digest = hashlib.blake2b(f"{FORMAT}\n{suffix}\n{place}\n".encode("utf-8", "surrogateescape"), digest_size=20)
+    digest = hashlib.sha256(f"{FORMAT}\n{suffix}\n{place}\n".encode("utf-8", "surrogateescape"))
     digest.update(content)
-    return digest.hexdigest()
+    return digest.hexdigest()[:40]
 
 
 def load_converted(key: str) -> Converted | None:
@@ -151,7 +156,7 @@ def _check(content: bytes | memoryview) -> bytes:
 
 
 def _file_of(kind: str, key: str) -> Path:
-    return cache_directory() / kind / f"{key}.bin"
+    return Path(f"{cache_directory()}{os.sep}{kind}{os.sep}{key}.bin")
 
 
 def _stat(path: str) -> tuple[int, int] | None:

@@ -16,6 +16,7 @@ import numpy as np
 from simkit.compiler.mesh_cache import FORMAT, load_arrays, store_arrays
 from simkit.compiler.mesh_decompose import THRESHOLD, DecompositionError, decomposed, is_available
 from simkit.compiler.mesh_part import Floats, Ints
+from simkit.compiler.mesh_volume import filled_ratio, volume_of
 from simkit.compiler.static import (
     PRISMS_MOST,
     convex_pieces,
@@ -30,6 +31,10 @@ from simkit.compiler.static import (
 LARGEST_RATIO: Final = 1.1
 """Hulls with more than this share of the mesh's volume are a warning instead of a note."""
 
+LARGEST_ESTIMATE: Final = 1.25
+"""The same for meshes that are not closed, whose volume is an estimate."""
+
+_REPORTS: Final = 2  # counted up when findings change, which are kept with the bodies
 _DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
 _KEPT: Final = 128
 _memory: OrderedDict[str, Bodies] = OrderedDict()
@@ -62,7 +67,7 @@ def bodies_of(vertices: Floats, faces: Ints, *, fixed: bool, optimization: str =
         optimization: "", "convex_hull" or "convex_decomposition", as SDF's `<mesh>` says.
         most: pieces of a decomposition.
     """
-    settings = (FORMAT, fixed, optimization, most if optimization == "convex_decomposition" else 0, THRESHOLD)
+    settings = (FORMAT, _REPORTS, fixed, optimization, most if optimization == "convex_decomposition" else 0, THRESHOLD)
     key = _key(vertices, faces, (*settings, is_available() if optimization == "convex_decomposition" else None))
     if key not in _memory:
         _memory[key] = _load(key) or _store(key, _worked_out(vertices, faces, fixed, optimization, most))
@@ -102,26 +107,21 @@ def _decomposed(vertices: Floats, faces: Ints, pieces: tuple[tuple[Floats, Ints]
     return "note", "SK-MESH-004", f"collides as {len(pieces)} convex pieces ({share})", ""
 
 
-def volume_of(vertices: Floats, faces: Ints) -> float:
-    """Volume of a closed mesh [m³]; 0 for an open one."""
-    import trimesh
-
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    return abs(float(mesh.volume)) if mesh.is_watertight else 0.0
-
-
 def _by_pieces(vertices: Floats, faces: Ints) -> Bodies:
     sets = [points for points in hulls(vertices, faces) if hull_volume(points) > 0.0] or [vertices]
     own = volume_of(vertices, faces)
     whole = sum(hull_volume(points) for points in sets)
     what = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
-    if not own:
-        said = "note", "SK-MESH-004", f"collides as {what} (the mesh is not closed)", _DECOMPOSE
-    else:
+    if own:
         ratio = whole / own
         severity = "warning" if ratio > LARGEST_RATIO else "note"
-        text = f"collides as {what}, {ratio:.2f} times the mesh's volume"
-        said = severity, "SK-MESH-004", text, _DECOMPOSE if severity == "warning" else ""
+        share = f"{ratio:.2f} times the mesh's volume"
+    else:
+        ratio = filled_ratio(vertices, faces, sets)
+        severity = "warning" if ratio > LARGEST_ESTIMATE else "note"
+        share = f"about {ratio:.1f} times what the mesh encloses (it is not closed)"
+    text = f"collides as {what}, {share}"
+    said = severity, "SK-MESH-004", text, _DECOMPOSE if severity == "warning" else ""
     findings = (said,) if not own or whole > 1.005 * own else ()
     return Bodies(_hulls(sets), True, findings)
 
@@ -189,10 +189,10 @@ def _is_stout_prism(points: Floats) -> bool:
 
 
 def _key(vertices: Floats, faces: Ints, settings: Any) -> str:
-    digest = hashlib.blake2b(repr(settings).encode(), digest_size=20)
+    digest = hashlib.sha256(repr(settings).encode())
     digest.update(np.ascontiguousarray(vertices).data)
     digest.update(np.ascontiguousarray(faces).data)
-    return digest.hexdigest()
+    return digest.hexdigest()[:40]
 
 
 def _load(key: str) -> Bodies | None:

@@ -39,10 +39,11 @@ class ModelWriter:
     def write(self, joints: list[SceneJoint]) -> None:
         """Adds the whole model with `joints` (its own and those that tie it to the world)."""
         model = self.record.scene
-        static = {link.scoped for link, is_static in _links(model, False) if is_static}
-        moving = [link for link, is_static in _links(model, False) if not is_static]
-        self.joints.links = {link.scoped: link for link, _ in _links(model, False)}
-        for link, is_static in _links(model, False):
+        links = list(_links(model, False))
+        static = {link.scoped for link, is_static in links if is_static}
+        moving = [link for link, is_static in links if not is_static]
+        self.joints.links = {link.scoped: link for link, _ in links}
+        for link, is_static in links:
             if is_static:
                 self._static_link(link)
         for joint in joints:
@@ -139,10 +140,9 @@ class ModelWriter:
             else:
                 pose, above = self.joints.links[parent].pose_world.inverse() @ link.pose_world, bodies[parent]
             body = bodies[link.scoped] = add_body(above, link, pose, inertials.get(link.scoped), needs_mass=needs_mass)
-            binding = LinkBinding(link.scoped, link.scoped, IDENTITY, link, model.scoped, False)
-            if is_free:
-                binding = replace(binding, free_joint=self._free(body, link))
-            elif link.kinematic or any(link.velocity_decay):
+            free_joint = self._free(body, link) if is_free else ""
+            binding = LinkBinding(link.scoped, link.scoped, IDENTITY, link, model.scoped, False, free_joint=free_joint)
+            if not is_free and (link.kinematic or any(link.velocity_decay)):
                 self._only_when_free(link)
             self.record.links[link.scoped] = binding
             self._fill(Place(body, IDENTITY, False, tree.masses[tree.root_of(link.scoped)], link.scoped), link)
@@ -224,21 +224,24 @@ class ModelWriter:
     def _needs_mass(self, link: SceneLink, tree: Tree, is_free: bool) -> bool:
         """Whether a link has to weigh something: it moves by itself, and no link that is one with it has mass.
 
-        Without mass anywhere below there is nothing that an effort could move, which is an error.
+        Without mass anywhere below there is nothing that an effort could move: an error where the link moves freely;
+        a joint gets an armature (`first_state.steady_idle`).
         """
         edge = tree.edges.get(link.scoped)
         moves = is_free or (edge is not None and edge.joint.type != "fixed")
         if not moves or not is_massless(link.inertial):
             return moves
         if tree.carried[link.scoped] <= 0.0:
-            how = f"moves on joint {edge.joint.scoped} ({edge.joint.type})" if edge else "moves freely"
-            self.diagnostics.error(
-                "SK-JOINT-010",
-                f"link {link.scoped} {how} and has no mass, nor has anything that it carries",
-                edge.joint.where if edge and edge.joint.where.line else link.where,
-                "give the link an <inertial>, or fix it"
-                + ("" if edge else ": it belongs to a model whose base can be 'fixed'"),
-            )
+            if edge is None:
+                self.diagnostics.error(
+                    "SK-JOINT-010",
+                    f"link {link.scoped} moves freely and has no mass, nor has anything that it carries",
+                    link.where,
+                    "give the link an <inertial>, or fix it: it belongs to a model whose base can be 'fixed'",
+                )
+                return True
+            self.record.unladen.add(link.scoped)
+            self.record.massless[link.scoped] = edge.joint.scoped
             return True
         if not self._has_rigid_mass(link.scoped, tree):
             self.record.massless[link.scoped] = edge.joint.scoped if edge else ""

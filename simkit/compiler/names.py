@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.pose import IDENTITY, Pose
@@ -162,6 +162,7 @@ class ModelRecord:
         damped: free joint -> decay rates [1/s] of its linear and angular velocity.
         exact: link -> the mass it was written with [kg] and the tensor [kg·m²] that the compiled model gets.
         massless: link without mass on a moving joint -> that joint's scoped name.
+        unladen: those of them that carry nothing with mass either.
         own_bit: the collision bit by which the model's links know each other; 0 where excludes do that.
         attached: of models in MuJoCo's own format: scoped name -> prefix of what they brought.
     """
@@ -182,6 +183,7 @@ class ModelRecord:
     assets: set[tuple[str, str]] = field(default_factory=set)
     damped: dict[str, tuple[float, float]] = field(default_factory=dict)
     massless: dict[str, str] = field(default_factory=dict)
+    unladen: set[str] = field(default_factory=set)
     exact: dict[str, tuple[float, tuple[float, float, float, float, float, float]]] = field(default_factory=dict)
     own_bit: int = 0
     attached: dict[str, str] = field(default_factory=dict)
@@ -204,6 +206,7 @@ class ModelRecord:
             assets=set(self.assets),
             damped=dict(self.damped),
             massless=dict(self.massless),
+            unladen=set(self.unladen),
             exact=dict(self.exact),
             attached=dict(self.attached),
         )
@@ -227,6 +230,13 @@ class NameMap:
         self.links, self.joints, self.lights = links, joints, lights
         self._owners: dict[int, GeomOwner] = {}
         self._model: mujoco.MjModel | None = None
+        self._shared: dict[str, Any] = {}
+
+    def shared(self, what: str, make: Callable[[], Any]) -> Any:
+        """What many sensors find out of the compiled model in the same way, made once for all of them."""
+        if what not in self._shared:
+            self._shared[what] = make()
+        return self._shared[what]
 
     def link(self, scoped: str) -> LinkBinding:
         """Raises KeyError, which names the closest."""

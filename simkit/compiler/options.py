@@ -14,6 +14,12 @@ from simkit.scene import SceneWorld
 CONTACT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
 """Impedance of contacts and limits. A higher one settles no better and makes a robot rock longer on its casters."""
 
+SHORTEST_STEP: Final = 1e-9
+"""[s]; time is counted in nanoseconds."""
+
+LONGEST_STEP: Final = 100.0
+"""[s]; nobody means more."""
+
 LONGEST_ELLIPTIC_STEP: Final = 0.0025
 """[s]; beyond it contacts are pyramids."""
 
@@ -30,9 +36,11 @@ def contact_time_constant(timestep: float) -> float:
 def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnostics) -> None:
     """Sets step, gravity, integrator, solver flags, compiler conventions and the surroundings' light."""
     step = world.physics.max_step_size
-    if not (math.isfinite(step) and step > 0.0):
+    if not (math.isfinite(step) and SHORTEST_STEP <= step <= LONGEST_STEP):
         diagnostics.error(
-            "SK-PHYS-015", f"max_step_size is {step}; a positive number of seconds is needed", world.physics.where
+            "SK-PHYS-015",
+            f"max_step_size is {step}; a positive number of seconds is needed, from {SHORTEST_STEP:g} to {LONGEST_STEP:g}",
+            world.physics.where,
         )
         step = 0.001
     option = spec.option
@@ -75,9 +83,12 @@ def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:
 
 
 def choose_islands(spec: mujoco.MjSpec, trees: int) -> None:
-    """Constraint islands cost a single robot 8 % and pay only where several trees move."""
+    """Constraint islands cost a single robot 8 % and pay only where several trees move; without them nothing sleeps."""
+    flag = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     if trees < 2:
-        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+        spec.option.disableflags |= flag
+    else:
+        spec.option.disableflags &= ~flag
 
 
 def set_extent(model: mujoco.MjModel) -> None:

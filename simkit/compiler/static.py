@@ -92,9 +92,8 @@ def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
 
 def is_inside_out(vertices: Floats, faces: Ints) -> bool:
     """Whether a closed piece turns its faces inwards: the walls of a room or of a cavity, not a body."""
-    import trimesh
-
-    return float(trimesh.Trimesh(vertices, faces, process=False).volume) < 0.0
+    a, b, c = (np.asarray(vertices, float)[np.asarray(faces)[:, i]] for i in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) < 0.0  # six times the volume
 
 
 def thinned(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:
@@ -149,6 +148,8 @@ def _fills_its_hull(mesh: Any, facet: Any, boundary: Any) -> bool:
     from scipy.spatial import ConvexHull, QhullError
 
     points = mesh.vertices[np.unique(boundary)]
+    if len(points) < 3:  # faces that lie on each other bound nothing
+        return False
     u, v, normal = _axes(mesh.face_normals[facet[0]])
     if np.ptp(points @ normal) > 1e-6 * max(1.0, float(mesh.scale)):
         return False

@@ -30,6 +30,7 @@ LARGER: Final = 5.0
 """Longest edge of the box around a link's collisions over that around its visuals."""
 
 LEAST_VOLUME: Final = 1e-9
+LEAST_EXTENT: Final = 1e-9
 """[m³]; a density of less is about rounding."""
 
 
@@ -83,7 +84,7 @@ def _size(model: Any, state: Any, links: list[LinkBinding], found: Diagnostics) 
     corners = _corners(model, state, (g for link in links for g in (*link.geoms, *link.visuals)))
     if corners is None or mass <= 0:
         return
-    farthest = float(np.linalg.norm(corners - centre, axis=1).max())
+    farthest = max(float(np.linalg.norm(corners - centre, axis=1).max()), LEAST_EXTENT)
     gyration = float(np.sqrt(max(np.linalg.eigvalsh(tensor)[2], 0.0) / mass))
     if gyration > WIDEST * farthest:
         found.warning(

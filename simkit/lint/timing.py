@@ -50,7 +50,10 @@ def pattern(rate: float, step: float) -> str:
     """
     if rate <= 0 or step <= 0 or not math.isfinite(rate):
         return ""
-    steps = 1 / (Fraction(rate).limit_denominator(10**6) * Fraction(step).limit_denominator(10**9))
+    each = Fraction(rate).limit_denominator(10**6) * Fraction(step).limit_denominator(10**9)
+    if each == 0:  # once in weeks, or at steps of less than a nanosecond
+        return ""
+    steps = 1 / each
     if steps.denominator == 1:
         return ""
     if steps < 1:

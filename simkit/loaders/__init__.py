@@ -12,6 +12,7 @@ from simkit.loaders.base import Loader, LoadRequest, MeshReader
 from simkit.loaders.foreign import ALLOWED, said_of_root
 from simkit.loaders.resolver import Resolver
 from simkit.loaders.turtlebot3 import chosen_name
+from simkit.loaders.uris import obstacle, siblings
 from simkit.loaders.xacro import expand, needs_expansion
 from simkit.loaders.xml import Document, parse_file, parse_text
 from simkit.pose import Pose
@@ -90,6 +91,10 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
     if not str(source):
         diagnostics.error("SK-LOAD-002", "the source is empty; it is a path or XML text")
         return None
+    if problem := obstacle(path):
+        shown = str(path) if len(str(path)) < 200 else f"{str(path)[:200]}..."
+        diagnostics.error("SK-LOAD-002", f"cannot read the file: {problem}", Where(shown))
+        return None
     if path.is_dir():
         model = resolver.model_file(path, Where(str(path)), diagnostics)
         return None if model is None else parse_file(model, diagnostics)
@@ -99,7 +104,7 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
             return None
         bundled = resolver.find_world(name) or resolver.find_model(name)
         if bundled is None:
-            near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
+            near = siblings(path)
             near += resolver.bundled_names()
             diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), did_you_mean(path.name, near))
             return None

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
+from simkit.loaders.files import read_bounded
 from simkit.loaders.xml import MAX_BYTES
 
 KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
@@ -133,8 +134,7 @@ def find_inertias(path: Path) -> tuple[bytes, list[InertiaText]]:
         OSError: it cannot be read.
         ValueError: it is no XML in UTF-8 whose numbers can be read.
     """
-    with path.open("rb") as stream:
-        data = stream.read(MAX_BYTES + 1)
+    data = read_bounded(path, MAX_BYTES)
     if len(data) > MAX_BYTES:
         raise ValueError(f"is larger than {MAX_BYTES} bytes")
     data.decode("utf-8")

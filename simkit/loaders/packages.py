@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
+from simkit.loaders.files import read_bounded
+
 _UPWARDS = 6  # folders above a file in which its package.xml is looked for
 _DEEP = 4  # folders below a search path
 _FOLDERS_MOST = 20_000
@@ -66,8 +68,7 @@ def package_name(folder: Path) -> str:
     """The name that a folder's `package.xml` gives; empty where it has none."""
     file = folder / "package.xml"
     try:
-        with file.open("rb") as stream:
-            found = _NAME.search(stream.read(65536))
+        found = _NAME.search(read_bounded(file, 65536))
     except OSError:
         return ""
     return "" if found is None else found.group(1).decode()

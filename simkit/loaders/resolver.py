@@ -6,12 +6,24 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
+from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from urllib.parse import unquote
 
 from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
 from simkit.loaders.packages import package_of, package_places
-from simkit.loaders.uris import escapes, first_of, is_elsewhere, is_there, listed, normal, without_find
+from simkit.loaders.uris import (
+    escapes,
+    first_of,
+    is_count,
+    is_elsewhere,
+    is_of_elsewhere,
+    is_there,
+    listed,
+    normal,
+    without_find,
+)
 from simkit.params import Params
 
 _SEARCH_VARIABLES = (
@@ -70,14 +82,12 @@ class Resolver:
 
     # ------------------------------------------------------------------ URIs
 
-    def mesh(
-        self, uri: str, where: Where, relative_to: Path | None
-    ) -> tuple[Path | None, list[Diagnostic]]:
+    def mesh(self, uri: str, where: Where, relative_to: Path | None) -> tuple[Path | None, list[Diagnostic]]:
         """The mesh file that `uri` names, and what is to be said of it.
 
         As in Gazebo a world goes on without a mesh that is not there, but that is a warning and so an error where
         warnings are; a URI that is refused, because it leaves the resource folders or has an unknown scheme, is one
-        always.
+        always. An absolute path of another machine, which leads nowhere on this one, is just not there.
         """
         found = Diagnostics()
         path = self.resolve(uri, where, found, relative_to)
@@ -86,7 +96,8 @@ class Resolver:
             path = None
         said = []
         for problem in found:
-            if problem.severity == "error" and (self.missing_meshes or problem.code in _NOT_HERE):
+            is_missing = self.missing_meshes or problem.code in _NOT_HERE or is_of_elsewhere(uri)
+            if problem.severity == "error" and is_missing:
                 lost = "; what has this shape is neither drawn nor touched"
                 problem = replace(problem, severity="warning", message=problem.message + lost)
             said.append(problem)
@@ -168,7 +179,7 @@ class Resolver:
         if len(uri) > 4096 or "\0" in uri or any(len(part.encode(errors="replace")) > 255 for part in uri.split("/")):
             return None, []  # no file has such a name
         if uri.startswith(("http://", "https://")):
-            return first_of(list(self._fuel(uri)))
+            return first_of(self._fuel(uri))
         uri = without_find(uri)
         scheme, separator, rest = uri.partition("://")
         if not separator:
@@ -182,8 +193,8 @@ class Resolver:
             return None, None
         named = self._named(rest, relative_to)
         if scheme == "model":
-            return first_of([*named, *self._packaged(rest, relative_to)])
-        return first_of([*self._packaged(rest, relative_to), *named, *self._renamed(rest, relative_to)])
+            return first_of(chain(named, self._packaged(rest, relative_to)))
+        return first_of(chain(self._packaged(rest, relative_to), named, self._renamed(rest, relative_to)))
 
     def _exists(self, text: str, relative_to: Path | None) -> bool:
         return relative_to is not None and is_there(relative_to / text)
@@ -275,7 +286,7 @@ class Resolver:
         for cache in _fuel_caches():
             for folder in (cache / server / owner / kind / name, cache / server / owner.lower() / kind / name.lower()):
                 versions = sorted(
-                    (p for p in folder.glob("*") if p.name.isdigit()), key=lambda p: int(p.name), reverse=True
+                    (p for p in folder.glob("*") if is_count(p.name)), key=lambda p: int(p.name), reverse=True
                 )
                 yield from (v / inside for v in versions if version in ("tip", v.name))
                 if not versions:
@@ -291,7 +302,10 @@ class Resolver:
     # ------------------------------------------------------------------ models
 
     def model_file(self, folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
-        """The SDF file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`."""
+        """The file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
+
+        In a folder without either: its robot in URDF, or its one model in MuJoCo's own format.
+        """
         from simkit.loaders.xml import parse_file
 
         for manifest in (folder / "model.config", folder / "manifest.xml"):
@@ -312,7 +326,11 @@ class Resolver:
         for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
             if (folder / name).is_file():
                 return folder / name
-        diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf", where)
+        models = _mjcf_models(folder)
+        if len(models) == 1:
+            return models[0]
+        held = f"; of {', '.join(m.name for m in models[:8])} none is named {folder.name}.xml" if models else ""
+        diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{held}", where)
         return None
 
     def find_model(self, name: str) -> Path | None:
@@ -349,16 +367,31 @@ class Resolver:
         return sorted({*worlds, *models})
 
 
+def _mjcf_models(folder: Path) -> list[Path]:
+    """What may be the model of a folder in MuJoCo's own format: the one of its name, else all but the scenes."""
+    try:
+        files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and f.is_file())
+    except OSError:
+        return []
+    named = [f for f in files if f.stem in (folder.name, "model")]
+    return named[:1] or [f for f in files if not f.stem.startswith("scene")] or files
+
+
+@lru_cache(maxsize=1)
+def _package() -> Path:
+    return Path(__file__).resolve().parents[1]
+
+
 def bundled_folders(kind: str) -> list[Path]:
     """The folders `assets` or `worlds` that travel with simkit, beside or inside the package."""
-    package = Path(__file__).resolve().parents[1]
+    package = _package()
     return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
 
 
 def sdf_version(text: str) -> tuple[int, int] | None:
     """`"1.6"` as (1, 6); None where it is no version."""
     parts = text.strip().split(".")
-    if len(parts) < 2 or not all(p.isdigit() for p in parts[:2]):
+    if len(parts) < 2 or not all(is_count(p) for p in parts[:2]):
         return None
     return int(parts[0]), int(parts[1])
 

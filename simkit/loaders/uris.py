@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import stat
+from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -41,16 +44,22 @@ def escapes(rest: str) -> bool:
     return rest.split("/")[0] in ("..", ".")
 
 
-def first_of(candidates: list[Path]) -> tuple[Path | None, list[Path]]:
-    """The first place that is there, and every place once."""
-    unique = list(dict.fromkeys(candidates))
-    return next((c for c in unique if is_there(c)), None), unique
+def first_of(candidates: Iterable[Path]) -> tuple[Path | None, list[Path]]:
+    """The first place that is there, and every place looked at, once; none is thought of after the first."""
+    looked: dict[Path, None] = {}
+    for candidate in candidates:
+        if candidate not in looked:
+            looked[candidate] = None
+            if is_there(candidate):
+                return candidate, list(looked)
+    return None, list(looked)
 
 
 def is_there(path: Path) -> bool:
-    """Whether a file or folder is there; a name that no file could have is not."""
+    """Whether a file or folder is there; a device or a pipe is neither, nor has a name that no file could have one."""
     try:
-        return path.exists()
+        mode = path.stat().st_mode
+        return stat.S_ISREG(mode) or stat.S_ISDIR(mode)
     except (OSError, ValueError):
         return False
 
@@ -62,3 +71,35 @@ def listed(places: list[Path] | None) -> str:
     shown = [str(p) for p in places[:8]]
     more = f" and {len(places) - 8} more" if len(places) > 8 else ""
     return "; looked in " + ", ".join(shown) + more
+
+
+def obstacle(path: Path) -> str:
+    """What keeps a path from being looked at, in words; empty where nothing does, or nothing is there."""
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return ""
+    except OSError as problem:
+        return problem.strerror or str(problem)
+    except ValueError:
+        return "no file can have such a name"
+    return ""
+
+
+def siblings(path: Path) -> list[str]:
+    """Names in the folder of a path, as far as it may be listed, of a thousand at most."""
+    try:
+        return [p.name for p in islice(path.parent.iterdir(), 1000)]
+    except OSError:
+        return []
+
+
+def is_count(text: str) -> bool:
+    """Whether a text is a whole number of a few digits (`int` takes neither `²` nor thousands of digits)."""
+    return text.isascii() and text.isdigit() and len(text) < 10
+
+
+def is_of_elsewhere(uri: str) -> bool:
+    """Whether a URI is an absolute path that leads nowhere on this machine, as tools that export meshes write them."""
+    path = Path(unquote(uri.removeprefix("file://")))
+    return path.is_absolute() and not os.path.lexists(path)

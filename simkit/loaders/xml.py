@@ -11,6 +11,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders.files import read_bounded
 from simkit.loaders.foreign import is_foreign
 from simkit.params import Params
 
@@ -47,17 +48,6 @@ class _Refused(Exception):
         self.code = code
 
 
-class _Open:
-    """An element whose end tag has not come yet."""
-
-    __slots__ = ("attributes", "children", "line", "name", "text")
-
-    def __init__(self, name: str, attributes: dict[str, str], line: int) -> None:
-        self.name, self.attributes, self.line = name, attributes, line
-        self.children: list[Params] = []
-        self.text: list[str] = []
-
-
 class _Reader:
     """Builds the tree from expat's events and keeps the bounds."""
 
@@ -69,7 +59,7 @@ class _Reader:
         self.parser.EndElementHandler = self.end
         self.parser.CharacterDataHandler = self.characters
         self.parser.EntityDeclHandler = self.entity
-        self.stack: list[_Open] = []
+        self.stack: list[tuple[Params, list[str]]] = []  # elements whose end tag has not come yet, and their texts
         self.root: Params | None = None
         self.count = 0
 
@@ -78,7 +68,9 @@ class _Reader:
         body = data if data.startswith((b"\xff\xfe", b"\xfe\xff")) else data.lstrip()
         self.offset = data[: len(data) - len(body)].count(b"\n")
         self.parser.Parse(body, True)
-        return self.root
+        # the parser and its reader hold each other: the tree is not to wait for the garbage collector with them
+        root, self.root = self.root, None
+        return root
 
     def at(self, error: expat.ExpatError) -> int:
         """The line of an error."""
@@ -88,25 +80,37 @@ class _Reader:
     def line(self) -> int:
         return self.parser.CurrentLineNumber + self.offset
 
+    @property
+    def inside(self) -> str:
+        """The element that is open, for a message."""
+        if not self.stack:
+            return ""
+        element = self.stack[-1][0]
+        return f" (inside <{element.name}> of line {element.where.line})"
+
     def start(self, name: str, attributes: dict[str, str]) -> None:
         self.count += 1
         if self.count > MAX_ELEMENTS:
             raise _Refused("SK-XML-002", f"more than {MAX_ELEMENTS} elements")
         if len(self.stack) >= MAX_DEPTH:
             raise _Refused("SK-XML-002", f"elements nested deeper than {MAX_DEPTH}")
-        self.stack.append(_Open(name, attributes, self.line))
+        where = Where(self.file, self.parser.CurrentLineNumber + self.offset)
+        element = Params(name, "", attributes, (), where, self.diagnostics)
+        if self.stack:
+            self.stack[-1][0].children.append(element)
+        self.stack.append((element, []))
 
     def characters(self, text: str) -> None:
         if self.stack:
-            self.stack[-1].text.append(text)
+            texts = self.stack[-1][1]
+            if texts or not text.isspace():
+                texts.append(text)
 
     def end(self, _name: str) -> None:
-        done = self.stack.pop()
-        where = Where(self.file, done.line)
-        element = Params(done.name, "".join(done.text).strip(), done.attributes, done.children, where, self.diagnostics)
-        if self.stack:
-            self.stack[-1].children.append(element)
-        else:
+        element, texts = self.stack.pop()
+        if texts:
+            element.value = "".join(texts).strip()
+        if not self.stack:
             self.root = element
 
     def entity(self, name: str, *_rest: object) -> None:
@@ -142,10 +146,8 @@ def parse_text(text: str | bytes, diagnostics: Diagnostics, file: str | None = N
                 "SK-XML-004", f"not strictly XML, read all the same: {text_of}", Where(file, reader.at(error))
             )
             return root
-        opened = f" (inside <{reader.stack[-1].name}> of line {reader.stack[-1].line})" if reader.stack else ""
-        diagnostics.error(
-            "SK-XML-001", f"broken XML: {expat.ErrorString(error.code)}{opened}", Where(file, reader.at(error))
-        )
+        text_of = expat.ErrorString(error.code)
+        diagnostics.error("SK-XML-001", f"broken XML: {text_of}{reader.inside}", Where(file, reader.at(error)))
     except _Refused as refused:
         diagnostics.error(refused.code, str(refused), Where(file, reader.line))
     except (LookupError, ValueError) as error:
@@ -170,9 +172,7 @@ def _second_try(data: bytes, file: str | None, diagnostics: Diagnostics) -> Para
 def parse_file(path: Path, diagnostics: Diagnostics) -> Document | None:
     """Reads one XML file; None, with an error recorded, when it cannot be read."""
     try:
-        with path.open("rb") as stream:
-            # Not by the size it says it has: a device or a pipe says 0.
-            text = stream.read(MAX_BYTES + 1)
+        text = read_bounded(path, MAX_BYTES)
         if len(text) > MAX_BYTES:
             diagnostics.error("SK-XML-002", f"the file is larger than {MAX_BYTES} bytes", Where(str(path)))
             return None

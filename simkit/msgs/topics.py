@@ -6,6 +6,9 @@ import re
 
 
 def valid_topic(name: str) -> str:
-    """`name` as an absolute topic the way gz-transport makes one: spaces become `_`, other bad characters go."""
+    """`name` as an absolute topic the way gz-transport makes one: spaces become `_`, other bad characters go.
+
+    What that leaves empty between two slashes goes too.
+    """
     kept = re.sub(r"[^A-Za-z0-9_/.:-]|:=", "", name.replace(" ", "_"))
-    return "/" + kept.strip("/")
+    return "/" + re.sub("/{2,}", "/", kept).strip("/")

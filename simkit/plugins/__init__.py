@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 import re
 from collections.abc import Mapping, Sequence
@@ -120,7 +119,7 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
     if near:
         hint = f"did you mean {spelled[near]!r}?"
     else:
-        nearest = difflib.get_close_matches(names[0] if names else "", sorted(spelled), n=1, cutoff=0.0)
-        hint = f"no name is near; the closest known one is {spelled[nearest[0]]!r}" if nearest else ""
+        nearest = closest(names[0] if names else "", spelled, least=0.0)
+        hint = f"no name is near; the closest known one is {spelled[nearest]!r}" if nearest else ""
     message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is left out"
     diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)

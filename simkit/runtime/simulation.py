@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import copy
 import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import mujoco
-import numpy as np
-
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError
 from simkit.pose import Pose
-from simkit.runtime import sleep
 from simkit.runtime.clock import Clock
 from simkit.runtime.entities import Entities, place_light
 from simkit.runtime.joint import Joint
@@ -21,18 +16,18 @@ from simkit.runtime.light import Light
 from simkit.runtime.link import Link
 from simkit.runtime.loop import Loop, guarded
 from simkit.runtime.model import Model
-from simkit.runtime.overlap import RATE, harden, is_any_gentle, soften
+from simkit.runtime.overlap import soften
 from simkit.runtime.parts import Structure
-from simkit.runtime.physics import CONTROL, STALE, HeldState, Physics
+from simkit.runtime.physics import CONTROL, HeldState, Physics
 from simkit.runtime.population import ModelLoader, PartsMaker, Population
 from simkit.runtime.random import RandomStreams
+from simkit.runtime.schedule import fill
 from simkit.runtime.scheduler import Scheduler
-from simkit.runtime.snapshot import Snapshot
+from simkit.runtime.snapshot import Snapshot, bring_back, take
 from simkit.runtime.topics import Callback, Subscription, TopicBus
 from simkit.runtime.weld import set_weld
+from simkit.runtime.wrenches import StandingWrenches
 from simkit.scene import SceneLink, SceneWorld
-
-_LIMIT_GRID = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
 
 
 class Simulation:
@@ -59,7 +54,7 @@ class Simulation:
         self._diagnostics = diagnostics
         self.originals: dict[str, Any] = {}
         self._exact_limits: list[Joint] = []
-        self._standing: dict[str, dict[str, Any]] = {}
+        self._standing = StandingWrenches(self)
         self._closed = False
         self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
         self._loop = Loop(self.physics, self.bus, self._fill)
@@ -142,57 +137,17 @@ class Simulation:
     def snapshot(self) -> Snapshot:
         """The whole state; a run restored to it repeats bit for bit."""
         self._check_open()
-        data = copy.copy(self.mj_data)
-        fields = {f: getattr(self.mj_model, f).copy() for f in self.originals}
-        fields["gravity"] = self.mj_model.opt.gravity.copy()
-        structure, physics = self.structure, self.physics
-        return Snapshot(
-            tick=self.tick,
-            structure=structure,
-            data=data,
-            fields=fields,
-            sensors=[(s, s.get_state()) for s in structure.all_sensors()],
-            plugins=[(p, p.get_state()) for p in structure.all_plugins()],
-            handles=[(h, h.get_state()) for h in self.entities.stateful()]
-            + [(m, m._rest) for m in self.entities.tables["model"].values()],
-            inbox=tuple(self.bus.inbox),
-            one_shot=physics.one_shot,
-            last_applied=physics.last_applied.copy(),
-            sleep=physics.sleep.get_state(),
-        )
+        return take(self)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone."""
         self._check_open()
-        if snapshot.structure is not self.structure:
-            self.originals.clear()
-            self._population.adopt(snapshot.structure)
-        model, physics = self.mj_model, self.physics
-        for field, original in self.originals.items():
-            getattr(model, field)[:] = snapshot.fields.get(field, original)
-        for field in snapshot.fields:
-            if field != "gravity" and field not in self.originals:
-                self.touch(field)[:] = snapshot.fields[field]
-        model.opt.gravity[:] = snapshot.fields["gravity"]
-        mujoco.mj_copyData(self.mj_data, model, snapshot.data)
-        physics.tick = snapshot.tick
-        physics.changed(STALE)
-        physics.clear_warnings()
-        physics.one_shot = snapshot.one_shot
-        physics.last_applied = snapshot.last_applied.copy()
-        physics.sleep.set_state(snapshot.sleep)
-        self.bus.inbox.clear()
-        self.bus.inbox.extend(snapshot.inbox)
-        for handle, state in snapshot.handles:
-            if isinstance(handle, Model):
-                handle._rest = state
-            else:
-                handle.set_state(state)
-        for sensor, state in snapshot.sensors:
-            sensor.set_state(state)
-        for plugin, state in snapshot.plugins:
-            plugin.set_state(state)
+        bring_back(self, snapshot)
         self.reschedule()
+
+    def adopt(self, structure: Structure) -> None:
+        """Goes on with a structure that was before, with all its state still to be put back."""
+        self._population.adopt(structure)
 
     # ------------------------------------------------------------------ what is in it
 
@@ -386,18 +341,11 @@ class Simulation:
             wrenches: by scoped link name; a link that is not there is waited for.
             are_applied: the state has them already (it was restored).
         """
-        self._standing[owner] = dict(wrenches)
-        self.stand_wrenches(are_applied)
+        self._standing.set(owner, wrenches, are_applied=are_applied)
 
     def stand_wrenches(self, are_applied: bool = False) -> None:
         """Lets the standing wrenches push the links that are there now."""
-        links = self.names.links
-        total: dict[int, Any] = {}
-        for wrenches in self._standing.values():
-            for name, wrench in wrenches.items():
-                if name in links and links[name].body > 0:
-                    total[links[name].body] = total.get(links[name].body, 0.0) + np.asarray(wrench, float)
-        self.physics.stand(total, are_applied=are_applied)
+        self._standing.push(are_applied=are_applied)
 
     # ------------------------------------------------------------------ schedule
 
@@ -411,34 +359,7 @@ class Simulation:
         self._loop.reschedule()
 
     def _fill(self, scheduler: Scheduler) -> None:
-        """Fills the scheduler from what is there, in document order."""
-        if self.physics.sleep.watches:
-            scheduler.every(sleep.RATE, self._look_for_rest, "after")
-        if is_any_gentle(self.mj_model):
-            scheduler.every(RATE, lambda _: harden(self), "sense")
-        for joint in self.entities.tables["joint"].values():
-            if joint in self._exact_limits:
-                scheduler.every(None, joint.clamp_velocity, "sense")
-            elif self._coasts_over_limit(joint):
-                scheduler.every(_LIMIT_GRID, joint.clamp_velocity, "sense")
-        for sensor in self.structure.all_sensors():
-            scheduler.every(sensor.update_rate, sensor.sample, "sense")
-        for plugin in self.structure.all_plugins():
-            for hook, rate, phase in (
-                ("before_step", plugin.before_step_rate, "before"),
-                ("after_step", plugin.after_step_rate, "after"),
-            ):
-                if plugin.has_hook(hook):
-                    scheduler.every(rate, guarded(self, plugin, hook), phase)  # type: ignore[arg-type]
-
-    def _look_for_rest(self, _tick: int) -> None:
-        if not self.physics.sleep.rests:
-            self.physics.sleep.look(self.physics.fresh())
-
-    def _coasts_over_limit(self, joint: Joint) -> bool:
-        """Whether a joint has a velocity limit of the file that no servo keeps."""
-        limits = joint._velocity_limit
-        return joint.dof > 0 and bool((limits < 1e6).any())
+        fill(self, scheduler, self._exact_limits)
 
     def limit_velocity(self, joint: Joint) -> None:
         """Holds a joint's velocity limit at every step from now on."""

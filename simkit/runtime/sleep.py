@@ -59,7 +59,8 @@ class Sleep:
         self._model, self._data = model, data
         self.enabled = enabled
         self.is_drowsy = self.rests = self.wants_all_awake = self.watches = self._can_rest = False
-        self._gravity = model.opt.gravity.tolist()
+        self._gravity_now = model.opt.gravity  # a view, to be looked at before every stretch of steps
+        self._gravity = self._gravity_now.tolist()
         self._places = [data.qpos, *((data.mocap_pos, data.mocap_quat) if model.nmocap else ())]
         self._pushes = [data.qvel, data.qfrc_applied, data.xfrc_applied]
         if not enabled:
@@ -205,7 +206,7 @@ class Sleep:
 
     def notice_gravity(self) -> bool:
         """Wakes everything where gravity is another than before; True then."""
-        gravity = self._model.opt.gravity.tolist()
+        gravity = self._gravity_now.tolist()
         if gravity == self._gravity:
             return False
         self._gravity = gravity

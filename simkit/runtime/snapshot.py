@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import mujoco
+
+from simkit.runtime.model import Model
 from simkit.runtime.parts import Structure
+from simkit.runtime.physics import STALE
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
 
 
 @dataclass(frozen=True)
@@ -31,3 +39,57 @@ class Snapshot:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Snapshot:
         return self
+
+
+def take(sim: Simulation) -> Snapshot:
+    """The state of a simulation as it is now."""
+    model, structure, physics = sim.mj_model, sim.structure, sim.physics
+    data = copy.copy(sim.mj_data)
+    fields = {f: getattr(model, f).copy() for f in sim.originals}
+    fields["gravity"] = model.opt.gravity.copy()
+    return Snapshot(
+        tick=sim.tick,
+        structure=structure,
+        data=data,
+        fields=fields,
+        sensors=[(s, s.get_state()) for s in structure.all_sensors()],
+        plugins=[(p, p.get_state()) for p in structure.all_plugins()],
+        handles=[(h, h.get_state()) for h in sim.entities.stateful()]
+        + [(m, m._rest) for m in sim.entities.tables["model"].values()],
+        inbox=tuple(sim.bus.inbox),
+        one_shot=physics.one_shot,
+        last_applied=physics.last_applied.copy(),
+        sleep=physics.sleep.get_state(),
+    )
+
+
+def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
+    """Puts a simulation into the state of a snapshot; its schedule is the caller's to make anew."""
+    if snapshot.structure is not sim.structure:
+        sim.originals.clear()
+        sim.adopt(snapshot.structure)
+    model, physics = sim.mj_model, sim.physics
+    for field, original in sim.originals.items():
+        getattr(model, field)[:] = snapshot.fields.get(field, original)
+    for field in snapshot.fields:
+        if field != "gravity" and field not in sim.originals:
+            sim.touch(field)[:] = snapshot.fields[field]
+    model.opt.gravity[:] = snapshot.fields["gravity"]
+    mujoco.mj_copyData(sim.mj_data, model, snapshot.data)
+    physics.tick = snapshot.tick
+    physics.changed(STALE)
+    physics.clear_warnings()
+    physics.one_shot = snapshot.one_shot
+    physics.last_applied = snapshot.last_applied.copy()
+    physics.sleep.set_state(snapshot.sleep)
+    sim.bus.inbox.clear()
+    sim.bus.inbox.extend(snapshot.inbox)
+    for handle, state in snapshot.handles:
+        if isinstance(handle, Model):
+            handle._rest = state
+        else:
+            handle.set_state(state)
+    for sensor, state in snapshot.sensors:
+        sensor.set_state(state)
+    for plugin, state in snapshot.plugins:
+        plugin.set_state(state)

@@ -79,6 +79,8 @@ class Material:
         script: name of the material script, or empty.
         roughness: of a physically based material, from 0 (mirror) to 1; None where not given.
         double_sided: whether faces are seen from behind as well.
+        texture_scale: size of the picture in parts of what wears it, across and up, about its middle; with 0.5 it is
+            there twice each way.
     """
 
     ambient: Colour = (1.0, 1.0, 1.0, 1.0)
@@ -89,6 +91,7 @@ class Material:
     script: str = ""
     roughness: float | None = None
     double_sided: bool = False
+    texture_scale: tuple[float, float] = (1.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)

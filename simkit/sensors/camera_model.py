@@ -13,6 +13,8 @@ from simkit.pose import Vector
 from simkit.sensors.renderer import View
 
 MOST_PIXELS = 4096
+_MOST_PIXELS = 1e9  # of focal lengths and principal points
+_MOST_BENT = 1e3  # of coefficients of a distortion
 _WIDEST = 3.1
 
 
@@ -103,8 +105,9 @@ def read_camera_model(params: Params, width: int, height: int) -> CameraModel:
     if lens is not None:
         intrinsics, projection = lens.child("intrinsics"), lens.child("projection")
         if intrinsics is not None:
-            fx, fy = intrinsics.number("fx", 277.0, minimum=1e-3), intrinsics.number("fy", 277.0, minimum=1e-3)
-            cx, cy = intrinsics.number("cx", 160.0), intrinsics.number("cy", 120.0)
+            fx, fy = (intrinsics.number(name, 277.0, minimum=1e-3, maximum=_MOST_PIXELS) for name in ("fx", "fy"))
+            cx = intrinsics.number("cx", 160.0, minimum=-_MOST_PIXELS, maximum=_MOST_PIXELS)
+            cy = intrinsics.number("cy", 120.0, minimum=-_MOST_PIXELS, maximum=_MOST_PIXELS)
             hfov = math.atan(cx / fx) + math.atan((width - cx) / fx)
             if intrinsics.number("s", 0.0) != 0.0:
                 message = "a skew <s> is not used: pixels are rectangular"
@@ -123,7 +126,7 @@ def _read_distortion(params: Params) -> Distortion:
     if block is None:
         return Distortion()
     names = ("k1", "k2", "k3", "p1", "p2")
-    distortion = Distortion(*(block.number(name, 0.0) for name in names))
+    distortion = Distortion(*(block.number(name, 0.0, minimum=-_MOST_BENT, maximum=_MOST_BENT) for name in names))
     if distortion and block.vector("center", 2, (0.5, 0.5)) != (0.5, 0.5):
         message = "a <center> of the distortion is not used: it is about the principal point"
         block.diagnostics.warning("SK-SENSOR-007", message, block.where)

@@ -182,8 +182,10 @@ class Lidar(Sensor):
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)
         link = compiled.names.link(self.scene.parent)
-        self._fan.bind(compiled.model, self._body, link.visuals if self.sees_visuals else link.ray_geoms)
-        self._retro = self._reflectances(compiled)
+        own = link.visuals if self.sees_visuals else link.ray_geoms
+        self._fan.bind(compiled.model, compiled.names, self._body, own)
+        kind = "visuals" if self.sees_visuals else "collisions"
+        self._retro = compiled.names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
 
     def _reflectances(self, compiled: Any) -> Vector | None:
         """`laser_retro` by geom id (the last entry, index -1, is for no hit), or None where all are 0."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import mujoco
@@ -36,11 +37,12 @@ class RayFan:
         self._groups = np.zeros(6, dtype=np.uint8)
         self._groups[list(groups)] = 1
 
-    def bind(self, model: Any, body: int, own_geoms: Sequence[int]) -> None:
-        """Says what is not hit: the geoms of a moving body, or some geoms of the world."""
+    def bind(self, model: Any, names: Any, body: int, own_geoms: Sequence[int]) -> None:
+        """Says what is not hit: the geoms of a moving body, or some geoms of the world; `names` are the model's."""
         self._exclude = body if body > 0 else -1
         self._hidden = list(own_geoms) if body <= 0 else []
-        self._roots, self._wide = _bounds_to_widen(model, self._groups)
+        bounds = partial(_bounds_to_widen, model, self._groups)
+        self._roots, self._wide = names.shared(f"bounds of groups {self._groups.tolist()}", bounds)
         self._narrow = model.bvh_aabb[self._roots]
 
     def cast(self, model: Any, data: Any, origin: Vector, rotation: Vector) -> None:

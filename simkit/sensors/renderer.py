@@ -300,10 +300,25 @@ def render_view(
     wide = half * width / height
     distance = max(float(np.linalg.norm(middle - place)), 1e-6)
     view = View(width, height, -wide, wide, -half, half, min(0.01 * extent, 0.1 * distance), distance + 50.0 * extent)
+    is_dark = model.nlight == 0
+
+    def prepare(scene: Any) -> None:
+        if is_dark:
+            _light_from_eye(scene)
+        if decorate is not None:
+            decorate(scene)
+
     colours, _ = renderer_of(sim).render(
-        model, sim.fresh_data(), place, look_at(place, middle), view, depth=False, decorate=decorate
+        model, sim.fresh_data(), place, look_at(place, middle), view, depth=False, decorate=prepare
     )
     return colours.copy()
+
+
+def _light_from_eye(scene: Any) -> None:
+    """A bare model has no sun: without one, all of its sides look the same."""
+    for light in scene.lights[: scene.nlight]:
+        if light.headlight and not light.diffuse.any():
+            light.diffuse = (0.6, 0.6, 0.6)
 
 
 def look_at(eye: Vector, target: Vector) -> Vector:

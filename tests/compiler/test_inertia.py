@@ -56,7 +56,7 @@ def test_zero_moments_become_those_of_a_small_body_and_the_largest_stays() -> No
     found = repair(inertial(0, 0, 0.1, mass=10))
     assert found.verdict == "mended"
     assert found.new == pytest.approx((0.05, 0.05, 0.1))
-    assert repair(inertial(0, 0, 0, mass=2)).new == pytest.approx((2e-6, 2e-6, 2e-6))
+    assert repair(inertial(0, 0, 0, mass=2)).new == pytest.approx((2e-8, 2e-8, 2e-8))
 
 
 @pytest.mark.parametrize(("smallest", "verdict"), [(-0.0009, "mended"), (-0.0011, "beyond"), (-1.0, "beyond")])

@@ -176,6 +176,42 @@ def test_a_spot_lights_what_lies_in_its_cone(tmp_path):
     assert seen(tmp_path, material=WHITE, light=lamp("spot", "3 -3 0 0 0 0", cone))[50, 50].max() < 30
 
 
+def test_a_small_spot_on_a_large_plane_is_seen(tmp_path):
+    floor = "<plane><normal>0 -1 0</normal><size>100 100</size></plane>"
+    cone = "<spot><inner_angle>.3</inner_angle><outer_angle>.5</outer_angle><falloff>1</falloff></spot>"
+    spot = lamp("spot", "0.7 -3 0.3 0 0 0", cone)  # 0.77 m across its middle
+    image = seen(tmp_path, floor, WHITE, spot, eye=(0.0, -6.0, 0.0))
+    assert image[:, :, 0].max() > 60
+
+
+def test_a_script_scales_its_picture(tmp_path):
+    picture(tmp_path / "p.png", (255, 0, 0), (0, 255, 0), side=64)
+    (tmp_path / "s.material").write_text(
+        "material Own/Small { technique { pass { texture_unit { texture p.png \n scale 0.5 0.5 \n } } } }"
+    )
+    wears = "<material><script><uri>s.material</uri><name>Own/Small</name></script></material>"
+    image = seen(tmp_path, BOX, wears)  # the picture's upper half is red; now it is there twice each way
+    # about the middle of the box lies the middle of the picture
+    rows = [28 + round(44 * part) for part in (0.12, 0.37, 0.62, 0.87)]
+    assert [is_like(image[row, 50], (255, 1, 1)) for row in rows] == [False, True, False, True]
+
+
+def test_a_bare_model_is_lit_from_the_eye(tmp_path):
+    file = tmp_path / "m.sdf"
+    file.write_text(
+        '<sdf version="1.9"><model name="m"><static>true</static><link name="l"><visual name="v"><geometry>'
+        f"<sphere><radius>0.5</radius></sphere></geometry>{WHITE}</visual></link></model></sdf>"
+    )
+    with simkit.load(file) as sim:
+        try:
+            from simkit.build import render_view
+
+            image = render_view(sim, 100, 100, eye=(0.0, -3.0, 0.0), target=(0, 0, 0), vertical_fov=0.8).astype(int)
+        except SimkitError as problem:
+            pytest.skip(str(problem))
+    assert image[50, 50, 0] - image[50, 32, 0] > 25
+
+
 def test_a_light_that_is_off_does_not_shine(tmp_path):
     off = lamp("point", "0 -2 0 0 0 0", "<light_on>false</light_on>")
     assert seen(tmp_path, material=WHITE, light=off)[50, 50].max() < 30

@@ -12,7 +12,8 @@ import trimesh
 from mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
 from simkit.compiler import mesh_collision, mesh_decompose
-from simkit.compiler.mesh_collision import bodies_of, volume_of
+from simkit.compiler.mesh_collision import bodies_of
+from simkit.compiler.mesh_volume import filled_ratio, volume_of
 from simkit.compiler.shapes import polyline
 from simkit.pose import Pose
 from simkit.scene import Mesh, Polyline, Sphere
@@ -59,6 +60,30 @@ def test_a_ball_does_not_fall_into_the_notch_of_a_hull_and_the_user_hears_of_it(
     # hull: the square without the triangle over the notch
     assert f"{(1.0 - 0.7 * 0.7 / 2) / (1.0 - 0.7 * 0.7):.2f} times the mesh's volume" in found.message
     assert "convex_decomposition" in found.hint
+
+
+def test_of_a_mesh_that_is_not_closed_the_user_hears_how_much_the_hull_fills(make, compiled, tmp_path):
+    trough = trimesh.creation.box((1, 1, 0.2))
+    for x in (-0.4, 0.4):
+        wall = trimesh.creation.box((0.2, 1, 1))
+        wall.apply_translation((x, 0, 0.4))
+        trough = trimesh.util.concatenate([trough, wall])
+    trough.merge_vertices()
+    trough.export(tmp_path / "trough.stl")
+    c = compiled(make.solid("m", Mesh(tmp_path / "trough.stl", "trough.stl")))
+    (found,) = [d for d in c.builder.diagnostics if "MESH" in d.code]
+    assert (found.severity, found.code) == ("warning", "SK-MESH-004")
+    # 1.1 m³ beside 0.2 m³ for the floor and 0.18 m³ for each wall
+    assert "about 1.9 times what the mesh encloses" in found.message or "about 2.0 times" in found.message
+
+
+def test_the_estimate_for_an_open_mesh_is_near_the_true_share():
+    ring = trimesh.creation.torus(0.4, 0.12)
+    true = ring.convex_hull.volume / ring.volume
+    assert filled_ratio(ring.vertices, ring.faces, [ring.vertices]) == pytest.approx(true, rel=0.2)
+    ball = trimesh.creation.icosphere()
+    holed = ball.faces[np.arange(len(ball.faces)) % 10 != 0]
+    assert filled_ratio(ball.vertices, holed, [ball.vertices]) == pytest.approx(1.0, abs=0.05)
 
 
 def test_a_hull_that_was_asked_for_is_no_surprise(make, compiled, corner):

@@ -27,7 +27,7 @@ def refused(path: Path) -> simkit.Diagnostic:
         (b"", "an empty file"),
         (b" \n\t", "an empty file"),
         (b"\xef\xbb\xbf", "an empty file"),
-        (gzip.compress(b"<sdf/>"), "a gzip file; unpack it first"),
+        (gzip.compress(b"<sdf/>", mtime=0), "a gzip file; unpack it first"),
         (b"PK\x03\x04rest", "a zip archive; unpack it first"),
         (b"\x89PNG\r\n", "a PNG picture"),
         (b"solid part\nfacet normal 0 0 1", "an STL mesh"),

@@ -46,6 +46,45 @@ def test_a_merged_model_gives_its_content_away(load, write):
     assert [f.name for f in scene.model.frames] == ["_merged__box____model__"]
 
 
+ROBOT = """<robot name="r"><link name="base"><inertial><mass value="2"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
+BALL = '<mujoco model="ball"><worldbody><body name="b"><freejoint/><geom size="0.1"/></body></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize(
+    "inside",
+    ['<include merge="true"><uri>model://r</uri></include>',
+     '<include><uri>model://r</uri><experimental:params><link element_id="base" action="remove"/>'
+     "</experimental:params></include>"],
+)  # fmt: skip
+def test_a_robot_in_urdf_is_neither_merged_nor_changed(load, write, inside):
+    root = write("models/r/r.urdf", ROBOT).parents[1]
+    _, found = load(f'<sdf version="1.9"><model name="m"><link name="own"/>{inside}</model></sdf>', (root,))
+    errors = [d for d in found if d.severity == "error"]
+    assert [d.code for d in errors] == ["SK-URDF-029"]
+    assert "simkit convert" in errors[0].hint
+
+
+@pytest.mark.parametrize(
+    ("names", "chosen"),
+    [
+        (("robot.xml", "scene.xml", "package.xml"), "robot.xml"),
+        (("hand.xml", "r.xml"), "r.xml"),
+        (("hand.xml", "arm.xml"), None),
+    ],
+)
+def test_a_folder_with_one_model_of_mujocos_own_format_is_that_model(load, write, names, chosen):
+    for name in names:
+        file = write(f"models/r/{name}", BALL if name == chosen or chosen is None else BALL.replace('"b"', '"other"'))
+    world = '<sdf version="1.9"><world name="w"><include><uri>model://r</uri></include></world></sdf>'
+    scene, found = load(world, (file.parents[1],))
+    if chosen is None:
+        assert [d.code for d in found if d.severity == "error"] == ["SK-URI-005"]
+        assert "arm.xml, hand.xml" in found[0].message
+    else:
+        assert [link.name for link in scene.world.models[0].links] == ["b"]
+
+
 @pytest.mark.parametrize(
     "ground", ["model://ground_plane", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane"]
 )

@@ -247,6 +247,29 @@ def test_every_mistake_of_a_file_is_said_in_one_pass_with_its_line(load):
     assert len(said(found, "SK-URDF-013")) == 2
 
 
+def test_of_a_second_link_of_one_name_nothing_more_is_said(load):
+    link = '<link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>'
+    found = load(f'<robot name="r">{link}{link}</robot>')[1]
+    assert [d.code for d in found if d.severity != "note"] == ["SK-URDF-002"]
+
+
+def test_faults_that_other_readers_pass_over_are_warnings(load):
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
+    scene, found = load(
+        f"""<robot name="r"><link name="a">{inertial}<visual><geometry><box size="1 1 1"/></geometry>
+        <material name="m"><texture/><color rgba="1 0 0 1"/></material></visual></link>
+        <gazebo reference="a"><sensor name="s" type="imu"><update_rate>10</update_rate></sensor>
+        <sensor name="s" type="imu"><update_rate>20</update_rate></sensor></gazebo></robot>"""
+    )
+    assert {d.code: d.severity for d in found if d.severity != "note"} == {
+        "SK-URI-006": "warning",
+        "SK-URDF-030": "warning",
+    }
+    link = scene.model.links[0]
+    assert link.visuals[0].material.diffuse == (1, 0, 0, 1)
+    assert [(s.name, s.rate) for s in link.sensors] == [("s", 10)]
+
+
 def test_what_is_no_tree_is_an_error(load):
     two_roots = robot(link("a") + link("b"))
     assert "'a' (line 1), 'b' (line 2)" in errors(load(two_roots)[1])[0]
@@ -289,3 +312,83 @@ def test_words_of_other_tools_are_one_note_and_prefixed_ones_are_silent(load):
 def test_a_robot_is_the_same_every_time(load):
     first, second = (load(ARM)[0].model for _ in range(2))
     assert [(x.scoped, x.pose_world) for x in first.links] == [(x.scoped, x.pose_world) for x in second.links]
+
+
+# ------------------------------------------------------------------ what other readers pass over
+
+
+def test_a_mass_without_moments_is_a_point_mass_and_moments_without_mass_are_nothing(load):
+    scene, found = load(
+        robot(
+            link("a", '<inertial><origin xyz="1 0 0"/><mass value="2"/></inertial>')
+            + link("b", '<inertial><inertia ixx="1" iyy="1" izz="1"/></inertial>')
+            + joint("ab", "a", "b", "", "fixed")
+        )
+    )
+    a, b = (x.inertial for x in scene.model.links)
+    assert (a.mass, a.com, a.inertia) == (2.0, (1.0, 0.0, 0.0), (0.0,) * 6)
+    assert (b.mass, b.given) == (0.0, False)
+    assert [(d.severity, d.line) for d in said(found, "SK-URDF-031")] == [("warning", 1), ("warning", 2)]
+    assert not errors(found)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"), [("0.001", (0.001,) * 3), ("1 2 3 4", (1.0, 2.0, 3.0)), ("1 2 -3", (1.0, 2.0, -3.0))]
+)
+def test_the_scale_of_a_mesh_may_be_one_number_and_a_fourth_is_dropped(load, written, meant):
+    shape = f'<visual><geometry><mesh filename="m.stl" scale="{written}"/></geometry></visual>'
+    scene, found = load(robot(link("l", MASS + shape)))
+    assert scene.model.links[0].visuals[0].geometry.scale == meant
+    assert len(said(found, "SK-URDF-031")) == (written != "1 2 -3")
+    assert not errors(found)
+
+
+def test_a_scale_that_is_no_number_stays_an_error(load):
+    shape = '<visual><geometry><mesh filename="m.stl" scale="1 x 3 4"/></geometry></visual>'
+    assert said(load(robot(link("l", MASS + shape)))[1], "SK-URDF-013")
+
+
+def test_colours_beyond_their_range_or_number_are_used_as_far_as_they_go(load):
+    visual = (
+        '<visual><geometry><sphere radius="1"/></geometry><material name="m"><color rgba="{}"/></material></visual>'
+    )
+    scene, found = load(robot(link("l", MASS + visual.format("0.1 0.2 0.3 0 1") + visual.format("255 0 -1 1"))))
+    colours = [v.material.diffuse for v in scene.model.links[0].visuals]
+    assert colours == [(0.1, 0.2, 0.3, 0.0), (1.0, 0.0, 0.0, 1.0)]
+    assert {d.severity for d in said(found, "SK-URDF-031")} == {"warning"}
+    assert not errors(found)
+
+
+def test_a_plane_is_bullets_and_a_shape_nobody_knows_is_left_out(load):
+    text = link(
+        "l",
+        MASS + '<collision><geometry><plane normal="0 1 0"/></geometry></collision>'
+        '<collision><geometry><cdf filename="a.cdf"/></geometry></collision>',
+    )
+    scene, found = load(robot(text))
+    (collision,) = scene.model.links[0].collisions
+    assert collision.geometry.normal == (0.0, 1.0, 0.0)
+    assert len(said(found, "SK-URDF-031")) == 2
+    assert not errors(found)
+    near = '<collision><geometry><boxx size="1 1 1"/></geometry></collision>'
+    assert said(load(robot(link("l", MASS + near)))[1], "SK-URDF-009")
+
+
+def test_a_robot_without_any_mass_stands_still_unless_it_is_told_to_float(load):
+    text = robot(link("a", "") + link("b", "") + joint("ab", "a", "b", LIMIT))
+    with simkit.load(text) as sim:
+        sim.joint("r::ab").set_position(0.5)
+        sim.step(10)
+        assert "SK-URDF-032" in {d.code for d in sim.diagnostics}
+        assert sim.link("r::a").pose.position == pytest.approx((0, 0, 0))
+        assert sim.joint("r::ab").position == pytest.approx(0.5)
+    with pytest.raises(simkit.LoadError, match="SK-JOINT-010"):
+        simkit.load(text, base="floating")
+
+
+def test_a_massless_root_that_carries_all_by_a_planar_joint_is_the_ground(load):
+    text = robot(link("footprint", "") + link("base") + joint("drive", "footprint", "base", "", "planar"))
+    with simkit.load(text) as sim:
+        assert "SK-URDF-032" in {d.code for d in sim.diagnostics}
+        sim.step(10)
+        assert sim.link("r::footprint").pose.position == pytest.approx((0, 0, 0))

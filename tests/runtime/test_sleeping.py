@@ -62,6 +62,19 @@ def test_boxes_at_rest_fall_asleep_where_they_are_and_time_goes_on() -> None:
     assert not sim.link("a::l").linear_acceleration.any()
 
 
+@pytest.mark.parametrize("loaded", [(GROUND,), (GROUND, body("a", "0 0 0.2"))])
+def test_what_is_spawned_into_a_world_with_one_body_or_none_falls_asleep_too(loaded: tuple[str, ...]) -> None:
+    sim = simkit.load(world(*loaded))
+    for name, x in (("b", 2.0), ("c", 4.0)):
+        model = f'<sdf version="1.9">{body(name, "0 0 0.2")}</sdf>'
+        sim.spawn(model, name=name, pose=simkit.Pose((x, 0.0, 0.2)))
+    sim.run(ASLEEP)
+    assert asleep(sim) == sorted(name for name in sim.models if name != "ground")
+    sim.reset()
+    sim.run(ASLEEP)
+    assert asleep(sim) == []  # one tree alone is stepped without islands, as after loading
+
+
 def test_sleeping_moves_nothing_that_can_be_measured() -> None:
     with_sleep, without = (simkit.load(world(*TWO), sleep=sleep) for sleep in (True, False))
     for sim in (with_sleep, without):

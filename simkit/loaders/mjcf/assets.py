@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders.files import read_bounded
 
 MAX_BYTES: Final = 256 << 20
 MAX_PIXELS: Final = 64_000_000
@@ -39,8 +40,7 @@ def placeholder(kind: str) -> tuple[str, bytes]:
 def read_asset(path: Path, kind: str, where: Where, diagnostics: Diagnostics) -> bytes:
     """The bytes of a file; empty, with an error recorded, where it is unreadable, too large or none of its kind."""
     try:
-        with path.open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
+        data = read_bounded(path, MAX_BYTES)
     except OSError as error:
         diagnostics.error("SK-MJCF-007", f"cannot read {path}: {error.strerror or error}", where)
         return b""

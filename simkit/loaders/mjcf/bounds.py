@@ -75,6 +75,7 @@ _TEXTS: Final = frozenset((
 """Attributes that hold names, in which `nan` and `inf` are words like any other."""
 
 _SHORTEST_STEP: Final = 1e-3
+_LONGEST_STEP: Final = 100.0
 _MEMORY_MOST: Final = 16 << 30
 
 
@@ -131,6 +132,9 @@ def _check(element: Params, name: str, text: str, diagnostics: Diagnostics) -> N
         return
     if (element.name, name) == ("lengthrange", "timestep") and numbers and numbers[0] < _SHORTEST_STEP:
         _too_much(element, name, text, f"at least {_SHORTEST_STEP:g} s", diagnostics)
+        return
+    if (element.name, name) == ("option", "timestep") and numbers and not 1e-9 <= numbers[0] <= _LONGEST_STEP:
+        _too_much(element, name, text, f"1e-9 to {_LONGEST_STEP:g} s", diagnostics)
         return
     most = _MOST.get((element.name, name), _MOST_ANYWHERE.get(name))
     if most is not None and numbers and max(numbers) > most:

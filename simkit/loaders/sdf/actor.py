@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.uris import is_count
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Animation, SceneActor, Trajectory, Waypoint
@@ -42,7 +43,7 @@ def _animation(element: Params) -> Animation:
 
 def _trajectory(element: Params) -> Trajectory:
     number = element.attribute("id", "0").strip()
-    if not (number.isascii() and number.lstrip("-").isdigit()):
+    if not is_count(number.removeprefix("-")):
         element.error("SK-PARAM-002", f"found <trajectory id={number!r}>, allowed is a whole number")
         number = "0"
     points = [Waypoint(p.number("time", required=True), p.pose("pose")) for p in element.all("waypoint")]

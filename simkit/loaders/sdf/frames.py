@@ -85,7 +85,8 @@ class Scope:
         parts = path.split("::")
         for position, part in enumerate(parts):
             last = position == len(parts) - 1
-            if (last and part in ("", MODEL)) or (last and part == WORLD and scope.root.kind == WORLD):
+            own = WORLD if scope.root.kind == WORLD else MODEL
+            if last and part in ("", own):
                 if scope is self and scope.root.scope is not None:
                     found.append(scope.root)  # the frame that stands for a merged model's own
                 return found

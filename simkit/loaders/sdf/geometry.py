@@ -25,6 +25,7 @@ from simkit.scene import (
 )
 from simkit.scene.geometry import Vec3
 
+_LARGEST_SIZE = 1e15  # [m]; moments of larger shapes leave the numbers
 _Reader = Callable[[Params, SdfFile, Workspace], Geometry | None]
 
 
@@ -55,19 +56,21 @@ def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str)
 
 def _positive(element: Params, name: str, default: float) -> float:
     value = element.number(name, default)
-    if value <= 0:
+    if not 0 < value <= _LARGEST_SIZE:
         found = element.child(name) or element
-        found.error("SK-SDF-009", f"<{element.name}> has {name} {value:g}, it must be positive")
+        allowed = "positive" if value <= 0 else f"at most {_LARGEST_SIZE:g}"
+        found.error("SK-SDF-009", f"<{element.name}> has {name} {value:g}, it must be {allowed}")
         return default
     return value
 
 
 def _sizes(element: Params, name: str, default: Vec3, minimum: float = 0.0) -> Vec3:
     values = element.vector3(name, default)
-    if any(v <= minimum for v in values):
+    if not all(minimum < v <= _LARGEST_SIZE for v in values):
         found = element.child(name) or element
         text = " ".join(f"{v:g}" for v in values)
-        found.error("SK-SDF-009", f"<{element.name}> has {name} {text}, each must be positive")
+        allowed = "positive" if any(v <= minimum for v in values) else f"at most {_LARGEST_SIZE:g}"
+        found.error("SK-SDF-009", f"<{element.name}> has {name} {text}, each must be {allowed}")
         return default
     return values
 
@@ -178,6 +181,8 @@ def _outline(element: Params) -> tuple[tuple[float, float], ...] | None:
     for point in element.all("point"):
         try:
             x, y = (float(v) for v in point.value.split())
+            if not max(abs(x), abs(y)) <= _LARGEST_SIZE:
+                raise ValueError(point.value)
         except ValueError:
             point.error("SK-PARAM-002", f"found <point>{point.value}</point>, allowed is 2 numbers")
             continue

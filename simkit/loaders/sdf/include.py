@@ -51,6 +51,14 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
         )
         include.all(BLOCK)
         return None
+    if found.urdf is not None and (include.attribute("merge", "false").lower() in ("true", "1") or include.has(BLOCK)):
+        include.error(
+            "SK-URDF-029",
+            f"{uri} is a robot in URDF: it cannot be merged or changed by its include",
+            hint="convert it once (simkit convert ROBOT.urdf -o model.sdf) and include that, or include it as it is",
+        )
+        include.all(BLOCK)
+        return None
     element = _changed(include, element, found, workspace)
     own, own_base = read_pose(element)
     own_name = name or read_name(element, workspace.diagnostics, found.version)

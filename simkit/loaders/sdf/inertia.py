@@ -107,11 +107,11 @@ def _automatic(
     diagnostics: Diagnostics,
 ) -> Inertial:
     """Mass properties of the collision solids; a given mass scales them."""
-    common = block.number("density", _WATER, minimum=0)
+    common = block.number("density", _WATER, minimum=0, maximum=_MOST)
     parts = []
     for collision, density in zip(collisions, densities, strict=True):
         solid = _solid(collision, mesh_reader, diagnostics)
-        if solid is None:
+        if solid is None or not (solid[0] > 0 and np.isfinite(solid[2]).all()):
             diagnostics.warning(
                 "SK-SDF-022",
                 f"link {name!r}: collision {collision.name!r} has no volume for automatic inertia",
@@ -133,7 +133,11 @@ def _automatic(
     for mass, at, moments in parts:
         d = at - com
         inertia += moments + mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
-    given = block.number("mass", total)
+    given = block.number("mass", total, maximum=_MOST)
+    if not (total <= _MOST and np.abs(inertia).max() <= _MOST):
+        text = f"link {name!r} weighs {total:g} kg by its collisions; at most {_MOST:g} kg and kg·m² can be simulated"
+        diagnostics.error("SK-SDF-013", text, block.where)
+        return Inertial()
     if given <= 0:
         place = block.child("mass") or block
         diagnostics.error("SK-SDF-013", f"link {name!r} has mass {given:g} kg, it must be positive", place.where)

@@ -177,7 +177,7 @@ def _direction(part: Part, element: Params, workspace: Workspace) -> tuple[float
     """The unit axis in the joint frame; it is given there, in `expressed_in`, or (before 1.5) in the model frame."""
     x, y, z = element.vector3("xyz", (0.0, 0.0, 1.0))
     xyz = element.child("xyz")
-    length = math.sqrt(x * x + y * y + z * z)
+    length = math.hypot(x, y, z)
     where = (xyz or element).where
     if length < 1e-12:
         workspace.diagnostics.error("SK-SDF-017", f"joint {part.name!r} has an axis of length zero", where)

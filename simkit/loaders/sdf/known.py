@@ -61,13 +61,19 @@ class _Report:
                 self._attributes(element, place)
             if element.value and ELEMENTS.elements(place) and not ELEMENTS.has_text(place):
                 self.warn("SK-SDF-038", element.where, partial(_of_text, element, place))
+        read, inside = ELEMENTS.read_at(place), (*above, place)
         for child in element.children:
-            if ":" not in child.name:
+            known = read.get(child.name)
+            if known is not None and child.was_read:
+                if child.children or child.attributes or ELEMENTS.elements(known):
+                    self.visit(child, known, inside)
+            elif ":" not in child.name:
                 self._child(child, element, place, above)
             elif child.name.endswith(":include"):
                 self.warn("SK-SDF-011", child.where, partial(_of_xinclude, child))
 
     def _child(self, child: Params, element: Params, place: str, above: tuple[str, ...]) -> None:
+        """An element that nobody has read."""
         row = ELEMENTS.row(place, child.name)
         if row is None:
             if not ELEMENTS.is_open(place):
@@ -76,8 +82,6 @@ class _Report:
             self.quiet.setdefault(child.name, child.where)
         elif row.use is Use.NOT_SIMULATED:
             self.warn("SK-SDF-012", child.where, lambda: (f"<{child.name}>: {row.becomes}", ""))
-        elif child.was_read:
-            self.visit(child, row.like or f"{place}/{child.name}", (*above, place))
         elif child.name in _LEFT_OVER:
             self.quiet.setdefault(child.name, child.where)
         else:

@@ -18,7 +18,11 @@ def read_light(
     element: Params, name: str, scoped: str, pose_world: Pose, link: str, diagnostics: Diagnostics
 ) -> SceneLight:
     """A light whose pose is resolved already."""
-    kind = element.attribute("type", "point") or "point"
+    kind = element.attribute("type")
+    if not kind:
+        message = f"<light name={name!r}> needs type= ({', '.join(_TYPES)}); it is taken as a point"
+        diagnostics.warning("SK-SDF-039", message, element.where)
+        kind = "point"
     if kind not in _TYPES:
         near = closest(kind, _TYPES)
         diagnostics.error(

@@ -72,7 +72,7 @@ def _collision(
     """A collision and its density [kg/m³], None where not given."""
     what = f"collision {name!r} of link {part.name!r}"
     shape = read_geometry(element, part.file, workspace, what)
-    density = element.number("density", 1000.0, minimum=0) if element.has("density") else None
+    density = element.number("density", 1000.0, minimum=0, maximum=1e15) if element.has("density") else None
     surface = read_surface(element)
     if shape is None:
         element.mark_all_read()

@@ -34,9 +34,9 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
     diffuse = read_colour(block, "diffuse", script_colours.get("diffuse", _WHITE))
     ambient = read_colour(block, "ambient", script_colours.get("ambient", diffuse))
     workflow = _workflow(block)
-    texture = _texture(workflow, file, workspace)
+    texture, scale = _texture(workflow, file, workspace), (1.0, 1.0)
     if texture is None and ogre is not None and ogre.texture:
-        texture = find_texture(ogre, places)
+        texture, scale = find_texture(ogre, places), ogre.scale or scale
         if texture is None:
             _missing(f"texture {ogre.texture} of material {name!r}", script, workspace)
     if name and not script_colours and ogre is None and not block.has("diffuse") and texture is None:
@@ -50,6 +50,7 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
         script=name,
         roughness=workflow.number("roughness", minimum=0.0, maximum=1.0) if _says(workflow, "roughness") else None,
         double_sided=block.boolean("double_sided", ogre.is_double_sided if ogre is not None else False),
+        texture_scale=scale,
     )
 
 
@@ -100,10 +101,10 @@ def read_colour(block: Params, name: str, default: Colour) -> Colour:
         numbers = [float(v) for v in found.value.split()]
     except ValueError:
         numbers = []
-    if len(numbers) not in (3, 4) or any(math.isnan(v) for v in numbers):
+    if len(numbers) not in (3, 4) or any(map(math.isnan, numbers)):
         found.error("SK-PARAM-002", f"found <{name}>{found.value}</{name}>, allowed is red green blue [alpha]")
         return default
-    r, g, b, a = (min(1.0, max(0.0, v)) for v in (*numbers, 1.0)[:4])
+    r, g, b, a = [min(1.0, max(0.0, v)) for v in (*numbers, 1.0)[:4]]
     return (r, g, b, a)
 
 

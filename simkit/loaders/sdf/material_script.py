@@ -32,6 +32,7 @@ class OgreMaterial:
         texture: name of a picture.
         folder: of the script.
         is_transparent: whether it blends by alpha.
+        scale: size of the picture, across and up; None where the script gives none.
     """
 
     name: str
@@ -41,6 +42,7 @@ class OgreMaterial:
     texture: str = ""
     is_transparent: bool = False
     is_double_sided: bool = False
+    scale: tuple[float, float] | None = None
 
 
 def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
@@ -65,6 +67,7 @@ def find_material(name: str, places: Sequence[Path]) -> OgreMaterial | None:
             texture=found.texture or above.texture,
             is_transparent=found.is_transparent or above.is_transparent,
             is_double_sided=found.is_double_sided or above.is_double_sided,
+            scale=found.scale or above.scale,
         )
     return found
 
@@ -165,11 +168,21 @@ def _with(material: OgreMaterial, words: list[str]) -> OgreMaterial:
         return replace(material, texture=values[0])
     if key == "set_texture_alias" and len(values) == 2:
         return replace(material, texture=values[1])
+    if key == "scale" and material.scale is None:
+        return replace(material, scale=_scale(values))
     if key == "scene_blend" and values[:1] == ["alpha_blend"]:
         return replace(material, is_transparent=True)
     if key == "cull_hardware" and values[:1] == ["none"]:
         return replace(material, is_double_sided=True)
     return material
+
+
+def _scale(values: list[str]) -> tuple[float, float] | None:
+    try:
+        across, up = (float(v) for v in values)
+    except ValueError:
+        return None
+    return (across, up) if all(1e-6 <= abs(v) <= 1e6 for v in (across, up)) else None
 
 
 def _colour(values: list[str], most: int) -> Colour | None:

@@ -8,6 +8,7 @@ from simkit.scene import Physics
 from simkit.scene.geometry import Vec3
 
 _GRAVITY: Vec3 = (0.0, 0.0, -9.8)
+_SHORTEST = 1e-9  # seconds of one step
 _LONGEST = 100.0  # seconds of one step; nobody means more
 
 
@@ -27,10 +28,9 @@ def read_physics(world: Params, diagnostics: Diagnostics) -> tuple[Physics, Vec3
     inside = block.vector3("gravity", _GRAVITY)
     gravity = world.vector3("gravity", inside)
     step = block.number("max_step_size", _old_step(block), maximum=_LONGEST)
-    if step <= 0:
-        diagnostics.error(
-            "SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, it must be positive", block.where
-        )
+    if step < _SHORTEST:
+        allowed = "it must be positive" if step <= 0 else f"time is counted in nanoseconds: at least {_SHORTEST:g} s"
+        diagnostics.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, {allowed}", block.where)
         step = 0.001
     return Physics(step, max(0.0, _real_time_factor(block, step)), block.where, _contacts(block)), gravity
 

@@ -23,6 +23,7 @@ from simkit.pose import Pose
 Points = npt.NDArray[np.float64]
 DISTRIBUTIONS = ("random", "uniform", "grid", "linear-x", "linear-y", "linear-z")
 _CODE = "SK-SDF-033"
+_WIDEST = 1e12  # [m] of a region and of the steps of a grid
 _SAMPLES = 10_000
 _ROUNDS = 100
 
@@ -117,6 +118,10 @@ def _region(population: Params, name: str) -> _Region | None:
     if min(region.size) <= 0:
         (box or cylinder or population).error(_CODE, f"population {name!r} stands in a {region.kind} without a volume")
         return None
+    if max(region.size) > _WIDEST:
+        message = f"population {name!r} stands in a {region.kind} that is larger than {_WIDEST:g} m"
+        (box or cylinder or population).error(_CODE, message)
+        return None
     return region
 
 
@@ -127,6 +132,9 @@ def _grid(population: Params, rule: Params, name: str) -> Points | None:
         population.error(_CODE, f"population {name!r} has {rows * cols} models, allowed are {MAX_MODELS}")
         return None
     step = np.array(rule.vector3("step", (1.0, 1.0, 0.0)))
+    if np.abs(step).max() > _WIDEST:
+        rule.error(_CODE, f"population {name!r} has steps of more than {_WIDEST:g} m")
+        return None
     column, row = np.meshgrid(np.arange(cols) - (cols - 1) / 2, np.arange(rows) - (rows - 1) / 2)
     return np.column_stack((column.ravel() * step[0], row.ravel() * step[1], np.zeros(rows * cols)))
 

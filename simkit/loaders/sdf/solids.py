@@ -24,7 +24,7 @@ def solid_of(shape: Geometry) -> Solid | None:
             v = x * y * z
             return v, centre, np.diag((y * y + z * z, x * x + z * z, x * x + y * y)) * (v / 12)
         case Sphere(radius=r):
-            v = 4 / 3 * math.pi * r**3
+            v = 4 / 3 * math.pi * r * r * r
             return v, centre, np.eye(3) * (0.4 * v * r * r)
         case Ellipsoid(radii=(a, b, c)):
             v = 4 / 3 * math.pi * a * b * c
@@ -45,7 +45,7 @@ def solid_of(shape: Geometry) -> Solid | None:
 
 
 def _capsule(r: float, h: float) -> Solid:
-    body, caps = math.pi * r * r * h, 4 / 3 * math.pi * r**3
+    body, caps = math.pi * r * r * h, 4 / 3 * math.pi * r * r * r
     side = body * (h * h / 12 + r * r / 4) + caps * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
     return body + caps, np.zeros(3), np.diag((side, side, body * r * r / 2 + caps * 0.4 * r * r))
 
@@ -86,13 +86,13 @@ def _extruded(outlines: Sequence[Outline], height: float) -> Solid | None:
         a, f, s = _polygon(outline)
         sign = math.copysign(1.0, a) * (-1.0) ** holes
         area, first, second = area + sign * a, first + sign * f, second + sign * s
-    if area < 1e-15:
+    if not 1e-15 <= area < math.inf:
         return None
     centre = np.array((*(first / area), height / 2))
     whole = np.zeros((3, 3))
     whole[:2, :2] = second * height
-    whole[:2, 2] = whole[2, :2] = first * height**2 / 2
-    whole[2, 2] = area * height**3 / 3
+    whole[:2, 2] = whole[2, :2] = first * height * height / 2
+    whole[2, 2] = area * height * height * height / 3
     return _about_centroid(area * height, centre, whole)
 
 

@@ -1,4 +1,4 @@
-"""`<geometry>`: box, cylinder, sphere, capsule, mesh."""
+"""`<geometry>`: box, cylinder, sphere, capsule, mesh, and PyBullet's plane."""
 
 from __future__ import annotations
 
@@ -7,9 +7,21 @@ from pathlib import Path
 
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.urdf.draft import Draft
-from simkit.loaders.urdf.reading import bad, missing, number, numbers, text, vector3
+from simkit.loaders.urdf.reading import (
+    FARTHEST,
+    as_can_be,
+    bad,
+    leading,
+    missing,
+    number,
+    numbers,
+    parse_number,
+    text,
+    vector3,
+)
 from simkit.params import Params
-from simkit.scene import Box, Capsule, Cylinder, Geometry, Mesh, Sphere
+from simkit.scene import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
+from simkit.scene.geometry import Vec3
 
 THINNEST = 1e-4
 _Reader = Callable[[Params, Draft, str], Geometry | None]
@@ -37,7 +49,10 @@ def read_geometry(owner: Params, draft: Draft, what: str) -> Geometry | None:
         return None
     hint = did_you_mean(shapes[0].name, _SHAPES)
     message = f"{what} has a <{shapes[0].name}>, known are {known}"
-    draft.diagnostics.error("SK-URDF-009", message, shapes[0].where, hint)
+    if hint:
+        draft.diagnostics.error("SK-URDF-009", message, shapes[0].where, hint)
+    else:
+        as_can_be(shapes[0], message, "it is left out")
     block.mark_all_read()
     return None
 
@@ -48,12 +63,15 @@ def _positive(element: Params, attribute: str, what: str) -> float:
 
 def _sizes(element: Params, attribute: str, what: str, sizes: tuple[float, ...]) -> tuple[float, ...]:
     """Sizes [m] as they can be simulated: nothing negative, and what is flat gets a tenth of a millimetre."""
-    if attribute not in element.attributes or all(v > 0 for v in sizes):
+    if attribute not in element.attributes or all(0 < v <= FARTHEST for v in sizes):
         return tuple(v or 1.0 for v in sizes)
     shown = f"{what}: <{element.name}> has {attribute} {' '.join(f'{v:g}' for v in sizes)}"
     if any(v < 0 for v in sizes):
         element.diagnostics.error("SK-URDF-009", f"{shown}, it must be positive", element.where)
         return tuple(abs(v) or THINNEST for v in sizes)
+    if any(v > FARTHEST for v in sizes):
+        element.diagnostics.error("SK-URDF-009", f"{shown}, it must be at most {FARTHEST:g}", element.where)
+        return tuple(1.0 for _ in sizes)
     message = f"{shown}; what has no size is made {THINNEST * 1000:g} mm"
     element.diagnostics.warning("SK-URDF-028", message, element.where)
     return tuple(v or THINNEST for v in sizes)
@@ -83,7 +101,7 @@ def _sphere(element: Params, _draft: Draft, what: str) -> Geometry:
 
 def _mesh(element: Params, draft: Draft, what: str) -> Geometry | None:
     uri = text(element, "filename")
-    scale = vector3(element, "scale", (1.0, 1.0, 1.0))
+    scale = _scale(element)
     if any(v == 0 for v in scale):
         bad(element, "scale", "3 numbers that are not 0")
         scale = (1.0, 1.0, 1.0)
@@ -96,10 +114,27 @@ def _mesh(element: Params, draft: Draft, what: str) -> Geometry | None:
     return Mesh(path, uri, scale)
 
 
+def _scale(element: Params) -> Vec3:
+    """Three factors; one alone stands for all three."""
+    written = text(element, "scale").split()
+    if len(written) == 1 and parse_number(written[0]) is not None:
+        as_can_be(element, f'<mesh scale="{written[0]}"> has one number', "it is used for x, y and z")
+        element.attributes["scale"] = " ".join(written * 3)
+    found = leading(element, "scale", 3)
+    return (1.0, 1.0, 1.0) if found is None else (found[0], found[1], found[2])
+
+
+def _plane(element: Params, _draft: Draft, what: str) -> Geometry:
+    """PyBullet's: an endless plane through the origin of its frame."""
+    as_can_be(element, f"{what}: <plane> is PyBullet's word", "it is an endless plane, as there")
+    return Plane(vector3(element, "normal", (0.0, 0.0, 1.0)))
+
+
 _READERS: dict[str, _Reader] = {
     "box": _box,
     "cylinder": _cylinder,
     "sphere": _sphere,
     "capsule": _capsule,
+    "plane": _plane,
 }
-_SHAPES = (*_READERS, "mesh")
+_SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh")

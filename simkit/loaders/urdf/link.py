@@ -17,11 +17,12 @@ from simkit.loaders.urdf.draft import Draft
 from simkit.loaders.urdf.extensions import flag, number, vector
 from simkit.loaders.urdf.geometry import read_geometry
 from simkit.loaders.urdf.material import Materials, extended_material
+from simkit.loaders.urdf.reading import as_can_be, bad, origin, text
 from simkit.loaders.urdf.reading import number as attribute_number
-from simkit.loaders.urdf.reading import origin, text
 from simkit.params import Params
 from simkit.scene import Inertial, SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface
 
+HEAVIEST = 1e15  # kg and kg m2: the products of larger ones leave the numbers
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 NO_MASS = Inertial(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), given=False)
 
@@ -62,14 +63,20 @@ def _inertial(draft: Draft, name: str, link: Params) -> Inertial:
         return NO_MASS
     pose = origin(block)
     mass, inertia = block.child("mass"), block.child("inertia")
-    for found, what in ((mass, "mass value="), (inertia, "inertia ixx= iyy= izz= ixy= ixz= iyz=")):
-        if found is None:
-            message = f"link {name!r}: <inertial> needs <{what}...>"
-            draft.diagnostics.error("SK-URDF-001", message, block.where)
-    kilograms = attribute_number(mass, "value", owner=f"link {name!r}") if mass is not None else 0.0
-    if mass is not None and kilograms < 0:
+    if mass is None:
+        as_can_be(block, f"link {name!r}: <inertial> has no <mass value=...>", "the link has no mass")
+        block.mark_all_read()
+        return NO_MASS
+    if inertia is None:
+        said = f"link {name!r}: <inertial> has no <inertia ixx= iyy= izz= ixy= ixz= iyz=...>"
+        as_can_be(block, said, "its mass is at one point", "give it the moments of its shape")
+    kilograms = attribute_number(mass, "value", owner=f"link {name!r}")
+    if kilograms < 0:
         message = f"link {name!r} has mass {kilograms:g} kg, it cannot be negative"
         draft.diagnostics.error("SK-URDF-016", message, mass.where)
+    if kilograms > HEAVIEST:
+        bad(mass, "value", f"at most {HEAVIEST:g} kg")
+        kilograms = 1.0
     values = tuple(_moment(inertia, key, name) for key in _MOMENTS) if inertia is not None else (0.0,) * 6
     x, y, z = (float(v) for v in pose.position)
     if pose.quaternion[0] != 1.0:
@@ -84,7 +91,11 @@ def _inertial(draft: Draft, name: str, link: Params) -> Inertial:
 def _moment(inertia: Params, key: str, link: str) -> float:
     """A moment; the products of inertia may be left out."""
     default = 0.0 if key[1] != key[2] else None
-    return attribute_number(inertia, key, default, owner=f"link {link!r}")
+    value = attribute_number(inertia, key, default, owner=f"link {link!r}")
+    if abs(value) > HEAVIEST:
+        bad(inertia, key, f"at most {HEAVIEST:g} kg m2")
+        return 0.0
+    return value
 
 
 # ---------------------------------------------------------------------- shapes
@@ -190,6 +201,7 @@ def _visuals(
 
 def _sensors(draft: Draft, link: str, extension: Params) -> tuple[SceneSensor, ...]:
     pose, frame = draft.links_world[link], draft.frame(link)
+    elements = _without_twins(extension.all("sensor"), link, draft)
     return tuple(
         read_sensor(
             element,
@@ -200,8 +212,21 @@ def _sensors(draft: Draft, link: str, extension: Params) -> tuple[SceneSensor, .
             pose,
             draft.diagnostics,
         )
-        for name, element in named(extension.all("sensor"), f"link {link!r}", draft.diagnostics, draft.file.version)
+        for name, element in named(elements, f"link {link!r}", draft.diagnostics, draft.file.version)
     )
+
+
+def _without_twins(sensors: list[Params], link: str, draft: Draft) -> list[Params]:
+    """Sensors without those that are named like an earlier one, as robots have them whose xacro is included twice."""
+    first: dict[str, Params] = {}
+    for element in sensors:
+        name = element.attribute("name").strip()
+        known = first.setdefault(name, element)
+        if name and known is not element:
+            message = f"link {link!r} has two sensors named {name!r}; that of line {known.where.line} is used"
+            draft.diagnostics.warning("SK-URDF-030", message, element.where, "give one of them another name")
+            element.mark_all_read()
+    return [e for e in sensors if not e.attribute("name").strip() or first[e.attribute("name").strip()] is e]
 
 
 def _lights(draft: Draft, link: str, extension: Params) -> tuple[SceneLight, ...]:

@@ -8,7 +8,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.material import GAZEBO_COLOURS, read_material
 from simkit.loaders.urdf.draft import Draft
 from simkit.loaders.urdf.extensions import last
-from simkit.loaders.urdf.reading import bad, missing, numbers, text, value_of
+from simkit.loaders.urdf.reading import as_can_be, leading, missing, text, value_of
 from simkit.params import Params
 from simkit.scene import Material
 from simkit.scene.model import Colour
@@ -77,19 +77,21 @@ class Materials:
         colour, texture = element.child("color"), element.child("texture")
         rgba: Colour | None = None
         if colour is not None:
-            found = numbers(colour, "rgba", 4, "red green blue alpha")
+            found = leading(colour, "rgba", 4, "red green blue alpha")
             if found is None and "rgba" not in colour.attributes:
                 missing(colour, "rgba", "red green blue alpha")
             if found is not None:
                 clamped = [min(1.0, max(0.0, v)) for v in found]
                 if clamped != list(found):
-                    bad(colour, "rgba", "4 numbers from 0 to 1")
+                    said = f'<color rgba="{text(colour, "rgba")[:60]}"> leaves the range from 0 to 1'
+                    as_can_be(colour, said, "each number is brought back to its nearer end")
                 rgba = (clamped[0], clamped[1], clamped[2], clamped[3])
         path = None
         if texture is not None:
             uri = text(texture, "filename")
             if not uri:
-                missing(texture, "filename", "the URI of an image")
+                message = "<texture> names no file (filename=); drawn without it"
+                self.draft.diagnostics.warning("SK-URI-006", message, texture.where)
             path = self.draft.assets.texture(uri, texture) if uri else None
         if rgba is None and path is None:
             return None

@@ -10,6 +10,7 @@ from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3
 
+LARGEST = 1e100  # of a vector's components: their squares have to be numbers
 FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
 _XACRO_HINT = "the file looks like xacro that was not expanded: load the .xacro file itself"
 
@@ -29,6 +30,11 @@ def missing(element: Params, attribute: str, allowed: str, owner: str = "") -> N
     what = f"{owner}: " if owner else ""
     message = f"{what}<{element.name}> needs {attribute}= ({allowed})"
     element.diagnostics.error("SK-URDF-001", message, element.where, near)
+
+
+def as_can_be(element: Params, found: str, instead: str, hint: str = "") -> None:
+    """Records what urdfdom leaves out with a message of its own, and what stands for it here."""
+    element.diagnostics.warning("SK-URDF-031", f"{found}; {instead}", element.where, hint)
 
 
 def text(element: Params, attribute: str) -> str:
@@ -75,7 +81,7 @@ def numbers(element: Params, attribute: str, count: int, allowed: str = "") -> t
         element.attribute(attribute)
         return None
     parts = [parse_number(part) for part in text(element, attribute).split()]
-    if len(parts) != count or any(p is None or not math.isfinite(p) for p in parts):
+    if len(parts) != count or any(p is None or not abs(p) <= LARGEST for p in parts):
         bad(element, attribute, allowed or f"{count} numbers")
         return None
     return tuple(p for p in parts if p is not None)
@@ -85,6 +91,16 @@ def vector3(element: Params, attribute: str, default: Vec3 = (0.0, 0.0, 0.0)) ->
     """Three finite numbers."""
     found = numbers(element, attribute, 3)
     return default if found is None else (found[0], found[1], found[2])
+
+
+def leading(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
+    """As `numbers`; of more than `count` numbers the first are used, with a warning."""
+    parts = text(element, attribute).split()
+    if len(parts) > count and all(parse_number(part) is not None for part in parts):
+        said = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
+        as_can_be(element, said, f"the first {count} are used", f"allowed is {allowed or f'{count} numbers'}")
+        element.attributes[attribute] = " ".join(parts[:count])
+    return numbers(element, attribute, count, allowed)
 
 
 def origin(owner: Params) -> Pose:
@@ -99,10 +115,10 @@ def origin(owner: Params) -> Pose:
     if "quat_xyzw" in element.attributes:
         quat = numbers(element, "quat_xyzw", 4)
         element.attribute("rpy")
-        if quat is not None and sum(q * q for q in quat) > 1e-12:
+        if quat is not None and 1e-6 < math.hypot(*quat) < FARTHEST:
             return Pose(xyz, (quat[3], quat[0], quat[1], quat[2]))
         if quat is not None:
-            bad(element, "quat_xyzw", "a quaternion that is not zero")
+            bad(element, "quat_xyzw", "a quaternion, which has a length of 1")
     return Pose.from_rpy(*xyz, *vector3(element, "rpy"))
 
 

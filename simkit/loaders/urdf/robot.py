@@ -109,7 +109,7 @@ def build_robot(
         declared_static=declared,
         self_collide=bool(flag(robot, "self_collide", "selfCollide")),
         canonical_link=draft.own(draft.root) if draft.root else "",
-        base=base if still else _base(draft, base, is_included),
+        base=base if still else _base(draft, base, is_included, _why_held(draft, links, joints)),
         links=links,
         joints=joints,
         frames=additions.frames(),
@@ -125,8 +125,34 @@ def build_robot(
     return model
 
 
-def _base(draft: Draft, base: str, is_included: bool) -> str:
-    """Gazebo's rule: a robot whose root link is named `world` is fixed to it; any other floats."""
+def _why_held(draft: Draft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> str:
+    """Why the base cannot float; empty where it can. Gazebo drops such links, PyBullet holds the first kind as well."""
+    heavy = {link.scoped for link in links if link.inertial.mass > 0}
+    if not heavy:
+        return "no link has mass"
+    ground = {draft.own(draft.root)} if draft.root else set()
+    under: dict[str, list[SceneJoint]] = {}
+    for joint in joints:
+        under.setdefault(joint.parent_link, []).append(joint)
+    stack, kinds = list(ground), set[str]()
+    while stack:
+        for joint in under.get(stack.pop(), ()):
+            if joint.type != "fixed":
+                kinds.add(joint.type)
+            elif joint.child_link not in ground:
+                ground.add(joint.child_link)
+                stack.append(joint.child_link)
+    is_ground = bool(kinds) and kinds <= {"planar", "floating"} and not ground & heavy
+    return (
+        f"its root link {draft.root!r} has no mass and stands for the ground under a moving base" if is_ground else ""
+    )
+
+
+def _base(draft: Draft, base: str, is_included: bool, held: str) -> str:
+    """Gazebo's rule: a robot whose root link is named `world` is fixed to it; any other floats.
+
+    One that cannot float, for the reason in `held`, is fixed.
+    """
     diagnostics, where = draft.diagnostics, draft.element.where
     if draft.root == WORLD:
         if base == "floating":
@@ -135,6 +161,10 @@ def _base(draft: Draft, base: str, is_included: bool) -> str:
         elif base == "auto" and not is_included:
             message = f"robot {draft.name!r}: base is fixed, because its root link is named 'world'"
             diagnostics.note("SK-URDF-017", message, where)
+        return "fixed"
+    if base == "auto" and held and draft.root:
+        message = f"robot {draft.name!r}: {held}, so its base is fixed"
+        diagnostics.warning("SK-URDF-032", message, where, "give its links an <inertial> if it is to move")
         return "fixed"
     if base == "auto" and not is_included:
         message = f"robot {draft.name!r}: base is floating, because no link is named 'world'"

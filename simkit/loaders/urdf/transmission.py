@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.urdf.draft import Draft
-from simkit.loaders.urdf.reading import missing, parse_number, text, value_of
+from simkit.loaders.urdf.reading import as_can_be, missing, parse_number, text, value_of
 from simkit.params import Params
 from simkit.scene import Transmission, TransmissionEnd
 
@@ -95,8 +95,7 @@ def _number(element: Params, name: str, default: float) -> float:
         return default
     value = parse_number(value_of(found))
     if value is None or abs(value) == float("inf"):
-        message = f"<{name}> is {value_of(found)!r}, allowed is a number"
-        element.diagnostics.error("SK-URDF-013", message, found.where)
+        as_can_be(found, f"<{name}> is {value_of(found)!r}, allowed is a number", f"{default:g} is used")
         return default
     return value
 

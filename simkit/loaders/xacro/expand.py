@@ -20,6 +20,7 @@ from simkit.loaders.xml import Document
 
 MAX_EXPANDED = 50_000
 MAX_COPIED = 300_000
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _CALL = 5  # what a macro call costs, in elements
 _TOKEN = re.compile(r"(?P<escaped>\$\$+[{(])|(?P<expression>\$\{[^}]*\})|(?P<command>\$\([^)]*\))|[^$]+|\$[^{($]+|\$$")
 
@@ -29,6 +30,8 @@ def needs_expansion(document: Document) -> bool:
     if document.path is not None and document.path.suffix == ".xacro":
         return True
     text = document.text
+    if b"$" in text and b"<![CDATA[" not in text:  # what xacro has written often says `${...}` in comments alone
+        text = _COMMENT.sub(b"", text)
     computes = b"${" in text or b"$(" in text
     return b"<xacro:" in text or (computes and "xmlns:xacro" in document.root.attributes)
 
@@ -303,7 +306,8 @@ class _Expansion:
     def _argument(self, name: str) -> str:
         if name not in self.arguments:
             known = ", ".join(sorted(self.arguments)) or "none"
-            raise ExpansionError(f"the argument {name!r} has no value (there are: {known}); give it with xacro_args")
+            given = f"give it with --xacro-arg {name}=VALUE (Python: xacro_args)"
+            raise ExpansionError(f"the argument {name!r} has no value (there are: {known}); {given}")
         return self.arguments[name]
 
     def _names(self) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import Diagnostics, Where
+from simkit.loaders.files import read_bounded
 from simkit.loaders.resolver import Resolver
 from simkit.loaders.xacro.bounds import MAX_ITEMS, Budget, ExpansionError
 from simkit.loaders.xml import parse_file
@@ -109,8 +110,7 @@ class Files:
         for tag, factor in _UNITS.items():
             Reader.add_constructor(tag, with_unit(factor))
         try:
-            with path.open("rb") as stream:
-                data = stream.read(MAX_YAML_BYTES + 1)
+            data = read_bounded(path, MAX_YAML_BYTES)
             if len(data) > MAX_YAML_BYTES:
                 raise ExpansionError(f"{path} has more than {MAX_YAML_BYTES} bytes")
             content = yaml.load(data, Reader)

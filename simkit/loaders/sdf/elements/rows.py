@@ -17,7 +17,7 @@ class Use(Enum):
     @property
     def read(self) -> bool:
         """Whether a reader asks for it."""
-        return self in (Use.USED, Use.APPROXIMATED)
+        return self is Use.USED or self is Use.APPROXIMATED
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +74,7 @@ class Schema:
     _children: dict[str, list[str]] = field(init=False)
     _open: frozenset[str] = field(init=False)
     _elements: dict[str, list[str]] = field(init=False)
+    _read_at: dict[str, dict[str, str]] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         self.rows, self._children = {}, {}
@@ -92,6 +93,14 @@ class Schema:
     def row(self, place: str, name: str) -> Row | None:
         """The row of a child (or `@attribute`) at a place."""
         return self.rows.get(f"{place}/{name}")
+
+    def read_at(self, place: str) -> dict[str, str]:
+        """Every element at a place that a reader asks for, and the place of its content."""
+        if place not in self._read_at:
+            rows = {name: self.row(place, name) for name in self._elements.get(place, ()) if ":" not in name}
+            read = {name: row for name, row in rows.items() if row is not None and row.use.read}
+            self._read_at[place] = {name: row.like or f"{place}/{name}" for name, row in read.items()}
+        return self._read_at[place]
 
     def inside(self, place: str, name: str) -> str:
         """The place of a child's content."""

@@ -1,0 +1,51 @@
+"""What of a simulation is due when, in document order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from simkit.runtime import overlap, sleep
+from simkit.runtime.joint import Joint
+from simkit.runtime.loop import guarded
+from simkit.runtime.scheduler import Scheduler
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+_LIMIT_GRID = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
+
+
+def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -> None:
+    """Fills an empty scheduler.
+
+    Args:
+        exact_limits: joints whose velocity limit is held at every step.
+    """
+    resting = sim.physics.sleep
+
+    def look_for_rest(_tick: int) -> None:
+        if not sim.physics.sleep.rests:
+            sim.physics.sleep.look(sim.physics.fresh())
+
+    if resting.watches:
+        scheduler.every(sleep.RATE, look_for_rest, "after")
+    if overlap.is_any_gentle(sim.mj_model):
+        scheduler.every(overlap.RATE, lambda _: overlap.harden(sim), "sense")
+    for joint in sim.entities.tables["joint"].values():
+        if joint in exact_limits:
+            scheduler.every(None, joint.clamp_velocity, "sense")
+        elif _coasts_over_limit(joint):
+            scheduler.every(_LIMIT_GRID, joint.clamp_velocity, "sense")
+    for sensor in sim.structure.all_sensors():
+        scheduler.every(sensor.update_rate, sensor.sample, "sense")
+    for plugin in sim.structure.all_plugins():
+        if plugin.has_hook("before_step"):
+            scheduler.every(plugin.before_step_rate, guarded(sim, plugin, "before_step"), "before")
+        if plugin.has_hook("after_step"):
+            scheduler.every(plugin.after_step_rate, guarded(sim, plugin, "after_step"), "after")
+
+
+def _coasts_over_limit(joint: Joint) -> bool:
+    """Whether a joint has a velocity limit of the file that no servo keeps."""
+    return joint.dof > 0 and bool((joint._velocity_limit < 1e6).any())

@@ -1,0 +1,248 @@
+"""Every place of SDF and URDF that holds a number, each in a small document that loads, and each with odd numbers in it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+from lxml import etree
+from samples import picture
+from wide_sdf import AXIS, LIGHT, MATERIAL, POSE, SHAPES, SURFACE
+
+VALUES = ("nan", "inf", "-inf", "1e308", "1e9", "1e-9", "-1", "0", "", "text", "1e400", "1 2")
+NUMBERS = re.compile(r"\s*(?:[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*)+")
+MASS = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
+BOX = f"<geometry>{SHAPES[1]}</geometry>"
+NOISE = """<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev><bias_mean>0</bias_mean><bias_stddev>0</bias_stddev>
+  <precision>0.001</precision><dynamic_bias_stddev>0.1</dynamic_bias_stddev>
+  <dynamic_bias_correlation_time>1</dynamic_bias_correlation_time></noise>"""
+SCAN = f"""<scan><horizontal><samples>9</samples><resolution>1</resolution><min_angle>-1</min_angle>
+  <max_angle>1</max_angle></horizontal><vertical><samples>2</samples><resolution>1</resolution><min_angle>0</min_angle>
+  <max_angle>0.1</max_angle></vertical></scan><range><min>0.1</min><max>9</max><resolution>0.01</resolution></range>
+  <visibility_mask>255</visibility_mask>{NOISE}"""
+CAMERA = f"""<camera><horizontal_fov>1</horizontal_fov><image><width>8</width><height>6</height>
+  <anti_aliasing>2</anti_aliasing></image><clip><near>0.1</near><far>9</far></clip><depth_camera><clip><near>0.1</near>
+  <far>5</far></clip></depth_camera><distortion><k1>0.1</k1><k2>0</k2><k3>0</k3><p1>0</p1><p2>0</p2>
+  <center>0.5 0.5</center></distortion><lens><intrinsics><fx>8</fx><fy>8</fy><cx>4</cx><cy>3</cy><s>0</s></intrinsics>
+  <projection><p_fx>8</p_fx><p_fy>8</p_fy><p_cx>4</p_cx><p_cy>3</p_cy><tx>0</tx><ty>0</ty></projection></lens>
+  <visibility_mask>255</visibility_mask>{NOISE}</camera>"""
+IMU = f"""<imu><orientation_reference_frame><localization>CUSTOM</localization><custom_rpy>0 0 0</custom_rpy>
+  <grav_dir_x>1 0 0</grav_dir_x></orientation_reference_frame><angular_velocity><x>{NOISE}</x></angular_velocity>
+  <linear_acceleration><z>{NOISE}</z></linear_acceleration></imu>"""
+SENSORS = {
+    "lidar": f"<lidar>{SCAN}</lidar>",
+    "ray": f"<ray>{SCAN}</ray>",
+    "gpu_lidar": f"<lidar>{SCAN}</lidar>",
+    "imu": IMU,
+    "camera": CAMERA,
+    "depth_camera": CAMERA,
+    "rgbd_camera": CAMERA,
+}
+DRIVE = "<left_joint>a</left_joint><right_joint>b</right_joint>"
+PLUGINS = {
+    "gz-sim-diff-drive-system": f"""{DRIVE}<wheel_separation>1</wheel_separation><wheel_radius>0.1</wheel_radius>
+      <odom_publish_frequency>50</odom_publish_frequency><max_velocity>1</max_velocity><min_velocity>-1</min_velocity>
+      <min_linear_acceleration>-1</min_linear_acceleration><max_linear_acceleration>1</max_linear_acceleration>
+      <max_angular_jerk>1</max_angular_jerk>""",
+    "gz-sim-joint-controller-system": """<joint_name>a</joint_name><initial_velocity>1</initial_velocity>
+      <use_force_commands>1</use_force_commands><p_gain>1</p_gain><i_gain>1</i_gain><d_gain>1</d_gain><i_max>1</i_max>
+      <i_min>-1</i_min><cmd_max>1</cmd_max><cmd_min>-1</cmd_min><cmd_offset>0</cmd_offset>""",
+    "gz-sim-joint-controller-system ": """<joint_name>a</joint_name><use_actuator_msg>1</use_actuator_msg>
+      <actuator_number>0</actuator_number>""",
+    "gz-sim-odometry-publisher-system": """<odom_publish_frequency>50</odom_publish_frequency>
+      <xyz_offset>0 0 0</xyz_offset><rpy_offset>0 0 0</rpy_offset><dimensions>3</dimensions>
+      <gaussian_noise>0.1</gaussian_noise>""",
+    "gz-sim-apply-link-wrench-system": """<persistent><entity_name>m::l</entity_name><entity_type>link</entity_type>
+      <force>1 0 0</force><torque>0 0 1</torque></persistent>""",
+    "gz-sim-joint-state-publisher-system": "<update_rate>50</update_rate>",
+    "libgazebo_ros_joint_state_publisher.so": "<update_rate>50</update_rate><joint_name>a</joint_name>",
+    "libgazebo_ros_diff_drive.so": f"""{DRIVE}<num_wheel_pairs>1</num_wheel_pairs><wheel_separation>1</wheel_separation>
+      <wheel_diameter>0.1</wheel_diameter><max_wheel_torque>20</max_wheel_torque><update_rate>50</update_rate>
+      <max_wheel_acceleration>1</max_wheel_acceleration><odometry_source>1</odometry_source><publish_odom>1</publish_odom>
+      <covariance_x>0.1</covariance_x><covariance_y>0.1</covariance_y><covariance_yaw>0.1</covariance_yaw>""",
+    "libsolar_sensor.so": """<light_name>sun</light_name><gaussian_noise>0.1</gaussian_noise>
+      <update_rate>50</update_rate>""",
+}
+WORLD = """<physics name="p"><max_step_size>0.001</max_step_size><real_time_factor>1</real_time_factor>
+  <real_time_update_rate>1000</real_time_update_rate><update_rate>1000</update_rate><max_contacts>10</max_contacts><ode><solver><iters>50</iters>
+  <sor>1.3</sor></solver><constraints><cfm>0</cfm><erp>0.2</erp></constraints></ode></physics>
+  <gravity>0 0 -9.8</gravity><magnetic_field>0 0 0</magnetic_field><wind><linear_velocity>1 0 0</linear_velocity></wind>
+  <atmosphere type="adiabatic"><temperature>288</temperature><temperature_gradient>-0.0065</temperature_gradient>
+  <pressure>101325</pressure></atmosphere><scene><ambient>1 1 1 1</ambient><background>1 1 1 1</background></scene>
+  <spherical_coordinates><surface_model>CUSTOM_SURFACE</surface_model><latitude_deg>1</latitude_deg>
+  <longitude_deg>1</longitude_deg><elevation>1</elevation><heading_deg>0</heading_deg>
+  <surface_axis_equatorial>1</surface_axis_equatorial><surface_axis_polar>1</surface_axis_polar></spherical_coordinates>
+  <model name="m"><link name="l"/></model>"""
+CAN = '<model name="{}"><link name="l"/></model><model_count>2</model_count><pose>0 0 0 0 0 0</pose>'
+POPULATION = f"""<population name="many">{CAN.format("can")}<box><size>1 1 1</size></box><distribution><type>random</type></distribution>
+  </population><population name="grid">{CAN.format("tin")}<distribution><type>grid</type><rows>1</rows><cols>2</cols><step>1 1 0</step>
+  </distribution></population><population name="round">{CAN.format("pot")}<cylinder><radius>1</radius><length>1</length></cylinder>
+  <distribution><type>uniform</type></distribution></population>"""
+STATE = f"""<model name="m"><link name="l"/></model><state world_name="w"><sim_time>1 0</sim_time><iterations>1</iterations>
+  <model name="m">{POSE}<scale>1 1 1</scale><link name="l">{POSE}<velocity>0 0 0 0 0 0</velocity>
+  <acceleration>0 0 0 0 0 0</acceleration><wrench>0 0 0 0 0 0</wrench></link></model></state>"""
+OLD_STATE = f"""<model name="m"><link name="l"/></model>{LIGHT}<state world_name="w"><real_time>1 0</real_time><wall_time>1 0
+  </wall_time><model_state name="m">{POSE}<link_state name="l">{POSE}</link_state></model_state>
+  <light_state name="LAMP">{POSE}</light_state></state><frame name="g">{POSE}</frame>"""
+ACTOR = f"""<actor name="walker">{POSE}<skin><filename>w.dae</filename><scale>1</scale></skin><animation name="walk">
+  <filename>w.dae</filename><scale>1</scale><interpolate_x>1</interpolate_x></animation><script><loop>1</loop><auto_start>1</auto_start><delay_start>0</delay_start><trajectory id="0" type="walk">
+  <tension>0</tension><waypoint><time>0</time>{POSE}</waypoint></trajectory></script></actor>"""
+ROBOT = """<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
+<link name="base"><inertial><origin xyz="0 0 0" rpy="0 0 0"/><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><origin xyz="0 0 0" quat_xyzw="0 0 0 1"/><geometry><box size="1 1 1"/></geometry></collision>
+<collision><geometry><cylinder radius="1" length="1"/></geometry></collision>
+<collision><geometry><capsule radius="1" length="1"/></geometry></collision>
+<visual><geometry><sphere radius="1"/></geometry><material name="red"/></visual>
+<visual><geometry><mesh filename="a.obj" scale="1 1 1"/></geometry></visual></link>
+<link name="arm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<link name="tip"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+<joint name="j" type="revolute"><origin xyz="0 0 1" rpy="0 0 0"/><parent link="base"/><child link="arm"/>
+<axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="10" velocity="1"/><dynamics damping="0.1" friction="0.1"/>
+<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_position="1" k_velocity="1"/>
+<calibration rising="0" falling="0"/></joint>
+<joint name="k" type="prismatic"><parent link="arm"/><child link="tip"/><axis xyz="1 0 0"/>
+<limit lower="-1" upper="1" effort="10" velocity="1"/><mimic joint="j" multiplier="1" offset="0"/></joint>
+<transmission name="t"><type>transmission_interface/SimpleTransmission</type><joint name="j"><offset>0</offset></joint>
+<actuator name="x"><mechanicalReduction>50</mechanicalReduction></actuator></transmission>
+<gazebo reference="arm"><mu1>1</mu1><mu2>1</mu2><fdir1>1 0 0</fdir1><kp>1e6</kp><kd>1</kd><minDepth>0.001</minDepth>
+<maxVel>0.1</maxVel><softCfm>0</softCfm><softErp>0.2</softErp><laserRetro>1</laserRetro><dampingFactor>0.1</dampingFactor>
+<gravity>1</gravity><selfCollide>0</selfCollide></gazebo>
+<gazebo reference="j"><springStiffness>1</springStiffness><springReference>0</springReference>
+<stopCfm>0</stopCfm><stopErp>0.2</stopErp><implicitSpringDamper>1</implicitSpringDamper></gazebo></robot>"""
+OBJ = b"o x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+COMPANIONS = {"a.png": picture("PNG", "L"), "a.obj": OBJ}
+
+
+@dataclass(frozen=True)
+class Place:
+    """One element or attribute with a number in it.
+
+    Attributes:
+        document: name of the document.
+        path: element names from the root, an attribute with `@`.
+        index: which of the document's places it is.
+    """
+
+    document: str
+    path: str
+    index: int
+
+    def __str__(self) -> str:
+        return f"{self.document}: {self.path}"
+
+
+@cache
+def documents() -> dict[str, str]:
+    """Name -> a document that loads; the name ends with the suffix of its file."""
+    found = {
+        "world.sdf": _world(WORLD),
+        "population.sdf": _world(POPULATION),
+        "state.sdf": _world(STATE),
+        "old state.sdf": _world(OLD_STATE),
+        "actor.sdf": _world(ACTOR),
+        "light.sdf": _world(LIGHT),
+        "include.sdf": _world("<include><uri>model://sun</uri><pose>0 0 1 0 0 0</pose><static>1</static></include>"),
+        "robot.urdf": ROBOT,
+        "link.sdf": _model(
+            f"""<link name="l"><pose>0 0 0 0 0 0</pose><inertial><pose>0 0 0 0 0 0</pose><mass>1</mass><inertia>
+            <ixx>1</ixx><iyy>1</iyy><izz>1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia><fluid_added_mass><xx>1</xx>
+            </fluid_added_mass></inertial><velocity_decay><linear>0.1</linear><angular>0.1</angular></velocity_decay>
+            <collision name="c">{BOX}{SURFACE}<laser_retro>0</laser_retro><max_contacts>1</max_contacts></collision>
+            <gravity>1</gravity></link>"""
+        ),
+        "auto.sdf": _model(
+            f"""<link name="l"><inertial auto="true"><density>2</density></inertial><collision name="c"><pose>1 0 0 0 0 0
+            </pose>{BOX}<density>3</density></collision></link>"""
+        ),
+        "visual.sdf": _model(
+            f"""<link name="l"><visual name="v">{POSE}{BOX}{MATERIAL}<transparency>0.5</transparency><visibility_flags>1
+            </visibility_flags><laser_retro>0</laser_retro></visual></link>"""
+        ).replace("<specular>1 1 1 1", "<shininess>1</shininess><render_order>0</render_order><specular>1 1 1 1"),
+    }
+    for shape in SHAPES:
+        name = shape[1:].partition(">")[0].split()[0].strip("/")
+        solid = f'<collision name="c"><geometry>{shape}</geometry></collision>'
+        drawn = f'<visual name="v"><geometry>{shape}</geometry></visual>'
+        text = _model(f'<static>{int(name == "heightmap")}</static><link name="l">{MASS}{solid}{drawn}</link>')
+        found[f"{name}.sdf"] = text
+        if name != "heightmap":
+            found[f"{name} auto.sdf"] = _model(f'<link name="l"><inertial auto="true"/>{solid}</link>')
+    inside = {
+        "screw": "<thread_pitch>1</thread_pitch><screw_thread_pitch>1</screw_thread_pitch>",
+        "gearbox": "<gearbox_ratio>2</gearbox_ratio><gearbox_reference_body>a</gearbox_reference_body>",
+    }
+    for kind in ("revolute", "prismatic", "universal", "revolute2", "screw", "gearbox", "ball"):
+        axis = AXIS.replace('joint="{leader}"', 'joint="leader"')
+        second = f"<axis2>{axis}</axis2>" if kind in ("universal", "revolute2", "gearbox") else ""
+        found[f"{kind}.sdf"] = _model(
+            f"""<link name="a"/><link name="b"/><link name="c"/><joint name="leader" type="revolute"><parent>b</parent>
+            <child>c</child><axis/></joint><joint name="j" type="{kind}"><parent>a</parent><child>b</child>{POSE}
+            <axis>{axis}</axis>{second}{inside.get(kind, "")}</joint>"""
+        )
+    for kind, block in SENSORS.items():
+        sensor = (
+            f'<sensor name="s" type="{kind}">{POSE}<update_rate>2</update_rate><always_on>1</always_on>{block}</sensor>'
+        )
+        found[f"{kind} sensor.sdf"] = _model(f'<link name="l">{sensor}</link>')
+    for filename, block in PLUGINS.items():
+        moving = "".join(
+            f'<link name="w{n}"/><joint name="{n}" type="revolute"><parent>l</parent><child>w{n}</child><axis/></joint>'
+            for n in "ab"
+        )
+        plugin = f'<plugin name="p" filename="{filename.strip()}">{block}</plugin>'
+        model = f'<model name="m"><link name="l"/>{moving}'
+        at = f"{model}</model>{plugin}" if "wrench" in filename else f"{model}{plugin}</model>"
+        found[f"{filename}.sdf"] = _world(f'<light name="sun" type="directional"/>{at}')
+    return found
+
+
+def places() -> list[Place]:
+    """Every number of every document."""
+    found = []
+    for name, text in documents().items():
+        found += [
+            Place(name, path, index) for index, (path, _) in enumerate(_spots(etree.fromstring(text, _lenient())))
+        ]
+    return found
+
+
+def with_value(place: Place, value: str) -> bytes:
+    """The document with another text at a place; of several numbers only the last becomes another one."""
+    root = etree.fromstring(documents()[place.document], _lenient())
+    _, (element, attribute) = list(_spots(root))[place.index]
+    old = (element.text if attribute is None else element.get(attribute)) or ""
+    parts = old.split()
+    is_number = value not in ("", "text", "1 2")
+    new = " ".join([*parts[:-1], value]) if is_number and len(parts) > 1 else value
+    if attribute is None:
+        element.text = new
+    else:
+        element.set(attribute, new)
+    return bytes(etree.tostring(root))
+
+
+def _spots(root: etree._Element) -> Iterator[tuple[str, tuple[etree._Element, str | None]]]:
+    for element in root.iter():
+        if not isinstance(element.tag, str):
+            continue
+        path = "/".join([*(str(a.tag) for a in reversed(list(element.iterancestors()))), element.tag])
+        if len(element) == 0 and element.text and NUMBERS.fullmatch(element.text):
+            yield path, (element, None)
+        for name, value in element.attrib.items():
+            if NUMBERS.fullmatch(str(value)) and name not in ("version", "name"):
+                yield f"{path}@{name}", (element, str(name))
+
+
+def _lenient() -> etree.XMLParser:
+    return etree.XMLParser(recover=True, resolve_entities=False)
+
+
+def _world(content: str) -> str:
+    return f'<sdf version="1.11"><world name="w">{content}</world></sdf>'
+
+
+def _model(content: str) -> str:
+    return _world(f'<model name="m">{content}</model>')

@@ -1,0 +1,169 @@
+"""Reads one broken file after another in a process of its own, within bounds of time and memory.
+
+The parent sends one line of JSON, `{"main": name, "files": [[name, length], ...]}`, followed by the bytes of the files
+in that order, and gets one line of JSON for each such set: what became of it, how long it took and the most memory.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+from pathlib import Path
+from typing import Any
+
+ADDRESSES = 8 << 30  # [bytes] of address space; the engine and its libraries take 2 of it
+STEPPING = 0.2  # [s] of wall time that a file that loads is stepped for
+STEPS = 250
+STAND = """<sdf version="1.9"><world name="w"><model name="m"><link name="l"/><link name="k"/>
+<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/></joint>
+<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"><topic>cmd_vel</topic>
+<left_joint>j</left_joint><right_joint>j</right_joint></plugin>
+<plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">
+<joint_name>j</joint_name></plugin></model></world></sdf>"""
+
+
+def main() -> None:
+    bound_memory()
+    warnings.simplefilter("error", RuntimeWarning)  # what numpy says of bad numbers would be on a user's terminal
+    import simkit
+
+    simkit.load("<sdf version='1.9'><world name='w'/></sdf>").close()
+    top = Path(tempfile.mkdtemp(prefix="simkit_fuzz_"))
+    resources = [Path(p) for p in sys.argv[1:]]
+    say({"ready": True})
+    while header := sys.stdin.buffer.readline():
+        asked = json.loads(header)
+        folder = top / "world"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        for name, length in asked["files"]:
+            file = folder / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(sys.stdin.buffer.read(length))
+        forget_peak()
+        began = time.perf_counter()
+        answer = outcome(folder / asked["main"], [*resources, folder])
+        say({**answer, "seconds": round(time.perf_counter() - began, 3), "peak_mib": peak_mib()})
+
+
+def say(answer: dict[str, Any]) -> None:
+    sys.stdout.write(json.dumps(answer) + "\n")
+    sys.stdout.flush()
+
+
+def bound_memory() -> None:
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return
+    resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+
+
+def forget_peak() -> None:
+    """Linux forgets the largest size that a process ever had when asked to."""
+    try:
+        Path("/proc/self/clear_refs").write_text("5")
+    except OSError:
+        return
+
+
+def peak_mib() -> int:
+    try:
+        status = Path("/proc/self/status").read_text()
+    except OSError:
+        return 0
+    return int(status.partition("VmHWM:")[2].split()[0]) >> 10
+
+
+def outcome(file: Path, resources: list[Path]) -> dict[str, str]:
+    """How a file was taken: `loaded`, `refused` (with the first code), or what it raised that it should not."""
+    import simkit
+
+    try:
+        if file.suffix == ".yaml":
+            return commanded(file)
+        simkit.describe(file, resource_paths=resources)
+        with simkit.load(file, resource_paths=resources) as sim:
+            return loaded(sim)
+    except simkit.LoadError as error:
+        return refused(list(error.diagnostics))
+    except simkit.SimulationDiverged:
+        return {"outcome": "loaded", "code": "diverged"}
+    except BaseException as error:  # noqa: BLE001 -- whatever it is, it is what is looked for
+        return {"outcome": f"{type(error).__name__}: {error}"[:500], "trace": traceback.format_exc()[-5000:]}
+
+
+def refused(found: list[Any]) -> dict[str, str]:
+    errors = [d for d in found if d.severity == "error"]
+    if not errors:
+        return {"outcome": "refused without an error"}
+    if not all(d.code.startswith("SK-") and d.message for d in found):
+        return {"outcome": "a diagnostic without code or text"}
+    if max(len(d.message) for d in found) > 20_000:
+        return {"outcome": "a message longer than a screen"}
+    printed(found)
+    return {"outcome": "refused", "code": errors[0].code, "said": str(errors[0])[:300]}
+
+
+def printed(found: list[Any]) -> None:
+    """As `simkit check` prints it."""
+    from rich.console import Console
+
+    from simkit.cli.console import print_diagnostics
+
+    stream = io.TextIOWrapper(io.BytesIO(), "utf-8", errors="replace")
+    print_diagnostics(found, verbose=True, console=Console(file=stream, highlight=False, markup=False, emoji=False))
+    stream.flush()
+    json.dumps([d.as_dict() for d in found])
+
+
+def loaded(sim: Any) -> dict[str, str]:
+    """Looks at what was compiled, says what the physics lint says, and steps."""
+    from simkit.lint import lint
+
+    bad = numbers_that_are_none(sim.mj_model)
+    if bad:
+        return {"outcome": f"not finite in the compiled model: {bad}"}
+    printed([*sim.diagnostics, *lint(sim)])
+    until = time.perf_counter() + STEPPING
+    sim.step(3)
+    while sim.tick < STEPS and time.perf_counter() < until:
+        sim.step(10)
+    return {"outcome": "loaded"}
+
+
+def numbers_that_are_none(model: Any) -> str:
+    import numpy as np
+
+    names = [n for n in dir(model) if n.split("_")[0] in ("body", "jnt", "dof", "geom", "site", "mesh", "eq", "light")]
+    arrays = [(n, getattr(model, n)) for n in names]
+    return ", ".join(
+        n for n, a in arrays if isinstance(a, np.ndarray) and a.dtype.kind == "f" and not np.isfinite(a).all()
+    )
+
+
+def commanded(file: Path) -> dict[str, str]:
+    """A script of commands, sent to a model that listens."""
+    import simkit
+    from simkit.sinks.commands import Commands, read_script
+
+    try:
+        with simkit.load(STAND) as sim:
+            commands = Commands(sim, read_script(file, sim.topics()))
+            for _ in range(30):
+                commands.send_due()
+                sim.step(1)
+    except simkit.InputError as error:
+        assert len(str(error)) < 20_000, "a message longer than a screen"
+        return {"outcome": "refused", "code": error.code}
+    return {"outcome": "loaded"}
+
+
+if __name__ == "__main__":
+    main()
