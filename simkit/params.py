@@ -146,8 +146,6 @@ class Params:
     def mark_all_read(self) -> None:
         """Says that this whole block is understood elsewhere."""
         self._read = True
-        if self.attributes:
-            self._attributes_asked = {*(self._attributes_asked or ()), *self.attributes}
         for c in self.children:
             c.mark_all_read()
 

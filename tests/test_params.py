@@ -73,3 +73,11 @@ def test_a_block_made_in_python_reads_like_one_from_a_file():
     p = Params.from_dict({"joint": ["a", "b"], "on": True, "size": (1, 2, 3), "inner": {"k": 4}})
     assert [j.value for j in p.all("joint")] == ["a", "b"]
     assert p.boolean("on") and p.vector3("size") == (1, 2, 3) and p.block("inner").number("k") == 4
+
+
+def test_numbers_that_are_too_many_are_passed_over_with_a_warning():
+    p = block("<a>1 2</a><e>1 2 3 4</e><f>1 2 x 4</f>")
+    assert (p.number("a"), p.vector3("e")) == (1.0, (1.0, 2.0, 3.0))
+    assert [(d.code, d.severity) for d in p.diagnostics] == [("SK-PARAM-006", "warning")] * 2
+    p.vector3("f")
+    assert problems(p)[-1][0] == "SK-PARAM-002"

@@ -51,8 +51,8 @@ CODES: tuple[Code, ...] = (
     Code("SK-SDF-008", "error", "unknown joint type; those known are listed", "", joint(_AXIS, "revolut")),
     Code(
         "SK-SDF-009",
-        "error",
-        "a geometry is missing, or a size is not positive",
+        "error, warning",
+        "a size is not positive; or (a warning) a collision or visual has no `<geometry>`, and so no shape",
         "",
         shape("<sphere><radius>-0.1</radius></sphere>"),
     ),

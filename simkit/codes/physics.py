@@ -100,14 +100,14 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SK-PHYS-005",
-        "note",
+        "warning",
         "friction differs along and across; the smaller is used both ways",
         "",
         surface("<friction><ode><mu>1</mu><mu2>0.5</mu2></ode></friction>"),
     ),
     Code(
         "SK-PHYS-006",
-        "note",
+        "warning",
         "`slip1`, `slip2` are not used",
         "",
         surface("<friction><ode><mu>1</mu><mu2>1</mu2><slip1>0.1</slip1></ode></friction>"),

@@ -97,13 +97,13 @@ def _sliding(surface: Surface, diagnostics: Diagnostics) -> float:
         diagnostics.note("SK-PHYS-002", f"friction coefficient {max(mu, mu2):g} is taken as {MU_MOST:g}", surface.where)
         mu, mu2 = min(mu, MU_MOST), min(mu2, MU_MOST)
     if mu != mu2:
-        diagnostics.note(
+        diagnostics.warning(
             "SK-PHYS-005",
             f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways",
             surface.where,
         )
     if surface.slip1 or surface.slip2:
-        diagnostics.note(
+        diagnostics.warning(
             "SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip with the force", surface.where
         )
     return min(mu, mu2)

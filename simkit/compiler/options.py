@@ -39,7 +39,7 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     if not (math.isfinite(step) and SHORTEST_STEP <= step <= LONGEST_STEP):
         diagnostics.error(
             "SK-PHYS-015",
-            f"max_step_size is {step}; a positive number of seconds is needed, from {SHORTEST_STEP:g} to {LONGEST_STEP:g}",
+            f"max_step_size is {step}; a positive number of seconds is needed, {SHORTEST_STEP:g} to {LONGEST_STEP:g}",
             world.physics.where,
         )
         step = 0.001

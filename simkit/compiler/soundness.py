@@ -29,8 +29,9 @@ def check_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where)
     """
     for name, owner in _DERIVED:
         values = np.asarray(getattr(model, name), float)
-        bad = np.flatnonzero(~np.isfinite(values.reshape(len(values), -1)).all(axis=1)) if values.size else ()
-        if len(bad):
+        rows = values.reshape(max(1, len(values)), -1)
+        bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+        if bad.size:
             diagnostics.error(
                 "SK-PHYS-028",
                 f"{owner(model, int(bad[0]))}: its masses, inertias and distances are too far apart to compute with",

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from simkit.loaders.files import read_bounded
+from simkit.loaders.uris import is_file
 
 _UPWARDS = 6  # folders above a file in which its package.xml is looked for
 _DEEP = 4  # folders below a search path
@@ -59,7 +60,7 @@ def package_places(
 def package_of(folder: Path) -> Path | None:
     """The package that a folder lies in: the nearest folder upwards with a `package.xml`."""
     for ancestor in (folder, *folder.parents[:_UPWARDS]):
-        if (ancestor / "package.xml").is_file():
+        if is_file(ancestor / "package.xml"):
             return ancestor
     return None
 
@@ -86,13 +87,13 @@ def _near(name: str, folder: Path) -> Iterator[Path]:
         if len(above.parts) < 3:
             return
         direct = above / name
-        if (direct / "package.xml").is_file():
+        if is_file(direct / "package.xml"):
             yield direct
         try:
             repositories = sorted(p for p in above.iterdir() if not p.name.startswith("."))[:500]
         except OSError:
             continue
-        yield from (r / name for r in repositories if (r / name / "package.xml").is_file())
+        yield from (r / name for r in repositories if is_file(r / name / "package.xml"))
 
 
 def _packages_below(path: Path) -> dict[str, Path]:
@@ -111,7 +112,7 @@ def _packages_below(path: Path) -> dict[str, Path]:
                 seen += 1
                 if seen > _FOLDERS_MOST:
                     return found
-                if (child / "package.xml").is_file():
+                if is_file(child / "package.xml"):
                     for called in (package_name(child), child.name):
                         if called:
                             found.setdefault(called, child)

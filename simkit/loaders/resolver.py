@@ -18,10 +18,13 @@ from simkit.loaders.uris import (
     first_of,
     is_count,
     is_elsewhere,
+    is_file,
+    is_folder,
     is_of_elsewhere,
     is_there,
     listed,
     normal,
+    siblings,
     without_find,
 )
 from simkit.params import Params
@@ -169,7 +172,7 @@ class Resolver:
         tried = list(package_places(name, self.packages, around, self.paths, self._below, self._near))
         for bundle in bundled_folders("assets"):
             tried += [bundle / name, *sorted(bundle.glob(f"*/{name}"))]
-        folder, unique = first_of([t for t in tried if t.is_dir()] or tried)
+        folder, unique = first_of([t for t in tried if is_folder(t)] or tried)
         if folder is not None:
             self._found[name] = folder
         return folder, unique
@@ -243,7 +246,7 @@ class Resolver:
             name = parts[position]
             if name not in ("share", "src", "install", "home", "opt", "meshes", "models"):
                 folder, _ = self.find_package(name, relative_to)
-                if folder is not None and folder.joinpath(*parts[position + 1 :]).is_file():
+                if folder is not None and is_file(folder.joinpath(*parts[position + 1 :])):
                     return folder.joinpath(*parts[position + 1 :])
         return None
 
@@ -296,8 +299,7 @@ class Resolver:
 
     def _siblings(self, relative_to: Path | None) -> Iterable[str]:
         for root in (*self.paths, *([relative_to.parent] if relative_to else [])):
-            if root.is_dir():
-                yield from (p.name for p in root.iterdir() if p.is_dir())
+            yield from (name for name in siblings(root / "any") if is_folder(root / name))
 
     # ------------------------------------------------------------------ models
 
@@ -309,22 +311,22 @@ class Resolver:
         from simkit.loaders.xml import parse_file
 
         for manifest in (folder / "model.config", folder / "manifest.xml"):
-            if not manifest.is_file():
+            if not is_file(manifest):
                 continue
             document = parse_file(manifest, diagnostics)
             if document is None:
                 return None
             listed = _listed_files(document.root)
             for _, name in sorted(listed, key=lambda item: item[0], reverse=True):
-                if (folder / name).is_file() and not escapes(name):
+                if is_file(folder / name) and not escapes(name):
                     return folder / name
             names = ", ".join(name for _, name in listed) or "none"
-            if (folder / "model.sdf").is_file():
+            if is_file(folder / "model.sdf"):
                 return folder / "model.sdf"
             diagnostics.error("SK-URI-005", f"{manifest} lists no SDF file that exists (listed: {names})", where)
             return None
         for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
-            if (folder / name).is_file():
+            if is_file(folder / name):
                 return folder / name
         models = _mjcf_models(folder)
         if len(models) == 1:
@@ -370,7 +372,7 @@ class Resolver:
 def _mjcf_models(folder: Path) -> list[Path]:
     """What may be the model of a folder in MuJoCo's own format: the one of its name, else all but the scenes."""
     try:
-        files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and f.is_file())
+        files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and is_file(f))
     except OSError:
         return []
     named = [f for f in files if f.stem in (folder.name, "model")]

@@ -94,6 +94,16 @@ def siblings(path: Path) -> list[str]:
         return []
 
 
+def is_file(path: Path) -> bool:
+    """Whether a file is there and may be seen; `Path.is_file` raises for one in a folder that is closed to us."""
+    return os.path.isfile(path)  # noqa: PTH113
+
+
+def is_folder(path: Path) -> bool:
+    """The same for a folder."""
+    return os.path.isdir(path)  # noqa: PTH112
+
+
 def is_count(text: str) -> bool:
     """Whether a text is a whole number of a few digits (`int` takes neither `²` nor thousands of digits)."""
     return text.isascii() and text.isdigit() and len(text) < 10

@@ -82,7 +82,8 @@ def _meshes() -> list[Sample]:
 
 def _mesh_world(name: str, part: str) -> bytes:
     mesh = f"<geometry><mesh><uri>{name}</uri><scale>1 1 -1</scale></mesh></geometry>"
-    solid = f'<link name="l"><inertial auto="true"/><collision name="c">{mesh}</collision><visual name="v">{mesh}</visual></link>'
+    both = f'<collision name="c">{mesh}</collision><visual name="v">{mesh}</visual>'
+    solid = f'<link name="l"><inertial auto="true"/>{both}</link>'
     sub = mesh.replace("<scale>", f"<submesh><name>{part}</name><center>1</center></submesh><scale>") if part else mesh
     still = f'<model name="s"><static>1</static><link name="l"><collision name="c">{sub}</collision></link></model>'
     return f'<sdf version="1.11"><world name="w"><model name="m">{solid}</model>{still}</world></sdf>'.encode()
@@ -126,8 +127,10 @@ def _pictures() -> list[Sample]:
 
 def _folders() -> list[Sample]:
     config = """<?xml version="1.0"?><model><name>a</name><version>1.0</version>
-<sdf version="1.4">old.sdf</sdf><sdf version="1.9">model.sdf</sdf><urdf>r.urdf</urdf><author><name>n</name></author></model>"""
-    model = '<sdf version="1.9"><model name="{}"><link name="l"><gravity>1</gravity></link><frame name="f" attached_to="l"/>{}</model></sdf>'
+<sdf version="1.4">old.sdf</sdf><sdf version="1.9">model.sdf</sdf><urdf>r.urdf</urdf>
+<author><name>n</name></author></model>"""
+    inside = '<link name="l"><gravity>1</gravity></link><frame name="f" attached_to="l"/>{}'
+    model = '<sdf version="1.9"><model name="{}">' + inside + "</model></sdf>"
     include = (
         '<include merge="{}"><uri>model://{}</uri><name>{}</name><pose relative_to="l">1 0 0 0 0 0</pose>{}</include>'
     )
@@ -137,7 +140,9 @@ def _folders() -> list[Sample]:
     inner = include.format("true", "d", "x", "") + include.format("false", "b", "y", changes)
     world = include.format("false", "a", "one", "<static>1</static>").replace('relative_to="l"', "")
     world += include.format("false", "c", "two", "<placement_frame>l</placement_frame>").replace('relative_to="l"', "")
-    robot = '<robot name="c"><link name="l"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><gazebo><plugin name="p" filename="libp.so"/></gazebo></robot>'
+    mass = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    plugin = '<gazebo><plugin name="p" filename="libp.so"/></gazebo>'
+    robot = f'<robot name="c"><link name="l">{mass}</link>{plugin}</robot>'
     files = {
         "w.world": f'<sdf version="1.9"><world name="w">{world}</world></sdf>'.encode(),
         "a/model.config": config.encode(),
@@ -159,7 +164,8 @@ def _xacros() -> list[Sample]:
 <xacro:property name="settings" value="${{xacro.load_yaml('settings.yaml')}}"/>
 <xacro:property name="origin"><origin xyz="0 0 ${{pi / 2}}"/></xacro:property>
 <xacro:macro name="wheel" params="name parent:=base radius:='0.1' *shape **more side=^|1">
-<link name="${{name}}"><inertial><mass value="${{mass * 2 ** 1}}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
+<link name="${{name}}"><inertial><mass value="${{mass * 2 ** 1}}"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
 </inertial><collision><geometry><xacro:insert_block name="shape"/></geometry></collision></link>
 <joint name="${{name}}_joint" type="continuous"><parent link="${{parent}}"/><child link="${{name}}"/>
 <xacro:insert_block name="origin"/><axis xyz="0 ${{side}} 0"/><xacro:insert_block name="more"/></joint></xacro:macro>

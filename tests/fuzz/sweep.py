@@ -1,4 +1,4 @@
-"""Every place of SDF and URDF that holds a number, each in a small document that loads, and each with odd numbers in it."""
+"""Every place of SDF and URDF that holds a number, in small documents that load, and odd numbers for each of them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ VALUES = ("nan", "inf", "-inf", "1e308", "1e9", "1e-9", "-1", "0", "", "text", "
 NUMBERS = re.compile(r"\s*(?:[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*)+")
 MASS = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
 BOX = f"<geometry>{SHAPES[1]}</geometry>"
-NOISE = """<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev><bias_mean>0</bias_mean><bias_stddev>0</bias_stddev>
-  <precision>0.001</precision><dynamic_bias_stddev>0.1</dynamic_bias_stddev>
+NOISE = """<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev><bias_mean>0</bias_mean>
+  <bias_stddev>0</bias_stddev>  <precision>0.001</precision><dynamic_bias_stddev>0.1</dynamic_bias_stddev>
   <dynamic_bias_correlation_time>1</dynamic_bias_correlation_time></noise>"""
 SCAN = f"""<scan><horizontal><samples>9</samples><resolution>1</resolution><min_angle>-1</min_angle>
   <max_angle>1</max_angle></horizontal><vertical><samples>2</samples><resolution>1</resolution><min_angle>0</min_angle>
@@ -76,18 +76,22 @@ WORLD = """<physics name="p"><max_step_size>0.001</max_step_size><real_time_fact
   <surface_axis_equatorial>1</surface_axis_equatorial><surface_axis_polar>1</surface_axis_polar></spherical_coordinates>
   <model name="m"><link name="l"/></model>"""
 CAN = '<model name="{}"><link name="l"/></model><model_count>2</model_count><pose>0 0 0 0 0 0</pose>'
-POPULATION = f"""<population name="many">{CAN.format("can")}<box><size>1 1 1</size></box><distribution><type>random</type></distribution>
-  </population><population name="grid">{CAN.format("tin")}<distribution><type>grid</type><rows>1</rows><cols>2</cols><step>1 1 0</step>
-  </distribution></population><population name="round">{CAN.format("pot")}<cylinder><radius>1</radius><length>1</length></cylinder>
+POPULATION = f"""<population name="many">{CAN.format("can")}<box><size>1 1 1</size></box><distribution>
+  <type>random</type></distribution></population>
+  <population name="grid">{CAN.format("tin")}<distribution><type>grid</type><rows>1</rows>
+  <cols>2</cols><step>1 1 0</step></distribution></population><population name="round">{CAN.format("pot")}
+  <cylinder><radius>1</radius><length>1</length></cylinder>
   <distribution><type>uniform</type></distribution></population>"""
-STATE = f"""<model name="m"><link name="l"/></model><state world_name="w"><sim_time>1 0</sim_time><iterations>1</iterations>
+STATE = f"""<model name="m"><link name="l"/></model><state world_name="w"><sim_time>1 0</sim_time>
+  <iterations>1</iterations>
   <model name="m">{POSE}<scale>1 1 1</scale><link name="l">{POSE}<velocity>0 0 0 0 0 0</velocity>
   <acceleration>0 0 0 0 0 0</acceleration><wrench>0 0 0 0 0 0</wrench></link></model></state>"""
-OLD_STATE = f"""<model name="m"><link name="l"/></model>{LIGHT}<state world_name="w"><real_time>1 0</real_time><wall_time>1 0
-  </wall_time><model_state name="m">{POSE}<link_state name="l">{POSE}</link_state></model_state>
+OLD_STATE = f"""<model name="m"><link name="l"/></model>{LIGHT}<state world_name="w"><real_time>1 0</real_time>
+  <wall_time>1 0  </wall_time><model_state name="m">{POSE}<link_state name="l">{POSE}</link_state></model_state>
   <light_state name="LAMP">{POSE}</light_state></state><frame name="g">{POSE}</frame>"""
 ACTOR = f"""<actor name="walker">{POSE}<skin><filename>w.dae</filename><scale>1</scale></skin><animation name="walk">
-  <filename>w.dae</filename><scale>1</scale><interpolate_x>1</interpolate_x></animation><script><loop>1</loop><auto_start>1</auto_start><delay_start>0</delay_start><trajectory id="0" type="walk">
+  <filename>w.dae</filename><scale>1</scale><interpolate_x>1</interpolate_x></animation><script>
+  <loop>1</loop><auto_start>1</auto_start><delay_start>0</delay_start><trajectory id="0" type="walk">
   <tension>0</tension><waypoint><time>0</time>{POSE}</waypoint></trajectory></script></actor>"""
 ROBOT = """<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
 <link name="base"><inertial><origin xyz="0 0 0" rpy="0 0 0"/><mass value="1"/>
@@ -154,8 +158,8 @@ def documents() -> dict[str, str]:
             <gravity>1</gravity></link>"""
         ),
         "auto.sdf": _model(
-            f"""<link name="l"><inertial auto="true"><density>2</density></inertial><collision name="c"><pose>1 0 0 0 0 0
-            </pose>{BOX}<density>3</density></collision></link>"""
+            f"""<link name="l"><inertial auto="true"><density>2</density></inertial><collision name="c">
+            <pose>1 0 0 0 0 0            </pose>{BOX}<density>3</density></collision></link>"""
         ),
         "visual.sdf": _model(
             f"""<link name="l"><visual name="v">{POSE}{BOX}{MATERIAL}<transparency>0.5</transparency><visibility_flags>1

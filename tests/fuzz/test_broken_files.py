@@ -26,7 +26,7 @@ SECONDS = float(os.environ.get("SIMKIT_FUZZ_SECONDS", "300"))
 SEED = os.environ.get("SIMKIT_FUZZ_SEED", "0")  # another one gives other inputs
 SUFFIXES = (".sdf", ".world", ".urdf", ".xacro", ".xml")
 LARGEST = 100_000  # [bytes]; larger files only take longer
-QUICK = 60  # inputs of each of the tests that always run
+QUICK = 45  # inputs of each of the tests that always run
 
 
 def real_files(suffixes: tuple[str, ...], shared: bool = True) -> list[Path]:
@@ -39,7 +39,7 @@ def real_files(suffixes: tuple[str, ...], shared: bool = True) -> list[Path]:
 
 @cache
 def library() -> tuple[bytes, ...]:
-    """Texts with blocks that mutations put into other files: our own files, and what our tests and pages have inline."""
+    """Texts with blocks that mutations put into other files: our own, and what our tests and pages have inline."""
     texts = [*real_files(SUFFIXES), *(ROOT / "tests").rglob("test_*.py"), *(ROOT / "docs").rglob("*.md")]
     return tuple(p.read_bytes() for p in sorted(texts))
 
@@ -115,7 +115,8 @@ def test_whatever_files_name_may_be_broken(reader: Reader, tmp_path: Path) -> No
 
 @pytest.mark.parametrize("sample", samples(), ids=lambda s: s.name)
 def test_a_sample_that_is_not_broken_loads(sample: Sample, reader: Reader) -> None:
-    assert reader.read(sample.main, sample.files)["outcome"] == "loaded"
+    answer = reader.read(sample.main, sample.files)
+    assert answer["outcome"] == "loaded", answer
 
 
 @pytest.mark.fuzz

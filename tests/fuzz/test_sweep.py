@@ -41,7 +41,7 @@ def test_a_document_of_the_sweep_loads(name: str, reader: Reader) -> None:
 
 def test_odd_numbers_are_errors_or_clean_imports(reader: Reader, tmp_path) -> None:
     found: list[str] = []
-    for number, place in enumerate(places()):
+    for number, place in enumerate(places()[::2]):
         some = tuple(VALUES[(number * 5 + k * 7) % len(VALUES)] for k in range(SOME))
         found += swept(reader, place, some, tmp_path)
     assert not found, "\n".join(found[:20])

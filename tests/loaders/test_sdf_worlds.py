@@ -295,3 +295,17 @@ def test_the_steps_per_second_stand_in_for_the_factor(load):
     both = "<real_time_update_rate>250</real_time_update_rate><real_time_factor>2</real_time_factor>"
     assert factor(both).real_time_factor == 2
     assert factor("<max_contacts>7</max_contacts>").max_contacts == 7
+
+
+def test_a_light_without_a_type_is_a_point_and_that_is_said(load):
+    scene, found = load('<sdf version="1.9"><world name="w">\n<light name="lamp"/></world></sdf>')
+    assert scene.worlds[0].lights[0].type == "point"
+    assert [(d.code, d.severity, d.line) for d in found] == [("SK-SDF-039", "warning", 2)]
+
+
+def test_a_world_has_no_frame_named_model(load):
+    _, found = load(
+        '<sdf version="1.9"><world name="w"><model name="m">\n<pose relative_to="__model__">1 0 0 0 0 0</pose>'
+        '<link name="l"/></model></world></sdf>'
+    )
+    assert [(d.code, d.severity, d.line) for d in found if d.severity == "error"] == [("SK-SDF-004", "error", 2)]

@@ -24,7 +24,8 @@ SECONDS = 60  # on a busy machine; nearly all take one
 LARGEST = 2 << 30  # [bytes]
 WORLD = '<sdf version="1.9"><world name="w">{}</world></sdf>'
 MODEL = WORLD.format('<model name="m"><static>{}</static>{}</model>')
-LASER = """<link name="l"><sensor name={} type="{}"><update_rate>{}</update_rate><topic>{}</topic><{}>{}</{}></sensor></link>"""
+LASER = """<link name="l"><sensor name={} type="{}"><update_rate>{}</update_rate><topic>{}</topic>
+<{}>{}</{}></sensor></link>"""
 SCAN = """<scan><horizontal><samples>{}</samples><min_angle>-1</min_angle><max_angle>1</max_angle></horizontal>
 <vertical><samples>{}</samples><min_angle>-1</min_angle><max_angle>1</max_angle></vertical></scan>
 <range><min>0.1</min><max>9</max></range>"""
@@ -85,7 +86,9 @@ def errors(source: object, **options: object) -> list[str]:
 # ---------------------------------------------------------------------- what is no file
 
 
-@pytest.mark.parametrize("name", ["/dev/zero", "/dev/null", ".", "/proc/self/mem", "nothing.sdf", "", "x" * 5000, "a\nb.sdf"])
+@pytest.mark.parametrize(
+    "name", ["/dev/zero", "/dev/null", ".", "/proc/self/mem", "nothing.sdf", "", "x" * 5000, "a\nb.sdf"]
+)
 def test_what_is_no_world_is_refused(opened, name):
     for command in ("check", "run", "inspect"):
         code, text = opened(command, name)
@@ -128,8 +131,12 @@ def test_a_file_that_may_not_be_read_is_an_error(write, tmp_path):
     file.chmod(0)
     assert errors(file) == ["SK-LOAD-002"]
     file.parent.chmod(0)
-    assert errors(file) == ["SK-LOAD-002"]
-    file.parent.chmod(0o700)
+    try:
+        assert errors(file) == ["SK-LOAD-002"]
+        assert errors(file.parent) == ["SK-URI-005"]
+        assert errors(write("w.sdf", WORLD.format("<include><uri>model://closed</uri></include>"))) == ["SK-URI-005"]
+    finally:
+        file.parent.chmod(0o700)
 
 
 # ---------------------------------------------------------------------- where files may lie
@@ -139,16 +146,19 @@ def test_a_file_that_may_not_be_read_is_an_error(write, tmp_path):
     "uri",
     ["/etc/passwd", "file:///etc/passwd", "../../../../etc/passwd", "model://../../etc/passwd", "model://m/../../../etc/passwd",
      "package://../etc/passwd", "file://../../../../etc/passwd", "%2e%2e/%2e%2e/%2e%2e/%2e%2e/etc/passwd",
-     "http://127.0.0.1:9/x.sdf", "ftp://127.0.0.1/x.sdf", "https://127.0.0.1:9/a/models/b", "data:text/xml,<sdf/>", "\\\\host\\x",
+     "http://127.0.0.1:9/x.sdf", "ftp://127.0.0.1/x.sdf", "https://127.0.0.1:9/a/models/b", "data:text/xml,<sdf/>",
+     "\\\\host\\x",
      "~/.profile", "$HOME/.profile", "file://localhost/etc/passwd", "model://m/%2e%2e/%2e%2e/etc/passwd"],
 )  # fmt: skip
 @pytest.mark.parametrize(
     "content",
     [
         "<include><uri>{}</uri></include>",
-        '<model name="m"><static>1</static><link name="l"><collision name="c"><geometry><mesh><uri>{}</uri></mesh></geometry>'
+        '<model name="m"><static>1</static><link name="l"><collision name="c"><geometry>'
+        "<mesh><uri>{}</uri></mesh></geometry>"
         "</collision></link></model>",
-        '<model name="m"><static>1</static><link name="l"><collision name="c"><geometry><heightmap><uri>{}</uri></heightmap>'
+        '<model name="m"><static>1</static><link name="l"><collision name="c"><geometry>'
+        "<heightmap><uri>{}</uri></heightmap>"
         "</geometry></collision></link></model>",
     ],
     ids=["include", "mesh", "heightmap"],
@@ -165,7 +175,7 @@ def test_nothing_is_read_outside_or_fetched(write, uri, content):
     [
         '<xacro:include filename="/etc/passwd"/>',
         '<xacro:include filename="../../../../../../etc/passwd"/>',
-        "<xacro:property name=\"x\" value=\"${xacro.load_yaml('/etc/passwd')}\"/><link name=\"${x}\"/>",
+        '<xacro:property name="x" value="${xacro.load_yaml(\'/etc/passwd\')}"/><link name="${x}"/>',
         '<xacro:property name="x" value="${open(\'/etc/passwd\').read()}"/><link name="${x}"/>',
         '<xacro:property name="x" value="${__import__(\'os\').system(\'true\')}"/><link name="${x}"/>',
         '<xacro:property name="x" value="${().__class__.__bases__}"/><link name="${x}"/>',
@@ -174,7 +184,8 @@ def test_nothing_is_read_outside_or_fetched(write, uri, content):
         "<link name=\"${'a' * 10**10}\"/>",
         '<link name="${[x for x in range(10**10)]}"/>',
         '<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>',
-        '<xacro:macro name="m"><xacro:n/><xacro:n/></xacro:macro><xacro:macro name="n"><xacro:m/><xacro:m/></xacro:macro><xacro:m/>',
+        '<xacro:macro name="m"><xacro:n/><xacro:n/></xacro:macro>'
+        '<xacro:macro name="n"><xacro:m/><xacro:m/></xacro:macro><xacro:m/>',
         '<xacro:include filename="r.xacro"/>',
     ],
 )
@@ -186,15 +197,15 @@ def test_a_xacro_file_reads_and_runs_nothing_of_the_kind(write, line):
 
 
 def test_a_link_inside_a_folder_is_followed_as_in_a_workspace_of_links(write, tmp_path):
-    """Whoever can put a link there could have put the file; what it leads to is read as what it should be, or refused."""
+    """Whoever can put a link there could have put the file; what it leads to is what it should be, or refused."""
     write("elsewhere/robot.sdf", '<sdf version="1.9"><model name="far"><link name="l"/></model></sdf>')
     write("secret.txt", "password")
     write("models/m/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")
     (tmp_path / "models/m/model.sdf").symlink_to(tmp_path / "elsewhere/robot.sdf")
     write("models/n/model.config", "<model><sdf version='1.9'>model.sdf</sdf></model>")
     (tmp_path / "models/n/model.sdf").symlink_to(tmp_path / "secret.txt")
-    both = '<include><uri>model://m</uri></include><include><uri>model://n</uri></include>'
-    found = [d for d in simkit.check(write("w.sdf", WORLD.format(both)), resource_paths=[tmp_path / "models"])]
+    both = "<include><uri>model://m</uri></include><include><uri>model://n</uri></include>"
+    found = list(simkit.check(write("w.sdf", WORLD.format(both)), resource_paths=[tmp_path / "models"]))
     assert [d.code for d in found if d.severity == "error"] == ["SK-XML-005"]
     assert not any("password" in str(d) for d in found)
 
@@ -207,13 +218,19 @@ def test_includes_that_go_round_through_other_formats_end(write, tmp_path):
     write("one.xacro", xacro.format('<xacro:include filename="two.xacro"/>'))
     write("two.xacro", xacro.format('<xacro:include filename="one.xacro"/>'))
     assert errors(tmp_path / "one.xacro")
-    write("a/model.sdf", WORLD.replace("world", "model").format('<link name="l"/><include><uri>model://b</uri></include>'))
+    write(
+        "a/model.sdf", WORLD.replace("world", "model").format('<link name="l"/><include><uri>model://b</uri></include>')
+    )
     write("b/b.urdf", xacro.format('<link name="k"/><gazebo><include><uri>model://a</uri></include></gazebo>'))
     assert all(c.startswith("SK-") for c in errors(tmp_path / "a/model.sdf"))
     write("m.xml", '<mujoco model="m"><include file="n.xml"/></mujoco>')
     write("n.xml", '<mujocoinclude><include file="m.xml"/></mujocoinclude>')
     assert errors(tmp_path / "m.xml")
-    write("p.xml", '<mujoco><asset><model name="p" file="p.xml"/></asset><worldbody><attach model="p" prefix="x"/></worldbody></mujoco>')
+    write(
+        "p.xml",
+        '<mujoco><asset><model name="p" file="p.xml"/></asset>'
+        '<worldbody><attach model="p" prefix="x"/></worldbody></mujoco>',
+    )
     assert errors(tmp_path / "p.xml")
 
 
@@ -225,7 +242,8 @@ LAUGHS = "<!DOCTYPE x [<!ENTITY a 'ha'>" + "".join(
 @pytest.mark.parametrize("root", ["sdf", "robot", "mujoco"])
 @pytest.mark.parametrize(
     "declared",
-    [LAUGHS, '<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">', '<!DOCTYPE x [<!ENTITY % a SYSTEM "http://127.0.0.1:9/a"> %a;'],
+    [LAUGHS, '<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">',
+     '<!DOCTYPE x [<!ENTITY % a SYSTEM "http://127.0.0.1:9/a"> %a;'],
     ids=["laughs", "file", "network"],
 )  # fmt: skip
 def test_entities_are_refused_in_every_format(declared, root):
@@ -238,7 +256,10 @@ def test_entities_are_refused_in_every_file_that_is_named(write, tmp_path, name)
     bomb = f"{LAUGHS}]><x>&j;</x>"
     write(f"m/{name}", bomb)
     write("m/w.sdf", WORLD.format("<include><uri>model://m</uri></include>"))
-    write("m/r.xacro", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="parts.xacro"/></robot>')
+    write(
+        "m/r.xacro",
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="parts.xacro"/></robot>',
+    )
     write("m/i.xml", '<mujoco><include file="inner.xml"/></mujoco>')
     for main in ("m/w.sdf", "m/r.xacro", "m/i.xml"):
         simkit.check(tmp_path / main)
@@ -257,8 +278,10 @@ def test_thousands_of_unknown_names_are_not_each_compared_with_thousands(write):
     frames = "".join(f'<frame name="f{i}" attached_to="lonk_{i}"/>' for i in range(6_000))
     found = list(simkit.check(MODEL.format(0, links + frames)))
     assert found[-1].code == "SK-LOAD-012" and len(found) < 1100
-    joints = "".join(f'<joint name="j{i}" type="fixed"><parent link="x{i}"/><child link="y{i}"/></joint>' for i in range(2000))
-    assert "SK-LOAD-012" in errors(f'<robot name="r">{links[:60_000].rpartition("<link")[0]}{joints}</robot>')
+    joints = "".join(
+        f'<joint name="j{i}" type="fixed"><parent link="x{i}"/><child link="y{i}"/></joint>' for i in range(2000)
+    )
+    assert "SK-LOAD-012" in errors(f'<robot name="r">{links[:20_000].rpartition("<link")[0]}{joints}</robot>')
 
 
 def png(width: int, height: int, rows: bytes) -> bytes:
@@ -269,7 +292,8 @@ def png(width: int, height: int, rows: bytes) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
 
 
-@pytest.mark.parametrize("content", [PICTURE_MODEL.format("p.png"), '<link name="l"><collision name="c"><geometry><heightmap>'
+@pytest.mark.parametrize("content", [PICTURE_MODEL.format("p.png"), '<link name="l">'
+    '<collision name="c"><geometry><heightmap>'
     "<uri>p.png</uri></heightmap></geometry></collision></link>"], ids=["texture", "heightmap"])  # fmt: skip
 @pytest.mark.parametrize("size", [60_000, 2_000_000_000])
 def test_a_picture_that_unpacks_to_gigabytes_is_refused(opened, write, content, size):
@@ -338,22 +362,42 @@ def test_a_thousand_million_copies_are_refused(count):
     assert errors(WORLD.format(COPIES.format(4, rows)))[0] in ("SK-SDF-033", "SK-PARAM-002")
 
 
-def test_more_moving_bodies_than_the_engine_compiles_in_a_minute_are_refused():
+def test_more_moving_bodies_than_the_engine_compiles_in_a_minute_are_refused(monkeypatch):
+    monkeypatch.setattr("simkit.compiler.builder.MOST_MOVING", 50)
     box = "<box><size>1 1 1</size></box><distribution><type>random</type></distribution>"
-    assert errors(WORLD.format(COPIES.format(10_100, box))) == ["SK-PHYS-029"]
+    assert errors(WORLD.format(COPIES.format(60, box))) == ["SK-PHYS-029"]
 
 
 # ---------------------------------------------------------------------- names
 
-NAMES = ["a/b", "a b", "名前", "ü\U0001f916", "a\tb", "..", "/", "-", "%s", "{}", "a.b", "9", "$(x)", "x" * 200, "<", "\u202e", "~"]
+NAMES = [
+    "a/b",
+    "a b",
+    "名前",
+    "ü\U0001f916",
+    "a\tb",
+    "..",
+    "/",
+    "-",
+    "%s",
+    "{}",
+    "a.b",
+    "9",
+    "$(x)",
+    "x" * 200,
+    "<",
+    "\u202e",
+    "~",
+]
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_topics_of_odd_names_are_recorded_and_read_back(tmp_path, name):
     quoted = quoteattr(name)
-    plugin = '<plugin filename="gz-sim-joint-state-publisher-system" name="p"/><plugin filename="gz-sim-odometry-publisher-system" name="o"/>'
-    world = f"""<sdf version="1.9"><world name={quoted}><model name={quoted}><link name={quoted}><sensor name={quoted} type="imu">
-    <update_rate>500</update_rate></sensor></link>{plugin}</model></world></sdf>"""
+    plugin = '<plugin filename="gz-sim-joint-state-publisher-system" name="p"/>'
+    plugin += '<plugin filename="gz-sim-odometry-publisher-system" name="o"/>'
+    world = f"""<sdf version="1.9"><world name={quoted}><model name={quoted}><link name={quoted}>
+    <sensor name={quoted} type="imu">    <update_rate>500</update_rate></sensor></link>{plugin}</model></world></sdf>"""
     from simkit.sinks.recorder import Recorder
 
     with simkit.load(world) as sim, Recorder(sim, tmp_path / "bag.mcap") as recording:
@@ -368,15 +412,16 @@ def test_topics_of_odd_names_are_recorded_and_read_back(tmp_path, name):
     assert summary is not None and summary.statistics is not None and summary.statistics.message_count > 0
 
 
-@pytest.mark.parametrize("topic", ["", "/", "//", "a b", "../x", "名前", "x" * 10_000, "a//b/", "%n", "~/x", "a\nb", "{ns}", "/a/../b"])
+@pytest.mark.parametrize(
+    "topic", ["", "/", "//", "a b", "../x", "名前", "x" * 10_000, "a//b/", "%n", "~/x", "a\nb", "{ns}", "/a/../b"]
+)
 def test_odd_topics_are_refused_or_made_valid(tmp_path, topic):
     sensor = LASER.format('"s"', "lidar", 500, topic, "lidar", SCAN.format(3, 1), "lidar")
-    try:
-        with simkit.load(MODEL.format(0, sensor)) as sim:
+    world = MODEL.format(0, sensor)
+    if not errors(world):
+        with simkit.load(world) as sim:
             sim.run(0.01)
             assert all(t.startswith("/") and t.isascii() and t.isprintable() for t in sim.topics())
-    except simkit.LoadError as error:
-        assert error.diagnostics
 
 
 def test_this_process_stays_small():

@@ -33,8 +33,9 @@ def read_geometry(owner: Params, file: SdfFile, workspace: Workspace, what: str)
     """The shape of a collision or visual; None, with an error recorded, where there is no usable one."""
     block = owner.child("geometry")
     if block is None:
-        workspace.diagnostics.error("SK-SDF-009", f"{what} needs <geometry>", owner.where)
-        return None
+        near = did_you_mean("geometry", [c.name for c in owner.children])
+        workspace.diagnostics.warning("SK-SDF-009", f"{what} has no <geometry>, and so no shape", owner.where, near)
+        return Empty()
     shapes = [c for c in block.children if ":" not in c.name]
     if not shapes:
         return Empty()

@@ -37,6 +37,17 @@ def as_can_be(element: Params, found: str, instead: str, hint: str = "") -> None
     element.diagnostics.warning("SK-URDF-031", f"{found}; {instead}", element.where, hint)
 
 
+def pass_over(element: Params) -> None:
+    """Leaves out an element whose fault is said: of what is in it nothing more is."""
+    element.mark_all_read()
+    stack = [element]
+    while stack:
+        below = stack.pop()
+        for name in below.attributes:
+            below.attribute(name)
+        stack += below.children
+
+
 def text(element: Params, attribute: str) -> str:
     """An attribute without surrounding white space; empty where absent."""
     return element.attribute(attribute).strip()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.frames import Frame
 from simkit.loaders.urdf.draft import Draft, JointDraft
-from simkit.loaders.urdf.reading import missing, origin, text
+from simkit.loaders.urdf.reading import missing, origin, pass_over, text
 from simkit.params import Params
 from simkit.pose import IDENTITY
 
@@ -72,7 +72,7 @@ def _named(draft: Draft, kind: str) -> dict[str, Params]:
             line = found[name].where.line
             message = f"two {kind}s are named {name!r}: the other is at line {line}"
             draft.diagnostics.error("SK-URDF-002", message, element.where, "give one of them another name")
-            element.mark_all_read()
+            pass_over(element)
         else:
             if "::" in name:
                 message = f"{kind} {name!r}: '::' separates names and cannot be in one"
