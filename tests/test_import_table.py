@@ -27,7 +27,9 @@ ROOMS: dict[str, frozenset[str]] = {
     "description": frozenset({"scene", "loaders", "sensors"}),
     "codes": frozenset(),
     "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
-    "cli": frozenset({"build", "codes", "fix_inertia", "description", "bench", "engine", "overrides", "sinks", "vendor", "writers"}),
+    "cli": frozenset(
+        {"build", "codes", "fix_inertia", "description", "bench", "engine", "overrides", "sinks", "vendor", "writers"}
+    ),
 }
 KNOWS_ALL = frozenset({"build"})
 FRONT_DOOR = frozenset({"__init__", "__main__"})

@@ -25,7 +25,6 @@ from simkit.scene import (
     Surface,
 )
 
-
 sys.path.insert(0, str(Path(__file__).parent))  # the makers of mesh files
 
 
