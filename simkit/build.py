@@ -211,7 +211,7 @@ def _scene(
 
 def _triangles(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:
     """The triangles of a mesh, for the loaders' automatic inertia."""
-    from simkit.compiler.mesh import load_mesh
+    from simkit.compiler.meshes.mesh import load_mesh
 
     return load_mesh(mesh, diagnostics, where)
 

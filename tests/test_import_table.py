@@ -85,7 +85,7 @@ def test_a_file_imports_only_from_the_rooms_its_own_may_know(path: Path) -> None
 def test_only_loaders_read_xml() -> None:
     """XML ends at the loaders; a mesh file that happens to be XML is the mesh reader's."""
     readers = {p.relative_to(PACKAGE).as_posix() for p in FILES if _imports(p, {"lxml", "xml"})}
-    assert {r for r in readers if not r.startswith("loaders/")} <= {"compiler/mesh_collada.py"}
+    assert {r for r in readers if not r.startswith("loaders/")} <= {"compiler/meshes/collada.py"}
 
 
 def test_only_the_compiler_and_what_stands_on_it_knows_the_engine() -> None:

@@ -10,8 +10,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from simkit.compiler.mesh_files import Pixels, pixels_of
-from simkit.compiler.mesh_part import Floats, Ints
+from simkit.compiler.meshes.files import Pixels, pixels_of
+from simkit.compiler.meshes.part import Floats, Ints
 
 AssetKey = tuple[str, str]
 """(kind, MuJoCo's name)."""

@@ -15,9 +15,9 @@ from simkit.compiler.friction import Contact, contact_of
 from simkit.compiler.groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, VISUAL
 from simkit.compiler.heightmap import heights
 from simkit.compiler.looks import look_of
-from simkit.compiler.mesh import load_mesh, once
-from simkit.compiler.mesh_collision import bodies_of, hull_of
-from simkit.compiler.mesh_part import Floats, Ints, MeshFileError, MeshPart, has_area, joined
+from simkit.compiler.meshes.collision import bodies_of, hull_of
+from simkit.compiler.meshes.mesh import load_mesh, once
+from simkit.compiler.meshes.part import Floats, Ints, MeshFileError, MeshPart, has_area, joined
 from simkit.compiler.names import GeomOwner, ModelRecord
 from simkit.compiler.shapes import cone, polyline, polyline_pieces, primitive_of, sizes_of
 from simkit.compiler.shapes_textured import textured

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_part import Floats, MeshFileError
+from simkit.compiler.meshes.part import Floats, MeshFileError
 from simkit.scene import Heightmap
 
 LARGEST: Final = 4097

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from simkit.compiler.mesh_part import Colour, MeshPart
+from simkit.compiler.meshes.part import Colour, MeshPart
 from simkit.scene import Material, SceneVisual
 
 PLAIN: Final[Colour] = (0.7, 0.7, 0.7, 1.0)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from simkit.compiler.mesh_part import Floats, Ints
+from simkit.compiler.meshes.part import Floats, Ints
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere
 

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_part import Floats, Ints, MeshPart
+from simkit.compiler.meshes.part import Floats, Ints, MeshPart
 from simkit.scene import Box, Capsule, Cylinder, Ellipsoid, Geometry, Sphere
 
 _AROUND: Final = 96

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_part import Floats, Ints
+from simkit.compiler.meshes.part import Floats, Ints
 
 PRISMS_MOST: Final = 10_000
 """More patches than this are thinned out first (and reported)."""

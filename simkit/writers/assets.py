@@ -70,8 +70,8 @@ class AssetFolder:
 
 def companions(file: Path) -> list[Path]:
     """Files that a mesh names and that are there: materials, buffers, pictures; none for other files."""
-    from simkit.compiler.mesh import SUFFIXES, convert_file
-    from simkit.compiler.mesh_part import MeshFileError
+    from simkit.compiler.meshes.mesh import SUFFIXES, convert_file
+    from simkit.compiler.meshes.part import MeshFileError
 
     if file.suffix.lower() not in SUFFIXES:
         return []

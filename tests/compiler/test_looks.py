@@ -12,7 +12,7 @@ from mesh_makers import QUAD, picture
 import simkit
 from simkit.compiler.lights import spot_of
 from simkit.compiler.looks import look_of
-from simkit.compiler.mesh_part import MeshPart
+from simkit.compiler.meshes.part import MeshPart
 from simkit.errors import SimkitError
 from simkit.pose import Pose
 from simkit.scene import Box, Material, SceneLight, SceneVisual

@@ -13,9 +13,11 @@ import pytest
 from mesh_makers import L_SHAPE, QUAD, binary_stl, picture
 
 import simkit
-from simkit.compiler import mesh, mesh_cache, mesh_collision
-from simkit.compiler.mesh import convert_file, load_file
-from simkit.compiler.mesh_collision import bodies_of
+from simkit.compiler.meshes import cache as mesh_cache
+from simkit.compiler.meshes import collision as mesh_collision
+from simkit.compiler.meshes import mesh
+from simkit.compiler.meshes.collision import bodies_of
+from simkit.compiler.meshes.mesh import convert_file, load_file
 from simkit.compiler.shapes import polyline
 from simkit.scene import Polyline
 
@@ -156,7 +158,7 @@ def test_two_processes_at_once_get_the_same_and_leave_nothing_half_written(tmp_p
         textwrap.dedent("""
             import hashlib, sys
             from pathlib import Path
-            from simkit.compiler import mesh
+            from simkit.compiler.meshes import mesh
             for _ in range(5):
                 mesh._converted.cache_clear()
                 part = mesh.load_file(Path(sys.argv[1]))[0]

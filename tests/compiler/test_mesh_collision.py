@@ -11,9 +11,10 @@ import pytest
 import trimesh
 from mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
-from simkit.compiler import mesh_collision, mesh_decompose
-from simkit.compiler.mesh_collision import bodies_of
-from simkit.compiler.mesh_volume import filled_ratio, volume_of
+from simkit.compiler.meshes import collision as mesh_collision
+from simkit.compiler.meshes import decompose as mesh_decompose
+from simkit.compiler.meshes.collision import bodies_of
+from simkit.compiler.meshes.volume import filled_ratio, volume_of
 from simkit.compiler.shapes import polyline
 from simkit.pose import Pose
 from simkit.scene import Mesh, Polyline, Sphere
@@ -195,8 +196,8 @@ def test_a_sliver_among_good_triangles_changes_nothing(make, compiled, tmp_path)
 
 @pytest.mark.parametrize("scale", [(-1.0, 1.0, 1.0), (-1.0, -2.0, 1.0), (-1.0, -1.0, -1.0), (0.5, 3.0, -2.0)])
 def test_a_mirrored_mesh_keeps_its_outside_and_its_volume(tmp_path, scale):
-    from simkit.compiler.mesh import load_mesh
-    from simkit.compiler.mesh_part import joined
+    from simkit.compiler.meshes.mesh import load_mesh
+    from simkit.compiler.meshes.part import joined
     from simkit.diagnostics import NOWHERE, Diagnostics
 
     trimesh.Trimesh(TETRAHEDRON, TETRAHEDRON_FACES, process=False).export(tmp_path / "t.stl")

@@ -20,8 +20,8 @@ from mesh_makers import (
     write_gltf,
 )
 
-from simkit.compiler.mesh import convert_file, load_file, load_mesh
-from simkit.compiler.mesh_part import MeshFileError, joined
+from simkit.compiler.meshes.mesh import convert_file, load_file, load_mesh
+from simkit.compiler.meshes.part import MeshFileError, joined
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.scene import Mesh
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from mesh_makers import PLACED, QUAD, TETRAHEDRON, TETRAHEDRON_FACES, binary_stl, collada, gltf, picture, write_gltf
 
-from simkit.compiler.mesh import convert_file, load_file, load_mesh
-from simkit.compiler.mesh_files import pixels_of
-from simkit.compiler.mesh_part import MeshFileError
+from simkit.compiler.meshes.files import pixels_of
+from simkit.compiler.meshes.mesh import convert_file, load_file, load_mesh
+from simkit.compiler.meshes.part import MeshFileError
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.scene import Mesh
 

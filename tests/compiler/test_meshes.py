@@ -12,8 +12,8 @@ import pytest
 import trimesh
 
 from simkit.compiler import SpecBuilder, groups
-from simkit.compiler.mesh import load_file, load_mesh
-from simkit.compiler.mesh_part import joined
+from simkit.compiler.meshes.mesh import load_file, load_mesh
+from simkit.compiler.meshes.part import joined
 from simkit.compiler.shapes import polyline
 from simkit.compiler.static import thinned
 from simkit.diagnostics import NOWHERE, Diagnostics
@@ -96,7 +96,7 @@ def test_a_broken_file_is_an_error_and_not_a_traceback(tmp_path):
 
 
 def test_the_cache_gives_the_same_and_does_without(dae, own_mesh_cache, monkeypatch):
-    from simkit.compiler import mesh
+    from simkit.compiler.meshes import mesh
 
     first = load_file(dae)[0]
     assert len(list((own_mesh_cache / "meshes").glob("*.bin"))) == 1

@@ -13,7 +13,7 @@ from PIL import Image
 
 from simkit.compiler import SpecBuilder, groups
 from simkit.compiler.heightmap import heights
-from simkit.compiler.mesh_part import MeshFileError
+from simkit.compiler.meshes.part import MeshFileError
 from simkit.compiler.shapes import polyline, polyline_pieces
 from simkit.compiler.shapes_textured import textured
 from simkit.diagnostics import Diagnostics

@@ -13,14 +13,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_cache import Converted, load_converted, mesh_key, store_converted
-from simkit.compiler.mesh_collada import read_collada
-from simkit.compiler.mesh_files import Companions
-from simkit.compiler.mesh_gltf import read_gltf
-from simkit.compiler.mesh_obj import read_obj
-from simkit.compiler.mesh_part import MeshFileError, MeshPart
-from simkit.compiler.mesh_stl import read_stl
-from simkit.compiler.mesh_text import FARTHEST_VERTEX, LARGEST_FACES, LARGEST_FILE
+from simkit.compiler.meshes.cache import Converted, load_converted, mesh_key, store_converted
+from simkit.compiler.meshes.collada import read_collada
+from simkit.compiler.meshes.files import Companions
+from simkit.compiler.meshes.gltf import read_gltf
+from simkit.compiler.meshes.obj import read_obj
+from simkit.compiler.meshes.part import MeshFileError, MeshPart
+from simkit.compiler.meshes.stl import read_stl
+from simkit.compiler.meshes.text import FARTHEST_VERTEX, LARGEST_FACES, LARGEST_FILE
 from simkit.diagnostics import Diagnostics, Where, closest
 from simkit.scene import Mesh
 

@@ -1,4 +1,4 @@
-"""Runs CoACD in a process of its own: `python mesh_coacd.py IN.npz OUT.npz`.
+"""Runs CoACD in a process of its own: `python run_coacd.py IN.npz OUT.npz`.
 
 CoACD's threads make its result depend on the machine's load, and a bad mesh can bring its process down; so it gets one
 with a single thread. Nothing of simkit is imported here.

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from simkit.compiler.mesh_files import Companions, Pixels
-from simkit.compiler.mesh_part import Colour, Floats, MeshFileError, MeshPart
-from simkit.compiler.mesh_text import LARGEST_FACES, fan, indexed, integers_of, numbers_of
+from simkit.compiler.meshes.files import Companions, Pixels
+from simkit.compiler.meshes.part import Colour, Floats, MeshFileError, MeshPart
+from simkit.compiler.meshes.text import LARGEST_FACES, fan, indexed, integers_of, numbers_of
 
 
 @dataclass

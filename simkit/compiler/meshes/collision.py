@@ -13,10 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_cache import FORMAT, load_arrays, store_arrays
-from simkit.compiler.mesh_decompose import THRESHOLD, DecompositionError, decomposed, is_available
-from simkit.compiler.mesh_part import Floats, Ints
-from simkit.compiler.mesh_volume import filled_ratio, volume_of
+from simkit.compiler.meshes.cache import FORMAT, load_arrays, store_arrays
+from simkit.compiler.meshes.decompose import THRESHOLD, DecompositionError, decomposed, is_available
+from simkit.compiler.meshes.part import Floats, Ints
+from simkit.compiler.meshes.volume import filled_ratio, volume_of
 from simkit.compiler.static import (
     PRISMS_MOST,
     convex_pieces,

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from simkit.compiler.mesh_part import Floats, Ints
+from simkit.compiler.meshes.part import Floats, Ints
 
 THRESHOLD: Final = 0.05
 """CoACD's concavity at which a piece counts as convex, relative to the mesh's size."""
@@ -20,7 +20,7 @@ THRESHOLD: Final = 0.05
 MOST_HULLS: Final = 256
 _SEED: Final = 0
 _PATIENCE: Final = 600.0
-_SCRIPT: Final = Path(__file__).with_name("mesh_coacd.py")
+_SCRIPT: Final = Path(__file__).with_name("run_coacd.py")
 
 
 class DecompositionError(Exception):
@@ -57,7 +57,7 @@ def _run(source: Path, target: Path) -> None:
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_DYNAMIC": "false"}
     try:
         done = subprocess.run(
-            [sys.executable, str(_SCRIPT), str(source), str(target)],
+            [sys.executable, "-P", str(_SCRIPT), str(source), str(target)],
             env=environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,

@@ -7,10 +7,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_collada_look import Looks
-from simkit.compiler.mesh_files import Companions
-from simkit.compiler.mesh_part import Floats, MeshFileError, MeshPart
-from simkit.compiler.mesh_text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan, indexed, integers_of, numbers_of
+from simkit.compiler.meshes.collada_look import Looks
+from simkit.compiler.meshes.files import Companions
+from simkit.compiler.meshes.part import Floats, MeshFileError, MeshPart
+from simkit.compiler.meshes.text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan, indexed, integers_of, numbers_of
 
 _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
 

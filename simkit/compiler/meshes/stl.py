@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from simkit.compiler.mesh_files import Companions
-from simkit.compiler.mesh_part import Floats, Ints, MeshFileError, MeshPart
-from simkit.compiler.mesh_text import LARGEST_FACES, numbers_of
+from simkit.compiler.meshes.files import Companions
+from simkit.compiler.meshes.part import Floats, Ints, MeshFileError, MeshPart
+from simkit.compiler.meshes.text import LARGEST_FACES, numbers_of
 
 _HEADER: Final = 84
 _RECORD: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

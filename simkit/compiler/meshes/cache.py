@@ -23,7 +23,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_part import MeshPart
+from simkit.compiler.meshes.part import MeshPart
 
 FORMAT: Final = "simkit mesh 4"
 """The version of the conversions: change it whenever a reader gives other numbers than before."""

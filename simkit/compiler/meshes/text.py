@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_part import Floats, Ints, MeshFileError
+from simkit.compiler.meshes.part import Floats, Ints, MeshFileError
 
 LARGEST_FILE: Final = 512 << 20
 LARGEST_FACES: Final = 4_000_000

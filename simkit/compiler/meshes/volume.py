@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.mesh_part import Floats, Ints
+from simkit.compiler.meshes.part import Floats, Ints
 
 _CELLS: Final = 24  # along each axis
 _SAMPLES: Final = 80_000

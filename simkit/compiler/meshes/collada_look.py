@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Final
 
-from simkit.compiler.mesh_files import Companions, Pixels
-from simkit.compiler.mesh_part import Colour
+from simkit.compiler.meshes.files import Companions, Pixels
+from simkit.compiler.meshes.part import Colour
 
 _SHADERS: Final = ("phong", "lambert", "blinn", "constant")
 

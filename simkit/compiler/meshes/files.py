@@ -11,7 +11,7 @@ from urllib.parse import unquote
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.mesh_part import MeshFileError
+from simkit.compiler.meshes.part import MeshFileError
 
 LARGEST_COMPANION: Final = 256 << 20
 LARGEST_PIXELS: Final = 1 << 26

@@ -13,10 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.mesh_collada import strips
-from simkit.compiler.mesh_files import LARGEST_COMPANION, Companions, Pixels
-from simkit.compiler.mesh_part import Colour, Floats, MeshFileError, MeshPart
-from simkit.compiler.mesh_text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan
+from simkit.compiler.meshes.collada import strips
+from simkit.compiler.meshes.files import LARGEST_COMPANION, Companions, Pixels
+from simkit.compiler.meshes.part import Colour, Floats, MeshFileError, MeshPart
+from simkit.compiler.meshes.text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan
 
 _TYPES: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _NUMBERS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}

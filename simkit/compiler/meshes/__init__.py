@@ -1,0 +1,1 @@
+"""Mesh files: read into triangles, made into what collides, and kept in the cache."""
