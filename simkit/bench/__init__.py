@@ -7,7 +7,7 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,8 +71,7 @@ def measure(
     *,
     rounds: int = 9,
     what: str = "all",
-    resource_paths: Sequence[Any] = (),
-    plugin_paths: Sequence[Any] = (),
+    how: Mapping[str, Any] | None = None,
 ) -> Iterator[Figure]:
     """Each figure of a world as soon as it is known.
 
@@ -80,11 +79,11 @@ def measure(
         source: the world.
         rounds: timings of each side.
         what: "steps", "sensors" or "all".
-        resource_paths, plugin_paths: as of `simkit.load`.
+        how: further arguments of `simkit.load`: resource_paths, package_paths, base, ...
     """
 
     def load(*plugins: Any) -> Any:
-        return build.load(source, resource_paths=resource_paths, plugin_paths=plugin_paths, plugins=plugins)
+        return build.load(source, plugins=plugins, **(how or {}))
 
     if what != "sensors":
         yield from _steps(load, rounds)

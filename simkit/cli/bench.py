@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from simkit.cli.console import guarded, out
-from simkit.cli.options import PluginPaths, ResourcePaths, World
+from simkit.cli.options import Base, PackagePaths, PluginPaths, ResourcePaths, World, XacroArgs, source
 
 _HOUR = 3600.0
 
@@ -19,6 +19,9 @@ def bench(
     full: Annotated[bool, typer.Option("--full", help="Memory over a whole simulated hour, not a minute.")] = False,
     resource_path: ResourcePaths = [],
     plugin_path: PluginPaths = [],
+    package_path: PackagePaths = [],
+    xacro_arg: XacroArgs = [],
+    base: Base = "auto",
 ) -> int:
     """Times a world and, in the same run, bare MuJoCo on the same compiled model."""
     from simkit.engine import import_engine
@@ -28,13 +31,14 @@ def bench(
     from simkit.build import load
 
     out().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'aim':>8}")
-    for figure in measure(world, rounds=rounds, resource_paths=resource_path, plugin_paths=plugin_path):
+    how: dict[str, Any] = {**source(resource_path, package_path, xacro_arg, base), "plugin_paths": plugin_path}
+    for figure in measure(world, rounds=rounds, how=how):
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
         aim = "" if figure.aim is None else f"{figure.aim:.2f}"
         out().print(f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}{aim:>8}  a {figure.unit}")
     out().print(f"{'import simkit':<52}{import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
-    with load(world, resource_paths=resource_path, plugin_paths=plugin_path) as sim:
+    with load(world, **how) as sim:
         growth = memory_growth(sim, _HOUR if full else 60.0)
     out().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
     return 0
