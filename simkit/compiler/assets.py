@@ -136,35 +136,6 @@ def mesh_bytes(vertices: Floats, faces: Ints, uv: Floats | None = None) -> bytes
     return b"".join(content)
 
 
-def mesh_arrays(content: bytes) -> tuple[Floats, Ints, Floats | None]:
-    """Vertices, faces and texture coordinates (as MuJoCo counts them, from the top) of a mesh in memory."""
-    n, _, n_uv, n_faces = (int(v) for v in np.frombuffer(content, "<i4", 4))
-    vertices = np.frombuffer(content, "<f4", 3 * n, 16).reshape(-1, 3).astype(float)
-    uv = np.frombuffer(content, "<f4", 2 * n_uv, 16 + 12 * n).reshape(-1, 2).astype(float) if n_uv else None
-    faces = np.frombuffer(content, "<i4", 3 * n_faces, 16 + 12 * n + 8 * n_uv).reshape(-1, 3).astype(np.int32)
-    return vertices, faces, uv
-
-
-def with_inline_meshes(spec: mujoco.MjSpec) -> mujoco.MjSpec:
-    """The same specification (changed in place) with every mesh of this module written out instead of in a file.
-
-    For whoever writes XML: its text then needs no files in memory.
-    """
-    for mesh in spec.meshes:
-        content = spec.assets.get(mesh.file)
-        if content is None or not mesh.name.startswith("mesh#"):
-            continue
-        vertices, faces, uv = mesh_arrays(content)
-        del spec.assets[mesh.file]
-        mesh.file, mesh.content_type = "", ""
-        mesh.uservert = vertices.reshape(-1)
-        mesh.userface = faces.reshape(-1)
-        if uv is not None:
-            mesh.usertexcoord = uv.reshape(-1)
-            mesh.userfacetexcoord = faces.reshape(-1)
-    return spec
-
-
 @lru_cache(maxsize=1024)
 def _material_name(*values: Any) -> str:
     texture = values[3]

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import mujoco
 
-from simkit.compiler.assets import Assets, with_inline_meshes
+from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import drop_twin
 from simkit.compiler.first_state import damp, place_followers, steady_idle
 from simkit.compiler.inertia import put_back
@@ -367,10 +367,6 @@ class SpecBuilder:
         other._names = None
         other._cut = list(self._cut)
         return other
-
-    def written_out(self) -> mujoco.MjSpec:
-        """A copy of the specification with its meshes inside instead of in files in memory, to be written as XML."""
-        return with_inline_meshes(self.spec.copy())
 
     def _before(self) -> None:
         moving = sum(not link.static for r in self.records.values() for link in r.links.values())
