@@ -7,6 +7,16 @@ from simkit.codes.sketch import BALL, command, model, python
 
 _FILES = {"ball.sdf": BALL}
 
+_ROVER = model(
+    '<link name="base"/>\n'
+    '<link name="left"/>\n<joint name="l" type="revolute"><parent>base</parent><child>left</child>'
+    "<axis/></joint>\n"
+    '<link name="right"/>\n<joint name="r" type="revolute"><parent>base</parent><child>right</child>'
+    "<axis/></joint>\n"
+    '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">\n'
+    "  <left_joint>l</left_joint><right_joint>r</right_joint><topic>cmd_vel</topic>\n</plugin>"
+).text
+
 CODES: tuple[Code, ...] = (
     Code(
         "SK-MSG-001",
@@ -15,17 +25,7 @@ CODES: tuple[Code, ...] = (
         "the closest field is given",
         python(
             'import simkit\nsim = simkit.load("robot.sdf")\nsim.publish("/cmd_vel", {"liner": {"x": 0.2}})\n',
-            {
-                "robot.sdf": model(
-                    '<link name="base"/>\n'
-                    '<link name="left"/>\n<joint name="l" type="revolute"><parent>base</parent><child>left</child>'
-                    "<axis/></joint>\n"
-                    '<link name="right"/>\n<joint name="r" type="revolute"><parent>base</parent><child>right</child>'
-                    "<axis/></joint>\n"
-                    '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">\n'
-                    "  <left_joint>l</left_joint><right_joint>r</right_joint><topic>cmd_vel</topic>\n</plugin>"
-                ).text
-            },
+            {"robot.sdf": _ROVER},
         ),
     ),
     Code(
@@ -99,15 +99,7 @@ CODES: tuple[Code, ...] = (
         command(
             "simkit run robot.sdf --duration 0.1 --script drive.yaml",
             {
-                "robot.sdf": model(
-                    '<link name="base"/>\n'
-                    '<link name="left"/>\n<joint name="l" type="revolute"><parent>base</parent><child>left</child>'
-                    "<axis/></joint>\n"
-                    '<link name="right"/>\n<joint name="r" type="revolute"><parent>base</parent><child>right</child>'
-                    "<axis/></joint>\n"
-                    '<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">\n'
-                    "  <left_joint>l</left_joint><right_joint>r</right_joint><topic>cmd_vel</topic>\n</plugin>"
-                ).text,
+                "robot.sdf": _ROVER,
                 "drive.yaml": "- {at: 0.0, topic: /cmd_vel, message: {liner: {x: 0.2}}}\n",
             },
         ),

@@ -118,7 +118,7 @@ diffuse               = colour
 specular              = colour of the gloss
 intensity             = factor on its colours
 attenuation           = how it fades
-attenuation/range     = how far it shines [m]
+attenuation/range     ~ how far it shines [m]; it is in the model, but the renderer lets light reach on
 attenuation/constant  = constant part
 attenuation/linear    = linear part [1/m]
 attenuation/quadratic = quadratic part [1/m2]
