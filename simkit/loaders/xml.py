@@ -1,6 +1,7 @@
 """XML into `Params`: without entities, external references or network, within bounds, with the line of every element.
 
-Names keep their prefix as written (`gz:type`), declared or not, because the files of Gazebo use undeclared ones.
+Names keep their prefix as written (`gz:type`), declared or not, because the files of Gazebo use undeclared ones. Only
+our own is taken off: `<simkit:latency>` is `<latency>`, and a file may write either.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 200
 MAX_ELEMENTS = 3_000_000
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+OWN_PREFIX = "simkit:"
 _DECLARATION = re.compile(rb"<\?xml\b[^?]*\?>")
 
 
@@ -95,7 +97,7 @@ class _Reader:
         if len(self.stack) >= MAX_DEPTH:
             raise _Refused("SK-XML-002", f"elements nested deeper than {MAX_DEPTH}")
         where = Where(self.file, self.parser.CurrentLineNumber + self.offset)
-        element = Params(name, "", attributes, (), where, self.diagnostics)
+        element = Params(name.removeprefix(OWN_PREFIX), "", attributes, (), where, self.diagnostics)
         if self.stack:
             self.stack[-1][0].children.append(element)
         self.stack.append((element, []))

@@ -133,6 +133,7 @@ class SceneWorld:
         gravity: [m/s²] in the world frame.
         magnetic_field: [T] in the world frame.
         quality: renderer quality asked for: fast, gazebo or high.
+        gazebo_quirks: whether sensors err where Gazebo's are known to err (`<simkit:gazebo_quirks>`).
         wind: velocity of the air [m/s] in the world frame.
         mjcf: for a world in MuJoCo's own format: makes a fresh specification, whose settings of the engine count.
     """
@@ -149,6 +150,7 @@ class SceneWorld:
     surroundings: Surroundings = Surroundings()
     spherical_coordinates: SphericalCoordinates | None = None
     quality: str = "fast"
+    gazebo_quirks: bool = False
     where: Where = NOWHERE
     wind: Vec3 = (0.0, 0.0, 0.0)
     atmosphere: Atmosphere = Atmosphere()

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Publisher, Simulation
     from simkit.scene import SceneSensor
+    from simkit.sensors.noise import Noise, UniformNoise
 
 _READ_BY_ALL = ("always_on", "visualize", "enable_metrics", "pose", "update_rate", "topic")
 
@@ -71,6 +72,7 @@ class Sensor(abc.ABC):
         update_rate: [Hz]; 0 is every step. Change it with `set_rate`.
         frame_id: of the messages.
         options: the kind's own parameters.
+        noise: of its channels, where a kind sets it in `attach`; the base then evolves, restarts and remembers it.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ()
@@ -80,6 +82,7 @@ class Sensor(abc.ABC):
 
     sim: Simulation
     options: Any = None
+    noise: Noise | UniformNoise | None = None
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         self.scene, self.diagnostics = scene, diagnostics
@@ -130,16 +133,22 @@ class Sensor(abc.ABC):
 
     def evolve(self, index: int, dt: float) -> None:
         """Moves noise that has a memory on by `dt` [s] (0 at the first sample), read or not."""
+        if self.noise is not None:
+            self.noise.evolve(index, dt)
 
     def restart(self) -> None:
         """Back at t = 0: draws what is drawn once."""
+        if self.noise is not None:
+            self.noise.restart()
 
     def memory(self) -> Any:
         """What the kind itself remembers from sample to sample, as values of its own."""
-        return None
+        return None if self.noise is None else self.noise.memory()
 
     def remember(self, memory: Any) -> None:
         """Takes back what `memory` gave."""
+        if self.noise is not None:
+            self.noise.remember(memory)
 
     def accepts(self, tick: int) -> bool:
         """Whether a due time gives a sample."""
@@ -210,7 +219,8 @@ class Sensor(abc.ABC):
         if self._sample is not None:
             self._settle(self._sample)  # what is held belongs to the model before
             self.sim.bus.settle()  # and so does what waits to be looked at
-        link = compiled.names.link(self.scene.parent)
+        self._link_name = self._find_link(compiled.names)
+        link = compiled.names.link(self._link_name)
         self._body = int(link.body)
         self._offset: Pose = link.offset @ self.scene.pose_link
         self._offset_position: Vector = self._offset.position
@@ -276,6 +286,11 @@ class Sensor(abc.ABC):
         """Position (3,) [m] and rotation matrix (3, 3) of the sensor."""
         rotation = data.xmat[self._body].reshape(3, 3)
         return data.xpos[self._body] + rotation @ self._offset_position, rotation @ self._offset_rotation
+
+    def _find_link(self, names: Any) -> str:
+        """The link that the sensor is on; for a joint's sensor the joint's child link."""
+        parent = self.scene.parent
+        return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent
 
     def _settle(self, sample: Sample) -> None:
         """Measures what was kept, once."""

@@ -102,6 +102,7 @@ class Imu(Sensor):
     kinds = ("imu",)
     needs_acceleration = True
     options: ImuOptions
+    noise: Noise
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
@@ -109,8 +110,8 @@ class Imu(Sensor):
 
     def attach(self, sim: Simulation) -> None:
         options = self.options
-        self._noise = Noise((*options.angular_velocity, *options.linear_acceleration), sim.streams, self.scoped, "imu")
-        self.is_deferred = not self._noise.wanders
+        self.noise = Noise((*options.angular_velocity, *options.linear_acceleration), sim.streams, self.scoped, "imu")
+        self.is_deferred = not self.noise.wanders
         self._rate_covariance = variance(options.angular_velocity)
         self._force_covariance = variance(options.linear_acceleration)
         self._orientation_covariance = np.zeros(9)
@@ -173,22 +174,16 @@ class Imu(Sensor):
         return ImuReading(orientation, rate @ self._offset_rotation, force @ self._offset_rotation)
 
     def perturb(self, reading: ImuReading, index: int) -> ImuReading:
-        if self._noise.is_silent:
+        if self.noise.is_silent:
             return reading
-        values = self._noise.apply(np.concatenate((reading.angular_velocity, reading.linear_acceleration)), index)
+        values = self.noise.apply(np.concatenate((reading.angular_velocity, reading.linear_acceleration)), index)
         return ImuReading(reading.orientation, values[:3], values[3:])
 
-    def evolve(self, index: int, dt: float) -> None:
-        self._noise.evolve(index, dt)
-
-    def restart(self) -> None:
-        self._noise.restart()
-
     def memory(self) -> Any:
-        return self._noise.memory(), self.reference
+        return super().memory(), self.reference
 
     def remember(self, memory: Any) -> None:
-        self._noise.remember(memory[0])
+        super().remember(memory[0])
         self.measure_against(memory[1])
 
     def _message_of(self, reading: ImuReading, time_ns: int) -> Any:

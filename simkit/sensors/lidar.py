@@ -129,6 +129,7 @@ class Lidar(Sensor):
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
     options: LidarOptions
+    noise: UniformNoise
     min_intensity = 0.0
     radiation = 1
 
@@ -161,8 +162,8 @@ class Lidar(Sensor):
         }
 
     def attach(self, sim: Simulation) -> None:
-        self._noise = UniformNoise(self.options.noise, self._fan.count, sim.streams, self.scoped, "ranges")
-        self.is_deferred = not self._noise.wanders
+        self.noise = UniformNoise(self.options.noise, self._fan.count, sim.streams, self.scoped, "ranges")
+        self.is_deferred = not self.noise.wanders
         self._scan_type = msgs.type_of(SCAN)
         super().attach(sim)
 
@@ -231,26 +232,14 @@ class Lidar(Sensor):
         return values
 
     def perturb(self, reading: LidarReading, index: int) -> LidarReading:
-        if self._noise.is_silent:
+        if self.noise.is_silent:
             return reading
-        ranges = self._noise.apply(reading.ranges, index)
+        ranges = self.noise.apply(reading.ranges, index)
         infinite, (low, high) = np.isinf(reading.ranges), self._limits
         np.maximum(ranges, low, out=ranges)
         np.minimum(ranges, high, out=ranges)
         np.copyto(ranges, reading.ranges, where=infinite)
         return LidarReading(ranges, reading.intensities)
-
-    def evolve(self, index: int, dt: float) -> None:
-        self._noise.evolve(index, dt)
-
-    def restart(self) -> None:
-        self._noise.restart()
-
-    def memory(self) -> Any:
-        return self._noise.memory()
-
-    def remember(self, memory: Any) -> None:
-        self._noise.remember(memory)
 
     # ------------------------------------------------------------------ messages
 

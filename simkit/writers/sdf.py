@@ -83,6 +83,7 @@ class _Writer:
                     type="adiabatic",
                 ),
                 None if world.spherical_coordinates is None else _coordinates(world.spherical_coordinates),
+                other("simkit:gazebo_quirks", world.gazebo_quirks, False),
                 _surroundings(world),
                 *(parts.plugin(p) for p in world.plugins),
                 *(parts.light(li, li.pose_world) for li in world.lights),

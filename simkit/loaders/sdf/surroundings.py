@@ -26,8 +26,8 @@ def read_surroundings(world: Params) -> Surroundings:
 
 
 def read_quality(world: Params) -> str:
-    """`<simkit:quality>` of the scene: fast, gazebo or high."""
-    return world.block("scene").choice("simkit:quality", ("fast", "gazebo", "high"), "fast")
+    """`<quality>` of the scene, an element of our own: fast, gazebo or high."""
+    return world.block("scene").choice("quality", ("fast", "gazebo", "high"), "fast")
 
 
 def read_atmosphere(world: Params, diagnostics: Diagnostics) -> Atmosphere:

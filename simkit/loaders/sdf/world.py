@@ -78,6 +78,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         surroundings=read_surroundings(element),
         spherical_coordinates=read_spherical_coordinates(element, diagnostics),
         quality=read_quality(element),
+        gazebo_quirks=element.boolean("gazebo_quirks", False),
         where=element.where,
         wind=element.block("wind").vector3("linear_velocity", (0.0, 0.0, 0.0)),
         atmosphere=read_atmosphere(element, diagnostics),

@@ -28,6 +28,7 @@ plugin                = a plugin > plugin
 physics               = time step and engine > physics
 gravity               = gravity [m/s2]
 magnetic_field        = magnetic field [T]
+gazebo_quirks         = true: sensors err where Gazebo's do (our own; docs/sensors/noise.md)
 wind                  = wind
 wind/linear_velocity  = its velocity [m/s]
 atmosphere            = the air
@@ -43,7 +44,7 @@ scene/grid            = whether a grid is drawn
 scene/origin_visual   - no axes are drawn at the origin
 scene/sky             ~ the renderer's own sky
 scene/fog             - the air is clear
-scene/simkit:quality  = fast, gazebo or high
+scene/quality         = fast, gazebo or high (our own: `<simkit:quality>` for files that Gazebo reads too)
 spherical_coordinates = the place on a planet
 spherical_coordinates/surface_model = EARTH_WGS84, MOON_SCS or CUSTOM_SURFACE
 spherical_coordinates/surface_axis_equatorial = semi-axis of a custom surface [m]
