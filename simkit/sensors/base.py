@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -13,12 +13,12 @@ from simkit.diagnostics import Diagnostics
 from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
 from simkit.sensors.names import entity_topic, given_frame
+from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Publisher, Simulation
     from simkit.scene import SceneSensor
-    from simkit.sensors.noise import Noise, UniformNoise
 
 _READ_BY_ALL = ("always_on", "visualize", "enable_metrics", "pose", "update_rate", "topic")
 
@@ -65,6 +65,8 @@ class Sensor(abc.ABC):
 
     Attributes:
         kinds: `<sensor type>` names in files.
+        example: the smallest content that a `<sensor>` of the kind needs besides what all sensors have.
+        belongs_to: where it may stand in a file: `link`, `joint` or both.
         is_deferred: whether noise and message of a captured sample may wait until somebody looks.
         needs_acceleration: whether `measure` reads body accelerations or forces between bodies.
         reads_contacts: whether `measure` reads contacts; what rests on a static link with such a sensor never sleeps.
@@ -76,6 +78,8 @@ class Sensor(abc.ABC):
     """
 
     kinds: ClassVar[tuple[str, ...]] = ()
+    example: ClassVar[str] = ""
+    belongs_to: ClassVar[tuple[str, ...]] = ("link",)
     needs_acceleration: ClassVar[bool] = False
     reads_contacts: ClassVar[bool] = False
     is_deferred: bool = False
@@ -207,9 +211,13 @@ class Sensor(abc.ABC):
 
     # ------------------------------------------------------------------ what the simulation calls
 
+    def prepare(self) -> None:
+        """Once, when `sim` is known: makes the noise and whatever else the kind keeps."""
+
     def attach(self, sim: Simulation) -> None:
         """Once: opens topics and random streams."""
         self.sim = sim
+        self.prepare()
         self._products = self.products()
         self.publish_on(self.default_topics())
         self.restart()
@@ -274,6 +282,18 @@ class Sensor(abc.ABC):
         return f"<{type(self).__name__} {self.scoped!r}>"
 
     # ------------------------------------------------------------------ within
+
+    def _make_noise(self, models: Sequence[NoiseModel], group: str) -> Noise:
+        """The noise of a few channels, one model each; for `self.noise`."""
+        noise = Noise(models, self.sim.streams, self.scoped, group)
+        self.is_deferred = not noise.wanders
+        return noise
+
+    def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
+        """The same noise on every one of many channels; for `self.noise`."""
+        noise = UniformNoise(model, width, self.sim.streams, self.scoped, group)
+        self.is_deferred = not noise.wanders
+        return noise
 
     def _default_topic(self, suffix: str) -> str:
         """`<topic>` where the file gives it, else Gazebo's."""

@@ -17,7 +17,6 @@ from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, NoiseModel, read_noise, variance
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/Imu"
@@ -100,6 +99,7 @@ class Imu(Sensor):
     """
 
     kinds = ("imu",)
+    example = "<imu/>"
     needs_acceleration = True
     options: ImuOptions
     noise: Noise
@@ -108,10 +108,9 @@ class Imu(Sensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def attach(self, sim: Simulation) -> None:
+    def prepare(self) -> None:
         options = self.options
-        self.noise = Noise((*options.angular_velocity, *options.linear_acceleration), sim.streams, self.scoped, "imu")
-        self.is_deferred = not self.noise.wanders
+        self.noise = self._make_noise((*options.angular_velocity, *options.linear_acceleration), "imu")
         self._rate_covariance = variance(options.angular_velocity)
         self._force_covariance = variance(options.linear_acceleration)
         self._orientation_covariance = np.zeros(9)
@@ -126,10 +125,9 @@ class Imu(Sensor):
         if options.reference is None:
             self.measure_against(self.scene.pose_world.quaternion)
         else:
-            place = sim.world.spherical_coordinates
+            place = self.sim.world.spherical_coordinates
             heading = quat_from_rpy(0.0, 0.0, place.heading if place else 0.0)
             self.measure_against(quat_multiply(heading, quat_from_rpy(*options.reference)))
-        super().attach(sim)
 
     def measure_against(self, reference: Vector | tuple[float, float, float, float]) -> None:
         """Sets the frame, (w, x, y, z) in the world, that the orientation is measured against."""

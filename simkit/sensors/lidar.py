@@ -19,7 +19,6 @@ from simkit.sensors.noise import NoiseModel, UniformNoise, read_noise
 from simkit.sensors.rays import RayFan, fan_directions
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
@@ -128,6 +127,7 @@ class Lidar(Sensor):
     """
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
+    example = "<lidar><range><min>0.1</min><max>10</max></range></lidar>"
     options: LidarOptions
     noise: UniformNoise
     min_intensity = 0.0
@@ -161,11 +161,9 @@ class Lidar(Sensor):
             }
         }
 
-    def attach(self, sim: Simulation) -> None:
-        self.noise = UniformNoise(self.options.noise, self._fan.count, sim.streams, self.scoped, "ranges")
-        self.is_deferred = not self.noise.wanders
+    def prepare(self) -> None:
+        self.noise = self._make_uniform_noise(self.options.noise, self._fan.count, "ranges")
         self._scan_type = msgs.type_of(SCAN)
-        super().attach(sim)
 
     def products(self) -> dict[str, Product]:
         return {
