@@ -19,7 +19,6 @@ _SYSTEMS = {
     "contact": "Contact",
     "forcetorque": "ForceTorque",
     "altimeter": "Altimeter",
-    "magnetometer": "Magnetometer",
     "air-pressure": "AirPressure",
     "air-speed": "AirSpeed",
     "navsat": "NavSat",

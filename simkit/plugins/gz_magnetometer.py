@@ -1,0 +1,36 @@
+"""The system that a gz world lists for its magnetometers; its two switches are read by the sensors themselves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.plugins.base import Plugin
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+
+SWITCHES = ("use_units_gauss", "use_earth_frame_ned")
+
+
+class MagnetometerSystem(Plugin):
+    """Stands for gz's Magnetometer system.
+
+    `<use_units_gauss>` and `<use_earth_frame_ned>`, which Gazebo takes for true where a file does not say, are about
+    the Earth's field; here they count where they are written (and in a world with `<gazebo_quirks>`).
+    """
+
+    parent_kind = "any"
+    filenames = ("gz-sim-magnetometer-system",)
+    names = ("gz::sim::systems::Magnetometer",)
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        given = [name for name in SWITCHES if params.has(name)]
+        for name in SWITCHES:
+            params.boolean(name, True)
+        if not given:
+            message = "plugin 'Magnetometer' is not needed: simkit does what it stands for by itself"
+            params.diagnostics.note("SK-PLUGIN-005", message, self.where)
+
+    def load(self, parent: Any, params: Params) -> None:
+        """Nothing to do."""
