@@ -45,11 +45,30 @@ ros_gz_interfaces/JointWrench[] wrenches
 std_msgs/Header header
 ros_gz_interfaces/Contact[] contacts
 """,
+    "gazebo_msgs/msg/ContactState": """
+string info
+string collision1_name
+string collision2_name
+geometry_msgs/Wrench[] wrenches
+geometry_msgs/Wrench total_wrench
+geometry_msgs/Vector3[] contact_positions
+geometry_msgs/Vector3[] contact_normals
+float64[] depths
+""",
+    "gazebo_msgs/msg/ContactsState": """
+std_msgs/Header header
+gazebo_msgs/ContactState[] states
+""",
     "ros_gz_interfaces/msg/Altimeter": """
 std_msgs/Header header
 float64 vertical_position
 float64 vertical_velocity
 float64 vertical_reference
+""",
+    "ros_gz_interfaces/msg/AirSpeed": """
+std_msgs/Header header
+float64 diff_pressure
+float64 temperature
 """,
     "ros_gz_interfaces/msg/Float32Array": """
 float32[] data

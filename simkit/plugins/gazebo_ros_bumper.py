@@ -1,0 +1,31 @@
+"""The bumper of Gazebo Classic: `libgazebo_ros_bumper.so`, with its ROS 2 and its ROS 1 spelling."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.plugins.base import SensorPlugin
+
+
+class GazeboRosBumper(SensorPlugin):
+    """Publishes the contacts of its sensor on `bumper_states`, at the sensor's rate, also when there are none.
+
+    Positions, normals and wrenches are in the frame of the link `<frame_name>` (ROS 1: `<frameName>`), or in the world.
+    """
+
+    filenames = ("libgazebo_ros_bumper.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        topic = self.ros.topic(params.text("bumperTopicName", "") or "bumper_states")
+        frame = params.text("frame_name", "") or params.text("frameName", "") or "world"
+        params.child("alwaysOn")
+        if not hasattr(parent, "tell_states"):
+            message = f"plugin {self.name!r} is for a sensor of type contact, this is {parent.kind!r}"
+            params.error("SK-PLUGIN-003", message)
+            return
+        if not parent.tell_states(topic, frame):
+            links = [scoped.rsplit("::", 1)[-1] for scoped in self.sim.names.links]
+            message = f"plugin {self.name!r}: there is no link {frame!r}; contacts are told in the world until there is"
+            params.diagnostics.warning("SK-SENSOR-042", message, self.where, did_you_mean(frame, links))

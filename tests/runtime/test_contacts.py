@@ -1,0 +1,69 @@
+"""What counts as a contact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from simkit.runtime.contacts import touches
+
+
+def two_balls(distance: float, **settings: str) -> tuple[Any, Any]:
+    attributes = " ".join(f'{k}="{v}"' for k, v in settings.items())
+    ball = f'<geom type="sphere" size="0.1" mass="1" {attributes}/>'
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option gravity="0 0 0"/><worldbody><body>{ball}<freejoint/></body>'
+        f'<body pos="{distance} 0 0">{ball}<freejoint/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+EITHER = np.array([True, False, False])
+
+
+def test_overlapping_balls_touch() -> None:
+    found = touches(*two_balls(0.19), EITHER)
+    assert found is not None
+    assert found.depths == pytest.approx([0.01])
+    assert found.geoms.tolist() == [[0, 1]]
+    np.testing.assert_allclose(found.frames[0, 0], (1, 0, 0), atol=1e-12)
+    assert found.wrenches[0, 0] > 0
+
+
+def test_what_comes_near_is_no_contact_until_it_is_pushed() -> None:
+    """Within the gap the engine lists a pair without a force; within the margin it pushes already."""
+    model, data = two_balls(0.205, gap="0.01")
+    assert data.ncon == 1
+    assert touches(model, data, EITHER) is None
+    model, data = two_balls(0.205, margin="0.01")
+    found = touches(model, data, EITHER)
+    assert found is not None and found.depths == pytest.approx([-0.005]) and found.wrenches[0, 0] > 0
+    data.qvel[6] = 100.0  # it flies off: within the margin, and no force
+    mujoco.mj_forward(model, data)
+    assert data.ncon == 1
+    assert touches(model, data, EITHER) is None
+
+
+def test_others_contacts_do_not_count() -> None:
+    model, data = two_balls(0.19)
+    assert touches(model, data, np.zeros(3, bool)) is None
+
+
+@pytest.mark.parametrize("cone", ["pyramidal", "elliptic"])
+def test_the_wrenches_are_those_that_move_the_bodies(cone: str) -> None:
+    model, data = two_balls(0.199, condim="6")
+    model.opt.cone = getattr(mujoco.mjtCone, f"mjCONE_{cone.upper()}")
+    data.qvel[:] = np.linspace(-0.3, 0.4, 12)
+    mujoco.mj_forward(model, data)
+    found = touches(model, data, EITHER)
+    assert found is not None
+    force = found.frames[0].T @ found.wrenches[0, :3]
+    torque = found.frames[0].T @ found.wrenches[0, 3:]
+    turn = np.cross(found.positions[0] - data.xpos[2], force) + torque
+    np.testing.assert_allclose(data.qfrc_constraint[6:9], force, atol=1e-9)
+    np.testing.assert_allclose(data.xmat[2].reshape(3, 3) @ data.qfrc_constraint[9:12], turn, atol=1e-9)
