@@ -1,0 +1,56 @@
+"""Presets: a sensor names a real device, `<simkit:preset>LDS-01</simkit:preset>`, and gets its published numbers.
+
+One file for each maker or family; what is in its `PRESETS` is found.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import pkgutil
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from simkit.sensors.presets.preset import Preset
+
+__all__ = ["Preset", "find", "folded", "presets"]
+
+
+@functools.cache
+def presets() -> tuple[Preset, ...]:
+    """Every preset, by kind and name.
+
+    Raises:
+        RuntimeError: two of one kind answer to one name.
+    """
+    found: list[Preset] = []
+    for info in pkgutil.iter_modules(__path__, __name__ + "."):
+        if not info.name.endswith("__main__"):
+            found += getattr(importlib.import_module(info.name), "PRESETS", ())
+    return tuple(sorted(found, key=lambda p: (p.kind, p.maker, p.name)))
+
+
+@functools.cache
+def _by_name() -> Mapping[str, Mapping[str, Preset]]:
+    """Folded name -> kind -> preset."""
+    table: dict[str, dict[str, Preset]] = {}
+    for preset in presets():
+        for name in (preset.name, *preset.aliases):
+            of_name = table.setdefault(folded(name), {})
+            if of_name.setdefault(preset.kind, preset) is not preset:
+                raise RuntimeError(f"{name!r} is {preset.name!r} and {of_name[preset.kind].name!r}")
+    return MappingProxyType(table)
+
+
+def find(name: str) -> Mapping[str, Preset]:
+    """The presets of that name by their kind; empty where there is none.
+
+    Capitals, spaces and dashes do not count: `tim571` is `TiM571`.
+    """
+    return _by_name().get(folded(name), {})
+
+
+def folded(name: str) -> str:
+    """A name as it is compared with others."""
+    return re.sub(r"[^0-9a-z]", "", name.lower())

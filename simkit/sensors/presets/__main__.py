@@ -1,0 +1,26 @@
+"""`python -m simkit.sensors.presets [NAME]` prints one preset, or writes the page of all."""
+
+from __future__ import annotations
+
+import sys
+
+from simkit.diagnostics import did_you_mean
+from simkit.sensors.presets import find, presets
+from simkit.sensors.presets.page import in_words, page
+
+
+def main(name: str | None) -> int:
+    """Prints; 2 where there is no such preset."""
+    if name is None:
+        sys.stdout.write(page())
+        return 0
+    found = find(name)
+    if not found:
+        sys.stderr.write(f"there is no preset {name!r}; {did_you_mean(name, [p.name for p in presets()])}\n")
+        return 2
+    sys.stdout.write("\n\n".join(map(in_words, found.values())) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1] if len(sys.argv) > 1 else None))

@@ -1,0 +1,77 @@
+"""What a preset is: the published numbers of a device, in the words of an SDF file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+Settings = Mapping[str, Any]
+"""Elements of a `<sensor>` by name: a mapping is an element with children, `@name` in it an attribute."""
+
+SENSOR_KINDS: Mapping[str, tuple[str, ...]] = {
+    "lidar": ("lidar", "ray", "gpu_lidar", "gpu_ray"),
+    "navsat": ("navsat", "gps"),
+}
+"""Sensor types that share a block; a kind that is not here is the one type of its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Preset:
+    """A device, and what its data sheet says of it.
+
+    Attributes:
+        name: as the maker writes it. Several presets may have one name where a device is several sensors.
+        kind: of sensor; `lidar` stands for `ray`, `gpu_lidar` and `gpu_ray` too.
+        maker: who sells it.
+        source: data sheet with its revision, and where in it the numbers are.
+        settings: elements of the sensor, in SI units.
+        rate: samples a second [Hz]; 0 where the data sheet leaves it to the user.
+        aliases: other names of the same device.
+        remark: what the numbers leave out, or how one was made of a published one.
+    """
+
+    name: str
+    kind: str
+    maker: str
+    source: str
+    settings: Settings
+    rate: float = 0.0
+    aliases: tuple[str, ...] = ()
+    remark: str = ""
+
+    @property
+    def sensor_kinds(self) -> tuple[str, ...]:
+        """The `<sensor type>`s that may name it."""
+        return SENSOR_KINDS.get(self.kind, (self.kind,))
+
+    @property
+    def elements(self) -> Settings:
+        """All of it: the settings, and the rate where there is one."""
+        return {"update_rate": self.rate, **self.settings} if self.rate else self.settings
+
+
+def outline(settings: Settings) -> str:
+    """The settings on one line; neighbours that say the same (the axes of an IMU, mostly) are said once."""
+    return ", ".join(_parts(settings))
+
+
+def _parts(settings: Settings) -> list[str]:
+    names: dict[str, list[str]] = {}
+    said = {name: value for name, value in settings.items() if not str(value).startswith("gaussian")} or settings
+    for name, value in said.items():
+        if isinstance(value, Mapping):
+            within = _parts(value)
+            names.setdefault(f" ({', '.join(within)})" if len(within) > 1 else f" {within[0]}", []).append(name)
+        else:
+            names[f"{name} {text_of(value)}".removeprefix("@")] = []
+    return ["/".join(of_these) + text for text, of_these in names.items()]
+
+
+def text_of(value: Any) -> str:
+    """A value as a file would have it: a number with all its digits, `true` or `false`."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return f"{value:.6g}" if float(f"{value:.6g}") == value else repr(value)
+    return str(value)

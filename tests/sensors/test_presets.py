@@ -1,0 +1,258 @@
+"""Presets: every one loads and is seen, the file wins, wrong names are errors, the page is what the data say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sensor_worlds import box, cloud, sensor, world
+
+import simkit
+from simkit.params import Params
+from simkit.sensors import sensor_kinds
+from simkit.sensors.presets import Preset, find, presets
+from simkit.sensors.presets.page import in_words, page
+from simkit.sensors.presets.preset import outline
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "sensors" / "presets.md"
+PLACE = """<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>47</latitude_deg>
+  <longitude_deg>8</longitude_deg><elevation>400</elevation><heading_deg>0</heading_deg></spherical_coordinates>"""
+
+
+def named(preset: str, kind: str, extra: str = "") -> str:
+    return f'<sensor name="s" type="{kind}"><preset>{preset}</preset>{extra}</sensor>'
+
+
+def world_of(kind: str, inside: str) -> str:
+    """A world in which a sensor of that kind has all it needs."""
+    top = PLACE if kind == "navsat" else ""
+    if "link" in sensor_kinds()[kind].belongs_to:
+        return world(inside, top=top)
+    inertial = "<inertial><mass>1</mass></inertial>"
+    return f"""<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="m">
+      <link name="base">{inertial}</link><link name="arm">{inertial}</link>
+      <joint name="j" type="revolute"><parent>base</parent><child>arm</child><axis><xyz>0 0 1</xyz></axis>
+      {inside}</joint></model></world></sdf>"""
+
+
+def load(text: str) -> Any:
+    return simkit.load(text, seed=3)
+
+
+def the_sensor(sim: Any) -> Any:
+    return sim.sensor("m::l::s" if "m::l" in {link.scoped for link in sim.world.models[0].links} else "m::j::s")
+
+
+def leaves(settings: Mapping[str, Any], path: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...], Any]]:
+    found: list[tuple[tuple[str, ...], Any]] = []
+    for name, value in settings.items():
+        found += leaves(value, (*path, name)) if isinstance(value, Mapping) else [((*path, name), value)]
+    return found
+
+
+KNOWN = [p for p in presets() if p.kind in sensor_kinds()]
+
+
+@pytest.mark.parametrize("preset", KNOWN, ids=lambda p: f"{p.kind}-{p.name}")
+def test_every_preset_loads_without_a_word_but_its_note_and_reads(preset: Preset) -> None:
+    with load(world_of(preset.kind, named(preset.name, preset.kind))) as sim:
+        spoken = [d for d in sim.diagnostics if "m::" in d.message]
+        assert [d.code for d in spoken if d.severity != "note"] == []
+        notes = [d for d in spoken if d.code == "SK-SENSOR-092"]
+        assert len(notes) == 1
+        assert outline(preset.elements) in notes[0].message
+        assert preset.source == notes[0].hint
+        device = the_sensor(sim)
+        assert device.update_rate == preset.rate
+        device.set_rate(0)
+        sim.step(2)
+        assert device.latest is not None
+
+
+@pytest.mark.parametrize("preset", presets(), ids=lambda p: f"{p.kind}-{p.name}")
+def test_a_preset_is_whole(preset: Preset) -> None:
+    assert preset.maker and len(preset.source) > 15
+    (block,) = preset.settings
+    assert block == preset.kind
+    for path, value in leaves(preset.elements):
+        assert isinstance(value, (int, float, bool, str)), path
+        if isinstance(value, float):
+            assert math.isfinite(value)
+    for name in (preset.name, *preset.aliases):
+        assert find(name.lower().replace("-", " "))[preset.kind] is preset
+
+
+def test_all_kinds_that_have_presets_are_there() -> None:
+    assert {p.kind for p in presets()} - set(sensor_kinds()) == set()
+    assert len(presets()) >= 40
+
+
+def test_a_lidar_gets_its_numbers_in_every_spelling_of_its_kind() -> None:
+    for kind in ("lidar", "ray", "gpu_lidar", "gpu_ray"):
+        with load(world(named("LDS-01", kind))) as sim:
+            device = sim.sensor("m::l::s")
+            assert device.update_rate == 5.0
+            o = device.options
+            assert (o.range_min, o.range_max, o.noise.stddev) == (0.12, 3.5, 0.01)
+            assert o.horizontal.samples == 360
+            assert o.horizontal.step == pytest.approx(math.radians(1), abs=1e-8)
+
+
+@pytest.mark.parametrize("block", ["lidar", "ray"])
+def test_what_the_file_gives_wins_element_by_element(block: str) -> None:
+    own = f"""<update_rate>20</update_rate><{block}><range><max>2</max></range>
+      <scan><horizontal><samples>90</samples></horizontal></scan></{block}>"""
+    with load(world(named("LDS-01", "ray", own))) as sim:
+        device, o = sim.sensor("m::l::s"), sim.sensor("m::l::s").options
+        assert device.update_rate == 20
+        assert (o.range_min, o.range_max, o.horizontal.samples, o.noise.stddev) == (0.12, 2.0, 90, 0.01)
+        (note,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-092"]
+        assert "min 0.12" in note.message
+        assert "max 3.5" not in note.message
+        assert "update_rate" not in note.message
+        assert [d for d in sim.diagnostics if d.severity == "warning"] == []
+
+
+def test_the_prefix_and_a_given_rate_of_zero_are_understood() -> None:
+    text = world(
+        '<sensor name="s" type="lidar"><simkit:preset>tim 571</simkit:preset><update_rate>0</update_rate></sensor>'
+    )
+    text = text.replace("<sdf ", '<sdf xmlns:simkit="simkit" ')
+    with load(text) as sim:
+        assert sim.sensor("m::l::s").update_rate == 0
+        assert sim.sensor("m::l::s").options.range_max == 25
+
+
+def imu_noise(own: str) -> Any:
+    block = f"<imu><angular_velocity><x>{own}</x></angular_velocity></imu>"
+    with load(world(named("ADIS16470", "imu", block))) as sim:
+        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == []
+        return sim.sensor("m::l::s").options.angular_velocity
+
+
+def test_a_deviation_of_the_file_puts_the_presets_density_out() -> None:
+    x, y, _ = imu_noise('<noise type="gaussian"><stddev>0.5</stddev></noise>')
+    assert (x.stddev, x.noise_density) == (0.5, 0.0)
+    assert x.bias_instability == y.bias_instability > 0
+    assert y.noise_density == pytest.approx(math.radians(0.008), rel=1e-5)
+
+
+def test_a_density_of_the_file_is_kept_and_the_type_comes_from_the_preset() -> None:
+    x, y, _ = imu_noise("<noise><noise_density>0.25</noise_density></noise>")
+    assert (x.noise_density, x.bias_instability) == (0.25, y.bias_instability)
+
+
+def test_no_noise_in_the_file_is_no_noise() -> None:
+    x, y, _ = imu_noise('<noise type="none"/>')
+    assert (x.noise_density, x.bias_instability) == (0.0, 0.0)
+    assert y.noise_density > 0
+
+
+def test_an_encoder_with_a_resolution_of_its_own_takes_no_counts() -> None:
+    own = "<encoder><resolution>0.001</resolution></encoder>"
+    with load(world_of("encoder", named("AS5048A", "encoder", own))) as sim:
+        assert sim.sensor("m::j::s").options.resolution == 0.001
+        assert sim.sensor("m::j::s").options.position_noise.stddev == pytest.approx(math.radians(0.06), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("preset", "kind", "code", "hint"),
+    [
+        ("BMI808", "imu", "SK-SENSOR-090", "'BMI088'"),
+        ("LDS-1", "lidar", "SK-SENSOR-090", "'LDS-01'"),
+        ("", "imu", "SK-SENSOR-090", "BMI088"),
+        ("VLP-16", "imu", "SK-SENSOR-091", "BMI088"),
+        ("BMI088", "gpu_lidar", "SK-SENSOR-091", "VLP-16"),
+    ],
+)
+def test_a_wrong_name_is_an_error_with_the_closest(preset: str, kind: str, code: str, hint: str) -> None:
+    block = "<lidar><range><max>1</max></range></lidar>" if "lidar" in kind else ""
+    with pytest.raises(simkit.LoadError) as caught:
+        load(world(named(preset, kind, block)))
+    (error,) = [d for d in caught.value.diagnostics if d.severity == "error"]
+    assert (error.code, error.line) == (code, error.line)
+    assert error.line is not None
+    assert hint in error.hint
+
+
+def test_elements_that_nobody_reads_are_still_reported() -> None:
+    with load(world(named("BMI088", "imu", "<imu><angular_velocty/></imu>"))) as sim:
+        (warning,) = [d for d in sim.diagnostics if d.code == "SK-PARAM-003"]
+        assert "angular_velocty" in warning.message
+
+
+def test_inspect_shows_the_numbers() -> None:
+    described = simkit.describe(world(named("VLP-16", "gpu_lidar")))
+    shown = described["worlds"][0]["models"][0]["links"][0]["sensors"][0]
+    assert shown["update_rate"] == 10
+    assert (shown["lidar"]["v_samples"], shown["lidar"]["range_max"]) == (16, 100)
+    assert "SK-SENSOR-092" in {d["code"] for d in described["diagnostics"]}
+
+
+def test_a_vlp_16_has_16_rings_from_15_degrees_below_to_15_above() -> None:
+    with load(world(named("VLP-16", "lidar"), others=box("b", "0 0 0 0 0 0", "40 40 0.1"))) as sim:
+        device = sim.sensor("m::l::s")
+        points = sim.subscribe(device.topic + "/points")
+        sim.run(0.2)
+        rings = cloud(points.latest)
+        assert rings.shape == (16, 1800)
+        assert rings["ring"][:, 0].tolist() == list(range(16))
+        angles = np.degrees(device.options.vertical.angles)
+        np.testing.assert_allclose(angles, np.arange(-15, 16, 2), atol=1e-5)
+        # the ground 0.95 m below: the lowest ring meets it 3.55 m away
+        low = np.hypot(rings["x"][0], rings["y"][0])
+        assert low.mean() == pytest.approx(0.95 / math.tan(math.radians(15)), abs=0.01)
+
+
+def test_the_white_noise_of_an_imu_is_density_by_the_root_of_its_rate() -> None:
+    with load(world(named("BMI088", "imu", "<update_rate>400</update_rate>"))) as sim:
+        sub = sim.subscribe(sim.sensor("m::l::s").topic)
+        sim.run(5.0)
+        rates = np.array([m.angular_velocity.x for m in sub.messages])
+        assert rates.std() == pytest.approx(math.radians(0.014) * 20, rel=0.06)
+
+
+def test_a_preset_can_be_chosen_on_the_command_line() -> None:
+    lidar = sensor("lidar", "<preset>LDS-01</preset>", rate=7)
+    with simkit.load(world(lidar), overrides=["m::l::s.preset=LDS-02", "m::l::s.lidar.range.min=0.3"]) as sim:
+        o = sim.sensor("m::l::s").options
+        assert (o.range_min, o.range_max, sim.sensor("m::l::s").update_rate) == (0.3, 8.0, 7.0)
+
+
+def test_a_spawned_robot_has_its_preset() -> None:
+    link = f'<link name="l">{named("LDS-02", "lidar")}</link>'
+    robot = f'<sdf version="1.9"><model name="r"><static>true</static>{link}</model></sdf>'
+    with load(world("")) as sim:
+        sim.spawn(robot)
+        assert sim.sensor("r::l::s").options.range_max == 8.0
+
+
+def test_a_urdf_names_one_in_its_gazebo_block() -> None:
+    robot = f"""<robot name="r"><link name="base"><inertial><mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <gazebo reference="base">{named("LDS-01", "ray")}</gazebo></robot>"""
+    with load(robot) as sim:
+        assert sim.sensor("r::base::s").options.range_max == 3.5
+
+
+def test_the_settings_are_the_elements_of_a_file() -> None:
+    """As `Params.from_dict` would read them, so that they can be passed on."""
+    elements = find("LDS-01")["lidar"].elements
+    block = Params.from_dict(dict(elements)).block("lidar").block("range")
+    assert block.number("max") == 3.5
+
+
+def test_the_page_is_what_the_data_say() -> None:
+    """Written with `python -m simkit.sensors.presets > docs/sensors/presets.md`."""
+    assert PAGE.read_text(encoding="utf-8") == page()
+
+
+def test_one_preset_in_words() -> None:
+    text = in_words(find("puck")["lidar"])
+    assert "VLP-16 (Velodyne)" in text
+    assert "also:   Puck" in text
+    assert "samples 16" in text
