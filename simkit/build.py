@@ -308,14 +308,17 @@ def _model_to_spawn(
 def _parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
     """Sensors and plugins of a model, in document order: each sensor's own plugins first, then the models'."""
     from simkit.runtime import Parts
+    from simkit.sensors.presets.apply import with_preset
 
     parts = Parts()
-    for scene in model.all_sensors():
+    for named in model.all_sensors():
         faults = diagnostics.error_count
+        scene = with_preset(named, diagnostics)
         sensor = _sensor(scene, diagnostics)
         if sensor is None:
             continue
-        sensor.build(builder)
+        if diagnostics.error_count == faults:
+            sensor.build(builder)
         if diagnostics.error_count == faults:
             parts.sensors.append(sensor)
         for plugin in scene.plugins:
@@ -336,8 +339,10 @@ def _parts_of_world(
     from simkit.plugins.clock import ClockPublisher
     from simkit.plugins.tf import StaticTransforms
     from simkit.runtime import Parts
+    from simkit.sensors.known import report_homeless
 
     parts = Parts()
+    report_homeless(world, diagnostics)
     for plugin in world.plugins:
         _add_plugin(parts, plugin, "world", world, builder, diagnostics, plugin_paths, lambda sim: sim)
     for instance in (ClockPublisher(), StaticTransforms(), *made):
@@ -349,9 +354,12 @@ def _parts_of_world(
 
 def _sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
     from simkit.sensors import sensor_kinds
+    from simkit.sensors.known import report_known
 
     kinds = sensor_kinds()
     if scene.kind not in kinds:
+        if report_known(scene, diagnostics):
+            return None
         hint = did_you_mean(scene.kind, kinds) or "kinds: " + ", ".join(kinds)
         message = f"sensor {scene.scoped!r}: kind {scene.kind!r} is not simulated"
         diagnostics.warning("SK-SENSOR-001", message, scene.where, hint)

@@ -165,7 +165,10 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def _sensor(sensor: SceneSensor, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+def _sensor(named: SceneSensor, diagnostics: Diagnostics, block: SensorBlock) -> Block:
+    from simkit.sensors.presets.apply import with_preset
+
+    sensor = with_preset(named, diagnostics)
     return {
         "name": sensor.name,
         "type": _SAME_KIND.get(sensor.kind, sensor.kind),

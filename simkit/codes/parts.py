@@ -141,16 +141,20 @@ CODES: tuple[Code, ...] = (
         "warning",
         "a kind of sensor that is not simulated; it is left out",
         "",
-        sensor("wireless_receiver", ""),
+        sensor("theremin", ""),
     ),
     Code(
         "SK-SENSOR-002",
         "warning",
-        "a setting of an IMU's orientation that has another meaning here",
-        "",
-        sensor(
-            "imu",
-            "<imu><orientation_reference_frame><localization>GRAV_UP</localization></orientation_reference_frame></imu>",
+        "an IMU's orientation reference that Gazebo leaves out, in a world that asks for Gazebo's quirks",
+        "without `<simkit:gazebo_quirks>` it is as the file says",
+        world(
+            """
+            <gazebo_quirks>true</gazebo_quirks>
+            <model name="robot"><link name="base"><sensor name="imu" type="imu"><imu>
+              <orientation_reference_frame><localization>GRAV_UP</localization></orientation_reference_frame>
+            </imu></sensor></link></model>
+            """
         ),
     ),
     Code(

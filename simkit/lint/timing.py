@@ -21,7 +21,7 @@ def look(sim: Simulation, found: Diagnostics) -> None:
     for model in sim.world.models:
         for sensor in model.all_sensors():
             text = pattern(sensor.rate, sim.timestep)
-            if text:
+            if text and sensor.rate * sim.timestep <= 1:  # a load has told of more
                 found.note("SK-LINT-002", f"sensor {sensor.scoped!r}: {text}", sensor.where, _rate_hint(sensor.rate))
 
 

@@ -33,7 +33,7 @@ class Stream:
 
     def reseed(self, seed: int) -> None:
         self._key = _key(seed, self.scoped, self.channel)
-        self._normal_block = -1
+        self._normal_block = self._uniform_block = -1
 
     def generator(self, index: int, purpose: int = 0) -> np.random.Generator:
         """A fresh generator for one index."""
@@ -47,6 +47,15 @@ class Stream:
             self._normals = self.generator(block, 1).standard_normal((self._rows, self.width))
             self._normal_block = block
         values: Values = self._normals[row]
+        return values
+
+    def uniform(self, index: int) -> Values:
+        """Numbers of a sample, evenly spread within ±1, shape (width,); a view that must not be written to."""
+        block, row = divmod(index, self._rows)
+        if block != self._uniform_block:
+            self._uniforms = self.generator(block, 2).uniform(-1.0, 1.0, (self._rows, self.width))
+            self._uniform_block = block
+        values: Values = self._uniforms[row]
         return values
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Stream:

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable
-from typing import Literal
+from typing import Literal, Protocol
 
-from simkit.runtime.clock import Clock, Grid
+from simkit.runtime.clock import Clock
 
 Phase = Literal["before", "sense", "after"]
 Task = Callable[[int], None]
 NEVER = 1 << 62
+
+
+class Timetable(Protocol):
+    """When something is due."""
+
+    def next(self, tick: int) -> int:
+        """First due tick after a tick."""
+        ...
 
 
 class Agenda:
@@ -25,12 +33,12 @@ class Agenda:
         self.clear()
 
     def clear(self) -> None:
-        self._tasks: list[tuple[Task, Grid | None]] = []
+        self._tasks: list[tuple[Task, Timetable | None]] = []
         self.every: list[Task] = []
         self._heap: list[tuple[int, int]] = []
         self.next = NEVER
 
-    def add(self, task: Task, grid: Grid | None) -> None:
+    def add(self, task: Task, grid: Timetable | None) -> None:
         self._tasks.append((task, grid))
 
     def rewind(self, tick: int) -> None:
@@ -80,6 +88,10 @@ class Scheduler:
         Sensors have a first sample after the first step, then both they and hooks keep to k/rate.
         """
         getattr(self, phase).add(task, self.clock.grid(rate or 0.0, from_start=phase == "sense"))
+
+    def on(self, timetable: Timetable | None, task: Task, phase: Phase) -> None:
+        """The same by a timetable of its own; None is every step."""
+        getattr(self, phase).add(task, timetable)
 
     def rewind(self, tick: int) -> None:
         """Says that the readings of `tick` have been dealt with, the commands before its step have not."""

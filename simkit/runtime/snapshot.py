@@ -36,6 +36,8 @@ class Snapshot:
     one_shot: bool
     last_applied: Any
     sleep: tuple[Any, ...] = (False,)
+    last_pushed: Any = None
+    seed: int = 0
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Snapshot:
         return self
@@ -60,6 +62,8 @@ def take(sim: Simulation) -> Snapshot:
         one_shot=physics.one_shot,
         last_applied=physics.last_applied.copy(),
         sleep=physics.sleep.get_state(),
+        last_pushed=physics.last_pushed.copy(),
+        seed=sim.seed,
     )
 
 
@@ -81,6 +85,8 @@ def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
     physics.clear_warnings()
     physics.one_shot = snapshot.one_shot
     physics.last_applied = snapshot.last_applied.copy()
+    physics.last_pushed = snapshot.last_pushed.copy()
+    physics.shows_applied = True
     physics.sleep.set_state(snapshot.sleep)
     sim.bus.inbox.clear()
     sim.bus.inbox.extend(snapshot.inbox)

@@ -4,63 +4,30 @@ from __future__ import annotations
 
 import abc
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import partial
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.diagnostics import Diagnostics
 from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
 from simkit.sensors.names import entity_topic, given_frame
-from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
+from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
+from simkit.sensors.sampling import Product, Sample, Sampler
+from simkit.sensors.timing import Flight, SampleTimes, read_timing
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Publisher, Simulation
+    from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
-_READ_BY_ALL = ("always_on", "visualize", "enable_metrics", "pose", "update_rate", "topic")
+__all__ = ["Product", "Sample", "Sensor"]
+
+_READ_BY_ALL = ("visualize", "pose", "update_rate", "topic")
+_HAVE_DYNAMIC_BIAS = ("imu", "force_torque")  # the kinds to whose noise Gazebo tells the time between samples
+_RATE = "std_msgs/msg/Float64"
 
 
-@dataclass(frozen=True, slots=True)
-class Product:
-    """One kind of message that a sensor can give.
-
-    Attributes:
-        type_name: ROS 2 type.
-        make: `make(reading, time_ns)` gives the message.
-        needs_reading: False where the message says nothing of the world; its reading may then be None.
-    """
-
-    type_name: str
-    make: Callable[[Any, int], Any]
-    needs_reading: bool = True
-
-
-@dataclass(slots=True)
-class Sample:
-    """One due time: either measured, or the physics state to measure later.
-
-    Attributes:
-        index: 1 for the first sample.
-        held: the state to measure; None once captured.
-        raw: what was captured of the state; None once finished.
-        truth: the reading without noise; `noisy` with it.
-        messages: made so far, by product.
-    """
-
-    index: int
-    time_ns: int
-    held: Any = None
-    raw: Any = None
-    truth: Any = None
-    noisy: Any = None
-    messages: dict[str, Any] = field(default_factory=dict)
-    truth_message: Any = None
-
-
-class Sensor(abc.ABC):
+class Sensor(Sampler):
     """A sensor of a model. Derive, name `kinds`, read options in `__init__`, and say what `measure` gives.
 
     Attributes:
@@ -68,39 +35,46 @@ class Sensor(abc.ABC):
         example: the smallest content that a `<sensor>` of the kind needs besides what all sensors have.
         belongs_to: where it may stand in a file: `link`, `joint` or both.
         is_deferred: whether noise and message of a captured sample may wait until somebody looks.
+        gathers: whether what `capture` takes is so little that it may be taken of many samples before anything is made
+            of them, where nobody is called back.
         needs_acceleration: whether `measure` reads body accelerations or forces between bodies.
         reads_contacts: whether `measure` reads contacts; what rests on a static link with such a sensor never sleeps.
         name, scoped, kind: as in the file.
         update_rate: [Hz]; 0 is every step. Change it with `set_rate`.
         frame_id: of the messages.
         options: the kind's own parameters.
-        noise: of its channels, where a kind sets it in `attach`; the base then evolves, restarts and remembers it.
+        noise: of its channels, where a kind sets it in `prepare`; the base then evolves, restarts and remembers it.
     """
 
     kinds: ClassVar[tuple[str, ...]] = ()
     example: ClassVar[str] = ""
     belongs_to: ClassVar[tuple[str, ...]] = ("link",)
-    needs_acceleration: ClassVar[bool] = False
-    reads_contacts: ClassVar[bool] = False
-    is_deferred: bool = False
 
-    sim: Simulation
     options: Any = None
     noise: Noise | UniformNoise | None = None
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__()
         self.scene, self.diagnostics = scene, diagnostics
         self.name, self.scoped, self.kind = scene.name, scene.scoped, scene.kind
         self.update_rate = scene.rate
         self.frame_id = given_frame(scene.params) or scene.scoped
         for element in _READ_BY_ALL:
             scene.params.child(element)
-        self._topics: dict[str, str] = {}
-        self._products: Mapping[str, Product] = {}
-        self._publishers: dict[str, Publisher] = {}
-        self._ends: list[tuple[str, Publisher, bool]] = []
-        self._sample: Sample | None = None
-        self._index, self._time_ns = 0, -1
+        self._read_common(scene)
+
+    def _read_common(self, scene: SceneSensor) -> None:
+        params = scene.params
+        params.boolean("always_on", True)
+        if params.boolean("enable_metrics", False):
+            message = "<enable_metrics> publishes nothing here: wall-clock rates would differ from run to run"
+            params.diagnostics.note("SK-SENSOR-025", message, params.block("enable_metrics").where, "simkit bench")
+        self.timing = read_timing(params, scene.rate)
+        place = "joint" if scene.on_joint else "link"
+        if place not in self.belongs_to:
+            message = f"sensor {scene.scoped!r}: {scene.kind} belongs to a {' or a '.join(self.belongs_to)}"
+            hint = f"move it from the {place} {scene.parent!r} into a <{self.belongs_to[0]}>"
+            params.diagnostics.error("SK-SENSOR-024", f"{message}, not to a {place}", scene.where, hint)
 
     # ------------------------------------------------------------------ what a kind says
 
@@ -119,45 +93,6 @@ class Sensor(abc.ABC):
     def default_topics(self) -> dict[str, str]:
         """Product -> topic, as Gazebo would name it; the first is what `latest` shows."""
 
-    @abc.abstractmethod
-    def measure(self, model: Any, data: Any) -> Any:
-        """The reading without noise, of data with everything computed; arrays in it are never written to again."""
-
-    def capture(self, model: Any, data: Any) -> Any:
-        """What must be taken from the data at once; `finish` makes the reading of it. As a rule that is the reading."""
-        return self.measure(model, data)
-
-    def finish(self, raw: Any) -> Any:
-        """The reading without noise, of what was captured."""
-        return raw
-
-    def perturb(self, reading: Any, index: int) -> Any:
-        """The reading with the noise of a sample; the same object where there is none."""
-        return reading
-
-    def evolve(self, index: int, dt: float) -> None:
-        """Moves noise that has a memory on by `dt` [s] (0 at the first sample), read or not."""
-        if self.noise is not None:
-            self.noise.evolve(index, dt)
-
-    def restart(self) -> None:
-        """Back at t = 0: draws what is drawn once."""
-        if self.noise is not None:
-            self.noise.restart()
-
-    def memory(self) -> Any:
-        """What the kind itself remembers from sample to sample, as values of its own."""
-        return None if self.noise is None else self.noise.memory()
-
-    def remember(self, memory: Any) -> None:
-        """Takes back what `memory` gave."""
-        if self.noise is not None:
-            self.noise.remember(memory)
-
-    def accepts(self, tick: int) -> bool:
-        """Whether a due time gives a sample."""
-        return True
-
     # ------------------------------------------------------------------ readings
 
     @property
@@ -167,20 +102,20 @@ class Sensor(abc.ABC):
 
     @property
     def latest(self) -> Any | None:
-        """The newest message, or None before the first."""
+        """The newest message that has arrived, or None before the first."""
         if self._sample is None:
             return None
         return self._message(self._sample, next(iter(self._topics)))
 
     @property
     def truth(self) -> Any | None:
-        """The newest message as it would be without noise, or None before the first."""
+        """The same message as it would be without noise, or None before the first."""
         sample = self._sample
         if sample is None:
             return None
         self._settle(sample)
         if sample.truth_message is None:
-            sample.truth_message = self._products[next(iter(self._topics))].make(sample.truth, sample.time_ns)
+            sample.truth_message = self._make(sample, next(iter(self._topics)), sample.truth)
         return sample.truth_message
 
     @property
@@ -190,10 +125,17 @@ class Sensor(abc.ABC):
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset
 
     def set_rate(self, rate: float) -> None:
-        """Samples at `rate` [Hz] from now on; 0 is every step."""
+        """Samples at `rate` [Hz] from now on, still on the grid of t = 0; 0 is every step.
+
+        Raises:
+            ValueError: it is no number of at least 0.
+        """
         if not (math.isfinite(rate) and rate >= 0):
             raise ValueError(f"a rate is a number of at least 0 [Hz], got {rate}")
-        self.update_rate = float(rate)
+        self.sim.bus.settle()
+        if self.is_deferred and self._sample is not None:
+            self.latest  # noqa: B018 - its message may tell the rate that it was measured at
+        self._take_rate(float(rate))
         self.sim.reschedule()
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
@@ -208,6 +150,9 @@ class Sensor(abc.ABC):
         self._topics = dict(topics)
         self._publishers = {p: bus.advertise(t, self._products[p].type_name) for p, t in self._topics.items()}
         self._ends = [(p, publisher, self._products[p].needs_reading) for p, publisher in self._publishers.items()]
+        self._revision = -1
+        for publisher in self._publishers.values():
+            publisher.pending = self._catch_up
 
     # ------------------------------------------------------------------ what the simulation calls
 
@@ -217,60 +162,42 @@ class Sensor(abc.ABC):
     def attach(self, sim: Simulation) -> None:
         """Once: opens topics and random streams."""
         self.sim = sim
+        options, quirks = self.timing, sim.world.gazebo_quirks
+        self._times = SampleTimes(options, sim.clock, sim.streams, self.scoped, in_milliseconds=quirks)
+        if options.latency > 0:
+            self._flight = Flight(options, sim.clock, sim.streams, self.scoped)
+        self._report_timing(sim)
+        if options.set_rate_topic:
+            sim.bus.listen(valid_topic(options.set_rate_topic), (_RATE,), self._on_rate)
         self.prepare()
+        if self.noise is not None:
+            self._add_noise(self.noise)  # of a kind that made its own
         self._products = self.products()
         self.publish_on(self.default_topics())
         self.restart()
 
+    def _report_timing(self, sim: Simulation) -> None:
+        """What the step makes impossible."""
+        rate, jitter, step = self.update_rate, self.timing.jitter, sim.timestep
+        if self._times.is_too_fast(rate):
+            message = f"sensor {self.scoped!r}: {rate:g} Hz is more than the {1 / step:g} steps a second"
+            sim.reports.note("SK-SENSOR-028", f"{message}; it samples at every step", self.scene.where)
+        if 0 < jitter < 0.5 * step:
+            message = f"sensor {self.scoped!r}: <jitter>{jitter:g}</jitter> is less than half a step of {step:g} s"
+            sim.reports.warning("SK-SENSOR-023", f"{message} and has no effect", self.scene.where)
+
     def bind(self, compiled: Any) -> None:
         """Finds itself in a compiled model, also after every change of structure."""
-        if self._sample is not None:
-            self._settle(self._sample)  # what is held belongs to the model before
-            self.sim.bus.settle()  # and so does what waits to be looked at
+        self._catch_up()
+        for sample in self._kept():
+            self._settle(sample)  # what is held belongs to the model before
+        self.sim.bus.settle()  # and so does what waits to be looked at
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
         self._body = int(link.body)
         self._offset: Pose = link.offset @ self.scene.pose_link
         self._offset_position: Vector = self._offset.position
         self._offset_rotation: Vector = self._offset.matrix
-
-    def sample(self, tick: int) -> None:
-        """The due tick: measures and publishes where somebody reads, else keeps the physics state."""
-        if not self.accepts(tick):
-            return
-        sim = self.sim
-        time_ns = sim.clock.time_ns(tick)
-        self._index += 1
-        self.evolve(self._index, (time_ns - self._time_ns) * 1e-9 if self._time_ns >= 0 else 0.0)
-        self._time_ns = time_ns
-        sample = self._sample = Sample(self._index, time_ns)
-        wanted = [end for end in self._ends if end[1].wanted]
-        needs_reading = False
-        for end in wanted:
-            needs_reading = needs_reading or end[2]
-        if needs_reading:
-            data = sim.fresh_acceleration() if self.needs_acceleration else sim.fresh_data()
-            sample.raw = self.capture(sim.mj_model, data)
-        else:
-            sample.held = sim.hold_state()
-        for product, publisher, _ in wanted:
-            if self.is_deferred:
-                publisher.publish_later(partial(self._message, sample, product))
-            else:
-                publisher.publish(self._message(sample, product))
-
-    def reset(self) -> None:
-        """Back at t = 0."""
-        self._sample, self._index, self._time_ns = None, 0, -1
-        self.restart()
-
-    def get_state(self) -> Any:
-        # a sample is only ever completed, never changed, so it may be shared
-        return self._index, self._time_ns, self._sample, self.update_rate, self.memory()
-
-    def set_state(self, state: Any) -> None:
-        self._index, self._time_ns, self._sample, self.update_rate, memory = state
-        self.remember(memory)
 
     def close(self) -> None:
         """When the simulation closes."""
@@ -285,15 +212,48 @@ class Sensor(abc.ABC):
 
     def _make_noise(self, models: Sequence[NoiseModel], group: str) -> Noise:
         """The noise of a few channels, one model each; for `self.noise`."""
-        noise = Noise(models, self.sim.streams, self.scoped, group)
-        self.is_deferred = not noise.wanders
-        return noise
+        return self._add_noise(Noise([self._noise_of(m) for m in models], *self._named(group), **self._noise_terms()))
 
     def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
         """The same noise on every one of many channels; for `self.noise`."""
-        noise = UniformNoise(model, width, self.sim.streams, self.scoped, group)
-        self.is_deferred = not noise.wanders
+        quirks = self.sim.world.gazebo_quirks
+        model = NO_NOISE if quirks and model.is_quantized else self._noise_of(model)  # Gazebo has none of it on rays
+        noise = UniformNoise(model, width, *self._named(group), **self._noise_terms())
+        self._add_noise(noise)
         return noise
+
+    def _named(self, group: str) -> tuple[Any, str, str]:
+        return self.sim.streams, self.scoped, group
+
+    def _noise_terms(self) -> dict[str, Any]:
+        interval = self._times.nominal_interval(self.update_rate)
+        return {"interval": interval, "random_sign": self.sim.world.gazebo_quirks}
+
+    def _noise_of(self, model: NoiseModel) -> NoiseModel:
+        return model.as_gazebo(self.kind in _HAVE_DYNAMIC_BIAS) if self.sim.world.gazebo_quirks else model
+
+    def _add_noise(self, noise: Noise) -> Noise:
+        if noise not in self._noises:
+            self._noises.append(noise)
+        if noise.wanders:
+            self._wandering = tuple(n for n in self._noises if n.wanders)
+            self._evolves = True
+        self.is_deferred = True
+        return noise
+
+    def _on_rate(self, message: Any) -> None:
+        """A rate from a topic; with Gazebo's quirks it is at most the file's."""
+        rate, most = float(message.data), self.scene.rate
+        refused = ""
+        if not (math.isfinite(rate) and rate >= 0):
+            refused = "allowed is a number of at least 0"
+        elif self.sim.world.gazebo_quirks and most > 0 and not 0 < rate <= most:
+            refused = f"Gazebo allows at most the file's {most:g} Hz"
+        if not refused:
+            self.set_rate(rate)
+            return
+        message = f"sensor {self.scoped!r}: a rate of {rate:g} Hz came in on {self.timing.set_rate_topic!r}: {refused}"
+        self.sim.reports.warning("SK-SENSOR-026", message, self.scene.where)
 
     def _default_topic(self, suffix: str) -> str:
         """`<topic>` where the file gives it, else Gazebo's."""
@@ -311,21 +271,3 @@ class Sensor(abc.ABC):
         """The link that the sensor is on; for a joint's sensor the joint's child link."""
         parent = self.scene.parent
         return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent
-
-    def _settle(self, sample: Sample) -> None:
-        """Measures what was kept, once."""
-        if sample.held is not None:
-            sample.raw = self.capture(sample.held.model, self.sim.data_of(sample.held))
-            sample.held = None
-        if sample.raw is not None:
-            sample.truth = self.finish(sample.raw)
-            sample.noisy = self.perturb(sample.truth, sample.index)
-            sample.raw = None
-
-    def _message(self, sample: Sample, product: str) -> Any:
-        message = sample.messages.get(product)
-        if message is None:
-            if self._products[product].needs_reading:
-                self._settle(sample)
-            message = sample.messages[product] = self._products[product].make(sample.noisy, sample.time_ns)
-        return message

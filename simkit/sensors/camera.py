@@ -79,7 +79,7 @@ def read_options(params: Params) -> CameraOptions:
 
 def _read_image_noise(block: Params) -> NoiseModel:
     noise = read_noise(block)
-    extras = (noise.bias_mean, noise.bias_stddev, noise.dynamic_bias_stddev, noise.precision)
+    extras = (noise.bias_mean, noise.bias_stddev, noise.precision, noise.wanders, noise.noise_density)
     if any(extras):
         message = "of a camera's noise only mean and stddev are used, as in Gazebo"
         block.diagnostics.warning("SK-SENSOR-008", message, block.block("noise").where)
@@ -196,11 +196,11 @@ class RenderedSensor(Sensor):
         return triggered
 
     def bind(self, compiled: Any) -> None:
-        if self._sample is not None:
-            try:
-                self._settle(self._sample)
-            except RenderError:
-                self._sample = None
+        try:
+            for sample in self._kept():
+                self._settle(sample)
+        except RenderError:
+            self._drop()
         super().bind(compiled)
         renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
 
@@ -274,7 +274,8 @@ class RenderedSensor(Sensor):
             raise
 
     def _switch_off(self, error: RenderError) -> None:
-        self._failure, self._sample = error, None
+        self._failure = error
+        self._drop()
         message = f"camera {self.scoped!r} is switched off: {str(error).removeprefix(error.code).strip()}"
         self.sim.reports.warning(error.code, message, self.scene.where)
         self.sim.log.error("%s %s", error.code, message)

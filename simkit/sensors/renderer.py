@@ -115,6 +115,8 @@ class Renderer:
             try:
                 self.reserve(view.width, view.height)
                 self._follow(model)
+                # another simulation may have drawn, or have taken its buffers with it when it was closed
+                mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._context)
                 scene = self._scene
                 mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
                 if self._shadow_size:

@@ -1,8 +1,10 @@
 """Simulated time is an exact grid."""
 
+from fractions import Fraction
+
 import pytest
 
-from simkit.runtime.clock import Clock
+from simkit.runtime.clock import Clock, exact_rate
 
 
 def test_thirty_hertz_at_a_millisecond_gives_thirty_samples_in_every_second():
@@ -41,6 +43,16 @@ def test_a_rate_at_or_above_the_step_rate_means_every_step():
     assert Clock(0.001).grid(1000.0) is None
     assert Clock(0.001).grid(5000.0) is None
     assert Clock(0.001).grid(0.0) is None
+
+
+def test_a_rate_is_the_decimal_as_written_or_the_fraction_that_it_was_computed_from():
+    assert exact_rate(7.3) == Fraction(73, 10)
+    assert exact_rate(1 / 3) == Fraction(1, 3)
+    assert exact_rate(0.333) == Fraction(333, 1000)
+    assert exact_rate(30000 / 1001) == Fraction(30000, 1001)
+    assert exact_rate(1e-9) == Fraction(1, 10**9)
+    assert exact_rate(1e12) == 10**12
+    assert Clock(0.001).grid(1 / 3).tick(5) == 15000
 
 
 def test_time_does_not_drift_over_hours():

@@ -38,6 +38,16 @@ def test_normal_draws_have_mean_zero_and_deviation_one_and_do_not_repeat():
     assert len(np.unique(values)) == values.size
 
 
+def test_uniform_draws_fill_plus_and_minus_one_evenly_and_by_index_alone():
+    stream = RandomStreams(0).stream("a", "x", 3)
+    values = np.array([stream.uniform(i) for i in range(20000)])
+    assert values.min() < -0.999 and values.max() > 0.999
+    np.testing.assert_allclose(values.mean(axis=0), 0, atol=5 / np.sqrt(3 * 20000))
+    np.testing.assert_allclose(values.std(axis=0), 1 / np.sqrt(3), rtol=0.02)
+    np.testing.assert_array_equal(RandomStreams(0).stream("a", "x", 3).uniform(12345), values[12345])
+    assert not np.array_equal(stream.normal(5), stream.uniform(5))
+
+
 def test_reseeding_reaches_streams_that_are_already_out():
     streams = RandomStreams(1)
     stream = streams.stream("a", "x", 2)

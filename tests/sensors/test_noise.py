@@ -6,12 +6,15 @@ import math
 
 import numpy as np
 import pytest
+from sensor_worlds import sensor, world
 
+import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.runtime.random import RandomStreams
 from simkit.sensors.image_noise import ImageNoise
-from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise, quantise, read_noise, variance
+from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise, quantise, read_noise
+from simkit.sensors.wander import FLICKER_TIMES, FLOOR, PEAK
 
 
 def samples(model: NoiseModel, count: int, dt: float = 0.01, seed: int = 1) -> np.ndarray:
@@ -80,8 +83,9 @@ def test_infinite_ranges_stay_infinite() -> None:
 
 
 def test_variances_stand_on_the_diagonal() -> None:
-    covariance = variance([NoiseModel(stddev=s) for s in (1.0, 2.0, 3.0)])
-    np.testing.assert_array_equal(covariance.reshape(3, 3), np.diag((1.0, 4.0, 9.0)))
+    noise = Noise([NoiseModel(stddev=s) for s in (5.0, 1.0, 2.0, 3.0)], RandomStreams(1), "s", "x")
+    np.testing.assert_array_equal(noise.covariance(1).reshape(3, 3), np.diag((1.0, 4.0, 9.0)))
+    assert noise.variance(3) == 9.0
 
 
 @pytest.mark.parametrize("form", ["attribute", "element"])
@@ -98,6 +102,228 @@ def test_an_unknown_type_is_an_error() -> None:
     block = Params("noise", attributes={"type": "pink"}, diagnostics=found)
     read_noise(Params("x", children=[block], diagnostics=found))
     assert [d.code for d in found] == ["SK-PARAM-002"]
+
+
+def read(text: str, kind: str = "gaussian") -> tuple[NoiseModel, list[str]]:
+    """A model of `name=value` words, and the codes of what was found."""
+    found = Diagnostics()
+    children = [Params(*word.split("="), diagnostics=found) for word in text.split()]
+    block = Params("noise", attributes={"type": kind} if kind else {}, children=children, diagnostics=found)
+    return read_noise(Params("x", children=[block], diagnostics=found)), [d.code for d in found]
+
+
+@pytest.mark.parametrize("text", ["precision=-0.1", "stddev=-1", "noise_density=-1", "correlation_time=x"])
+def test_a_negative_deviation_or_precision_is_an_error(text: str) -> None:
+    assert read(text)[1] == ["SK-PARAM-002"]
+
+
+def test_without_a_type_it_is_none_and_said_unless_in_a_data_sheets_words() -> None:
+    assert read("stddev=0.1", "") == (NO_NOISE, ["SK-SENSOR-020"])
+    assert read("stddev=0.0", "") == (NO_NOISE, [])
+    assert read("stddev=0.1", "none") == (NO_NOISE, [])
+    assert read("noise_density=0.1", "") == (NoiseModel(noise_density=0.1), [])
+
+
+def test_a_data_sheet_stands_where_gazebos_elements_say_the_same() -> None:
+    model, codes = read("stddev=2 noise_density=0.1 mean=1 bias_mean=3 precision=0.5")
+    assert (model.stddev, model.noise_density, model.mean, model.bias_mean, model.precision) == (0, 0.1, 1, 3, 0.5)
+    assert codes == ["SK-SENSOR-021"]
+    model, codes = read("random_walk=2 dynamic_bias_stddev=0.1 dynamic_bias_correlation_time=3 stddev=1")
+    assert (model.dynamic_bias_stddev, model.random_walk, model.stddev) == (0, 2, 1)
+    assert codes == ["SK-SENSOR-021"]
+    assert read("noise_density=1 correlation_time=3")[1] == ["SK-SENSOR-021"]
+
+
+# ---------------------------------------------------------------------- data sheets
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.04])
+def test_a_density_is_white_noise_by_the_root_of_the_rate(dt: float) -> None:
+    x = samples(NoiseModel(noise_density=0.02), 20_000, dt)
+    assert x[1:].std() == pytest.approx(0.02 / math.sqrt(dt), rel=0.03)
+    assert abs(np.corrcoef(x[1:], x[:-1])[0, 1]) < 0.03
+
+
+def test_each_interval_has_its_own_white_noise_and_the_covariance_follows() -> None:
+    noise = Noise([NoiseModel(noise_density=0.1)] * 3, RandomStreams(1), "s", "x", interval=0.01)
+    found = {}
+    for index, dt in enumerate((0.0, 0.04, 0.01, 0.04), start=1):
+        noise.evolve(index, dt)
+        found[index] = noise.variance()
+        assert noise.covariance()[4] == noise.variance()
+    assert [found[i] for i in (1, 2, 3, 4)] == pytest.approx([1.0, 0.25, 1.0, 0.25])
+
+
+def test_a_random_walk_grows_with_the_root_of_time() -> None:
+    ends = [samples(NoiseModel(random_walk=0.3), 20, 0.5, seed)[-1] for seed in range(800)]
+    # the first sample is one interval on as well
+    assert np.std(ends) == pytest.approx(0.3 * math.sqrt(20 * 0.5), rel=0.07)
+    assert abs(np.mean(ends)) < 4 * 0.95 / math.sqrt(800)
+
+
+def test_a_correlation_time_bounds_a_random_walk() -> None:
+    x = samples(NoiseModel(random_walk=0.3, correlation_time=0.5), 40_000, 0.1)
+    assert x.std() == pytest.approx(0.3 * math.sqrt(0.5 / 2), rel=0.1)
+    assert np.corrcoef(x[1:], x[:-1])[0, 1] == pytest.approx(math.exp(-0.1 / 0.5), abs=0.02)
+
+
+def allan(x: np.ndarray, n: int) -> float:
+    """Overlapping Allan deviation of readings at averages over n of them."""
+    theta = np.concatenate(([0.0], np.cumsum(x)))
+    second = theta[2 * n :] - 2 * theta[n:-n] + theta[: -2 * n]
+    return math.sqrt((second**2).mean() / 2) / n
+
+
+def markov_peak() -> float:
+    x = np.linspace(0.5, 5, 20_001)
+    return float(np.sqrt(2 / x * (1 - (3 - 4 * np.exp(-x) + np.exp(-2 * x)) / (2 * x))).max())
+
+
+def test_the_constants_of_the_allan_deviation_are_those_of_the_formulas() -> None:
+    assert pytest.approx(0.664, abs=5e-4) == FLOOR
+    assert pytest.approx(markov_peak(), rel=1e-4) == PEAK
+
+
+def test_the_processes_of_flicker_noise_make_a_flat_floor() -> None:
+    def variance_at(tau: float) -> float:
+        x = tau / np.array(FLICKER_TIMES)
+        share = 2 / x * (1 - (3 - 4 * np.exp(-x) + np.exp(-2 * x)) / (2 * x))
+        return math.log(10) / math.pi * float(share.sum())
+
+    taus = np.geomspace(1.0, 1000.0, 200)
+    floor = np.sqrt([variance_at(t) for t in taus])
+    assert np.abs(floor / FLOOR - 1).max() < 0.025
+
+
+def test_bias_instability_is_the_floor_of_the_allan_deviation() -> None:
+    # the mean over several seeds: one run of this length knows its floor to 10 % or so
+    floors = []
+    for seed in range(8):
+        x = samples(NoiseModel(bias_instability=0.2), 20_000, 0.5, seed)
+        floors.append([allan(x, n) for n in (10, 30, 100, 300)])
+    np.testing.assert_allclose(np.sqrt(np.square(floors).mean(axis=0)), 0.664 * 0.2, rtol=0.12)
+
+
+def test_with_a_correlation_time_the_floor_is_the_peak_at_189_of_it() -> None:
+    tau = 2.0
+    model = NoiseModel(bias_instability=0.2, correlation_time=tau)
+    x = samples(model, 60_000, 0.2)
+    assert allan(x, round(1.89 * tau / 0.2)) == pytest.approx(0.664 * 0.2, rel=0.05)
+    starts = [samples(model, 1, 0.2, seed)[0] for seed in range(800)]
+    assert np.std(starts) == pytest.approx(0.2 * FLOOR / PEAK, rel=0.1)  # in its steady state from the start
+
+
+def test_twenty_minutes_of_an_imu_at_rest_give_density_and_instability_back() -> None:
+    density, instability, rate = 6e-3, 6e-3, 10
+    block = gaussian(f"<noise_density>{density}</noise_density><bias_instability>{instability}</bias_instability>")
+    step = "<physics name='p' type='ode'><max_step_size>0.1</max_step_size></physics>"
+    source = imu(block, rate=rate, top=step).replace("<x>", f"<y>{block}</y><z>{block}</z><x>")
+    with simkit.load(source, seed=2) as sim:
+        read = sim.subscribe("/i")
+        sim.run(1200)
+        x = np.array([(m.angular_velocity.x, m.angular_velocity.y, m.angular_velocity.z) for m in read.messages]).T
+    # white noise alone from one reading to the next, but for the little that flicker moves in 0.1 s
+    found = math.sqrt(np.diff(x).var() / 2 / rate)
+    assert found == pytest.approx(density, rel=0.05)
+    floor = [np.mean([allan(axis, n) ** 2 for axis in x]) - found**2 * rate / n for n in (60, 100, 200, 400)]
+    assert math.sqrt(np.mean(floor)) / 0.664 == pytest.approx(instability, rel=0.1)
+
+
+# ---------------------------------------------------------------------- in a world
+
+DYNAMIC = (
+    "<dynamic_bias_stddev>0.3</dynamic_bias_stddev><dynamic_bias_correlation_time>5</dynamic_bias_correlation_time>"
+)
+
+
+def imu(noise: str, kind: str = "imu", rate: float = 100, extra: str = "", top: str = "") -> str:
+    block = "<imu><angular_velocity><x>{}</x></angular_velocity></imu>"
+    if kind == "magnetometer":
+        block = "<magnetometer><x>{}</x></magnetometer>"
+    return world(sensor(kind, block.format(noise), rate=rate, extra="<topic>i</topic>" + extra), top=top)
+
+
+def gaussian(content: str) -> str:
+    return f'<noise type="gaussian">{content}</noise>'
+
+
+def test_the_density_follows_the_rate_and_so_does_the_covariance() -> None:
+    with simkit.load(imu(gaussian("<noise_density>0.01</noise_density>"), rate=100)) as sim:
+        found, read = {}, sim.subscribe("/i")
+        for rate in (100, 400, 0):
+            sim.sensor("m::l::s").set_rate(rate)
+            sim.run(0.02)
+            before = len(read.messages)
+            sim.run(4)
+            new = read.messages[before:]
+            assert {m.angular_velocity_covariance[4] for m in new} == {0.0}
+            found[rate] = np.std([m.angular_velocity.x for m in new]), new[-1].angular_velocity_covariance[0]
+    for rate, (deviation, variance) in found.items():
+        assert deviation == pytest.approx(0.01 * math.sqrt(rate or 1000), rel=0.12)
+        if rate != 400:  # 2 and 3 steps in turn
+            assert variance == pytest.approx(0.01**2 * (rate or 1000), rel=1e-9)
+
+
+def test_a_message_that_waits_has_the_bias_of_its_own_sample() -> None:
+    world_of = imu(gaussian("<stddev>0.01</stddev>" + DYNAMIC))
+    with simkit.load(world_of) as sim, simkit.load(world_of) as other:
+        kept, heard = sim.subscribe("/i"), []
+        other.subscribe("/i", callback=heard.append)
+        sim.run(2)
+        other.run(2)
+        biases = [m.angular_velocity.x for m in kept.messages]
+        assert biases == [m.angular_velocity.x for m in heard]
+        assert np.ptp(biases) > 0.1  # it did wander
+        assert sim.sensor("m::l::s").latest.angular_velocity.x == other.sensor("m::l::s").latest.angular_velocity.x
+
+
+def test_an_unread_sensor_wanders_as_a_read_one_does() -> None:
+    world_of = imu(gaussian(DYNAMIC + "<bias_stddev>1</bias_stddev>"))
+    with simkit.load(world_of) as sim, simkit.load(world_of) as other:
+        other.subscribe("/i")
+        sim.run(1.5)
+        other.run(1.5)
+        late, read = sim.subscribe("/i"), other.subscribe("/i")
+        sim.run(0.5)
+        other.run(0.5)
+        assert [m.angular_velocity.x for m in late.messages] == [m.angular_velocity.x for m in read.messages]
+
+
+def test_gazebos_bias_has_either_sign_by_channel_and_seed() -> None:
+    block = gaussian("<bias_mean>2</bias_mean>")
+    source = imu(block, top="<gazebo_quirks>true</gazebo_quirks>").replace("<x>", f"<y>{block}</y><x>")
+    signs = []
+    for seed in range(24):
+        with simkit.load(source, seed=seed) as sim:
+            sim.run(0.01)
+            v = sim.sensor("m::l::s").latest.angular_velocity
+            assert (abs(v.x), abs(v.y), v.z) == (2.0, 2.0, 0.0)
+            signs.append((v.x > 0, v.y > 0))
+    assert len(set(signs)) == 4
+    assert 5 <= sum(x for x, _ in signs) <= 19
+    with simkit.load(imu(block)) as sim:
+        sim.run(0.01)
+        assert sim.sensor("m::l::s").latest.angular_velocity.x == 2.0
+
+
+@pytest.mark.parametrize(("kind", "wanders"), [("imu", True), ("magnetometer", False)])
+def test_gazebo_ignores_a_dynamic_bias_where_it_passes_no_time(kind: str, wanders: bool) -> None:
+    def values(top: str) -> list[float]:
+        with simkit.load(imu(gaussian(DYNAMIC), kind, top=top)) as sim:
+            read = sim.subscribe("/i")
+            sim.run(1)
+            messages = read.messages
+            return [m.angular_velocity.x if kind == "imu" else m.magnetic_field.x for m in messages]
+
+    assert bool(np.ptp(values("<gazebo_quirks>true</gazebo_quirks>")) > 1e-9) is wanders
+    assert np.ptp(values("")) > 1e-9
+
+
+def test_gazebo_takes_a_precision_of_a_millionth_for_none() -> None:
+    fine = NoiseModel(precision=5e-7, dynamic_bias_stddev=1.0)
+    assert fine.as_gazebo(True).precision == 0.0
+    assert fine.as_gazebo(False).dynamic_bias_stddev == 0.0
+    assert NoiseModel(precision=2e-6).as_gazebo(True).precision == 2e-6
 
 
 # ---------------------------------------------------------------------- pictures

@@ -1,0 +1,345 @@
+"""The samples of a sensor: taken when they are due, kept until somebody looks, published when they arrive."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from simkit.sensors.timing import Departures, Flight, SampleTimes
+
+if TYPE_CHECKING:
+    from simkit.runtime import Publisher, Simulation
+    from simkit.runtime.scheduler import Timetable
+    from simkit.sensors.noise import Noise
+
+
+_MOST_ROWS = 64  # gathered before samples are made of them
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """One kind of message that a sensor can give.
+
+    Attributes:
+        type_name: ROS 2 type.
+        make: `make(reading, time_ns)` gives the message.
+        needs_reading: False where the message says nothing of the world; its reading may then be None.
+    """
+
+    type_name: str
+    make: Callable[[Any, int], Any]
+    needs_reading: bool = True
+
+
+class Sample:
+    """One due time: either measured, or the physics state to measure later.
+
+    Attributes:
+        index: 1 for the first sample.
+        held: the state to measure; None once captured.
+        raw: what was captured of the state; None once finished.
+        truth: the reading without noise; `noisy` with it.
+        messages: made so far, by product.
+        drifts: states of the noise at this sample where they change from sample to sample.
+        untold: products that are not published of it.
+    """
+
+    __slots__ = ("drifts", "held", "index", "messages", "noisy", "raw", "time_ns", "truth", "truth_message", "untold")
+
+    def __init__(self, index: int, time_ns: int) -> None:
+        self.index, self.time_ns = index, time_ns
+        self.held: Any = None
+        self.raw: Any = None
+        self.truth: Any = None
+        self.noisy: Any = None
+        self.messages: dict[str, Any] = {}
+        self.truth_message: Any = None
+        self.drifts: tuple[Any, ...] = ()
+        self.untold: tuple[str, ...] = ()
+
+
+class Sampler(abc.ABC):
+    """What of a sensor has to do with its samples; the rest is `simkit.sensors.base.Sensor`."""
+
+    needs_acceleration: ClassVar[bool] = False
+    reads_contacts: ClassVar[bool] = False
+    gathers: ClassVar[bool] = False
+    is_deferred: bool = False
+    sim: Simulation
+    update_rate: float
+    _times: SampleTimes
+
+    def __init__(self) -> None:
+        self._noises: list[Noise] = []
+        self._wandering: tuple[Noise, ...] = ()
+        self._topics: dict[str, str] = {}
+        self._products: Mapping[str, Product] = {}
+        self._publishers: dict[str, Publisher] = {}
+        self._ends: list[tuple[str, Publisher, bool]] = []
+        self._newest: Sample | None = None
+        self._gathered: list[tuple[int, Any]] = []
+        self._revision, self._patience = -1, 0.0
+        self._wanted: list[tuple[str, Publisher, bool]] = []
+        self._is_read = self._gathers = False
+        self._index, self._time_ns = 0, -1
+        self._flight: Flight | None = None
+        self._departures: Departures | None = None
+        # what a kind does not override is not called at every sample
+        self._is_choosy, self._is_reticent = self._overrides("accepts"), self._overrides("tells")
+        self._evolves = self._overrides("evolve")
+
+    def _overrides(self, method: str) -> bool:
+        return getattr(type(self), method) is not getattr(Sampler, method)
+
+    # ------------------------------------------------------------------ what a kind says
+
+    @abc.abstractmethod
+    def measure(self, model: Any, data: Any) -> Any:
+        """The reading without noise, of data with everything computed; arrays in it are never written to again."""
+
+    def capture(self, model: Any, data: Any) -> Any:
+        """What must be taken from the data at once; `finish` makes the reading of it. As a rule that is the reading."""
+        return self.measure(model, data)
+
+    def finish(self, raw: Any) -> Any:
+        """The reading without noise, of what was captured."""
+        return raw
+
+    def perturb(self, reading: Any, index: int) -> Any:
+        """The reading with the noise of a sample; the same object where there is none."""
+        return reading
+
+    def evolve(self, index: int, dt: float) -> None:
+        """Moves noise that has a memory on by `dt` [s] (0 at the first sample), read or not."""
+        for noise in self._noises:
+            if noise.wanders:
+                noise.evolve(index, dt)
+
+    def restart(self) -> None:
+        """Back at t = 0: draws what is drawn once."""
+        for noise in self._noises:
+            noise.restart()
+
+    def memory(self) -> Any:
+        """What the kind itself remembers from sample to sample, as values of its own."""
+        return tuple(noise.memory() for noise in self._noises)
+
+    def remember(self, memory: Any) -> None:
+        """Takes back what `memory` gave."""
+        for noise, state in zip(self._noises, memory, strict=True):
+            noise.remember(state)
+
+    def accepts(self, tick: int) -> bool:
+        """Whether a due time gives a sample."""
+        return True
+
+    def tells(self, product: str, raw: Any) -> bool:
+        """Whether what was captured is published as `product`; `latest` and `truth` show it either way."""
+        return True
+
+    # ------------------------------------------------------------------ what the simulation calls
+
+    def timetable(self) -> Timetable | None:
+        """When `sample` is to be called, at the rate of the moment; None is every step."""
+        grid = self._times.grid(self.update_rate)
+        if self._flight is None or grid is None:
+            self._departures = None
+            return grid
+        self._departures = Departures(grid, self._flight, self)
+        return self._departures
+
+    def sample(self, tick: int) -> None:
+        """The due tick: measures and publishes where somebody reads, else keeps the physics state."""
+        if self._flight is not None and not self._receive(self._flight, tick):
+            return
+        if self._is_choosy and not self.accepts(tick):
+            return
+        sim = self.sim
+        if self._revision != sim.bus.revision:
+            self._look_who_reads()
+        if self._gathers:
+            self._gathered.append((tick, self.capture(sim.mj_model, self._data_now())))
+            if len(self._gathered) >= _MOST_ROWS:
+                self._catch_up()
+            return
+        sample, wanted = self._begin(tick), self._wanted
+        if self._is_read:
+            sample.raw = self.capture(sim.mj_model, self._data_now())
+            if self._is_reticent:
+                self._choose(sample)
+        else:
+            sample.held = sim.hold_state()
+        if self._flight is not None:
+            self._flight.samples.append((self._flight.arrival(tick, sample.index), sample))
+            self._deliver(self._flight, tick)
+            return
+        self._sample = sample
+        if wanted:
+            self._publish(sample, wanted)
+
+    def reset(self) -> None:
+        """Back at t = 0."""
+        self._catch_up()
+        self._drop()
+        self._index, self._time_ns = 0, -1
+        self.restart()
+
+    def get_state(self) -> Any:
+        self._catch_up()
+        # a sample is only ever completed, never changed, so it may be shared
+        flight = tuple(self._flight.samples) if self._flight is not None else ()
+        return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory()
+
+    def set_state(self, state: Any) -> None:
+        self._catch_up()
+        self._index, self._time_ns, self._sample, flight, rate, memory = state
+        if self._flight is not None:
+            self._flight.samples.clear()
+            self._flight.samples.extend(flight)
+        self._take_rate(rate)
+        self.remember(memory)
+
+    # ------------------------------------------------------------------ within
+
+    @property
+    def _sample(self) -> Sample | None:
+        """The newest sample that has arrived."""
+        if self._gathered:
+            self._catch_up()
+        return self._newest
+
+    @_sample.setter
+    def _sample(self, sample: Sample | None) -> None:
+        self._newest = sample
+
+    def _begin(self, tick: int) -> Sample:
+        """The next sample; noise that wanders moves on to it."""
+        time_ns = self.sim.clock.time_ns(tick)
+        self._index = index = self._index + 1
+        if self._evolves:
+            self.evolve(index, (time_ns - self._time_ns) * 1e-9 if self._time_ns >= 0 else 0.0)
+        self._time_ns = time_ns
+        sample = Sample(index, time_ns)
+        if self._wandering:
+            sample.drifts = tuple([noise.state for noise in self._wandering])
+        return sample
+
+    def _data_now(self) -> Any:
+        """The engine's data with what `measure` reads computed."""
+        if self.needs_acceleration or self.reads_contacts:
+            return self.sim.fresh_acceleration()
+        return self.sim.fresh_data()
+
+    def _look_who_reads(self) -> None:
+        """After a change of that: what is wanted, and whether captures may be gathered."""
+        self._catch_up()
+        self._revision = self.sim.bus.revision
+        self._wanted = [end for end in self._ends if end[1].wanted]
+        self._is_read = any(needs_reading for _, _, needs_reading in self._wanted)
+        patience = [publisher.patience for _, publisher, _ in self._wanted]
+        is_plain = self._flight is None and not (self._is_choosy or self._is_reticent)
+        self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
+        self._patience = max(patience, default=0.0)
+
+    def _catch_up(self) -> None:
+        """Makes samples of what was gathered; what nobody will look at is not published."""
+        if not self._gathered:
+            return
+        rows, self._gathered = self._gathered, []
+        unseen = len(rows) - self._patience
+        for number, (tick, raw) in enumerate(rows):
+            sample = self._newest = self._begin(tick)
+            sample.raw = raw
+            if number >= unseen:
+                self._publish(sample, self._wanted)
+
+    def _take_rate(self, rate: float) -> None:
+        self.update_rate = rate
+        for noise in self._noises:
+            noise.set_interval(self._times.nominal_interval(rate))
+
+    def _kept(self) -> Iterator[Sample]:
+        """Every sample that may still be looked at."""
+        if self._sample is not None:
+            yield self._sample
+        if self._flight is not None:
+            for _, sample in self._flight.samples:
+                yield sample
+
+    def _drop(self) -> None:
+        """Forgets them all."""
+        self._sample = None
+        if self._flight is not None:
+            self._flight.samples.clear()
+
+    def _receive(self, flight: Flight, tick: int) -> bool:
+        """Delivers what has arrived; whether a sample is due as well."""
+        self._deliver(flight, tick)
+        return self._departures is None or self._departures.is_sample(tick)
+
+    def _deliver(self, flight: Flight, tick: int) -> None:
+        for sample in flight.arrived(tick):
+            self._sample = sample
+            wanted = [end for end in self._ends if end[1].wanted]
+            if any(needs_reading for _, _, needs_reading in wanted):
+                self._take(sample)
+            self._publish(sample, wanted)
+
+    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> None:
+        for product, publisher, _ in wanted:
+            if product in sample.untold:
+                continue
+            if self.is_deferred and not publisher.is_live:
+                publisher.publish_later(partial(self._message, sample, product))
+            else:
+                publisher.publish(self._message(sample, product))
+
+    def _choose(self, sample: Sample) -> None:
+        """What of a captured sample is published."""
+        sample.untold = tuple(product for product in self._topics if not self.tells(product, sample.raw))
+
+    def _take(self, sample: Sample) -> None:
+        """Captures what was held, once."""
+        if sample.held is not None:
+            sample.raw = self.capture(sample.held.model, self.sim.data_of(sample.held))
+            sample.held = None
+            if self._is_reticent:
+                self._choose(sample)
+
+    def _settle(self, sample: Sample) -> None:
+        """Measures what was kept, once."""
+        if sample.held is not None:
+            self._take(sample)
+        if sample.raw is not None:
+            sample.truth = truth = self.finish(sample.raw)
+            if sample.drifts:
+                sample.noisy = self._at(sample, self.perturb, truth, sample.index)
+            else:
+                sample.noisy = self.perturb(truth, sample.index)
+            sample.raw = None
+
+    def _message(self, sample: Sample, product: str) -> Any:
+        message = sample.messages.get(product)
+        if message is None:
+            if self._products[product].needs_reading:
+                self._settle(sample)
+            message = sample.messages[product] = self._make(sample, product, sample.noisy)
+        return message
+
+    def _make(self, sample: Sample, product: str, reading: Any) -> Any:
+        make = self._products[product].make
+        return self._at(sample, make, reading, sample.time_ns) if sample.drifts else make(reading, sample.time_ns)
+
+    def _at(self, sample: Sample, make: Callable[[Any, int], Any], *what: Any) -> Any:
+        """`make(*what)` with the noise as it was at a sample."""
+        now = [noise.state for noise in self._wandering]
+        for noise, state in zip(self._wandering, sample.drifts, strict=True):
+            noise.state = state
+        try:
+            return make(*what)
+        finally:
+            for noise, state in zip(self._wandering, now, strict=True):
+                noise.state = state

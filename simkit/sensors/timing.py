@@ -1,0 +1,159 @@
+"""When a sensor samples, and when its readings arrive."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.runtime.clock import Clock, Timing, exact, exact_rate
+
+if TYPE_CHECKING:
+    from simkit.runtime.random import RandomStreams
+    from simkit.runtime.scheduler import Timetable
+
+LONGEST_LATENCY = 3600.0  # [s]; all readings on their way are kept
+_MILLISECOND = Fraction(1, 1000)
+
+
+@dataclass(frozen=True, slots=True)
+class TimingOptions:
+    """What all sensors read of their timing; all times in s.
+
+    Attributes:
+        phase: shift of the grid of samples.
+        jitter: greatest deviation of a sample from its grid, early or late.
+        latency: from a sample to its arrival.
+        latency_jitter: greatest deviation from that.
+        set_rate_topic: where a `std_msgs/msg/Float64` changes the rate [Hz]; empty for none.
+    """
+
+    phase: float = 0.0
+    jitter: float = 0.0
+    latency: float = 0.0
+    latency_jitter: float = 0.0
+    set_rate_topic: str = ""
+
+
+def read_timing(params: Params, rate: float) -> TimingOptions:
+    """The elements of a `<sensor>` at `rate` [Hz] that say when it samples and when its readings arrive."""
+    jitter = params.number("jitter", 0.0, minimum=0)
+    latency = params.number("latency", 0.0, minimum=0, maximum=LONGEST_LATENCY)
+    latency_jitter = params.number("latency_jitter", 0.0, minimum=0)
+    if jitter > 0 and rate <= 0:
+        message = "<jitter> has no effect on a sensor that samples at every step"
+        params.diagnostics.warning("SK-SENSOR-023", message, params.block("jitter").where, "give it an <update_rate>")
+        jitter = 0.0
+    elif jitter > 0 and 2 * exact(jitter) * exact_rate(rate) >= 1:
+        message = f"<jitter>{jitter:g}</jitter>: allowed is less than half a period, {0.5 / rate:g} s at {rate:g} Hz"
+        params.block("jitter").error("SK-SENSOR-022", message)
+        jitter = 0.0
+    if latency_jitter > latency:
+        message = (
+            f"<latency_jitter>{latency_jitter:g}</latency_jitter>: allowed is the <latency> at most, {latency:g} s"
+        )
+        params.block("latency_jitter").error("SK-SENSOR-022", message)
+        latency_jitter = latency
+    phase = params.number("phase", 0.0, minimum=0)
+    return TimingOptions(phase, jitter, latency, latency_jitter, params.text("set_rate_topic", ""))
+
+
+class SampleTimes:
+    """The time of each sample of a sensor, whatever its rate is at the moment.
+
+    Args:
+        options: of the file.
+        clock: the simulation's.
+        streams, scoped: for the jitter, which is drawn by the number of the grid instant.
+        in_milliseconds: cuts the period to whole milliseconds, as Gazebo does.
+    """
+
+    def __init__(
+        self, options: TimingOptions, clock: Clock, streams: RandomStreams, scoped: str, in_milliseconds: bool
+    ) -> None:
+        self._clock, self._in_milliseconds = clock, in_milliseconds
+        self._phase, self._spread = exact(options.phase), exact(options.jitter)
+        self._jitter = None
+        if options.jitter > 0:
+            stream = streams.stream(scoped, "jitter")
+            self._jitter = lambda k: float(stream.uniform(k)[0])
+
+    def period(self, rate: float) -> Fraction:
+        """Of a rate [Hz] on the grid, in s; 0 is every step."""
+        period = 1 / exact_rate(rate) if rate > 0 else Fraction(0)
+        return period // _MILLISECOND * _MILLISECOND if self._in_milliseconds else period
+
+    def is_too_fast(self, rate: float) -> bool:
+        """Whether there are fewer steps than samples asked for."""
+        return rate > 0 and exact_rate(rate) * exact(self._clock.timestep) > 1
+
+    def nominal_interval(self, rate: float) -> float:
+        """Mean time [s] between two samples."""
+        return max(float(self.period(rate)), self._clock.timestep)
+
+    def grid(self, rate: float) -> Timetable | None:
+        """The ticks of a rate [Hz]; None for every step."""
+        return self._clock.samples(Timing(self.period(rate), self._phase, self._spread, self._jitter))
+
+
+class Flight:
+    """Readings on their way: measured, and not delivered yet, in the order of their arrival.
+
+    Args:
+        options, clock, streams, scoped: as of `SampleTimes`; the jitter is drawn by the sample's index.
+    """
+
+    def __init__(self, options: TimingOptions, clock: Clock, streams: RandomStreams, scoped: str) -> None:
+        self._clock, self._latency = clock, exact(options.latency)
+        self._spread = options.latency_jitter
+        self._stream = streams.stream(scoped, "latency") if options.latency_jitter > 0 else None
+        self._steps = clock.ticks_to_cover(self._latency)
+        self.samples: deque[tuple[int, Any]] = deque()
+
+    def arrival(self, tick: int, index: int) -> int:
+        """The tick at which what is measured at `tick` as sample `index` arrives; never before an older one."""
+        steps = self._steps
+        if self._stream is not None:
+            late = float(self._latency) + self._spread * float(self._stream.uniform(index)[0])
+            steps = max(0, math.ceil(late / self._clock.timestep))
+        return max(tick + steps, self.samples[-1][0]) if self.samples else tick + steps
+
+    def arrived(self, tick: int) -> list[Any]:
+        """Takes out what has arrived by `tick`."""
+        found = []
+        while self.samples and self.samples[0][0] <= tick:
+            found.append(self.samples.popleft()[1])
+        return found
+
+
+class Departures:
+    """When a sensor with latency has something to do: a sample is due, or one arrives.
+
+    Args:
+        grid: of the samples; None for every step.
+        sensor: whose readings are on their way; what is measured next is its sample `_index` + 1.
+    """
+
+    def __init__(self, grid: Timetable, flight: Flight, sensor: Any) -> None:
+        self._grid, self._flight, self._sensor = grid, flight, sensor
+
+    def is_sample(self, tick: int) -> bool:
+        """Whether a sample is due at a tick."""
+        return self._grid.next(tick - 1) == tick
+
+    def next(self, tick: int) -> int:
+        """First due tick after a tick."""
+        found = self._grid.next(tick)
+        for arrival, _ in self._flight.samples:
+            if arrival > tick:
+                found = min(found, arrival)
+                break
+        if tick > 0 and self.is_sample(tick):
+            # about to be measured, so not on its way yet
+            arrival = self._flight.arrival(tick, self._sensor._index + 1)
+            if arrival > tick:
+                found = min(found, arrival)
+        return found
