@@ -65,15 +65,34 @@ def spot_of(light: SceneLight) -> tuple[float, float]:
     Gazebo's light falls from full at half the inner angle to none at half the outer one, as a straight line to the
     power of `falloff`; OpenGL's is the cosine to the power of `exponent`. They agree half-way between the two angles.
     """
-    inner, outer, falloff = light.spot
-    if outer <= 0.0:
-        inner, outer = _SPOT
-    inner = min(max(inner, 0.0), outer)
+    inner, outer, falloff = _cone(light)
     cutoff = min(90.0, max(1.0, math.degrees(outer) / 2))
     middle = (inner + outer) / 4
     share = math.cos(min(middle, math.radians(89.0)))
     exponent = falloff * math.log(0.5) / math.log(share) if share < 1.0 - 1e-9 else 0.0
     return cutoff, min(128.0, max(0.0, exponent))
+
+
+def spot_share(light: SceneLight, angle: float) -> float:
+    """Share of a spot's light at an angle [rad] from its axis, as Gazebo draws it.
+
+    All within half the inner angle, none beyond half the outer one, between them a straight line to the power of
+    `falloff`.
+    """
+    inner, outer, falloff = _cone(light)
+    if angle <= inner / 2:
+        return 1.0
+    if angle >= outer / 2:
+        return 0.0
+    return float(((outer / 2 - angle) / (outer / 2 - inner / 2)) ** max(0.0, falloff))
+
+
+def _cone(light: SceneLight) -> tuple[float, float, float]:
+    """Inner and outer angle [rad], in order, and falloff of a spot."""
+    inner, outer, falloff = light.spot
+    if outer <= 0.0:
+        inner, outer = _SPOT
+    return min(max(inner, 0.0), outer), outer, falloff
 
 
 def refine_for_lamps(model: mujoco.MjModel) -> None:

@@ -97,13 +97,21 @@ class Entities:
         return [*self.tables["joint"].values(), *self.tables["light"].values()]
 
 
-def place_light(model: Any, light: Light, scoped: str, pose_in_body: Pose, touch: Any) -> None:
-    """Puts the drawn light where the handle says; one far away is drawn from nearer."""
-    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_LIGHT, scoped)
+def place_light(model: Any, light: Light, offset: Pose, touch: Any) -> None:
+    """Puts the drawn light where the handle says, and lets it shine or not; one far away is drawn from nearer.
+
+    Args:
+        offset: of the link that carries it in the engine's body.
+    """
+    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_LIGHT, light.scoped)
     if index < 0:
         return
-    touch("light_pos")[index] = drawn_position(light.scene, pose_in_body.position)
-    touch("light_dir")[index] = pose_in_body.rotate(light.scene.direction)
+    state = light.state
+    pose = offset @ state.pose
+    touch("light_pos")[index] = drawn_position(light.scene, pose.position)
+    touch("light_dir")[index] = pose.rotate(light.scene.direction)
+    if bool(model.light_active[index]) != state.on:
+        touch("light_active")[index] = state.on
 
 
 def carry_fields(old: Any, new: Any, fields: Mapping[str, Any]) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from simkit.pose import Pose, Vector
@@ -12,26 +14,69 @@ if TYPE_CHECKING:
     from simkit.scene import SceneLight
 
 
+@dataclass(frozen=True, slots=True)
+class LightState:
+    """How a light stands and shines at one time.
+
+    Attributes:
+        pose: in the world, or in the frame of the link that carries it.
+        on: whether it shines.
+        irradiance: of a surface that faces it [W/m²]; None where nothing says it.
+    """
+
+    pose: Pose
+    on: bool = True
+    irradiance: float | None = None
+
+
+Course = Callable[[int], LightState]
+"""How a light stands and shines at a simulated time [ns]."""
+
+
+@dataclass(frozen=True, slots=True)
+class LightMotion:
+    """What makes a light stand where it stands: a course of the time, or else a state that stays."""
+
+    state: LightState
+    course: Course | None = None
+
+    def at(self, time_ns: int) -> LightState:
+        """How the light stands and shines at a time [ns]."""
+        return self.state if self.course is None else self.course(time_ns)
+
+
 class Light(Handle):
-    """A light of the world or on a link."""
+    """A light of the world or on a link.
+
+    Attributes:
+        motion: what makes it stand where it stands; another object whenever that changes.
+    """
 
     def __init__(self, sim: Simulation, scene: SceneLight) -> None:
         super().__init__(sim, scene.name, scene.scoped)
         self.scene = scene
-        self._pose = scene.pose_world
+        pose = scene.pose_world
         if scene.link:
-            self._pose = sim.scene_link(scene.link).pose_world.inverse() @ scene.pose_world
+            pose = sim.scene_link(scene.link).pose_world.inverse() @ pose
+        self.motion = LightMotion(LightState(pose, scene.on, scene.irradiance))
+
+    @property
+    def state(self) -> LightState:
+        """How it stands and shines now."""
+        return self.motion.at(self._sim.time_ns)
 
     @property
     def pose(self) -> Pose:
         """Pose in the world."""
         self._check()
-        return self._sim.link(self.scene.link).pose @ self._pose if self.scene.link else self._pose
+        pose = self.state.pose
+        return self._sim.link(self.scene.link).pose @ pose if self.scene.link else pose
 
     def set_pose(self, pose: Pose) -> None:
-        """Moves the light; its direction turns with it."""
+        """Moves the light; its direction turns with it. What moved it before (a sun's course) has no say any more."""
         self._check()
-        self._pose = self._sim.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
+        own = self._sim.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
+        self.motion = LightMotion(replace(self.state, pose=own))
         self._sim.place_light(self)
 
     @property
@@ -39,9 +84,25 @@ class Light(Handle):
         """Unit vector along which it shines, world frame, shape (3,)."""
         return self.pose.rotate(self.scene.direction)
 
-    def get_state(self) -> Pose:
-        return self._pose
+    @property
+    def on(self) -> bool:
+        """Whether it shines."""
+        return self.state.on
 
-    def set_state(self, state: Pose) -> None:
-        self._pose = state
+    @property
+    def irradiance(self) -> float | None:
+        """Of a surface that faces it [W/m²], of a lamp at 1 m; None where nothing says it."""
+        return self.state.irradiance
+
+    def follow(self, course: Course) -> None:
+        """Lets `course(time_ns)`, which may depend on nothing but the time, say how it stands and shines."""
+        self._check()
+        self.motion = LightMotion(self.state, course)
+        self._sim.place_light(self)
+
+    def get_state(self) -> LightMotion:
+        return self.motion
+
+    def set_state(self, state: LightMotion) -> None:
+        self.motion = state
         self._sim.place_light(self)

@@ -85,6 +85,9 @@ class Population:
             sensor.build(builder)
         compiled = builder.recompile(old.compiled, self._sim.mj_data)
         self.switch(Structure(builder, compiled, old.models, old.movable | {name}, old.parts))
+        for light in self._sim.lights.values():
+            if light.scene.link.startswith(f"{name}::"):
+                self._sim.place_light(light)  # it was drawn in the world's body, and is in its link's own now
         return True
 
     def add_weld(self, name: str, parent_link: str, child_link: str) -> None:

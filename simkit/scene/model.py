@@ -326,6 +326,7 @@ class SceneLight:
         direction_world: the same in the world at load time.
         attenuation: range [m], constant, linear [1/m], quadratic [1/m²].
         spot: inner angle [rad], outer angle [rad], falloff.
+        irradiance: of a surface that faces it [W/m²], of a lamp at 1 m; None where the file says nothing.
     """
 
     name: str
@@ -343,3 +344,4 @@ class SceneLight:
     cast_shadows: bool = False
     on: bool = True
     where: Where = field(default=NOWHERE)
+    irradiance: float | None = None

@@ -50,7 +50,7 @@ class SphericalCoordinates:
 
 @dataclass(frozen=True, slots=True)
 class Atmosphere:
-    """The air at the height of the origin, with a constant lapse rate.
+    """The air at sea level, with a constant lapse rate.
 
     Attributes:
         temperature: [K].

@@ -150,3 +150,91 @@ def test_an_unknown_link_is_an_error() -> None:
 def test_a_noise_whose_variance_leaves_the_numbers_is_refused() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         opened(gaussian_noise=1e308)
+
+
+# ------------------------------------------------------------------ beyond the course
+
+TOWER = (
+    "<model name='tower'><static>true</static><pose>15 20 26 0 0 0</pose><link name='l'><visual name='v'>"
+    "<geometry><box><size>4 4 4</size></box></geometry></visual></link></model>"
+)
+
+
+def newest(sim: simkit.Simulation, *names: str) -> list[Any]:
+    subscriptions = [sim.subscribe(f"/sunloin_imu/{name}") for name in names]
+    sim.run(0.01)
+    return [s.latest.data for s in subscriptions]
+
+
+def test_without_elements_of_our_own_there_are_no_topics_of_our_own() -> None:
+    with opened() as sim:
+        assert [t for t in sim.topics() if "sunloin" in t] == ["/sunloin_imu"]
+
+
+@pytest.mark.parametrize("prefix", ["", "simkit:"])
+def test_a_shadow_on_the_way_to_the_lights_position_makes_the_reading_invalid(prefix: str) -> None:
+    values = {f"{prefix}shadow": "true", "gaussian_noise": 0.01}
+    with simkit.load(world(GROUND, SUN, TOWER, station(**values))) as sim:
+        assert newest(sim, "valid", "shadow") == [False, "tower::l::v"]
+        message = read(sim)[-1]
+        assert message.orientation_covariance[0] == -1 and quaternion(message) == (1, 0, 0, 0)
+        sim.remove("tower")
+        assert newest(sim, "valid", "shadow") == [True, ""]
+        assert read(sim)[-1].orientation_covariance[0] == pytest.approx(1e-4)
+
+
+def test_what_is_behind_the_lights_position_casts_no_shadow_unless_its_rays_are_parallel() -> None:
+    near = SUN.replace("30 40 50", "3 4 6")
+    for towards, valid in (("position", True), ("direction", False)):
+        down = near.replace("0 0 -1", "-30 -40 -50")
+        values = {"shadow": "true", "towards": towards}
+        with simkit.load(world(GROUND, down, TOWER, station(**values))) as sim:
+            assert newest(sim, "valid") == [valid]
+
+
+def test_parallel_rays_give_the_same_direction_wherever_the_light_stands() -> None:
+    values = {"towards": "direction", "frame_name": "head"}
+    with opened(pose="1 2 3 0.3 -0.2 0.7", **values) as sim:
+        message = read(sim)[-1]
+        up = sim.link("station::head").pose.inverse().rotate((0, 0, 1))
+    np.testing.assert_allclose(quat_rotate(quaternion(message), (1, 0, 0)), up, atol=1e-12)
+
+
+def test_irradiance_and_power_come_on_topics_below_its_own() -> None:
+    panel = "<area>2</area><efficiency>0.25</efficiency>"
+    with opened(irradiance=400, panel=panel) as sim:
+        irradiance, power = newest(sim, "irradiance", "power")
+        assert "/sunloin_imu/valid" not in sim.topics()
+    cosine = 49 / math.sqrt(30**2 + 40**2 + 49**2)
+    assert irradiance == pytest.approx(400 * cosine)
+    assert power == pytest.approx(400 * cosine * 2 * 0.25)
+
+
+def test_its_topics_go_with_a_remapping() -> None:
+    ros = "<remapping>sunloin_imu:=compass</remapping>"
+    with opened(ros=ros, irradiance="light") as sim:
+        assert {t for t in sim.topics() if "compass" in t} == {"/compass", "/compass/irradiance"}
+
+
+def test_angular_noise_turns_the_direction_about_random_axes() -> None:
+    sigma, n = 0.01, 2000
+    with opened(angular_noise=sigma, rpy_offset="0.2 0.4 0.6") as noisy, opened(rpy_offset="0.2 0.4 0.6") as clean:
+        messages, true = read(noisy, n * 0.001), quat_rotate(quaternion(read(clean)[-1]), (1, 0, 0))
+    found = np.array([quat_rotate(quaternion(m), (1, 0, 0)) for m in messages])
+    turns = np.cross(true, found)
+    squares = np.arcsin(np.linalg.norm(turns, axis=1)) ** 2
+    assert squares.mean() == pytest.approx(2 * sigma**2, abs=4 * 2 * sigma**2 / math.sqrt(n))
+    told = np.mean([np.asarray(m.orientation_covariance).reshape(3, 3) for m in messages], axis=0)
+    np.testing.assert_allclose(np.cov(turns.T), told, atol=4 * sigma**2 * math.sqrt(2 / n))
+
+
+def test_it_goes_on_after_a_reset_and_a_restore_as_it_did() -> None:
+    values = {"angular_noise": 0.01, "shadow": "true", "irradiance": 500}
+    with simkit.load(world(GROUND, SUN, TOWER, station(**values))) as sim:
+        sim.light("sun").set_pose(Pose((0, 100, 1)))
+        before = sim.snapshot()
+        first = [quaternion(m) for m in read(sim)]
+        sim.restore(before)
+        assert [quaternion(m) for m in read(sim)] == first
+        sim.reset()
+        assert newest(sim, "shadow") == ["tower::l::v"]
