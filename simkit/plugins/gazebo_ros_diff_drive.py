@@ -28,7 +28,14 @@ from simkit.plugins.odometry import (
     rolling_twist,
     transforms,
 )
-from simkit.pose import Pose
+from simkit.plugins.odometry_noise import (
+    ErringOdometry,
+    FollowedMotion,
+    OdometryNoise,
+    displaced,
+    read_odometry_noise,
+)
+from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -50,7 +57,7 @@ class Pair:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """The plugin's parameters; rates Hz, torque N·m, acceleration m/s² at the rim (0: no limit)."""
+    """The plugin's parameters; rates Hz, torque N·m, acceleration m/s² at the rim (0: no limit); `noise` is our own."""
 
     update_rate: float
     pairs: tuple[Pair, ...]
@@ -67,6 +74,7 @@ class Options:
     publish_wheel_joint_state: bool
     publish_ground_truth: bool
     covariance: tuple[float, float, float]
+    noise: OdometryNoise | None = None
 
 
 def read_options(params: Params) -> Options:
@@ -94,6 +102,7 @@ def read_options(params: Params) -> Options:
         publish_wheel_joint_state=False,
         publish_ground_truth=params.boolean("publish_ground_truth", False),
         covariance=_read_covariance(params),
+        noise=read_odometry_noise(params),
     )
 
 
@@ -121,6 +130,7 @@ def _read_ros_1(params: Params) -> Options:
         publish_wheel_joint_state=params.boolean("publishWheelJointState", False),
         publish_ground_truth=params.boolean("publish_ground_truth", False),
         covariance=_read_covariance(params),
+        noise=read_odometry_noise(params),
     )
 
 
@@ -153,7 +163,8 @@ class GazeboRosDiffDrive(ModelPlugin):
     """Drives pairs of wheels from `cmd_vel`, and says where the robot went on `odom` and `/tf`.
 
     The last command holds until the next. With `<publish_ground_truth>` (simkit's own) the model's true pose in the
-    world goes out on `ground_truth/odom`, at the same instants as the odometry.
+    world goes out on `ground_truth/odom`, at the same instants as the odometry. With `<odometry_noise>` (simkit's own)
+    the odometry errs from either source, and tells the covariance that its wheels' errors add up to.
     """
 
     filenames = ("libgazebo_ros_diff_drive.so",)
@@ -183,6 +194,8 @@ class GazeboRosDiffDrive(ModelPlugin):
         self._reckoning = DeadReckoning()
         self._angles = self._first_angles()
         self._covariance = planar_covariance(*options.covariance)
+        self._erring, self._followed = self._start_erring()
+        self._last_read_ns = self.sim.time_ns
         self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
         self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
         self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_odom_tf or options.publish_wheel_tf else None
@@ -226,7 +239,9 @@ class GazeboRosDiffDrive(ModelPlugin):
     def after_step(self) -> None:
         """Odometry, transforms and whatever else was asked for."""
         options, now = self.options, self.sim.time_ns
-        if options.from_encoders:
+        if self._erring is not None:
+            self._err(self._erring)
+        elif options.from_encoders:
             self._advance()
         if self._truth is not None and self._truth.wanted:
             self._truth.publish(odometry_message(now, "world", options.base_frame, *self._true.state()))
@@ -236,7 +251,7 @@ class GazeboRosDiffDrive(ModelPlugin):
             pose, twist = self._measured()
             if odom:
                 frames = options.odometry_frame, options.base_frame
-                odom.publish_later(partial(odometry_message, now, *frames, pose, twist, self._covariance))
+                odom.publish_later(partial(odometry_message, now, *frames, pose, twist, *self._covariances()))
             if tf:
                 tf.publish_later(partial(transforms, now, *self._transforms(pose)))
         if self._states is not None and self._states.wanted:
@@ -244,10 +259,41 @@ class GazeboRosDiffDrive(ModelPlugin):
 
     def _measured(self) -> tuple[Pose, BodyTwist]:
         """Pose and twist from the chosen source; the twist in the robot's own axes."""
+        if self._erring is not None:
+            reckoned, twist = self._erring.reckoning, self._erring.twist
+            return (displaced(self._true.state()[0], reckoned) if self._followed is not None else reckoned.pose), twist
         if not self.options.from_encoders:
             return self._true.state()
         pair = self.options.pairs[0]
         return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
+
+    def _start_erring(self) -> tuple[ErringOdometry | None, FollowedMotion | None]:
+        """The odometry that errs, and the wheels that it is told of where its source is the world."""
+        options, followed = self.options, None
+        if options.noise is None:
+            return None, None
+        pair, angles, start = options.pairs[0], self._angles, None
+        if not options.from_encoders:
+            followed = FollowedMotion(self._true.state()[0], pair.radius, pair.separation)
+            angles, start = followed.angles, followed.start
+        stream = self.random("odometry_noise", 2)
+        return ErringOdometry(options.noise, pair.radius, pair.separation, stream, angles, start), followed
+
+    def _err(self, erring: ErringOdometry) -> None:
+        now = self.sim.time_ns
+        elapsed, self._last_read_ns = (now - self._last_read_ns) * 1e-9, now
+        if self._followed is None:
+            erring.advance(*self._first_angles(), elapsed)
+        else:
+            left, right, sideways = self._followed.follow(self._true.state()[0])
+            erring.advance(left, right, elapsed, sideways)
+
+    def _covariances(self) -> tuple[Vector, ...]:
+        """Those that the wheels' errors add up to, or the file's where they have no random ones."""
+        erring = self._erring
+        if erring is None or not erring.noise.wheel_variance:
+            return (self._covariance,)
+        return erring.messages_covariance()
 
     def _advance(self) -> None:
         pair = self.options.pairs[0]

@@ -22,6 +22,7 @@ from simkit.plugins.odometry import (
     rolling_twist,
     transforms,
 )
+from simkit.plugins.odometry_noise import ErringOdometry, read_odometry_noise
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -82,7 +83,8 @@ class DiffDrive(ModelPlugin):
     """Drives the wheels from `/model/<model>/cmd_vel`; odometry by the wheels' turns on `/model/<model>/odometry`.
 
     Odometry starts at zero, in the point between the wheels; its twist is that of the first pair of wheels now.
-    With `<publish_ground_truth>` (simkit's own) the true pose goes out on `/model/<model>/ground_truth/odom`.
+    With `<publish_ground_truth>` (simkit's own) the true pose goes out on `/model/<model>/ground_truth/odom`, and with
+    `<odometry_noise>` (simkit's own) the odometry errs and tells its covariance.
     """
 
     filenames = ("gz-sim-diff-drive-system",)
@@ -122,6 +124,12 @@ class DiffDrive(ModelPlugin):
         self._enabled = True
         self._reckoning = DeadReckoning()
         self._angles = self._read_angles()
+        noise = read_odometry_noise(params)
+        self._erring: ErringOdometry | None = None
+        if noise is not None:
+            stream = self.random("odometry_noise", 2)
+            self._erring = ErringOdometry(noise, self._radius, self._separation, stream, self._angles)
+        self._last_ns = self.sim.time_ns
         self.listen(valid_topic(params.text("topic", f"/model/{model}/cmd_vel")), COMMAND_TYPES, self._on_command)
         self.listen(valid_topic(f"/model/{model}/enable"), "std_msgs/msg/Bool", self._on_enable)
         self._odom = self.advertise(valid_topic(params.text("odom_topic", f"/model/{model}/odometry")), ODOMETRY)
@@ -167,10 +175,13 @@ class DiffDrive(ModelPlugin):
         """Odometry and its transform."""
         now = self.sim.time_ns
         self._advance()
-        pose = self._reckoning.pose
+        erring = self._erring
+        pose = (erring.reckoning if erring is not None else self._reckoning).pose
         if self._odom.wanted:
-            twist = rolling_twist(self._pair, self._radius, self._separation)
-            self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, twist))
+            told: tuple[Any, ...] = (rolling_twist(self._pair, self._radius, self._separation),)
+            if erring is not None:
+                told = (erring.twist, *(erring.messages_covariance() if erring.noise.wheel_variance else ()))
+            self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, *told))
         if self._tf.wanted:
             self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))
         if self._truth is not None and self._truth.wanted:
@@ -178,6 +189,9 @@ class DiffDrive(ModelPlugin):
 
     def _advance(self) -> None:
         angles = self._read_angles()
+        if self._erring is not None:
+            elapsed, self._last_ns = (self.sim.time_ns - self._last_ns) * 1e-9, self.sim.time_ns
+            self._erring.advance(*angles, elapsed)
         left, right = ((new - old) * self._radius for new, old in zip(angles, self._angles, strict=True))
         self._angles = angles
         self._reckoning.advance(left, right, self._separation)

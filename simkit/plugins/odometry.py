@@ -30,19 +30,21 @@ class DeadReckoning:
     y: float = 0.0
     yaw: float = 0.0
 
-    def advance(self, left: float, right: float, separation: float) -> None:
+    def advance(self, left: float, right: float, separation: float, sideways: float = 0.0) -> None:
         """Rolls on along an arc of constant curvature.
 
         Args:
             left, right: distance rolled by each wheel [m].
             separation: between the wheels [m].
+            sideways: distance slid to the left [m].
         """
         distance, turn = (left + right) / 2, (right - left) / separation
         half = turn / 2
         # chord of the arc; the series keeps full precision where sin(x)/x would lose it
-        chord = distance * (math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6)
-        self.x += chord * math.cos(self.yaw + half)
-        self.y += chord * math.sin(self.yaw + half)
+        part = math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6
+        cos, sin = math.cos(self.yaw + half) * part, math.sin(self.yaw + half) * part
+        self.x += distance * cos - sideways * sin
+        self.y += distance * sin + sideways * cos
         self.yaw += turn
 
     @property
@@ -87,6 +89,13 @@ class TrueMotion:
         there = model.scene.pose_world.inverse().transform(canonical.scene.pose_world.position)
         self._arm = (-there).tolist()
 
+    def place(self) -> tuple[float, ...]:
+        """World pose of the model's frame as x, y, z, qw, qx, qy, qz: cheap enough for every step."""
+        if self._frame is self._link and (state := self._link.root_state()) is not None:
+            return state
+        pose = self._frame.pose
+        return (*pose.position.tolist(), *pose.quaternion.tolist())
+
     def state(self) -> tuple[Pose, BodyTwist]:
         """World pose of the model's frame, and that frame's velocity in its own axes."""
         pose = self._frame.pose
@@ -109,13 +118,18 @@ def odometry_message(
     pose: Pose,
     twist: BodyTwist,
     covariance: Vector | None = None,
+    twist_covariance: Vector | None = None,
 ) -> Any:
-    """A `nav_msgs/msg/Odometry`: pose of `child` in `frame`, twist in `child`'s axes."""
+    """A `nav_msgs/msg/Odometry`: pose of `child` in `frame`, twist in `child`'s axes.
+
+    Covariances are row-major, shape (36,): zeros without one, and the twist's is the pose's where it has none.
+    """
     types = _message_types()
     point, vector, quaternion = types["Point"], types["Vector3"], types["Quaternion"]
     w, x, y, z = pose.quaternion.tolist()
     # each message its own arrays: who receives one may keep or change it
-    first, second = (np.zeros(36), np.zeros(36)) if covariance is None else (covariance.copy(), covariance.copy())
+    first = np.zeros(36) if covariance is None else covariance.copy()
+    second = first.copy() if twist_covariance is None else twist_covariance.copy()
     place = types["Pose"](point(*pose.position.tolist()), quaternion(x, y, z, w))
     motion = types["Twist"](vector(*map(float, twist.linear)), vector(*map(float, twist.angular)))
     return types["Odometry"](

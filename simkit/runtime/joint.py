@@ -23,6 +23,7 @@ from simkit.runtime.joint_motion import (
     stored_quaternion,
 )
 from simkit.runtime.physics import CONTROL, STALE, VELOCITY
+from simkit.runtime.transmission import transmitted_wrench
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -51,6 +52,7 @@ class Joint(Handle):
         self._ids = [int(j) for j in binding.joint_ids]
         self._qpos = np.array(binding.qpos, dtype=int)
         self._dofs = np.array(binding.dofs, dtype=int)
+        self._plain_dofs = self._dofs.tolist()
         self._is_ball = len(self._dofs) == 3 and len(self._qpos) == 1
         self._is_floating = self.type == "floating"
         self._one_qpos = int(self._qpos[0]) if len(self._qpos) == len(self._dofs) == 1 else -1
@@ -121,13 +123,11 @@ class Joint(Handle):
     def transmitted_wrench(self) -> tuple[Vector, Vector]:
         """Force [N] and torque [N·m] by the parent on the child, at the joint origin, in the joint frame.
 
-        What motors and springs on the joint's own axis give is part of it only as far as constraints carry it.
+        All that passes through the joint, what its motor, spring, damper and friction give along its axes included.
         """
         self._check()
         physics = self._sim.physics
         binding = self._binding
-        # the body below the joint in the engine's tree carries the force; it may be the file's parent
-        sign = -1.0 if binding.is_reversed else 1.0
         body = binding.moved_body
         if not body:
             return np.zeros(3), np.zeros(3)
@@ -138,10 +138,7 @@ class Joint(Handle):
         frame = binding.pose_child
         if child is not None:
             frame = Pose(data.xpos[child.body], data.xquat[child.body]) @ child.offset @ frame
-        com = data.subtree_com[self._sim.mj_model.body_rootid[body]]
-        wrench = sign * data.cfrc_int[body]
-        force = wrench[3:]
-        torque = wrench[:3] + np.cross(com - frame.position, force)
+        force, torque = transmitted_wrench(self._sim.mj_model, data, binding, frame.position)
         back = quat_conjugate(frame.quaternion)
         return quat_rotate(back, force), quat_rotate(back, torque)
 
@@ -241,11 +238,12 @@ class Joint(Handle):
 
     def clamp_velocity(self, _tick: int = 0) -> None:
         """Brings the velocity within its limit."""
-        qvel = self._sim.mj_data.qvel
-        for i, dof in enumerate(self._dofs):
-            limit = self._velocity_limit[min(i, len(self._velocity_limit) - 1)]
-            if abs(qvel[dof]) > limit:
-                qvel[dof] = math.copysign(limit, qvel[dof])
+        # plain numbers: this is asked often, of every joint with a limit
+        qvel, limits = self._sim.physics.data.qvel, self._velocity_limit.tolist()
+        for i, dof in enumerate(self._plain_dofs):
+            velocity, limit = qvel.item(dof), limits[min(i, len(limits) - 1)]
+            if abs(velocity) > limit:
+                qvel[dof] = math.copysign(limit, velocity)
                 self._sim.physics.changed_body(VELOCITY, self._body)
 
     def get_state(self) -> tuple[Vector, Vector]:

@@ -50,6 +50,30 @@ def ball_turn(binding: JointBinding, stored: Vector) -> Vector:
     return -Pose((0.0, 0.0, 0.0), quat_multiply(back, stored)).matrix
 
 
+# ------------------------------------------------------------------ readings of any data
+
+
+def joint_position(binding: JointBinding, data: Any) -> Vector:
+    """Position [rad or m] of a joint that binds its links, one number per degree of freedom; of given data.
+
+    A ball joint's is a rotation vector.
+    """
+    if binding.type == "ball" and binding.qpos:
+        start, turn = binding.qpos[0], np.zeros(3)
+        mujoco.mju_quat2Vel(turn, ball_quaternion(binding, data.qpos[start : start + 4]), 1.0)
+        return turn
+    return np.array(data.qpos[list(binding.qpos)])
+
+
+def joint_velocity(binding: JointBinding, data: Any) -> Vector:
+    """Velocity [rad/s or m/s] of such a joint; a ball joint's is in the child's joint frame."""
+    velocity = np.array(data.qvel[list(binding.dofs)])
+    if binding.type == "ball" and binding.qpos:
+        start = binding.qpos[0]
+        velocity = ball_turn(binding, np.array(data.qpos[start : start + 4])) @ velocity
+    return velocity
+
+
 # ------------------------------------------------------------------ floating joints
 
 

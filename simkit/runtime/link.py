@@ -41,6 +41,11 @@ class Link(Handle):
         pose = Pose(data.xpos[self._body], data.xquat[self._body])
         return pose @ self._offset if self._offset is not None else pose
 
+    def root_state(self) -> tuple[float, ...] | None:
+        """Of a link that moves freely its pose as x, y, z, qw, qx, qy, qz, of which the engine need compute nothing."""
+        start = self._binding.root_joint_qpos
+        return tuple(self._sim.mj_data.qpos[start : start + 7].tolist()) if start >= 0 else None
+
     def _velocity(self) -> Vector:
         """Angular and linear velocity of the link origin in the world, shape (6,)."""
         self._check()

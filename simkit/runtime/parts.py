@@ -49,7 +49,8 @@ class Structure:
 def awake_bodies(structure: Structure) -> set[int]:
     """Ids of the bodies that must never sleep, or somebody could tell: a model with a plugin, a link with a sensor.
 
-    Of a sensor that measures contacts on something static that is everything: the contacts of a sleeper are not there.
+    Of a sensor or plugin that reads contacts of something that cannot move that is everything: the contacts of a
+    sleeper with it are not there.
     """
     links = structure.compiled.names.links
     bodies: set[int] = set()
@@ -58,10 +59,14 @@ def awake_bodies(structure: Structure) -> set[int]:
         for model in scene.all_models():
             if parts.plugins or not getattr(model, "allow_auto_disable", True):
                 bodies |= {int(links[link.scoped].body) for link in model.links}
+        if any(getattr(plugin, "reads_contacts", False) for plugin, _ in parts.plugins):
+            own = [int(links[link.scoped].body) for link in scene.all_links()]
+            if (structure.compiled.model.body_treeid[own] < 0).any():
+                return {int(link.body) for link in links.values()}
         for sensor in parts.sensors:
             joint = structure.compiled.names.joints.get(sensor.scene.parent)
             link = links.get(joint.scene.child_link if joint else sensor.scene.parent)
-            if link is None or (sensor.reads_contacts and link.static):
+            if link is None or (sensor.reads_contacts and structure.compiled.model.body_treeid[link.body] < 0):
                 return {int(link.body) for link in links.values()}
             bodies.add(int(link.body))
     return bodies

@@ -1,0 +1,106 @@
+"""The force-torque sensor of Gazebo Classic: `libgazebo_ros_ft_sensor.so`, with its ROS 2 and its ROS 1 spelling."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import mujoco
+import numpy as np
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_joint, find_link
+from simkit.pose import Vector
+from simkit.runtime.transmission import transmitted_wrench
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+TYPE = "geometry_msgs/msg/WrenchStamped"
+_BODY = int(mujoco.mjtObj.mjOBJ_BODY)
+
+
+class GazeboRosFtSensor(ModelPlugin):
+    """Publishes on `wrench` (after `<remapping>`) what passes through a joint, or what acts on a link.
+
+    With `<joint_name>`: what the child link does to the joint, about the joint's origin, in the child link's axes and
+    frame. With `<body_name>`: the sum of all that acts on the link, gravity included (mass times acceleration of its
+    centre of mass, and the change of its angular momentum), in the world's axes and in the frame `<frame_name>`.
+    `<gaussian_noise>` is the standard deviation on each of the six numbers [N, N·m].
+
+    Attributes:
+        reads_contacts: what rests on something that never moves must not sleep, or it would weigh nothing.
+    """
+
+    filenames = ("libgazebo_ros_ft_sensor.so",)
+    reads_contacts: ClassVar[bool] = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        is_old = not params.has("ros") and any(params.has(n) for n in ("jointName", "topicName", "updateRate"))
+        joint_name, rate, noise = ("joint_name", "update_rate", "gaussian_noise")
+        if is_old:
+            joint_name, rate, noise = ("jointName", "updateRate", "gaussianNoise")
+        self._topic = params.text("topicName", required=True) if is_old else "wrench"
+        self.after_step_rate = params.number(rate, 0.0, minimum=0)
+        self._deviation = params.number(noise, 0.0, minimum=0)
+        self._joint = self._link = ""
+        body = "" if is_old else params.text("body_name", "")
+        if body:
+            link = find_link(scene, body, params)
+            self._link = link.scoped if link is not None else ""
+            self._frame = params.text("frame_name", "world")
+            return
+        name = params.text(joint_name, required=True)
+        if not name:
+            return
+        joint = find_joint(scene, name, params)
+        if joint is not None:
+            self._joint = joint.scoped
+            self._frame = joint.child_link.rsplit("::", 1)[-1]
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._out = self.advertise(self._topic, TYPE)
+        self._stream = self.random("gaussian_noise", 6) if self._deviation > 0 else None
+        self._index = 0
+
+    def after_step(self) -> None:
+        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        if not self._out.wanted:
+            return
+        data = self.sim.fresh_acceleration()
+        values = np.concatenate(self._of_joint(data) if self._joint else self._of_link(data))
+        self._out.publish_later(partial(self._message, self.sim.time_ns, values, self._index))
+
+    def _of_joint(self, data: Any) -> tuple[Vector, Vector]:
+        names = self.sim.names
+        joint = names.joint(self._joint)
+        child = names.link(joint.scene.child_link)
+        turn = data.xmat[child.body].reshape(3, 3)
+        axes = turn @ child.offset.matrix
+        origin = data.xpos[child.body] + turn @ (child.offset @ joint.pose_child).position
+        force, torque = transmitted_wrench(self.sim.mj_model, data, joint, origin)
+        return -force @ axes, -torque @ axes
+
+    def _of_link(self, data: Any) -> tuple[Vector, Vector]:
+        model, body = self.sim.mj_model, self.sim.names.link(self._link).body
+        if not body:
+            return np.zeros(3), np.zeros(3)
+        velocity, acceleration = np.empty(6), np.empty(6)
+        # in the axes of the principal moments, at the centre of mass; the engine counts gravity as acceleration upwards
+        mujoco.mj_objectVelocity(model, data, _BODY, body, velocity, 1)
+        mujoco.mj_objectAcceleration(model, data, _BODY, body, acceleration, 1)
+        axes, moments, turning = data.ximat[body].reshape(3, 3), model.body_inertia[body], velocity[:3]
+        force = model.body_mass[body] * (axes @ acceleration[3:] + model.opt.gravity)
+        torque = moments * acceleration[:3] + np.cross(turning, moments * turning)
+        return force, axes @ torque
+
+    def _message(self, time_ns: int, values: Vector, index: int) -> Any:
+        if self._stream is not None:
+            values = values + self._deviation * self._stream.normal(index)
+        names = ("geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3")
+        wrench, vector = map(msgs.type_of, names)
+        force, torque = vector(*values[:3].tolist()), vector(*values[3:].tolist())
+        return msgs.type_of(TYPE)(msgs.header(time_ns, self._frame), wrench(force, torque))

@@ -1,0 +1,150 @@
+"""Force and torque that pass through a joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.runtime.transmission import transmitted_wrench
+from simkit.sensors.base import Product, Sensor
+from simkit.sensors.noise import Noise, NoiseModel, read_noise
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+TYPE = "geometry_msgs/msg/WrenchStamped"
+Three = tuple[NoiseModel, NoiseModel, NoiseModel]
+
+
+@dataclass(frozen=True, slots=True)
+class ForceTorqueOptions:
+    """The `<force_torque>` block.
+
+    Attributes:
+        frame: whose axes it is in, `parent`, `child` (links) or `sensor`; it is about the sensor's origin in all.
+        from_parent: the wrench by the parent on the child; else its opposite.
+        force, torque: noise per axis [N, N·m].
+    """
+
+    frame: str
+    from_parent: bool
+    force: Three
+    torque: Three
+
+
+@dataclass(frozen=True, slots=True)
+class Wrench:
+    """Force [N] and torque [N·m], shape (3,) each."""
+
+    force: Vector
+    torque: Vector
+
+
+def read_options(params: Params) -> ForceTorqueOptions:
+    block = params.block("force_torque")
+    direction = block.choice("measure_direction", ("child_to_parent", "parent_to_child"), "child_to_parent")
+    return ForceTorqueOptions(
+        frame=block.choice("frame", ("child", "parent", "sensor"), "child"),
+        from_parent=direction == "parent_to_child",
+        force=_axes(block, "force"),
+        torque=_axes(block, "torque"),
+    )
+
+
+def _axes(block: Params, name: str) -> Three:
+    axes = block.block(name)
+    x, y, z = (read_noise(axes.block(axis)) for axis in "xyz")
+    return x, y, z
+
+
+class ForceTorque(Sensor):
+    """`force_torque`, under a joint: what the parent link does to the child link through it, or the opposite.
+
+    The torque is about the sensor's origin. Gazebo's formula gives that only where the sensor is not turned against the
+    joint frame or stands in its origin; a world with `<gazebo_quirks>` errs as it does.
+    """
+
+    kinds = ("force_torque",)
+    example = "<force_torque/>"
+    belongs_to = ("joint",)
+    needs_acceleration = True
+    # a load that sleeps on something that never moves would weigh nothing
+    reads_contacts = True
+    options: ForceTorqueOptions
+    noise: Noise
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = read_options(scene.params)
+
+    def describe(self) -> dict[str, Any]:
+        """Frame and direction."""
+        direction = "parent_to_child" if self.options.from_parent else "child_to_parent"
+        return {"force_torque": {"frame": self.options.frame, "measure_direction": direction}}
+
+    def prepare(self) -> None:
+        self.noise = self._make_noise((*self.options.force, *self.options.torque), "force_torque")
+        names = ("geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3")
+        self._make_types = (msgs.type_of(TYPE), *map(msgs.type_of, names))
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        names = compiled.names
+        joint = self._joint = names.joint(self.scene.parent)
+        if joint.moved_body <= 0:
+            message = f"sensor {self.scoped!r} reads zero: joint {joint.scoped!r} ({joint.type}) carries nothing"
+            why = "a floating joint and a gearbox bind no body, and between links that never move nothing is computed"
+            self.diagnostics.warning("SK-SENSOR-050", message, self.scene.where, why)
+        self._link = names.link(joint.scene.child_link)
+        # the axes that the wrench is given in: a body's, turned; None: the world's
+        frame = self.options.frame
+        of = names.links.get(joint.scene.parent_link) if frame == "parent" else self._link
+        self._axes_body = of.body if of is not None else 0
+        self._axes_turn: Vector = np.eye(3) if of is None else of.offset.matrix
+        if frame == "sensor":
+            self._axes_turn = self._offset_rotation
+        # for Gazebo's formula: the joint frame in the child link's body
+        self._joint_frame = self._link.offset @ joint.pose_child
+
+    def products(self) -> dict[str, Product]:
+        return {"forcetorque": Product(TYPE, self._message_of)}
+
+    def default_topics(self) -> dict[str, str]:
+        return {"forcetorque": self._default_topic("forcetorque")}
+
+    def measure(self, model: Any, data: Any) -> Wrench:
+        if self.sim.world.gazebo_quirks:
+            force, torque = self._as_gazebo(model, data)
+        else:
+            origin = data.xpos[self._body] + data.xmat[self._body].reshape(3, 3) @ self._offset_position
+            force, torque = transmitted_wrench(model, data, self._joint, origin)
+        axes = data.xmat[self._axes_body].reshape(3, 3) @ self._axes_turn
+        if not self.options.from_parent:
+            axes = -axes
+        return Wrench(force @ axes, torque @ axes)
+
+    def _as_gazebo(self, model: Any, data: Any) -> tuple[Vector, Vector]:
+        """The same, the lever arm taken in the joint's axes though the force is in the sensor's, world axes."""
+        body = data.xmat[self._body].reshape(3, 3)
+        origin = data.xpos[self._body] + body @ self._joint_frame.position
+        force, torque = transmitted_wrench(model, data, self._joint, origin)
+        turn = body @ self._offset_rotation
+        arm = (self._offset_position - self._joint_frame.position) @ self._joint_frame.matrix
+        return force, torque - turn @ np.cross(arm, force @ turn)
+
+    def perturb(self, reading: Wrench, index: int) -> Wrench:
+        if self.noise.is_silent:
+            return reading
+        values = self.noise.apply(np.concatenate((reading.force, reading.torque)), index)
+        return Wrench(values[:3], values[3:])
+
+    def _message_of(self, reading: Wrench, time_ns: int) -> Any:
+        stamped, wrench, vector = self._make_types
+        force, torque = vector(*reading.force.tolist()), vector(*reading.torque.tolist())
+        return stamped(msgs.header(time_ns, self.frame_id), wrench(force, torque))
