@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean, follows_from
+from simkit.diagnostics import Diagnostics, Where, follows_from
 from simkit.engine import import_engine
 from simkit.errors import SimkitError
 from simkit.loaders import Resolver, load_scene
-from simkit.params import Params
+from simkit.parts import parts_of_model, parts_of_world, report_unread
 from simkit.pose import Pose
-from simkit.scene import Mesh, Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
+from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import ParentKind, Plugin
-    from simkit.runtime import Parts, Simulation
+    from simkit.plugins.base import Plugin
+    from simkit.runtime import Simulation
 
 Source = str | os.PathLike[str]
 # what the engine says of a world that lacks its faulty parts
@@ -99,8 +99,8 @@ def load(
     parts: dict[str, Any] = {}
     try:
         for model in world.models:
-            parts[model.name] = _parts_of_model(model, builder, diagnostics, allowed)
-        parts[""] = _parts_of_world(world, builder, diagnostics, allowed, plugins)
+            parts[model.name] = parts_of_model(model, builder, diagnostics, allowed)
+        parts[""] = parts_of_world(world, builder, diagnostics, allowed, plugins)
     except Exception:
         # What was left out for its own fault (a joint without a direction) may be asked for here.
         diagnostics.raise_if_errors()
@@ -112,11 +112,11 @@ def load(
     diagnostics.raise_if_errors(strict)
 
     load_model = partial(_model_to_spawn, resolver=resolver)
-    make_parts = partial(_parts_of_model, plugin_paths=allowed)
+    make_parts = partial(parts_of_model, plugin_paths=allowed)
     structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts)
     try:
-        _report_unread(parts.values())
+        report_unread(parts.values())
         diagnostics.raise_if_errors(strict)
     except BaseException:
         simulation.close()
@@ -233,8 +233,8 @@ def _look_further(world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Seq
     before = tuple(diagnostics)
     try:
         builder = SpecBuilder(world, diagnostics)
-        parts = {m.name: _parts_of_model(m, builder, diagnostics, plugin_paths) for m in world.models}
-        parts[""] = _parts_of_world(world, builder, diagnostics, plugin_paths, ())
+        parts = {m.name: parts_of_model(m, builder, diagnostics, plugin_paths) for m in world.models}
+        parts[""] = parts_of_world(world, builder, diagnostics, plugin_paths, ())
         _load_the_rest(world, builder, parts, diagnostics)
     except Exception:  # noqa: BLE001 - on a file with errors anything may be missing; what was found by then counts
         pass
@@ -250,7 +250,7 @@ def _load_the_rest(world: SceneWorld, builder: Any, parts: dict[str, Any], diagn
         compiled = builder.compile()
         structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
         with Simulation(world, structure, diagnostics, 0, _nothing, _nothing):
-            _report_unread(parts.values())
+            report_unread(parts.values())
     diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE)
 
 
@@ -303,106 +303,3 @@ def _model_to_spawn(
     model = models[0]
     assert model is not None
     return model, diagnostics
-
-
-def _parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
-    """Sensors and plugins of a model, in document order: each sensor's own plugins first, then the models'."""
-    from simkit.runtime import Parts
-    from simkit.sensors.presets.apply import with_preset
-
-    parts = Parts()
-    for named in model.all_sensors():
-        faults = diagnostics.error_count
-        scene = with_preset(named, diagnostics)
-        sensor = _sensor(scene, diagnostics)
-        if sensor is None:
-            continue
-        if diagnostics.error_count == faults:
-            sensor.build(builder)
-        if diagnostics.error_count == faults:
-            parts.sensors.append(sensor)
-        for plugin in scene.plugins:
-            parent = _sensor_parent(scene.scoped)
-            _add_plugin(parts, plugin, "sensor", scene, builder, diagnostics, plugin_paths, parent)
-    for nested in model.all_models():
-        owners: list[SceneLink | SceneJoint] = [*nested.links, *nested.joints]
-        below = [plugin for owner in owners for plugin in owner.plugins]
-        parent = _model_parent(nested.scoped)
-        for plugin in (*below, *nested.plugins):
-            _add_plugin(parts, plugin, "model", nested, builder, diagnostics, plugin_paths, parent)
-    return parts
-
-
-def _parts_of_world(
-    world: SceneWorld, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path], made: Sequence[Plugin]
-) -> Parts:
-    from simkit.plugins.clock import ClockPublisher
-    from simkit.plugins.tf import StaticTransforms
-    from simkit.runtime import Parts
-    from simkit.sensors.known import report_homeless
-
-    parts = Parts()
-    report_homeless(world, diagnostics)
-    for plugin in world.plugins:
-        _add_plugin(parts, plugin, "world", world, builder, diagnostics, plugin_paths, lambda sim: sim)
-    for instance in (ClockPublisher(), StaticTransforms(), *made):
-        instance.source = None
-        instance.prepare(world, Params("plugin"), builder)
-        parts.plugins.append((instance, lambda sim: sim))
-    return parts
-
-
-def _sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
-    from simkit.sensors import sensor_kinds
-    from simkit.sensors.known import report_known
-
-    kinds = sensor_kinds()
-    if scene.kind not in kinds:
-        if report_known(scene, diagnostics):
-            return None
-        hint = did_you_mean(scene.kind, kinds) or "kinds: " + ", ".join(kinds)
-        message = f"sensor {scene.scoped!r}: kind {scene.kind!r} is not simulated"
-        diagnostics.warning("SK-SENSOR-001", message, scene.where, hint)
-        return None
-    return kinds[scene.kind](scene, diagnostics)
-
-
-def _add_plugin(
-    parts: Parts,
-    plugin: ScenePlugin,
-    parent_kind: ParentKind,
-    scene: Any,
-    builder: Any,
-    diagnostics: Diagnostics,
-    plugin_paths: Sequence[Path],
-    parent: Callable[[Any], Any],
-) -> None:
-    from simkit.plugins import find_plugin
-
-    cls = find_plugin(plugin, plugin_paths, diagnostics, parent_kind)
-    if cls is None:
-        return
-    instance = cls()
-    instance.source = plugin
-    faults = diagnostics.error_count
-    instance.prepare(scene, plugin.params, builder)
-    if diagnostics.error_count == faults:  # a faulty one would only say more of the same when it is loaded
-        parts.plugins.append((instance, parent))
-
-
-def _sensor_parent(scoped: str) -> Callable[[Any], Any]:
-    return lambda sim: sim.sensor(scoped)
-
-
-def _model_parent(scoped: str) -> Callable[[Any], Any]:
-    return lambda sim: sim.model(scoped)
-
-
-def _report_unread(parts: Any) -> None:
-    """Warns about each parameter that its plugin or sensor did not read."""
-    for part in parts:
-        for sensor in part.sensors:
-            sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
-        for plugin, _ in part.plugins:
-            if plugin.source is not None:
-                plugin.params.report_unread("SK-PARAM-003", f"plugin {plugin.name!r}")

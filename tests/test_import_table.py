@@ -18,6 +18,7 @@ ROOMS: dict[str, frozenset[str]] = {
     "runtime": frozenset({"compiler", "scene"}),
     "sensors": frozenset({"runtime", "compiler", "scene"}),
     "plugins": frozenset({"runtime", "compiler", "scene"}),
+    "parts": frozenset({"plugins", "sensors", "runtime", "scene"}),
     "sinks": frozenset({"runtime", "writers"}),
     "fix_inertia": frozenset({"loaders", "compiler", "scene"}),
     "lint": frozenset({"runtime", "compiler", "scene"}),
