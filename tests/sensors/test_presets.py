@@ -86,6 +86,31 @@ def test_a_preset_is_whole(preset: Preset) -> None:
         assert find(name.lower().replace("-", " "))[preset.kind] is preset
 
 
+@pytest.mark.parametrize("preset", presets(), ids=lambda p: f"{p.kind}-{p.name}")
+def test_what_is_unconfirmed_is_an_element_and_is_marked_wherever_a_preset_is_shown(preset: Preset) -> None:
+    paths = [set(path) for path, _ in leaves(preset.elements)]
+    for names in preset.unconfirmed:
+        assert any(set(names.split()) <= path for path in paths)
+    mark = f"unconfirmed: {', '.join(preset.unconfirmed)}"
+    assert (mark in in_words(preset)) is bool(preset.unconfirmed)
+
+
+def test_the_page_says_where_a_band_is_taken_for_a_deviation() -> None:
+    """An accuracy of ±x is no deviation: who takes it for one says that it is our choice."""
+    for preset in presets():
+        if "deviation: " in preset.remark:
+            assert "deviation: our choice" in preset.remark, preset.name
+    assert "our choice" in page() and "*unconfirmed*: " in page()
+
+
+def test_the_lidars_of_ouster_are_of_one_revision() -> None:
+    seen = {p.name: p.settings["lidar"]["range"] for p in presets() if p.maker == "Ouster"}
+    assert len(seen) == 6
+    for name, reach in seen.items():
+        assert reach == {"min": 0.3, "max": 45.0 if name.startswith("OS0") else 100.0}
+        assert "Rev 06" in find(name)["lidar"].source
+
+
 def test_all_kinds_that_have_presets_are_there() -> None:
     assert {p.kind for p in presets()} - set(sensor_kinds()) == set()
     assert len(presets()) >= 40

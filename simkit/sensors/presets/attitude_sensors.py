@@ -5,9 +5,9 @@ from __future__ import annotations
 from simkit.sensors.presets.blocks import GAUSS, axes, gaussian, inertial
 from simkit.sensors.presets.preset import Preset
 
-_VN_100 = "VectorNav VN-100 user manual UM001, specifications"
-_MTI_1 = "Xsens MTi 1-series data sheet MT0512P, sensor specifications"
-_MTI_300 = "Movella MTi-300 leaflet, May 2023"
+_VN_100 = "VectorNav VN-100 data sheet, sensor specifications"
+_MTI_1 = "Xsens MTi 1-series data sheet, sensor specifications"
+_MTI_300 = "Xsens MTi 100-series leaflet, sensor specifications"
 
 PRESETS = (
     Preset(
@@ -40,6 +40,7 @@ PRESETS = (
         _MTI_300 + ": noise densities, in-run bias stability",
         inertial(gyro=0.01, accelerometer=60, gyro_floor=10, accelerometer_floor=15),
         rate=400.0,
+        unconfirmed=("noise_density", "bias_instability"),
     ),
     Preset(
         "MTi-300",
@@ -47,7 +48,7 @@ PRESETS = (
         "Xsens",
         _MTI_300 + ": total RMS noise",
         {"magnetometer": axes(gaussian(stddev=0.5e-3 * GAUSS))},
-        rate=100.0,
+        unconfirmed=("stddev",),
     ),
     Preset(
         "MTi-300",
@@ -55,6 +56,6 @@ PRESETS = (
         "Xsens",
         _MTI_300 + ": total RMS noise",
         {"air_pressure": {"pressure": gaussian(stddev=3.6)}},
-        rate=100.0,
+        unconfirmed=("stddev",),
     ),
 )

@@ -20,7 +20,7 @@ PRESETS = (
         "BMI160",
         "imu",
         "Bosch Sensortec",
-        "BMI160 data sheet BST-BMI160-DS000, specification: noise densities in normal mode",
+        "BMI160 data sheet BST-BMI160-DS000, electrical specification: output noise densities",
         inertial(gyro=0.007, accelerometer=180),
     ),
     Preset(
@@ -38,6 +38,7 @@ PRESETS = (
         "Bosch Sensortec",
         "BMP280 data sheet BST-BMP280-DS001, 3.5: RMS noise at ultra high resolution, full bandwidth",
         {"air_pressure": {"pressure": gaussian(stddev=1.3)}},
+        unconfirmed=("stddev",),
     ),
     Preset(
         "BMP388",
@@ -45,5 +46,6 @@ PRESETS = (
         "Bosch Sensortec",
         "BMP388 data sheet BST-BMP388-DS001, specification: RMS noise at highest resolution, lowest bandwidth",
         {"air_pressure": {"pressure": gaussian(stddev=0.03)}},
+        unconfirmed=("stddev",),
     ),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from simkit.sensors.presets.blocks import axes, gaussian, quantized
 from simkit.sensors.presets.preset import Preset, Settings
 
-_ATI = "ATI F/T transducer manual 9620-05-Transducer Section, {}: resolution with 16 bit, calibration {}"
+_ATI = "ATI F/T transducer manual, {}: resolution with 16 bit, calibration {}"
 _ONROBOT = "OnRobot {} data sheet: signal noise, typical (1 σ of one second without load)"
 
 
@@ -32,6 +32,7 @@ PRESETS = (
         _counted(1 / 100, 1 / 50, 1 / 4000, 1 / 4000),
         aliases=("Mini40", "Mini40 SI-40-2"),
         remark="only its counts: no noise is published",
+        unconfirmed=("precision",),
     ),
     Preset(
         "ATI Mini45",
@@ -41,6 +42,7 @@ PRESETS = (
         _counted(1 / 8, 1 / 8, 1 / 376, 1 / 752),
         aliases=("Mini45", "Mini45 SI-290-10"),
         remark="only its counts: no noise is published",
+        unconfirmed=("precision",),
     ),
     Preset(
         "OnRobot HEX-E",
@@ -49,6 +51,7 @@ PRESETS = (
         _ONROBOT.format("HEX-E"),
         _noisy(0.035, 0.15, 0.002, 0.001),
         aliases=("HEX-E", "HEX-E QC"),
+        unconfirmed=("stddev",),
     ),
     Preset(
         "OnRobot HEX-H",
@@ -57,5 +60,6 @@ PRESETS = (
         _ONROBOT.format("HEX-H"),
         _noisy(0.1, 0.2, 0.006, 0.002),
         aliases=("HEX-H", "HEX-H QC"),
+        unconfirmed=("stddev",),
     ),
 )

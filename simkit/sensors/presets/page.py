@@ -39,9 +39,13 @@ find("BMI088")["imu"].elements    # nested elements, in SI units
 
 What the numbers are: noise, steps, fields of view, ranges and rates of data sheets, typical ones where a sheet has
 typical and bounds. An in-run bias stability is taken for the lowest point of the Allan deviation, 0.664 of
-`<bias_instability>`. What they are not: offsets and scale errors, which a calibration takes away, and errors that
-follow the range, the target or the temperature; [noise](noise.md) has elements for a bias. Where a sheet gives no rate,
-the file should, for without one a sensor reads at every step.
+`<bias_instability>`. Many sheets give a band (±10 mm) and no deviation: where a remark says *our choice*, that band is
+one standard deviation here, which the sheet does not say. A number marked *unconfirmed* was found in no second place:
+compare it with the sheet of your device before you rely on it.
+
+What they are not: offsets and scale errors, which a calibration takes away, and errors that follow the range, the
+target or the temperature; [noise](noise.md) has elements for a bias. Where a sheet gives no rate, the file should, for
+without one a sensor reads at every step.
 
 Left out, for their beams are not evenly spaced: HDL-64E, VLP-32C, the Livox scanners.
 
@@ -97,7 +101,9 @@ def _given(preset: Preset) -> str:
 
 
 def _source(preset: Preset) -> str:
-    return preset.source + (f"; {preset.remark}" if preset.remark else "")
+    remark = f"; {preset.remark}" if preset.remark else ""
+    doubt = f"; *unconfirmed*: {', '.join(preset.unconfirmed)}" if preset.unconfirmed else ""
+    return preset.source + remark + doubt
 
 
 def in_words(preset: Preset) -> str:
@@ -108,4 +114,6 @@ def in_words(preset: Preset) -> str:
     lines += [f"gives:  {outline(preset.elements)}", f"source: {preset.source}"]
     if preset.remark:
         lines.append(f"note:   {preset.remark}")
+    if preset.unconfirmed:
+        lines.append(f"unconfirmed: {', '.join(preset.unconfirmed)}")
     return "\n".join(lines)

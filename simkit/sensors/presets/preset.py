@@ -24,11 +24,12 @@ class Preset:
         name: as the maker writes it. Several presets may have one name where a device is several sensors.
         kind: of sensor; `lidar` stands for `ray`, `gpu_lidar` and `gpu_ray` too.
         maker: who sells it.
-        source: data sheet with its revision, and where in it the numbers are.
+        source: data sheet, with its revision where that is certain, and where in it the numbers are.
         settings: elements of the sensor, in SI units.
         rate: samples a second [Hz]; 0 where the data sheet leaves it to the user.
         aliases: other names of the same device.
         remark: what the numbers leave out, or how one was made of a published one.
+        unconfirmed: elements whose numbers were found in no second place, with the names above where one is not enough.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Preset:
     rate: float = 0.0
     aliases: tuple[str, ...] = ()
     remark: str = ""
+    unconfirmed: tuple[str, ...] = ()
 
     @property
     def sensor_kinds(self) -> tuple[str, ...]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from simkit.sensors.presets.blocks import lidar, sweep
 from simkit.sensors.presets.preset import Preset, Settings
 
-_TIM = "SICK TiM5xx data sheets, performance: typical statistical error (1 σ) 20 mm"
-_LMS = "SICK LMS1xx operating instructions 8012471, technical data: typical statistical error (1 σ) 12 mm, at 25 Hz"
+_TIM = "SICK TiM55x/TiM56x, technical data 8015886 (2014-08-27): typical statistical error (1 σ) 20 mm; {}"
+_LMS = "SICK LMS1xx operating instructions 8012471, data sheets: typical statistical error (1 σ) 12 mm, at 25 Hz"
 _SYSTEMATIC = "the systematic error (up to ±{} mm) is left out"
 
 
@@ -19,7 +19,7 @@ PRESETS = (
         "TiM551",
         "lidar",
         "SICK",
-        _TIM + " (8015886, TIM551-2050001)",
+        _TIM.format("TIM551-2050001"),
         _around_the_front(271, 0.05, 10.0, 0.02),
         rate=15.0,
         remark=_SYSTEMATIC.format(60),
@@ -28,7 +28,7 @@ PRESETS = (
         "TiM561",
         "lidar",
         "SICK",
-        _TIM + " (8015886, TIM561-2050101)",
+        _TIM.format("TIM561-2050101"),
         _around_the_front(811, 0.05, 10.0, 0.02),
         rate=15.0,
         remark=_SYSTEMATIC.format(60),
@@ -37,10 +37,11 @@ PRESETS = (
         "TiM571",
         "lidar",
         "SICK",
-        _TIM + " (TIM571-2050101)",
+        "SICK TIM571-2050101 data sheet: working range, angular resolution, statistical error",
         _around_the_front(811, 0.05, 25.0, 0.02),
         rate=15.0,
-        remark=_SYSTEMATIC.format(60),
+        remark=_SYSTEMATIC.format(60) + "; the deviation is that of the TiM561",
+        unconfirmed=("stddev",),
     ),
     Preset(
         "LMS111",
@@ -60,5 +61,6 @@ PRESETS = (
         _around_the_front(1081, 0.5, 50.0, 0.012),
         rate=25.0,
         remark=_SYSTEMATIC.format(30) + "; at 50 Hz it has 541 samples",
+        unconfirmed=("stddev",),
     ),
 )

@@ -12,7 +12,7 @@ PRESETS = (
         "HC-SR04",
         "sonar",
         "Elecfreaks",
-        "HC-SR04 user guide, electric parameter: 2 cm to 4 m, angle 15 degree, accuracy 3 mm, a cycle of over 60 ms",
+        "HC-SR04 user guide: 2 cm to 4 m, measuring angle 15°, accuracy up to 3 mm, a cycle of over 60 ms",
         {
             "sonar": {
                 "min": 0.02,
@@ -22,6 +22,6 @@ PRESETS = (
             }
         },
         rate=16.0,
-        remark="deviation: the accuracy of 3 mm",
+        remark="deviation: our choice, the accuracy of 3 mm; the angle is taken for that of the whole cone",
     ),
 )
