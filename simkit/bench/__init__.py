@@ -30,6 +30,7 @@ class Figure:
     Attributes:
         ours, bare: median time of one unit; `bare` is None where there is nothing to compare with.
         aim: highest ratio aimed at, or None.
+        most: longest time aimed at, or None.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Figure:
     ours: float
     bare: float | None = None
     aim: float | None = None
+    most: float | None = None
 
     @property
     def ratio(self) -> float | None:
@@ -111,6 +113,11 @@ def _steps(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
             latest.close()
             sim.bus.tap(imu.topic, _ignore)
             yield _beside_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, each message made", 1.10)
+    for how in ("looked at later", "each message made"):
+        with load() as sim:
+            kinds = [s for s in sim.sensors.values() if s.topic and (s.kind == "imu" or isinstance(s, Lidar))]
+            if len(kinds) > 1:
+                yield motion_and_scans(sim, {s.topic for s in kinds}, rounds, how)
     with load() as sim:
         yield everything_read(sim, rounds)
 
@@ -131,7 +138,7 @@ def import_time(rounds: int) -> float:
 
 def memory_growth(sim: Any, duration: float) -> float:
     """Bytes a simulated second adds to the process with all but images read; the first half is left to settle."""
-    _read_all(sim)
+    _count(sim, {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS})
     sim.run(duration / 2)
     before = _resident()
     sim.run(duration / 2)
@@ -160,18 +167,41 @@ def _beside_step(sim: Any, rounds: int, name: str, aim: float) -> Figure:
     return Figure(name, "step", ours / _CHUNK, theirs / _CHUNK, aim)
 
 
+def motion_and_scans(sim: Any, topics: set[str], rounds: int, how: str) -> Figure:
+    """The world with its plugins, IMUs and lidars read, beside a hand-written loop that takes these readings alone.
+
+    Args:
+        topics: of the sensors.
+        how: "looked at later" keeps the newest message of each, "each message made" is called back with it.
+    """
+    name = f"step, all plugins, imu and lidar read, {how}"
+    if how == "looked at later":
+        for topic in topics:
+            sim.bus.subscribe(topic, keep=1)
+    return _beside_hand_written(sim, topics, rounds, name, 1 / 0.9, keeps_counting=how != "looked at later")
+
+
 def everything_read(sim: Any, rounds: int) -> Figure:
     """The world with its plugins and every topic but images read, beside a hand-written loop of the same readings."""
-    counts = _read_all(sim)
+    topics = {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS}
+    return _beside_hand_written(sim, topics, rounds, "step, all plugins, all sensors read but images", 1 / 0.85)
+
+
+def _beside_hand_written(
+    sim: Any, topics: set[str], rounds: int, name: str, aim: float, *, keeps_counting: bool = True
+) -> Figure:
+    """Each topic's messages are counted to learn its period; where asked for, that goes on while it is timed."""
     second = round(1.0 / sim.timestep)
-    sim.step(second)
-    counts.clear()  # the first sample of all comes early
+    sim.step(second)  # the first sample of all comes early
+    counts, taps = _count(sim, topics)
     sim.step(second)
     periods = {topic: max(1, round(second / n)) for topic, n in counts.items() if n > 1}
+    if not keeps_counting:
+        for tap in taps:
+            tap.close()
     bare = HandWritten(sim, periods)
     ours, theirs = interleaved([lambda: sim.step(second), lambda: bare.step(second)], rounds)
-    name = "step, all plugins, all sensors read but images"
-    return Figure(name, "step", ours / second, theirs / second, 1 / 0.85)
+    return Figure(name, "step", ours / second, theirs / second, aim)
 
 
 def sensor_cost(sim: Any, sensor: Any, rounds: int) -> Figure:
@@ -197,11 +227,12 @@ def sensor_cost(sim: Any, sensor: Any, rounds: int) -> Figure:
     times = interleaved(sides, max(3, rounds))
     for tap in taps:
         tap.close()
-    return Figure(name, "sample", times[0] / count, times[1] / count if bare is not None else None, aim)
+    most = 12e-6 if sensor.kind == "imu" else None
+    return Figure(name, "sample", times[0] / count, times[1] / count if bare is not None else None, aim, most)
 
 
-def _read_all(sim: Any) -> dict[str, int]:
-    """Reads every topic but images; gives how many messages came, by topic."""
+def _count(sim: Any, topics: set[str]) -> tuple[dict[str, int], list[Any]]:
+    """Reads these topics; gives how many messages came, by topic, and the subscriptions."""
     counts: dict[str, int] = {}
 
     def count(topic: str) -> Callable[[Any], None]:
@@ -210,10 +241,7 @@ def _read_all(sim: Any) -> dict[str, int]:
 
         return one_more
 
-    for topic, type_name in sim.topics().items():
-        if type_name not in _CAMERAS:
-            sim.bus.tap(topic, count(topic))
-    return counts
+    return counts, [sim.bus.tap(topic, count(topic)) for topic in sorted(topics)]
 
 
 def _ignore(_: Any) -> None:

@@ -45,27 +45,36 @@ class HandWritten(Bare):
         types = sim.topics()
         sensors = {sensor.topic: sensor for sensor in sim.sensors.values()}
         self._due = [(p, t, self._reader(types[t], sensors.get(t))) for t, p in periods.items()]
-        self._tick, self._is_fresh = 0, False
+        self._plans: dict[int, list[tuple[int, list[tuple[str, Callable[[], Any]]]]]] = {}
+        self._is_fresh = False
         free = np.flatnonzero(self.model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
         self._root = int(self.model.jnt_bodyid[free[0]]) if len(free) else min(1, self.model.nbody - 1)
 
     def step(self, count: int) -> None:
-        model, data, end = self.model, self.data, self._tick + count
-        while self._tick < end:
-            following = min([end, *(self._tick + p - self._tick % p for p, _, _ in self._due)])
-            steps = following - self._tick
+        model, data, latest, integrate = self.model, self.data, self.latest, self._integrate
+        step, forward = mujoco.mj_step, mujoco.mj_forward
+        if count not in self._plans:
+            self._plans[count] = self._plan(count)
+        for steps, readers in self._plans[count]:
+            left = steps
             if self._is_fresh:
-                self._integrate(model, data)
-                self._is_fresh, steps = False, steps - 1
-            if steps:
-                mujoco.mj_step(model, data, steps)
-            self._tick = following
-            due = [(topic, read) for p, topic, read in self._due if following % p == 0]
-            if due:
-                mujoco.mj_forward(model, data)
+                integrate(model, data)
+                self._is_fresh, left = False, steps - 1
+            if left:
+                step(model, data, left)
+            if readers:
+                forward(model, data)
                 self._is_fresh = True
-                for topic, read in due:
-                    self.latest[topic] = read()
+                for topic, read in readers:
+                    latest[topic] = read()
+
+    def _plan(self, count: int) -> list[tuple[int, list[tuple[str, Callable[[], Any]]]]]:
+        """How many steps to go, and what to read then; worked out once."""
+        plan, at = [], 0
+        for tick in sorted({count, *(t for period, _, _ in self._due for t in range(period, count + 1, period))}):
+            plan.append((tick - at, [(topic, read) for period, topic, read in self._due if tick % period == 0]))
+            at = tick
+        return plan
 
     def _reader(self, type_name: str, sensor: Any) -> Callable[[], Any]:
         kind = type_name.rsplit("/", 1)[-1]
@@ -120,12 +129,10 @@ def bare_scan(sensor: Lidar, model: Any, data: Any) -> Callable[[], Any]:
     ids, distances, rotated = np.zeros(fan.count, np.int32), np.zeros(fan.count), np.zeros((fan.count, 3))
     origin, rotation = (np.array(part) for part in sensor._frame_in_world(data))
     np.matmul(fan.directions, rotation.T, out=rotated)
-    flat = rotated.reshape(-1)
+    flat, own = rotated.reshape(-1), fan.body or -1
 
     def scan() -> Any:
-        mujoco.mj_multiRay(
-            model, data, origin, flat, fan._groups, 1, fan._exclude, ids, distances, None, fan.count, fan.reach
-        )
+        mujoco.mj_multiRay(model, data, origin, flat, fan.groups, 1, own, ids, distances, None, fan.count, fan.reach)
         return distances
 
     return scan

@@ -35,7 +35,7 @@ def bench(
     for figure in measure(world, rounds=rounds, how=how):
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
-        aim = "" if figure.aim is None else f"{figure.aim:.2f}"
+        aim = f"{figure.most * 1e6:.0f} µs" if figure.most else "" if figure.aim is None else f"{figure.aim:.2f}"
         out().print(f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}{aim:>8}  a {figure.unit}")
     out().print(f"{'import simkit':<52}{import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
     with load(world, **how) as sim:

@@ -167,9 +167,9 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-SENSOR-004",
         "warning",
-        "`<visibility_mask>` is not used: everything is seen",
-        "",
-        sensor("gpu_lidar", _lidar(rest="<visibility_mask>2</visibility_mask>")),
+        "`<visibility_mask>` hides nothing from a lidar that sees collisions, which have no `<visibility_flags>`",
+        "a `gpu_lidar` or `gpu_ray` sees visuals",
+        sensor("lidar", _lidar(rest="<visibility_mask>2</visibility_mask>")),
     ),
     Code(
         "SK-SENSOR-005",

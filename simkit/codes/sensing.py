@@ -98,4 +98,11 @@ CODES: tuple[Code, ...] = (
         "a lower `<update_rate>`, or a smaller `<max_step_size>`",
         sensor("imu", "<update_rate>1e9</update_rate>"),
     ),
+    Code(
+        "SK-SENSOR-029",
+        "note",
+        "a rate below zero is every step, as in Gazebo",
+        "`<update_rate>0</update_rate>`",
+        sensor("imu", "<update_rate>-1</update_rate>"),
+    ),
 )

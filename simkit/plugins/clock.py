@@ -8,6 +8,8 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 
+TYPE = "rosgraph_msgs/msg/Clock"
+
 
 class ClockPublisher(WorldPlugin):
     """Publishes `rosgraph_msgs/msg/Clock` on `/clock` at 100 Hz of simulated time; part of every world."""
@@ -15,8 +17,9 @@ class ClockPublisher(WorldPlugin):
     after_step_rate = 100.0
 
     def load(self, parent: Any, params: Params) -> None:
-        self._clock = self.advertise("/clock", "rosgraph_msgs/msg/Clock")
+        self._clock = self.advertise("/clock", TYPE)
+        self._make = msgs.type_of(TYPE)
 
     def after_step(self) -> None:
         if self._clock.wanted:
-            self._clock.publish(msgs.make("rosgraph_msgs/msg/Clock", clock=msgs.time(self.sim.time_ns)))
+            self._clock.publish(self._make(msgs.time(self.sim.time_ns)))

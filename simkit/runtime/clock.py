@@ -100,6 +100,11 @@ class Grid:
     def __init__(self, period: Fraction, from_start: bool = False) -> None:
         self._num, self._den, self._from_start = period.numerator, period.denominator, from_start
 
+    @property
+    def cycle(self) -> int:
+        """After so many ticks the pattern repeats."""
+        return self._num
+
     def tick(self, index: int) -> int:
         """Tick of the k-th sample."""
         return -(-index * self._num // self._den)

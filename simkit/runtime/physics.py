@@ -22,7 +22,7 @@ from simkit.runtime.sleep import Sleep
 FRESH, CONTROL, VELOCITY, STALE = range(4)
 """How much of the forward pass is out of date: nothing, accelerations, velocities on, all."""
 
-_SKIP = {CONTROL: mujoco.mjtStage.mjSTAGE_VEL, VELOCITY: mujoco.mjtStage.mjSTAGE_POS}
+_SKIP = {CONTROL: int(mujoco.mjtStage.mjSTAGE_VEL), VELOCITY: int(mujoco.mjtStage.mjSTAGE_POS)}
 _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST): mujoco.mj_implicit,
     int(mujoco.mjtIntegrator.mjINT_IMPLICIT): mujoco.mj_implicit,
@@ -34,9 +34,10 @@ _BAD = _BAD_POS, _BAD_VEL, _BAD_ACC = [
 ]
 # looked up once: the loop calls them every few microseconds
 mj_step, mj_forward, mj_forward_skip = mujoco.mj_step, mujoco.mj_forward, mujoco.mj_forwardSkip
+mj_get_state, mj_rne_post_constraint = mujoco.mj_getState, mujoco.mj_rnePostConstraint
 mj_check_pos, mj_check_vel, mj_check_acc = mujoco.mj_checkPos, mujoco.mj_checkVel, mujoco.mj_checkAcc
 
-_HELD = mujoco.mjtState.mjSTATE_INTEGRATION
+_HELD = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is heard
 
 _SHORT = 16  # steps; so few are not timed, which costs as much as a small step
@@ -69,7 +70,7 @@ class Physics:
         mujoco.set_mju_user_warning(_hear_engine)
         self.clock, self._may_sleep = clock, may_sleep
         self.tick = 0
-        self._chunk = 256
+        self._take_chunk(256)
         self.rebind(model, data)
 
     def rebind(self, model: Any, data: Any) -> None:
@@ -79,8 +80,9 @@ class Physics:
         self.stage = STALE
         self.one_shot = False
         self.last_applied = np.zeros(model.nv)
+        self.last_pushed = np.zeros((model.nbody, 6))
         self.standing = np.zeros((model.nbody, 6))
-        self._shows_applied = True
+        self.shows_applied = True
         self._accelerations_tick = -1
         self._held: HeldState | None = None
         self._held_size = mujoco.mj_stateSize(model, _HELD)
@@ -127,6 +129,15 @@ class Physics:
         self._second = None
         self.changed(STALE)
 
+    def changed_lights(self) -> None:
+        """Says that lights of the model moved: where bodies may sleep, the engine computes those of the world once."""
+        self._second = None
+        options = self.model.opt
+        flags = options.enableflags
+        options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+        mujoco.mj_camlight(self.model, self.data)
+        options.enableflags = flags
+
     # ------------------------------------------------------------------ reading
 
     def fresh(self) -> Any:
@@ -151,18 +162,30 @@ class Physics:
             self.changed(CONTROL)
 
     def fresh_accelerations(self) -> Any:
-        """The same, with body accelerations and the forces between bodies."""
+        """The same, with body accelerations and the forces between bodies.
+
+        Forces of the last step only are counted in: they made the motion, and what a motor holds is not in free fall.
+        """
+        if self.shows_applied and self._has_passed():
+            return self.data_of(self.hold())
         data = self.fresh()
         if self._accelerations_tick != self.tick:
-            mujoco.mj_rnePostConstraint(self.model, data)
+            mj_rne_post_constraint(self.model, data)
             self._accelerations_tick = self.tick
         return data
 
     def hold(self) -> HeldState:
-        """The state of this tick, shared by all who ask at it."""
+        """The state of this tick, with the forces of the step that led to it, shared by all who ask at it."""
         if self._held is None or self._held.tick != self.tick:
-            values = np.empty(self._held_size)
-            mujoco.mj_getState(self.model, self.data, values, _HELD)
+            values, data = np.empty(self._held_size), self.data
+            if self.shows_applied and self._has_passed():
+                applied, pushed = data.qfrc_applied.copy(), data.xfrc_applied.copy()
+                data.qfrc_applied += self.last_applied
+                data.xfrc_applied += self.last_pushed
+                mj_get_state(self.model, data, values, _HELD)
+                data.qfrc_applied[:], data.xfrc_applied[:] = applied, pushed
+            else:
+                mj_get_state(self.model, data, values, _HELD)
             self._held = HeldState(self.tick, self.model, values)
         return self._held
 
@@ -178,16 +201,24 @@ class Physics:
             self._second_of = held
         return self._second
 
+    def _has_passed(self) -> bool:
+        """Whether the last step had forces of its own, and none is set for the next."""
+        return not self.one_shot and bool(self.last_applied.any() or self.last_pushed.any())
+
     # ------------------------------------------------------------------ advancing
 
     def advance(self, count: int) -> None:
         """`count` steps; forces that hold for one step only are gone after the first."""
+        sleep = self.sleep
+        if not (self.shows_applied or self.one_shot or sleep.counts or sleep.wants_all_awake) and count <= self._short:
+            if count > 0:
+                self._steps(count)
+            return
         if count <= 0:
             return
-        if self._shows_applied:
-            self.last_applied[:] = 0
-            self._shows_applied = False
-        sleep = self.sleep
+        if self.shows_applied:
+            self.last_applied[:] = self.last_pushed[:] = 0
+            self.shows_applied = False
         if sleep.watches and sleep.notice_gravity():
             self.changed(STALE)
         if sleep.rests and sleep.still_rests():
@@ -199,10 +230,10 @@ class Physics:
             count -= 1
             if not count:
                 # what was applied in the last step is what `Joint.effort` tells of it
-                self._shows_applied = True
+                self.shows_applied = True
                 return
-            self.last_applied[:] = 0
-        if 0 < count <= _SHORT and count <= self._chunk:
+            self.last_applied[:] = self.last_pushed[:] = 0
+        if 0 < count <= self._short:
             self._run(count)
             return
         while count > 0:
@@ -214,7 +245,7 @@ class Physics:
 
     def single(self) -> None:
         """One step."""
-        if self.stage == STALE and not (self.one_shot or self._shows_applied or self.sleep.watches):
+        if self.stage == STALE and not (self.one_shot or self.shows_applied or self.sleep.watches):
             mj_step(self.model, self.data)
             self.tick += 1
         else:
@@ -266,15 +297,19 @@ class Physics:
 
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied
+        self.last_pushed[:] = self.data.xfrc_applied - self.standing
         self.data.qfrc_applied[:] = 0
         self.data.xfrc_applied[:] = self.standing
         self.one_shot = False
 
     def _tune(self, chunk: int, wall: float) -> None:
         if wall > _WALL_LIMIT and chunk > 1:
-            self._chunk = max(1, chunk // 2)
+            self._take_chunk(max(1, chunk // 2))
         elif wall < _WALL_LIMIT / 4 and chunk == self._chunk:
-            self._chunk = min(1 << 16, chunk * 2)
+            self._take_chunk(min(1 << 16, chunk * 2))
+
+    def _take_chunk(self, steps: int) -> None:
+        self._chunk, self._short = steps, min(steps, _SHORT)
 
     def check(self) -> None:
         """Raises SimulationDiverged where the engine met a bad number since the last reset of its counters."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from typing import Literal, Protocol
 
-from simkit.runtime.clock import Clock
+from simkit.runtime.clock import Clock, Grid
 
 Phase = Literal["before", "sense", "after"]
 Task = Callable[[int], None]
 NEVER = 1 << 62
+_LONGEST_CYCLE = 10_000  # ticks
 
 
 class Timetable(Protocol):
@@ -36,6 +38,8 @@ class Agenda:
         self._tasks: list[tuple[Task, Timetable | None]] = []
         self.every: list[Task] = []
         self._heap: list[tuple[int, int]] = []
+        self._cycle = 0
+        self._plan: dict[int, tuple[list[Task], int]] = {}
         self.next = NEVER
 
     def add(self, task: Task, grid: Timetable | None) -> None:
@@ -47,11 +51,26 @@ class Agenda:
         self._heap = [(grid.next(tick), order) for order, (_, grid) in enumerate(self._tasks) if grid is not None]
         heapq.heapify(self._heap)
         self.next = self._heap[0][0] if self._heap else NEVER
+        self._cycle, self._plan = _cycle([grid for _, grid in self._tasks if grid is not None]), {}
 
     def due(self, tick: int) -> list[Task]:
         """Every task due at `tick`, in order of addition; periodic ones move on to their next tick."""
         if self.next > tick:
             return self.every
+        if self._cycle and tick > 1:  # the first tick has more than the rates alone say
+            planned = self._plan.get(tick % self._cycle)
+            if planned is None:
+                planned = self._plan[tick % self._cycle] = self._work_out(tick)
+            self.next = tick + planned[1]
+            return planned[0]
+        return self._by_heap(tick)
+
+    def _work_out(self, tick: int) -> tuple[list[Task], int]:
+        """What is due at `tick`, and how long it is then to the next."""
+        due = [task for task, grid in self._tasks if grid is None or grid.next(tick - 1) == tick]
+        return due, min(grid.next(tick) for _, grid in self._tasks if grid is not None) - tick
+
+    def _by_heap(self, tick: int) -> list[Task]:
         heap, tasks = self._heap, self._tasks
         order = heap[0][1]
         heapq.heapreplace(heap, (tasks[order][1].next(tick), order))  # type: ignore[union-attr]
@@ -68,6 +87,15 @@ class Agenda:
             orders += [i for i, (_, grid) in enumerate(self._tasks) if grid is None]
             orders.sort()
         return [self._tasks[i][0] for i in orders]
+
+
+def _cycle(timetables: Sequence[Timetable]) -> int:
+    """After how many ticks it all repeats; 0 where that is too long to remember, or not so."""
+    periods = [grid.cycle for grid in timetables if isinstance(grid, Grid)]
+    if not periods or len(periods) < len(timetables):
+        return 0
+    cycle = math.lcm(*periods)
+    return cycle if cycle <= _LONGEST_CYCLE else 0
 
 
 class Scheduler:

@@ -8,7 +8,7 @@ from typing import Any
 
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError
-from simkit.pose import Pose
+from simkit.pose import IDENTITY, Pose
 from simkit.runtime.clock import Clock
 from simkit.runtime.entities import Entities, place_light
 from simkit.runtime.joint import Joint
@@ -128,7 +128,8 @@ class Simulation:
             self.seed = seed
         self.bus.settle()
         self.streams.reseed(self.seed)
-        self.restore(self._loaded)
+        bring_back(self, self._loaded)
+        self.reschedule()
         for sensor in self.structure.all_sensors():
             sensor.reset()
         for plugin in self.structure.all_plugins():
@@ -142,6 +143,10 @@ class Simulation:
     def restore(self, snapshot: Snapshot) -> None:
         """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone."""
         self._check_open()
+        if snapshot.seed != self.seed:
+            self.bus.settle()
+            self.seed = snapshot.seed
+            self.streams.reseed(self.seed)
         bring_back(self, snapshot)
         self.reschedule()
 
@@ -369,8 +374,9 @@ class Simulation:
 
     def place_light(self, light: Light) -> None:
         """Shows a light where its handle says."""
-        scene = light.scene
-        place_light(self.mj_model, light, scene.scoped, light._pose, self.touch)
+        carrier = self.names.links.get(light.scene.link)
+        place_light(self.mj_model, light, carrier.offset if carrier else IDENTITY, self.touch)
+        self.physics.changed_lights()
 
     # ------------------------------------------------------------------ the end
 

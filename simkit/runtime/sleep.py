@@ -50,6 +50,7 @@ class Sleep:
 
     Attributes:
         watches: whether there is anything that could fall asleep; then `look` is wanted at `RATE`.
+        counts: whether anything can ever sleep or rest; else none of this has to be looked at.
         is_drowsy: the next step is the one in which the engine puts to sleep what has been found to rest.
         rests: every tree sleeps, and nothing has been changed since.
         wants_all_awake: the next forward pass wakes everything.
@@ -58,7 +59,7 @@ class Sleep:
     def __init__(self, model: Any, data: Any, enabled: bool) -> None:
         self._model, self._data = model, data
         self.enabled = enabled
-        self.is_drowsy = self.rests = self.wants_all_awake = self.watches = self._can_rest = False
+        self.is_drowsy = self.rests = self.wants_all_awake = self.watches = self._can_rest = self.counts = False
         self._gravity_now = model.opt.gravity  # a view, to be looked at before every stretch of steps
         self._gravity = self._gravity_now.tolist()
         self._places = [data.qpos, *((data.mocap_pos, data.mocap_quat) if model.nmocap else ())]
@@ -85,6 +86,7 @@ class Sleep:
         self.watches = self.enabled and bool(self._may.any()) and has_islands
         self._can_rest = self.enabled and bool(self._may.all()) and (self.watches or not model.ntree)
         first_joint = model.dof_jntid[model.tree_dofadr] if model.ntree else np.zeros(0, int)
+        self.counts = self.watches or self._can_rest
         self._starts = model.jnt_qposadr[first_joint] if model.ntree else first_joint
         self._begin()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -34,24 +35,59 @@ class Later:
         return self._message
 
 
+class Audience:
+    """Who hears a topic.
+
+    Attributes:
+        readers: the subscriptions.
+        receivers: what takes a message, one for each of them.
+        is_called: whether one of them is called back with each message, and not only keeps it.
+        feeds: whether command inputs hear the topic.
+    """
+
+    __slots__ = ("feeds", "is_called", "readers", "receivers")
+
+    def __init__(self) -> None:
+        self.readers: list[Subscription] = []
+        self.receivers: tuple[Callback, ...] = ()
+        self.is_called = self.feeds = False
+
+    def count(self) -> None:
+        """After a change of the readers."""
+        self.receivers = tuple(reader.receive for reader in self.readers)
+        self.is_called = any(reader.is_called for reader in self.readers)
+
+    @property
+    def keeps(self) -> float:
+        """The most messages that one of the readers keeps; infinite where one keeps all."""
+        return max((reader.keeps for reader in self.readers), default=0)
+
+
 class Subscription:
     """What arrives on a topic.
 
     Attributes:
         messages: what arrived since the subscription (the last `keep` where given).
+        receive: takes a message.
+        is_called: whether it has a callback.
+        keeps: the most messages that it keeps.
     """
 
     def __init__(self, bus: TopicBus, topic: str, callback: Callback | None, keep: int | None) -> None:
         self._bus, self.topic, self._callback = bus, topic, callback
         self._messages: deque[Any] = deque(maxlen=keep)
+        self.is_called, self.keeps = callback is not None, math.inf if keep is None else keep
+        self.receive: Callback = self._messages.append if callback is None else self._keep_and_call
 
     @property
     def messages(self) -> list[Any]:
+        self._bus.gather(self.topic)
         return [m.get() if type(m) is Later else m for m in self._messages]
 
     @property
     def latest(self) -> Any | None:
         """The newest message, or None before the first."""
+        self._bus.gather(self.topic)
         if not self._messages:
             return None
         newest = self._messages[-1]
@@ -61,10 +97,10 @@ class Subscription:
         """Stops receiving; what was received stays."""
         self._bus._unsubscribe(self)
 
-    def _receive(self, message: Any) -> None:
+    def _keep_and_call(self, message: Any) -> None:
+        assert self._callback is not None
         self._messages.append(message)
-        if self._callback is not None:
-            self._callback(message)
+        self._callback(message)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Subscription:
         return self
@@ -73,44 +109,64 @@ class Subscription:
 class _Stream(Subscription):
     """A subscription that only calls back and keeps nothing (a recorder's)."""
 
-    def _receive(self, message: Any) -> None:
-        assert self._callback is not None
-        self._callback(message)
+    def __init__(self, bus: TopicBus, topic: str, callback: Callback) -> None:
+        super().__init__(bus, topic, callback, 0)
+        self.receive = callback
 
 
 class Publisher:
-    """One end of a topic; `wanted` says whether somebody reads now."""
+    """One end of a topic; `wanted` says whether somebody reads now.
 
-    __slots__ = ("_bus", "_last", "_readers", "active", "latched", "owner", "topic", "type_name")
+    Attributes:
+        pending: publishes what its owner has put off, before anybody looks; None where nothing is ever put off.
+    """
+
+    __slots__ = ("_audience", "_bus", "_last", "active", "latched", "owner", "pending", "topic", "type_name")
 
     def __init__(self, bus: TopicBus, topic: str, type_name: str, latched: bool, owner: object) -> None:
         self._bus, self.topic, self.type_name, self.latched, self.owner = bus, topic, type_name, latched, owner
-        self._readers = bus._readers.setdefault(topic, [])
+        self._audience = bus._audience(topic)
         self._last: Any = None
         self.active = True
+        self.pending: Callable[[], None] | None = None
 
     @property
     def wanted(self) -> bool:
-        return bool(self._readers) or self.latched or self.topic in self._bus._listeners
+        audience = self._audience
+        return bool(audience.readers) or self.latched or audience.feeds
+
+    @property
+    def is_live(self) -> bool:
+        """Whether somebody does something with each message at once."""
+        audience = self._audience
+        return audience.is_called or audience.feeds or self.latched
+
+    @property
+    def patience(self) -> float:
+        """How many of the newest messages anybody will look at; 0 where nothing may be put off.
+
+        That is where somebody is called back, and where others publish on the same topic.
+        """
+        return 0 if self.is_live or len(self._bus._publishers[self.topic]) > 1 else self._audience.keeps
 
     def publish(self, message: Any) -> None:
         """Hands the message to every subscriber, now, and to command inputs before the next step."""
         if self.latched:
             self._last = message
-        self._bus._deliver(self.topic, message)
+        audience = self._audience
+        for receive in audience.receivers:
+            receive(message)
+        if audience.feeds:
+            self._bus.inbox.append((self.topic, message))
 
     def publish_later(self, make: Callable[[], Any]) -> None:
         """Publishes what `make()` gives, made at once only where somebody is called back with it."""
-        readers = self._readers
-        waits = not (self.latched or self.topic in self._bus._listeners)
-        for reader in readers:
-            waits = waits and reader._callback is None
-        if not waits:
+        if self.is_live:
             self.publish(make())
             return
         later = Later(make)
-        for reader in readers:
-            reader._messages.append(later)
+        for receive in self._audience.receivers:
+            receive(later)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
         return self
@@ -130,15 +186,21 @@ class Listener:
 
 
 class TopicBus:
-    """All topics of a simulation."""
+    """All topics of a simulation.
+
+    Attributes:
+        inbox: commands that wait for the next step.
+        revision: another number after every change of who reads or publishes what.
+    """
 
     def __init__(self) -> None:
-        self._readers: dict[str, list[Subscription]] = {}
+        self._audiences: dict[str, Audience] = {}
         self._publishers: dict[str, list[Publisher]] = {}
         self._listeners: dict[str, list[Listener]] = {}
         self._watchers: list[Callable[[str, str], None]] = []
         self._owner: object = None
         self.inbox: deque[tuple[str, Any]] = deque()
+        self.revision = 0
 
     # ------------------------------------------------------------------ ends
 
@@ -160,6 +222,8 @@ class TopicBus:
             latched: a later subscriber gets the last message (transient local).
         """
         topic = absolute(topic)
+        self.gather(topic)
+        self.revision += 1
         publisher = Publisher(self, topic, type_name, latched, self._owner)
         self._publishers.setdefault(topic, []).append(publisher)
         self._announce(topic, type_name)
@@ -168,8 +232,11 @@ class TopicBus:
     def listen(self, topic: str, types: Sequence[str], callback: Callback) -> Listener:
         """Opens a topic for commands; the first of `types` is the one listed."""
         topic = absolute(topic)
+        self.gather(topic)
+        self.revision += 1
         listener = Listener(topic, types, callback, self._owner)
         self._listeners.setdefault(topic, []).append(listener)
+        self._audience(topic).feeds = True
         self._announce(topic, types[0])
         return listener
 
@@ -179,13 +246,16 @@ class TopicBus:
 
     def tap(self, topic: str, callback: Callback) -> Subscription:
         """Receives a topic without keeping its messages."""
-        return self._add_reader(_Stream(self, absolute(topic), callback, 0))
+        return self._add_reader(_Stream(self, absolute(topic), callback))
 
     def close(self, end: Publisher | Listener) -> None:
         """Takes a publisher or a listener away for good."""
+        self.gather(end.topic)
+        self.revision += 1
         table: Mapping[str, list[Any]] = self._publishers if isinstance(end, Publisher) else self._listeners
         if end in table.get(end.topic, []):
             table[end.topic].remove(end)
+        self._audience(end.topic).feeds = bool(self._listeners.get(end.topic))
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Leaves only the ends of these owners (and those without one) in use."""
@@ -216,7 +286,7 @@ class TopicBus:
 
     def wanted(self, topic: str) -> bool:
         """Whether somebody subscribes to a topic."""
-        return bool(self._readers.get(absolute(topic)))
+        return bool(self._audience(absolute(topic)).readers)
 
     def on_topic(self, callback: Callable[[str, str], None]) -> None:
         """Calls `callback(topic, type_name)` for every topic there is and will be."""
@@ -228,9 +298,19 @@ class TopicBus:
 
     def settle(self) -> None:
         """Makes every message that waits to be looked at, before what it is made from changes."""
-        for readers in self._readers.values():
-            for reader in readers:
+        for publishers in self._publishers.values():
+            for publisher in publishers:
+                if publisher.pending is not None:
+                    publisher.pending()
+        for audience in self._audiences.values():
+            for reader in audience.readers:
                 reader.messages  # noqa: B018
+
+    def gather(self, topic: str) -> None:
+        """Lets the publishers of a topic hand over what they have put off."""
+        for publisher in self._publishers.get(topic, ()):
+            if publisher.pending is not None:
+                publisher.pending()
 
     def publish(self, topic: str, message: Any) -> None:
         """A message from outside the loop: subscribers see it now, command inputs before the next step.
@@ -261,22 +341,38 @@ class TopicBus:
         return "there is " + (", ".join(self.topics()) or "none")
 
     def _deliver(self, topic: str, message: Any) -> None:
-        for subscription in tuple(self._readers.get(topic, ())):
-            subscription._receive(message)
-        if topic in self._listeners:
+        self.gather(topic)
+        audience = self._audience(topic)
+        for receive in audience.receivers:
+            receive(message)
+        if audience.feeds:
             self.inbox.append((topic, message))
 
+    def _audience(self, topic: str) -> Audience:
+        found = self._audiences.get(topic)
+        if found is None:
+            found = self._audiences[topic] = Audience()
+        return found
+
     def _add_reader(self, subscription: Subscription) -> Subscription:
-        self._readers.setdefault(subscription.topic, []).append(subscription)
-        for publisher in self._publishers.get(subscription.topic, ()):
+        topic = subscription.topic
+        self.gather(topic)
+        self.revision += 1
+        audience = self._audience(topic)
+        audience.readers.append(subscription)
+        audience.count()
+        for publisher in self._publishers.get(topic, ()):
             if publisher.latched and publisher.active and publisher._last is not None:
-                subscription._receive(publisher._last)
+                subscription.receive(publisher._last)
         return subscription
 
     def _unsubscribe(self, subscription: Subscription) -> None:
-        readers = self._readers.get(subscription.topic, [])
-        if subscription in readers:
-            readers.remove(subscription)
+        audience = self._audience(subscription.topic)
+        if subscription in audience.readers:
+            self.gather(subscription.topic)
+            self.revision += 1
+            audience.readers.remove(subscription)
+            audience.count()
 
     def _announce(self, topic: str, type_name: str) -> None:
         for watcher in self._watchers:

@@ -139,20 +139,28 @@ class Sensor(Sampler):
         self.sim.reschedule()
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
-        """Publishes these products on these topics, and nothing else (what a sensor plugin does).
+        """Publishes these products on these topics, instead of on its own (what a sensor plugin does).
+
+        A second plugin on the same sensor adds its topics to those of the first.
 
         Args:
             topics: product -> absolute topic; the first is what `latest` shows.
         """
-        bus = self.sim.bus
-        for publisher in self._publishers.values():
-            bus.close(publisher)
-        self._topics = dict(topics)
-        self._publishers = {p: bus.advertise(t, self._products[p].type_name) for p, t in self._topics.items()}
-        self._ends = [(p, publisher, self._products[p].needs_reading) for p, publisher in self._publishers.items()]
+        if not self._is_told_where:
+            for _, publisher, _ in self._ends:
+                self.sim.bus.close(publisher)
+            self._topics, self._ends = {}, []
+            self._is_told_where = True
+        self._open(topics)
+
+    def _open(self, topics: Mapping[str, str]) -> None:
         self._revision = -1
-        for publisher in self._publishers.values():
+        for product, topic in topics.items():
+            self._topics.setdefault(product, topic)
+            of = self._products[product]
+            publisher = self.sim.bus.advertise(topic, of.type_name)
             publisher.pending = self._catch_up
+            self._ends.append((product, publisher, of.needs_reading))
 
     # ------------------------------------------------------------------ what the simulation calls
 
@@ -173,7 +181,7 @@ class Sensor(Sampler):
         if self.noise is not None:
             self._add_noise(self.noise)  # of a kind that made its own
         self._products = self.products()
-        self.publish_on(self.default_topics())
+        self._open(self.default_topics())
         self.restart()
 
     def _report_timing(self, sim: Simulation) -> None:

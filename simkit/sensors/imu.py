@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import mujoco
 import numpy as np
 
 from simkit import msgs
@@ -14,16 +15,17 @@ from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector, quat_conjugate, quat_from_rpy, quat_multiply
 from simkit.sensors.base import Product, Sensor
-from simkit.sensors.noise import Noise, NoiseModel, read_noise, variance
+from simkit.sensors.noise import Noise, NoiseModel, read_noise
+from simkit.sensors.references import OrientationReference, orientation_of, read_reference
 
 if TYPE_CHECKING:
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/Imu"
-_BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
-object_velocity, object_acceleration = mujoco.mj_objectVelocity, mujoco.mj_objectAcceleration
-# east-north-up to the named axes
-_LOCALIZATIONS = {"ENU": (0.0, 0.0, 0.0), "NED": (math.pi, 0.0, math.pi / 2), "NWU": (0.0, 0.0, math.pi / 2)}
+Axes = tuple[NoiseModel, NoiseModel, NoiseModel]
+Four = tuple[float, float, float, float]
+_NUMBERS = struct.Struct("=31d").unpack  # of what is captured
+_AS_IT_IS: Four = (1.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,62 +35,56 @@ class ImuOptions:
     Attributes:
         angular_velocity: noise per axis [rad/s].
         linear_acceleration: noise per axis [m/s²].
-        reference: roll, pitch, yaw [rad] of the reference frame in east-north-up axes, or None for the attitude at
-            the start.
+        orientation: noise per axis [rad]: a small turn of the measured attitude about the sensor's axes.
+        reference: what the orientation is measured against; None for the attitude at the start.
         enable_orientation: False leaves the orientation out.
     """
 
-    angular_velocity: tuple[NoiseModel, NoiseModel, NoiseModel]
-    linear_acceleration: tuple[NoiseModel, NoiseModel, NoiseModel]
-    reference: tuple[float, float, float] | None
+    angular_velocity: Axes
+    linear_acceleration: Axes
+    orientation: Axes
+    reference: OrientationReference | None
     enable_orientation: bool
 
 
-@dataclass(frozen=True, slots=True)
-class ImuReading:
-    """Attitude (w, x, y, z) against the reference; rate [rad/s] and specific force [m/s²], sensor frame, shape (3,)."""
+class ImuReading(NamedTuple):
+    """What the unit feels.
 
-    orientation: Vector
-    angular_velocity: Vector
-    linear_acceleration: Vector
+    Attributes:
+        orientation: attitude (w, x, y, z) against the reference.
+        motion: rate [rad/s] and specific force [m/s²] in the sensor frame, six numbers.
+    """
+
+    orientation: Sequence[float]
+    motion: Sequence[float]
+
+    @property
+    def angular_velocity(self) -> Vector:
+        """[rad/s], shape (3,)."""
+        return np.array(self.motion[:3])
+
+    @property
+    def linear_acceleration(self) -> Vector:
+        """[m/s²], gravity's reaction included, shape (3,)."""
+        return np.array(self.motion[3:])
 
 
 def read_options(params: Params) -> ImuOptions:
     block = params.block("imu")
     return ImuOptions(
-        angular_velocity=_axes(block, "angular_velocity"),
-        linear_acceleration=_axes(block, "linear_acceleration"),
-        reference=_reference(block),
+        angular_velocity=_axes(block.block("angular_velocity")),
+        linear_acceleration=_axes(block.block("linear_acceleration")),
+        orientation=_axes(block.block("orientation")),
+        reference=read_reference(block),
         enable_orientation=block.boolean("enable_orientation", True),
     )
 
 
-def _axes(block: Params, name: str) -> tuple[NoiseModel, NoiseModel, NoiseModel]:
-    axes = block.block(name)
-    x, y, z = (read_noise(axes.block(axis)) for axis in "xyz")
+def _axes(quantity: Params) -> Axes:
+    """`<x>`, `<y>`, `<z>` with a `<noise>` each; one `<noise>` beside them is for the axes that have none."""
+    shared = read_noise(quantity)
+    x, y, z = (read_noise(quantity.block(axis)) if quantity.block(axis).has("noise") else shared for axis in "xyz")
     return x, y, z
-
-
-def _reference(block: Params) -> tuple[float, float, float] | None:
-    frame = block.child("orientation_reference_frame")
-    if frame is None:
-        return None
-    allowed = ("CUSTOM", "ENU", "NED", "NWU", "GRAV_UP", "GRAV_DOWN")
-    localization = frame.choice("localization", allowed, "CUSTOM")
-    frame.child("grav_dir_x")
-    custom = frame.child("custom_rpy")
-    if localization in _LOCALIZATIONS:
-        return _LOCALIZATIONS[localization]
-    if localization == "CUSTOM" and custom is not None and custom.attribute("parent_frame") == "world":
-        return frame.vector3("custom_rpy", (0.0, 0.0, 0.0))
-    message = f"orientation reference {localization} is taken as the attitude at the start"
-    hint = (
-        'a custom one needs <custom_rpy parent_frame="world">'
-        if localization == "CUSTOM"
-        else "ENU, NED and NWU are known"
-    )
-    frame.diagnostics.warning("SK-SENSOR-002", message, frame.where, hint)
-    return None
 
 
 class Imu(Sensor):
@@ -100,6 +96,7 @@ class Imu(Sensor):
 
     kinds = ("imu",)
     example = "<imu/>"
+    gathers = True
     needs_acceleration = True
     options: ImuOptions
     noise: Noise
@@ -107,32 +104,45 @@ class Imu(Sensor):
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
+        self._turn, self._is_turned = np.array(_AS_IT_IS), False
+
+    def describe(self) -> dict[str, Any]:
+        reference = self.options.reference
+        return {
+            "imu": {
+                "reference": reference.localization if reference else "start",
+                "parent_frame": reference.parent_frame if reference else "",
+                "orientation": self.options.enable_orientation,
+            }
+        }
 
     def prepare(self) -> None:
         options = self.options
         self.noise = self._make_noise((*options.angular_velocity, *options.linear_acceleration), "imu")
-        self._rate_covariance = variance(options.angular_velocity)
-        self._force_covariance = variance(options.linear_acceleration)
-        self._orientation_covariance = np.zeros(9)
-        if not options.enable_orientation:
-            self._orientation_covariance[0] = -1.0
-        self._orientation_covariance.flags.writeable = False
+        self._attitude_noise = self._make_noise(options.orientation, "orientation")
+        self._more_noise: Noise | None = None
+        self._covariances_of: Any = None
         self._make_types = (
             msgs.type_of(TYPE),
             msgs.type_of("geometry_msgs/msg/Vector3"),
             msgs.type_of("geometry_msgs/msg/Quaternion"),
         )
-        if options.reference is None:
-            self.measure_against(self.scene.pose_world.quaternion)
-        else:
-            place = self.sim.world.spherical_coordinates
-            heading = quat_from_rpy(0.0, 0.0, place.heading if place else 0.0)
-            self.measure_against(quat_multiply(heading, quat_from_rpy(*options.reference)))
+        self.measure_against(orientation_of(options.reference, self.scene, self.sim))
 
-    def measure_against(self, reference: Vector | tuple[float, float, float, float]) -> None:
+    def measure_against(self, reference: Vector | Four) -> None:
         """Sets the frame, (w, x, y, z) in the world, that the orientation is measured against."""
         self.reference = np.array(reference, dtype=np.float64)
-        self._from_reference = quat_conjugate(self.reference)
+        w, x, y, z = self.reference.tolist()
+        self._from_reference: Four = (w, -x, -y, -z)
+
+    def turn_orientation(self, rpy: tuple[float, float, float]) -> None:
+        """Turns every orientation by roll, pitch, yaw [rad] about the reference's axes."""
+        self.measure_against(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
+
+    def add_white_noise(self, stddev: float) -> None:
+        """Noise on top of the file's, the same number on every rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        self._more_noise = self._make_noise((NoiseModel(stddev=stddev),) * 9, "more")
+        self._covariances_of = None
 
     def products(self) -> dict[str, Product]:
         return {"imu": Product(TYPE, self._message_of)}
@@ -140,42 +150,78 @@ class Imu(Sensor):
     def default_topics(self) -> dict[str, str]:
         return {"imu": self._default_topic("imu")}
 
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        # as numbers: so few are sooner multiplied one by one than by NumPy
+        self._arm: tuple[float, ...] = tuple(self._offset_position.tolist())
+        self._mount: Four = tuple(self._offset.quaternion.tolist())
+        self._rotation: tuple[float, ...] = tuple(self._offset_rotation.reshape(9).tolist())
+        self._viewed: Any = None
+
+    # ------------------------------------------------------------------ measuring
+
     def measure(self, model: Any, data: Any) -> ImuReading:
         return self.finish(self.capture(model, data))
 
-    def capture(self, model: Any, data: Any) -> tuple[Vector, Vector, Vector]:
-        """Attitude of the body, and its velocity and proper acceleration in its own axes."""
-        body = self._body
-        velocity, acceleration = np.empty(6), np.empty(6)
-        object_velocity(model, data, _BODY, body, velocity, 1)
-        object_acceleration(model, data, _BODY, body, acceleration, 1)
-        return data.xquat[body].copy(), velocity, acceleration
+    def capture(self, model: Any, data: Any) -> bytes:
+        """How the body lies and moves, see `_look_at`; as bytes, which are the soonest taken."""
+        if data is not self._viewed:
+            self._look_at(model, data)
+        return b"".join(self._views)
 
-    def finish(self, raw: tuple[Vector, Vector, Vector]) -> ImuReading:
-        attitude, velocity, acceleration = raw
-        orientation, turn = np.empty(4), np.empty(4)
-        mujoco.mju_mulQuat(turn, attitude, self._offset.quaternion)
-        mujoco.mju_mulQuat(orientation, self._from_reference, turn)
-        rate, force = velocity[:3], acceleration[3:]
-        ax, ay, az = self._offset_position.tolist()
-        if ax or ay or az:
-            # the lever from the body's origin: tangential and centripetal acceleration, in body axes
-            wx, wy, wz = rate.tolist()
-            dx, dy, dz = acceleration[:3].tolist()
-            cx, cy, cz = wy * az - wz * ay, wz * ax - wx * az, wx * ay - wy * ax
-            lever = (
-                dy * az - dz * ay + wy * cz - wz * cy,
-                dz * ax - dx * az + wz * cx - wx * cz,
-                dx * ay - dy * ax + wx * cy - wy * cx,
-            )
-            force = force + np.array(lever)
-        return ImuReading(orientation, rate @ self._offset_rotation, force @ self._offset_rotation)
+    def _look_at(self, model: Any, data: Any) -> None:
+        """Chooses what is captured: the body's quaternion, rotation matrix and place, and the point that its spatial
+        velocity and acceleration (rotation first, in world axes) are of."""
+        body, self._viewed = self._body, data
+        root = int(model.body_rootid[body])
+        self._views = (
+            data.xquat[body],
+            data.xmat[body],
+            data.xpos[body],
+            data.subtree_com[root],
+            data.cvel[body],
+            data.cacc[body],
+        )
+
+    def finish(self, raw: bytes) -> ImuReading:
+        qw, qx, qy, qz, a, b, c, d, e, f, g, h, i, px, py, pz, ox, oy, oz, *motion = _NUMBERS(raw)
+        wx, wy, wz, vx, vy, vz, dx, dy, dz, fx, fy, fz = motion
+        attitude = (qw, qx, qy, qz)
+        # from there to the sensor, in world axes
+        ax, ay, az = self._arm
+        x = px - ox + a * ax + b * ay + c * az
+        y = py - oy + d * ax + e * ay + f * az
+        z = pz - oz + g * ax + h * ay + i * az
+        vx += wy * z - wz * y
+        vy += wz * x - wx * z
+        vz += wx * y - wy * x
+        # the acceleration of the sensor's own point: a spatial one lacks the turning of the velocity
+        fx += dy * z - dz * y + wy * vz - wz * vy
+        fy += dz * x - dx * z + wz * vx - wx * vz
+        fz += dx * y - dy * x + wx * vy - wy * vx
+        # from the world's axes to the body's, and to the sensor's
+        wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
+        fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
+        if self._mount != _AS_IT_IS:
+            attitude = _product(attitude, self._mount)
+            a, b, c, d, e, f, g, h, i = self._rotation
+            wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
+            fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
+        if self._from_reference != _AS_IT_IS:
+            attitude = _product(self._from_reference, attitude)
+        return ImuReading(attitude, (wx, wy, wz, fx, fy, fz))
 
     def perturb(self, reading: ImuReading, index: int) -> ImuReading:
-        if self.noise.is_silent:
-            return reading
-        values = self.noise.apply(np.concatenate((reading.angular_velocity, reading.linear_acceleration)), index)
-        return ImuReading(reading.orientation, values[:3], values[3:])
+        orientation, motion = reading.orientation, reading.motion
+        if not self.noise.is_silent:
+            motion = self.noise.apply_to_numbers(motion, index)
+        if not self._attitude_noise.is_silent:
+            turn = self._attitude_noise.apply_to_numbers((0.0, 0.0, 0.0), index)
+            orientation = _product(orientation, _small_turn(turn))
+        if self._more_noise is not None:
+            numbers = self._more_noise.apply_to_numbers((*motion, 0.0, 0.0, 0.0), index)
+            motion, orientation = numbers[:6], _product(orientation, _small_turn(numbers[6:]))
+        return ImuReading(orientation, motion)
 
     def memory(self) -> Any:
         return super().memory(), self.reference
@@ -186,13 +232,50 @@ class Imu(Sensor):
 
     def _message_of(self, reading: ImuReading, time_ns: int) -> Any:
         imu, vector, quaternion = self._make_types
-        w, x, y, z = reading.orientation.tolist() if self.options.enable_orientation else (1.0, 0.0, 0.0, 0.0)
+        if self._covariances_of is not self.noise.state.interval:
+            self._covary()
+        of_orientation, of_rate, of_force = self._covariances
+        w, x, y, z = reading.orientation if self.options.enable_orientation else _AS_IT_IS
+        rx, ry, rz, fx, fy, fz = reading.motion
         return imu(
             msgs.header(time_ns, self.frame_id),
             quaternion(x, y, z, w),
-            self._orientation_covariance,
-            vector(*reading.angular_velocity.tolist()),
-            self._rate_covariance,
-            vector(*reading.linear_acceleration.tolist()),
-            self._force_covariance,
+            of_orientation,
+            vector(rx, ry, rz),
+            of_rate,
+            vector(fx, fy, fz),
+            of_force,
         )
+
+    def _covary(self) -> None:
+        """The covariances of a message, anew where white noise follows the time between samples."""
+        noise, self._covariances_of = self.noise, self.noise.state.interval
+        of_all = [self._attitude_noise.covariance(), noise.covariance(), noise.covariance(3)]
+        if self._more_noise is not None:
+            of_all = [of_file + self._more_noise.covariance() for of_file in of_all]
+        if not self.options.enable_orientation:
+            of_all[0] = np.zeros(9)
+            of_all[0][0] = -1.0  # as ROS says that there is none
+        for covariance in of_all:
+            covariance.flags.writeable = False
+        self._covariances = of_all
+
+
+def _product(a: Any, b: Any) -> Four:
+    """Hamilton product of two (w, x, y, z)."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def _small_turn(vector: Sequence[float]) -> Four:
+    """The quaternion (w, x, y, z) of a rotation vector [rad]."""
+    x, y, z = vector
+    angle = math.sqrt(x * x + y * y + z * z)
+    factor = math.sin(angle / 2) / angle if angle else 0.5
+    return math.cos(angle / 2), x * factor, y * factor, z * factor

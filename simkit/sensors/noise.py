@@ -22,7 +22,7 @@ from simkit.sensors.wander import Drift, Interval, Wanderer, gauss_markov, insta
 if TYPE_CHECKING:
     from simkit.runtime.random import RandomStreams, Stream
 
-LARGEST_DEVIATION = 1e100  # of any channel; beyond it the variance leaves the numbers
+LARGEST_DEVIATION = 1e100  # of any channel, biases too; beyond it the variance leaves the numbers
 _TYPES = ("none", "gaussian", "gaussian_quantized")
 _DATA_SHEET = ("noise_density", "random_walk", "bias_instability", "correlation_time")
 _DYNAMIC = ("dynamic_bias_stddev", "dynamic_bias_correlation_time")
@@ -101,11 +101,11 @@ def read_noise(owner: Params) -> NoiseModel:
         params.mark_all_read()
         return NO_NOISE
     model = NoiseModel(
-        mean=params.number("mean", 0.0),
+        mean=params.number("mean", 0.0, minimum=-LARGEST_DEVIATION, maximum=LARGEST_DEVIATION),
         stddev=params.number("stddev", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
-        bias_mean=params.number("bias_mean", 0.0),
-        bias_stddev=params.number("bias_stddev", 0.0, minimum=0),
-        dynamic_bias_stddev=params.number("dynamic_bias_stddev", 0.0, minimum=0),
+        bias_mean=params.number("bias_mean", 0.0, minimum=-LARGEST_DEVIATION, maximum=LARGEST_DEVIATION),
+        bias_stddev=params.number("bias_stddev", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
+        dynamic_bias_stddev=params.number("dynamic_bias_stddev", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
         dynamic_bias_correlation_time=params.number("dynamic_bias_correlation_time", 0.0, minimum=0),
         precision=params.number("precision", 0.0, minimum=0),
         noise_density=params.number("noise_density", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
@@ -341,7 +341,8 @@ class UniformNoise(Noise):
 def quantise(values: Vector, precision: Vector) -> Vector:
     """To multiples of `precision` (where it is not 0), halves away from zero."""
     step = np.where(precision > 0, precision, 1.0)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         rounded = np.copysign(np.floor(np.abs(values) / step + 0.5) * step, values)
-    out: Vector = np.where((precision > 0) & np.isfinite(values), rounded, values)
+    # what has more steps in it than there are numbers is as good as rounded
+    out: Vector = np.where((precision > 0) & np.isfinite(rounded), rounded, values)
     return out

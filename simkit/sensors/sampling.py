@@ -77,7 +77,7 @@ class Sampler(abc.ABC):
         self._wandering: tuple[Noise, ...] = ()
         self._topics: dict[str, str] = {}
         self._products: Mapping[str, Product] = {}
-        self._publishers: dict[str, Publisher] = {}
+        self._is_told_where = False
         self._ends: list[tuple[str, Publisher, bool]] = []
         self._newest: Sample | None = None
         self._gathered: list[tuple[int, Any]] = []

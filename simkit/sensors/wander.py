@@ -32,6 +32,8 @@ The Allan variance at x = (averaging time)/T is 2σ²/x·(1 - (3 - 4·e^-x + e^-
 FLICKER_TIMES: Final = tuple(10.0**k for k in range(-1, 5))
 """Correlation times [s] of the processes that make a flat floor from 1 s to 1000 s, within 2.5 %."""
 
+_SHORTEST: Final = 1e-100  # [s] of a correlation time; below any step it is white noise all the same
+
 
 @dataclass(frozen=True, slots=True)
 class Wander:
@@ -53,9 +55,9 @@ class Wander:
 
     def factors(self, dt: float) -> tuple[Vector, Vector]:
         """φ and s of a step of `dt` [s]."""
-        aged = -dt / self.time
         # a long correlation time is nearly a walk, and T·(1 - exp(-2dt/T)) then loses no digits
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore", over="ignore"):
+            aged = -dt / self.time
             spent = np.where(np.isfinite(self.time), -0.5 * self.time * np.expm1(2.0 * aged), dt)
         return np.exp(aged), self.driving * np.sqrt(spent)
 
@@ -86,7 +88,7 @@ def instability(coefficients: Sequence[float], times: Sequence[float], name: str
     time = np.tile(np.array(FLICKER_TIMES[:rows])[:, None], (1, len(wanted)))
     spread = np.tile(wanted * math.sqrt(math.log(10.0) / math.pi), (rows, 1))
     for channel in np.flatnonzero(single).tolist():
-        time[:, channel] = times[channel]
+        time[:, channel] = max(times[channel], _SHORTEST)
         spread[:, channel] = 0.0
         spread[0, channel] = wanted[channel] * FLOOR / PEAK
     return Wander((spread * np.sqrt(2.0 / time)).ravel(), time.ravel(), spread.ravel(), name, rows)

@@ -65,3 +65,46 @@ def test_a_message_of_another_type_is_refused():
     bus.listen("/cmd_vel", ["geometry_msgs/msg/Twist"], lambda m: None)
     with pytest.raises(MessageError, match="Float64"):
         bus.publish("/cmd_vel", msgs.make("std_msgs/msg/Float64", data=1.0))
+
+
+def test_a_publisher_that_puts_messages_off_is_asked_before_anybody_looks_comes_or_goes():
+    bus = TopicBus()
+    publisher = bus.advertise("/x", "std_msgs/msg/Float64")
+    waiting = []
+
+    def hand_over():
+        values, waiting[:] = waiting.copy(), []
+        for value in values:
+            publisher.publish(msgs.make("std_msgs/msg/Float64", data=value))
+
+    publisher.pending = hand_over
+    first = bus.subscribe("/x")
+    waiting.append(1.0)
+    second = bus.subscribe("/x")
+    waiting.append(2.0)
+    assert [m.data for m in first.messages] == [1.0, 2.0]
+    assert [m.data for m in second.messages] == [2.0]
+    waiting.append(3.0)
+    second.close()
+    waiting.append(4.0)
+    assert first.latest.data == 4.0
+    assert [m.data for m in second.messages] == [2.0, 3.0]
+
+
+def test_patience_is_how_many_messages_anybody_will_look_at():
+    bus = TopicBus()
+    publisher = bus.advertise("/x", "std_msgs/msg/Float64")
+    assert publisher.patience == 0
+    bus.subscribe("/x", keep=3)
+    revision = bus.revision
+    bounded = publisher.patience
+    bus.subscribe("/x", keep=7)
+    assert (bounded, publisher.patience) == (3, 7)
+    assert bus.revision != revision
+    called = bus.subscribe("/x", lambda message: None)
+    assert publisher.patience == 0
+    assert publisher.is_live
+    called.close()
+    assert publisher.patience == 7
+    bus.advertise("/x", "std_msgs/msg/Float64")
+    assert publisher.patience == 0

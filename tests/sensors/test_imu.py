@@ -72,12 +72,6 @@ def test_a_given_frame_stands() -> None:
         assert sim.sensor("m::l::s").latest.header.frame_id == "odd"
 
 
-def test_an_unknown_reference_is_reported() -> None:
-    block = "<imu><orientation_reference_frame><localization>GRAV_UP</localization></orientation_reference_frame></imu>"
-    with simkit.load(world(sensor("imu", block))) as sim:
-        assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-002"] == ["warning"]
-
-
 def test_reading_later_gives_the_same_as_reading_in_time() -> None:
     noises = f"<angular_velocity><x>{noise(0.1)}</x></angular_velocity>"
     with simkit.load(classic("", noises), seed=4) as early, simkit.load(classic("", noises), seed=4) as late:

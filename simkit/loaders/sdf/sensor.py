@@ -39,9 +39,18 @@ def read_sensor(
         on_joint=on_joint,
         pose_link=pose_link,
         pose_world=link_world @ pose_link,
-        rate=params.number("update_rate", 0.0, minimum=0),
+        rate=_rate(params, scoped),
         topic=params.text("topic", "").replace("__default_topic__", ""),
         params=params,
         plugins=read_plugins(element.all("plugin"), scoped),
         where=element.where,
     )
+
+
+def _rate(params: Params, sensor: str) -> float:
+    """[Hz]; what is below zero is every step, as in Gazebo."""
+    rate = params.number("update_rate", 0.0)
+    if rate < 0:
+        message = f"sensor {sensor!r}: <update_rate>{rate:g}</update_rate> is every step, as 0 is"
+        params.diagnostics.note("SK-SENSOR-029", message, params.block("update_rate").where)
+    return max(rate, 0.0)

@@ -1,0 +1,63 @@
+"""Who is due when: by rates that repeat, and by those that repeat too late to be remembered."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import pytest
+
+from simkit.runtime.clock import Clock
+from simkit.runtime.scheduler import Scheduler
+
+
+def _note(called: list[tuple[int, int]], number: int, tick: int) -> None:
+    called.append((tick, number))
+
+
+@pytest.mark.parametrize(
+    ("step", "rates"),
+    [
+        (0.001, (200.0, 30.0, 5.0, 100.0, 7.0)),
+        (0.001, (130.0, None, 30.0)),
+        (0.0005, (1000.0 / 3, 17.3, 59.94)),  # repeats after millions of steps
+        (0.001, (1.0, 1.0)),
+    ],
+)
+def test_every_task_is_called_at_its_own_ticks_in_the_order_of_addition(
+    step: float, rates: tuple[float | None, ...]
+) -> None:
+    clock = Clock(step)
+    scheduler = Scheduler(clock)
+    called: list[tuple[int, int]] = []
+    for number, rate in enumerate(rates):
+        scheduler.every(rate, partial(_note, called, number), "sense")
+    scheduler.rewind(0)
+    last = 5000
+    grids = [clock.grid(rate or 0.0, from_start=True) for rate in rates]
+    expected = [
+        (tick, number)
+        for tick in range(1, last + 1)
+        for number, grid in enumerate(grids)
+        if grid is None or grid.next(tick - 1) == tick
+    ]
+    agenda = scheduler.sense
+    tick = 0
+    while True:
+        tick = tick + 1 if agenda.every else agenda.next
+        if tick > last:
+            break
+        for task in agenda.due(tick):
+            task(tick)
+    assert called == expected
+
+
+def test_after_a_rewind_it_goes_on_from_there() -> None:
+    scheduler = Scheduler(Clock(0.001))
+    scheduler.every(30.0, lambda tick: None, "sense")
+    scheduler.every(200.0, lambda tick: None, "sense")
+    for tick in (0, 1, 2, 33, 34, 100, 12345):
+        scheduler.rewind(tick)
+        first = scheduler.sense.next
+        assert tick < first <= tick + 5
+        assert scheduler.sense.due(first)
+        assert first < scheduler.sense.next <= first + 5
