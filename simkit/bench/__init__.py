@@ -218,7 +218,7 @@ def sensor_cost(sim: Any, sensor: Any, rounds: int) -> Figure:
         bare, aim = bare_pass(sim, sensor), 1.20 if sensor.has_depth else None
         name += ", no noise"
     elif isinstance(sensor, Lidar):
-        bare, aim = bare_scan(sensor, sim.mj_model, sim.mj_data), 1.20
+        bare, aim = bare_scan(sensor, sim.mj_model, sim.mj_data), 1.15
     tick = sim.tick
     sides: list[Callable[[], object]] = [lambda: [sensor.sample(tick) for _ in range(count)]]
     if bare is not None:

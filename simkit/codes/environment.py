@@ -5,6 +5,7 @@ from __future__ import annotations
 from simkit.codes import Code, Example
 from simkit.codes.sketch import sensor, world
 
+_GPS_PLUGIN = '<plugin name="gps" filename="libgazebo_ros_gps_sensor.so"/>'
 _PLACE = "<spherical_coordinates>{}<latitude_deg>47.4</latitude_deg></spherical_coordinates>"
 
 
@@ -79,5 +80,12 @@ CODES = (
         "a satellite receiver gives nothing: the world does not say where on a planet it is",
         "give the world `<spherical_coordinates>`",
         sensor("navsat", "<update_rate>10</update_rate>"),
+    ),
+    Code(
+        "SK-SENSOR-068",
+        "warning",
+        "a world for Gazebo Classic undoes Classic's half turn of the heading, which is not done here",
+        "`<heading_deg>0</heading_deg>`, or `<simkit:gazebo_quirks>`",
+        _instrument("gps", _GPS_PLUGIN, _PLACE.format("<heading_deg>180</heading_deg>")),
     ),
 )

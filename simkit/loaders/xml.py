@@ -15,12 +15,12 @@ from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.files import read_bounded
 from simkit.loaders.foreign import is_foreign
 from simkit.params import Params
+from simkit.scene.own_elements import PREFIX
 
 MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 200
 MAX_ELEMENTS = 3_000_000
 _COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
-OWN_PREFIX = "simkit:"
 _DECLARATION = re.compile(rb"<\?xml\b[^?]*\?>")
 
 
@@ -97,7 +97,7 @@ class _Reader:
         if len(self.stack) >= MAX_DEPTH:
             raise _Refused("SK-XML-002", f"elements nested deeper than {MAX_DEPTH}")
         where = Where(self.file, self.parser.CurrentLineNumber + self.offset)
-        element = Params(name.removeprefix(OWN_PREFIX), "", attributes, (), where, self.diagnostics)
+        element = Params(name.removeprefix(PREFIX), "", attributes, (), where, self.diagnostics)
         if self.stack:
             self.stack[-1][0].children.append(element)
         self.stack.append((element, []))

@@ -23,7 +23,7 @@ class GazeboRosRange(SensorPlugin):
     def load(self, parent: Any, params: Params) -> None:
         topic = self.ros.topic(params.text("topicName", "range"))
         radiation = _RADIATION[params.choice("radiation", tuple(_RADIATION), "ultrasound")]
-        view = params.number("fov", 0.05, minimum=0)
+        view = params.number("fov", 0.05, minimum=0, maximum=1e6)
         stddev = params.number("gaussianNoise", 0.0, minimum=0, maximum=1e6)
         rate = params.number("updateRate", 0.0, minimum=0)
         if not hasattr(parent, "range_noise"):

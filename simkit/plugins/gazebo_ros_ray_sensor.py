@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from simkit.params import Params
@@ -44,11 +45,33 @@ class GazeboRosLaser(SensorPlugin):
         _connect(self, parent, {"scan": topic}, 0.0, _RADIATION["infrared"])
 
 
-def _connect(plugin: SensorPlugin, sensor: Any, topics: dict[str, str], min_intensity: float, radiation: int) -> None:
+class GazeboRosVelodyneLaser(SensorPlugin):
+    """A PointCloud2 with x, y, z, intensity and ring, on `~/out` (after `<remapping>`; or `<topicName>`).
+
+    Only points farther than `<min_range>`, nearer than `<max_range>` and of at least `<min_intensity>`; with
+    `<organize_cloud>` every ray has its place. `<gaussianNoise>`, a standard deviation [m], is added to the sensor's.
+    """
+
+    filenames = ("libgazebo_ros_velodyne_laser.so", "libgazebo_ros_velodyne_gpu_laser.so")
+
+    def load(self, parent: Any, params: Params) -> None:
+        limits = params.number("min_range", 0.0, minimum=0), params.number("max_range", math.inf, finite=False)
+        keeps_order = params.boolean("organize_cloud", False)
+        least = params.number("min_intensity", -math.inf)
+        noise = params.number("gaussianNoise", 0.0, minimum=0)
+        topic = topic_of(self, "out", "topicName")
+        if _connect(self, parent, {"velodyne": topic}, least, _RADIATION["infrared"]):
+            parent.cloud_range, parent.keeps_order = limits, keeps_order
+            if noise > 0:
+                parent.add_ray_noise(noise)
+
+
+def _connect(plugin: SensorPlugin, sensor: Any, topics: dict[str, str], min_intensity: float, radiation: int) -> bool:
     params = plugin.params
     if not hasattr(sensor, "min_intensity"):
         params.error("SK-PLUGIN-003", f"plugin {plugin.name!r} is for a lidar, this sensor is {sensor.kind!r}")
-        return
+        return False
     sensor.frame_id = given_frame(sensor, params)
     sensor.min_intensity, sensor.radiation = min_intensity, radiation
     sensor.publish_on(topics)
+    return True

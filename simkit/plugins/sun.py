@@ -11,6 +11,7 @@ from simkit.plugins.base import WorldPlugin
 from simkit.plugins.lookups import find_light
 from simkit.plugins.sun_position import Site, SunPath, clear_sky, pressure_at
 from simkit.pose import Pose
+from simkit.runtime.solar import LARGEST
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 _DISTANCE = 149_597_870_700.0  # [m], one astronomical unit
 _MOST_KELVIN = 1000.0
+_FASTEST = 1e6  # times the true course of the sun: a year in half a minute
+_LOWEST, _HIGHEST = -500.0, 11_000.0  # [m]
 _INSTALL = "pip install 'simkit-robotics[sun]'"
 _DATE = "a date and time such as 2024-06-21T10:30:00Z (UTC where no offset is given)"
 
@@ -42,7 +45,7 @@ class Sun(WorldPlugin):
 
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
         self._start = _start(params)
-        self._scale = params.number("time_scale", 1.0, minimum=0)
+        self._scale = params.number("time_scale", 1.0, minimum=0, maximum=_FASTEST)
         self.before_step_rate = params.number("update_rate", 10.0, minimum=0)
         self._site = _site(params, scene.spherical_coordinates)
         self._irradiance = _irradiance(params)
@@ -110,7 +113,11 @@ def _site(params: Params, world: SphericalCoordinates | None) -> Site:
     def angle(name: str, default: float, most: float) -> float:
         return math.radians(params.number(name, math.degrees(default), minimum=-most, maximum=most))
 
-    elevation = params.number("elevation", world.elevation if world else 0.0, minimum=-500, maximum=11_000)
+    elevation = params.number("elevation", world.elevation if world else 0.0, minimum=_LOWEST, maximum=_HIGHEST)
+    if not params.has("elevation") and not _LOWEST <= elevation <= _HIGHEST:
+        message = f"the world's <elevation> is {elevation:g} m, allowed for a sun is {_LOWEST:g} to {_HIGHEST:g} m"
+        params.error("SK-PARAM-002", message, "or give the plugin an <elevation> of its own")
+        elevation = 0.0
     return Site(
         latitude=angle("latitude_deg", world.latitude if world else 0.0, 90),
         longitude=angle("longitude_deg", world.longitude if world else 0.0, 360),
@@ -130,9 +137,10 @@ def _irradiance(params: Params) -> float | None:
         value = float(text)
     except ValueError:
         value = math.nan
-    if math.isfinite(value) and value >= 0:
+    if 0 <= value <= LARGEST:
         return value
-    message = f"found <irradiance>{text}</irradiance>, allowed is clear_sky, or a number of at least 0 [W/m²]"
+    allowed = f"clear_sky, or a number from 0 to {LARGEST:g} [W/m²]"
+    message = f"found <irradiance>{text}</irradiance>, allowed is {allowed}"
     params.block("irradiance").error("SK-PARAM-002", message)
     return None
 

@@ -156,8 +156,8 @@ def clear_sky(elevation: float, pressure: float) -> float:
 
 
 def pressure_at(elevation: float) -> float:
-    """Pressure [Pa] of the international standard atmosphere at a height [m] of its lowest layer."""
-    return float(_SEA_LEVEL * (1.0 - 2.25577e-5 * elevation) ** 5.25588)
+    """Pressure [Pa] of the international standard atmosphere at a height [m] of its lowest layer; 0 far above it."""
+    return float(_SEA_LEVEL * max(0.0, 1.0 - 2.25577e-5 * elevation) ** 5.25588)
 
 
 @cache

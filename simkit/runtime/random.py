@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 Values = npt.NDArray[np.float64]
-_BLOCK_VALUES = 2048
+_BLOCK_VALUES = 8192
 
 
 def _key(seed: int, scoped: str, channel: str) -> npt.NDArray[np.uint64]:

@@ -141,8 +141,14 @@ class Simulation:
         return take(self)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone."""
+        """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone.
+
+        Raises:
+            ValueError: the snapshot is of another simulation.
+        """
         self._check_open()
+        if snapshot.owner is not self:
+            raise ValueError("the snapshot is of another simulation; each goes back to its own only")
         if snapshot.seed != self.seed:
             self.bus.settle()
             self.seed = snapshot.seed

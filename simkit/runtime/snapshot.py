@@ -23,6 +23,7 @@ class Snapshot:
     Attributes:
         tick: where the run stood.
         structure: what was in the world.
+        owner: the simulation that it is of.
     """
 
     tick: int
@@ -38,6 +39,7 @@ class Snapshot:
     sleep: tuple[Any, ...] = (False,)
     last_pushed: Any = None
     seed: int = 0
+    owner: Any = None
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Snapshot:
         return self
@@ -64,6 +66,7 @@ def take(sim: Simulation) -> Snapshot:
         sleep=physics.sleep.get_state(),
         last_pushed=physics.last_pushed.copy(),
         seed=sim.seed,
+        owner=sim,
     )
 
 

@@ -20,6 +20,9 @@ STANDARD_IRRADIANCE: Final = 1000.0
 """[W/m²] of a light of which nothing says it: that of standard test conditions (IEC 60904-3)."""
 
 LARGEST_NOISE: Final = 1e100  # [rad]; beyond it the variance leaves the numbers
+LARGEST: Final = 1e100
+"""Of an irradiance [W/m²] and of an area [m²], whose product is a number then."""
+
 _UP: Final = (0.0, 0.0, 1.0)
 _ALL_AROUND: Final = 2 * math.pi
 FALLOFFS: Final = ("none", "inverse_square", "attenuation")
@@ -112,9 +115,10 @@ def _irradiance(params: Params) -> float | None:
         value = float(found.value)
     except ValueError:
         value = math.nan
-    if math.isfinite(value) and value >= 0:
+    if 0 <= value <= LARGEST:
         return value
-    found.error("SK-PARAM-002", f"found <irradiance>{found.value}</irradiance>, allowed is light, or a number [W/m²]")
+    allowed = f"light, or a number from 0 to {LARGEST:g} [W/m²]"
+    found.error("SK-PARAM-002", f"found <irradiance>{found.value}</irradiance>, allowed is {allowed}")
     return None
 
 
@@ -122,7 +126,7 @@ def _panel(params: Params, normal: Vec3) -> Panel | None:
     block = params.child("panel")
     if block is None:
         return None
-    area = block.number("area", required=True, minimum=0)
+    area = block.number("area", required=True, minimum=0, maximum=LARGEST)
     return Panel(area, block.number("efficiency", required=True, minimum=0, maximum=1), _normal(block, normal))
 
 

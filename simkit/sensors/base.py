@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from simkit.diagnostics import Diagnostics
 from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
-from simkit.sensors.names import entity_topic, given_frame
+from simkit.sensors.names import check_topic, entity_topic, given_frame
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
 from simkit.sensors.sampling import Product, Sample, Sampler
 from simkit.sensors.timing import Flight, SampleTimes, read_timing
@@ -65,6 +65,7 @@ class Sensor(Sampler):
 
     def _read_common(self, scene: SceneSensor) -> None:
         params = scene.params
+        check_topic(scene.topic, params)
         params.boolean("always_on", True)
         if params.boolean("enable_metrics", False):
             message = "<enable_metrics> publishes nothing here: wall-clock rates would differ from run to run"

@@ -78,7 +78,7 @@ def read_options(params: Params) -> CameraOptions:
 
 
 def _read_image_noise(block: Params) -> NoiseModel:
-    noise = read_noise(block)
+    noise = read_noise(block, "gaussian")
     extras = (noise.bias_mean, noise.bias_stddev, noise.precision, noise.wanders, noise.noise_density)
     if any(extras):
         message = "of a camera's noise only mean and stddev are used, as in Gazebo"

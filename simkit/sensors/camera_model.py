@@ -16,6 +16,7 @@ MOST_PIXELS = 4096
 _MOST_PIXELS = 1e9  # of focal lengths and principal points
 _MOST_BENT = 1e3  # of coefficients of a distortion
 _WIDEST = 3.1
+_FARTHEST = 1e30  # [m] of a clip plane; the reciprocal of it is still a number of 32 bits
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +96,7 @@ def read_camera_model(params: Params, width: int, height: int) -> CameraModel:
     """The `<camera>` block's optics for an image of `width` by `height` [px]."""
     hfov = params.number("horizontal_fov", 1.047, minimum=0.01, maximum=_WIDEST)
     clip = params.block("clip")
-    near, far = clip.number("near", 0.1, minimum=1e-6), clip.number("far", 100.0, minimum=1e-6)
+    near, far = clip.number("near", 0.1, minimum=1e-6), clip.number("far", 100.0, minimum=1e-6, maximum=_FARTHEST)
     if not far > near:
         clip.error("SK-PARAM-002", f"found clip planes from {near:g} to {far:g} m, allowed is a <far> beyond <near>")
         near, far = 0.1, 100.0

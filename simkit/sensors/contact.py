@@ -16,14 +16,16 @@ from simkit.sensors.base import Product, Sensor
 from simkit.sensors.collision_names import find_collision
 from simkit.sensors.contact_messages import contacts_message, states_message
 from simkit.sensors.contact_reading import ContactReading, RawContacts
+from simkit.sensors.names import check_topic
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.scene import SceneModel, SceneSensor
+    from simkit.scene import SceneModel, SceneSensor, SceneWorld
 
 CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
 STATES: Final = "gazebo_msgs/msg/ContactsState"
 _WORLD_FRAMES = ("", "world", "map")
+_PHYSICS = "physics-system"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +47,9 @@ def read_options(params: Params) -> ContactOptions:
     for collision in block.all("collision"):
         named.setdefault(collision.attribute("name") or collision.value, collision.where)
     collisions = tuple((name, where) for name, where in named.items() if name)
-    return ContactOptions(collisions, block.text("topic", "").replace("__default_topic__", ""))
+    topic = block.text("topic", "").replace("__default_topic__", "")
+    check_topic(topic, block)
+    return ContactOptions(collisions, topic)
 
 
 class Contact(Sensor):
@@ -106,6 +110,7 @@ class Contact(Sensor):
         self._quirks = bool(self.sim.world.gazebo_quirks)
         if self._quirks:
             self.update_rate = 0.0  # Gazebo tells of contacts at every step, whatever <update_rate> says
+        self._is_named = _names_are_told(self.sim.world)
 
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)
@@ -185,7 +190,13 @@ class Contact(Sensor):
         return raw.reading()
 
     def _contacts(self, reading: ContactReading, time_ns: int) -> Any:
-        return contacts_message(reading, msgs.header(time_ns, self.frame_id))
+        return contacts_message(reading, msgs.header(time_ns, self.frame_id), self._is_named)
 
     def _states(self, reading: ContactReading, time_ns: int) -> Any:
         return states_message(reading, msgs.header(time_ns, reading.frame_id))
+
+
+def _names_are_told(world: SceneWorld) -> bool:
+    """`<include_entity_names>` of the Physics system that the world lists; Gazebo then tells only ids."""
+    physics = (p for p in world.plugins if p.name.endswith("::Physics") or _PHYSICS in p.filename)
+    return all(p.params.block("contacts").boolean("include_entity_names", True) for p in physics)

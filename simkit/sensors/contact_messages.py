@@ -50,15 +50,20 @@ def _types() -> _Types:
     )
 
 
-def contacts_message(reading: ContactReading, header: Any) -> Any:
-    """`ros_gz_interfaces/msg/Contacts`: world frame; wrenches about the contact's point."""
+def contacts_message(reading: ContactReading, header: Any, is_named: bool = True) -> Any:
+    """`ros_gz_interfaces/msg/Contacts`: world frame; wrenches about the contact's point.
+
+    Args:
+        is_named: whether the collisions' names are said, and not only their ids.
+    """
     types = _types()
-    return types.contacts(header, [_contact(types, pair, header) for pair in reading.pairs])
+    return types.contacts(header, [_contact(types, pair, header, is_named) for pair in reading.pairs])
 
 
-def _contact(types: _Types, pair: ContactPair, header: Any) -> Any:
+def _contact(types: _Types, pair: ContactPair, header: Any, is_named: bool) -> Any:
     vector, wrench = types.vector, types.wrench
-    names = types.string(pair.collision1), types.string(pair.collision2)
+    one, other = (pair.collision1, pair.collision2) if is_named else ("", "")
+    names = types.string(one), types.string(other)
     ids = types.number(pair.ids[0]), types.number(pair.ids[1])
     wrenches = []
     for (fx, fy, fz), (tx, ty, tz) in zip(pair.forces.tolist(), pair.torques.tolist(), strict=True):
@@ -66,8 +71,8 @@ def _contact(types: _Types, pair: ContactPair, header: Any) -> Any:
         on_second = wrench(vector(-fx, -fy, -fz), vector(-tx, -ty, -tz))
         wrenches.append(types.joint_wrench(header, names[0], ids[0], names[1], ids[1], on_first, on_second))
     return types.contact(
-        types.entity(pair.ids[0], pair.collision1, _COLLISION),
-        types.entity(pair.ids[1], pair.collision2, _COLLISION),
+        types.entity(pair.ids[0], one, _COLLISION),
+        types.entity(pair.ids[1], other, _COLLISION),
         [vector(*p) for p in pair.positions.tolist()],
         [vector(*n) for n in pair.normals.tolist()],
         pair.depths,

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit import msgs
 from simkit.compiler.groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION, VISUAL
 from simkit.diagnostics import Diagnostics
-from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.clouds import point_cloud
-from simkit.sensors.noise import NoiseModel, UniformNoise, read_noise
+from simkit.sensors.lidar_options import ALL_VISIBLE, LidarOptions, read_options
+from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
 from simkit.sensors.rays import RayFan, fan_directions
 
 if TYPE_CHECKING:
@@ -23,96 +24,32 @@ if TYPE_CHECKING:
 
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 OLD_CLOUD, RANGE = "sensor_msgs/msg/PointCloud", "sensor_msgs/msg/Range"
-_NOTHING, _INFINITE = np.array(0.0), np.array(np.inf)
-_MOST_RAYS = 4_000_000
-_RING_POINT = np.dtype(
-    {
-        "names": ["x", "y", "z", "intensity", "ring"],
-        "formats": ["<f4"] * 4 + ["<u2"],
-        "offsets": [0, 4, 8, 12, 16],
-        "itemsize": 18,
-    }
-)
+_BRIGHTEST = 2000.0  # of Gazebo's rendered lidars
+_NAMES, _FORMATS = ["x", "y", "z", "intensity", "ring"], ["<f4", "<f4", "<f4", "<f4", "<u2"]
+_RING_POINT = np.dtype({"names": _NAMES, "formats": _FORMATS, "offsets": [0, 4, 8, 12, 16], "itemsize": 18})
+_WIDE_POINT = np.dtype({"names": _NAMES, "formats": _FORMATS, "offsets": [0, 4, 8, 16, 20], "itemsize": 32})
 _POINT = np.dtype([(name, "<f4") for name in ("x", "y", "z", "intensity")])
 
 
-@dataclass(frozen=True, slots=True)
-class Sweep:
-    """`samples` angles from `low` to `high` [rad], both included."""
-
-    samples: int
-    low: float
-    high: float
-
-    @property
-    def step(self) -> float:
-        return (self.high - self.low) / (self.samples - 1) if self.samples > 1 else 0.0
-
-    @property
-    def angles(self) -> Vector:
-        """[rad], shape (samples,)."""
-        angles: Vector = self.low + self.step * np.arange(float(self.samples))
-        return angles
-
-
-@dataclass(frozen=True, slots=True)
-class LidarOptions:
-    """The `<lidar>` or `<ray>` block; ranges in m."""
-
-    horizontal: Sweep
-    vertical: Sweep
-    range_min: float
-    range_max: float
-    noise: NoiseModel
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class LidarReading:
-    """Ranges [m] and intensities of all rays, layer by layer from the lowest, shape (layers · samples,)."""
+    """What all rays found, layer by layer from the lowest, each array of shape (layers · samples,).
+
+    Attributes:
+        ranges: [m].
+        intensities: `laser_retro` of what was hit.
+        infinite: where the range is no number of metres.
+        hits: what was hit, as positions in `geoms`; -1 for nothing.
+        geoms: MuJoCo's; the last is -1.
+        names: scoped names by geom; the last is empty.
+    """
 
     ranges: Vector
     intensities: Vector
-
-
-def read_options(params: Params) -> LidarOptions:
-    block = params.child("lidar") or params.block("ray")
-    scan, limits = block.block("scan"), block.block("range")
-    limits.child("resolution")
-    block.child("visualize")
-    low = limits.number("min", 0.0, minimum=0)
-    high = limits.number("max", 0.0, minimum=0, finite=False)
-    if not high > low:
-        limits.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
-    horizontal = _read_sweep(scan.block("horizontal"), 640)
-    vertical = _read_sweep(scan.block("vertical"), 1)
-    if horizontal.samples * vertical.samples > _MOST_RAYS:
-        rays = horizontal.samples * vertical.samples
-        scan.error("SK-PARAM-002", f"found {rays} rays, allowed are at most {_MOST_RAYS}")
-        horizontal = vertical = Sweep(1, 0.0, 0.0)
-    _read_mask(block)
-    return LidarOptions(horizontal, vertical, low, high, read_noise(block))
-
-
-def _read_sweep(params: Params, samples: int) -> Sweep:
-    resolution = params.number("resolution", 1.0, minimum=0)
-    count = params.integer("samples", samples, minimum=1)
-    if count > 1 and resolution not in (0.0, 1.0):
-        message = f"<resolution>{resolution:g}</resolution>: one ray per sample is cast, as Gazebo does"
-        params.diagnostics.note("SK-SENSOR-003", message, params.where)
-    low, high = params.number("min_angle", 0.0), params.number("max_angle", 0.0)
-    if high < low:
-        params.error(
-            "SK-PARAM-002", f"found angles from {low:g} to {high:g}, allowed is a <max_angle> of at least <min_angle>"
-        )
-    return Sweep(count, low, high)
-
-
-def _read_mask(block: Params) -> None:
-    """Only a mask that hides nothing is taken; another one stays unread and so is reported."""
-    if block.text("visibility_mask", "4294967295") not in ("4294967295", "-1", "0xffffffff", "0xFFFFFFFF"):
-        child = block.child("visibility_mask")
-        assert child is not None
-        block.diagnostics.warning("SK-SENSOR-004", "<visibility_mask> is not used: everything is seen", child.where)
+    infinite: npt.NDArray[np.bool_]
+    hits: npt.NDArray[np.int32]
+    geoms: npt.NDArray[np.int32]
+    names: npt.NDArray[np.object_]
 
 
 class Lidar(Sensor):
@@ -122,8 +59,13 @@ class Lidar(Sensor):
     exist for them; rendered lidars say -inf for a nearer surface. The sensor's own link is never hit.
 
     Attributes:
-        min_intensity: lowest intensity in messages.
+        min_intensity: lowest intensity in messages; of a `velodyne` cloud, of points in it.
+        cloud_range: shortest and longest range in a `velodyne` cloud [m], both excluded.
+        keeps_order: whether a `velodyne` cloud has a place for every ray.
         radiation: of `Range` messages: 0 ultrasound, 1 infrared.
+        field_of_view: of `Range` messages [rad]; None is that of the rays.
+        ray_noise: of each ray, besides its own noise.
+        range_noise: one draw [m] for all rays of a sample, so of their nearest, besides the noise of each.
     """
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
@@ -131,18 +73,29 @@ class Lidar(Sensor):
     options: LidarOptions
     noise: UniformNoise
     min_intensity = 0.0
+    cloud_range = (0.0, math.inf)
+    keeps_order = False
     radiation = 1
+    field_of_view: float | None = None
+    ray_noise: UniformNoise | None = None
+    range_noise: Noise | None = None
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         self.options = options = read_options(scene.params)
         self.sees_visuals = scene.kind.startswith("gpu_")
+        if not self.sees_visuals and options.visibility_mask != ALL_VISIBLE:
+            message = "<visibility_mask> hides nothing from this sensor: collisions have no <visibility_flags>"
+            diagnostics.warning("SK-SENSOR-004", message, scene.where, f"a gpu_{scene.kind} sees visuals")
         groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
-        self._directions = fan_directions(options.horizontal.angles, options.vertical.angles)
-        self._fan = RayFan(self._directions, groups, options.range_max)
+        grid = options.vertical.angles, options.horizontal.angles
+        self._directions = fan_directions(grid[1], grid[0])
+        self._fan = RayFan(self._directions, groups, options.range_max, grid=grid)
+        self._start = 0.0 if self.sees_visuals else options.range_min
         self._retro: Vector | None = None
-        self._dark = np.zeros(self._fan.count)  # shared by all readings, which are never written to
-        self._dark.flags.writeable = False
+        # shared by all readings and messages, which are never written to
+        self._dark, self._dark_layer = np.zeros(self._fan.count), np.zeros(options.horizontal.samples, np.float32)
+        self._dark.flags.writeable = self._dark_layer.flags.writeable = False
         # as arrays: NumPy takes as long to look at a number as to go through a planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
 
@@ -172,6 +125,7 @@ class Lidar(Sensor):
             "hits": Product(CLOUD, self._cloud_of_hits),
             "old_hits": Product(OLD_CLOUD, self._old_cloud),
             "range": Product(RANGE, self._range_message),
+            "velodyne": Product(CLOUD, self._velodyne_cloud),
         }
 
     def default_topics(self) -> dict[str, str]:
@@ -180,11 +134,28 @@ class Lidar(Sensor):
 
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)
-        link = compiled.names.link(self.scene.parent)
+        names = compiled.names
+        link = names.link(self.scene.parent)
         own = link.visuals if self.sees_visuals else link.ray_geoms
-        self._fan.bind(compiled.model, compiled.names, self._body, own)
+        self._is_moved = bool(self._offset_position.any())
+        self._is_turned = not np.array_equal(self._offset_rotation, np.eye(3))
+        hidden = self._masked(names)
+        self._fan.bind(compiled.model, names, self._body, own, hidden=hidden, offset=self._offset)
         kind = "visuals" if self.sees_visuals else "collisions"
-        self._retro = compiled.names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
+        self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
+        self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
+
+    def _masked(self, names: Any) -> list[int]:
+        """Geoms of the visuals that the mask hides."""
+        mask = self.options.visibility_mask
+        if not self.sees_visuals:
+            return []
+        found: list[int] = []
+        for link in names.links.values():
+            hidden = {visual.scoped for visual in link.scene.visuals if not visual.visibility_flags & mask}
+            if hidden:
+                found += [geom for geom in link.visuals if names.geom_owner(geom)[1] in hidden]
+        return found
 
     def _reflectances(self, compiled: Any) -> Vector | None:
         """`laser_retro` by geom id (the last entry, index -1, is for no hit), or None where all are 0."""
@@ -199,45 +170,75 @@ class Lidar(Sensor):
             return None
         table = np.zeros(compiled.model.ngeom + 1)
         table[list(found)] = list(found.values())
+        if self.sees_visuals and self.sim.world.gazebo_quirks:
+            np.clip(table, 0.0, _BRIGHTEST, out=table)
         return table
 
     # ------------------------------------------------------------------ measuring
 
-    def measure(self, model: Any, data: Any) -> LidarReading:
-        options, fan = self.options, self._fan
-        origin, rotation = self._frame_in_world(data)
-        fan.cast(model, data, origin, rotation)
-        ranges = fan.distances.copy()
-        low, high = self._limits
-        nothing = ranges < _NOTHING
-        nothing |= ranges > high
-        np.copyto(ranges, _INFINITE, where=nothing)
-        if np.minimum.reduce(ranges) < options.range_min:
-            too_near = ranges < low
-            if self.sees_visuals:
-                ranges[too_near] = -np.inf
-            else:
-                again = np.flatnonzero(too_near)
-                fan.recast(model, data, origin, options.range_min, again)
-                found = fan.distances[again]
-                ranges[again] = np.where((found < 0) | (found > options.range_max), np.inf, found)
-        return LidarReading(ranges, self._intensities(ranges))
+    @property
+    def hits(self) -> npt.NDArray[np.object_] | None:
+        """What each ray of the newest sample hit, without noise, or None before the first.
 
-    def _intensities(self, ranges: Vector) -> Vector:
+        Scoped names of collisions (of visuals for a rendered lidar), layer by layer from the lowest, shape
+        (layers · samples,); empty where nothing is within the range.
+        """
+        sample = self._sample
+        if sample is None:
+            return None
+        self._settle(sample)
+        reading = sample.truth
+        geoms = reading.geoms[reading.hits]
+        geoms[reading.ranges == np.inf] = -1
+        names: npt.NDArray[np.object_] = reading.names[geoms]
+        return names
+
+    def measure(self, model: Any, data: Any) -> LidarReading:
+        fan = self._fan
+        origin, rotation = self._place(data)
+        fan.cast(model, data, origin, rotation, self._start)
+        ranges, infinite = fan.distances, fan.infinite
+        if self.sees_visuals and np.minimum.reduce(ranges) < self.options.range_min:
+            too_near = ranges < self.options.range_min
+            ranges[too_near] = -np.inf
+            infinite = infinite | too_near
+        return LidarReading(ranges, self._intensities(infinite), infinite, fan.hits, fan.ids, self._names)
+
+    def _place(self, data: Any) -> tuple[Vector, Vector]:
+        """The same as `_frame_in_world`, without the arithmetic of an offset that is none."""
+        place, turn = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
+        if self._is_moved:
+            place = place + turn @ self._offset_position
+        return place, turn @ self._offset_rotation if self._is_turned else turn
+
+    def _intensities(self, infinite: npt.NDArray[np.bool_]) -> Vector:
         if self._retro is None:
             return self._dark
-        values: Vector = np.where(np.isfinite(ranges), self._retro[self._fan.geoms], 0.0)
+        values: Vector = self._retro[self._fan.geoms]
+        values[infinite] = 0.0
         return values
 
     def perturb(self, reading: LidarReading, index: int) -> LidarReading:
-        if self.noise.is_silent:
+        more, shift = self.ray_noise, self.range_noise
+        if self.noise.is_silent and more is None and shift is None:
             return reading
-        ranges = self.noise.apply(reading.ranges, index)
-        infinite, (low, high) = np.isinf(reading.ranges), self._limits
+        ranges, (low, high) = self.noise.apply(reading.ranges, index), self._limits
+        if more is not None:
+            ranges = more.apply(ranges, index)
+        if shift is not None:
+            ranges += shift.apply(np.zeros(1), index)
         np.maximum(ranges, low, out=ranges)
         np.minimum(ranges, high, out=ranges)
-        np.copyto(ranges, reading.ranges, where=infinite)
-        return LidarReading(ranges, reading.intensities)
+        np.copyto(ranges, reading.ranges, where=reading.infinite)
+        return LidarReading(ranges, reading.intensities, reading.infinite, reading.hits, reading.geoms, reading.names)
+
+    def add_ray_noise(self, stddev: float) -> None:
+        """Sets `ray_noise`, of a standard deviation [m]."""
+        self.ray_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), self._fan.count, "more on ranges")
+
+    def add_range_noise(self, stddev: float) -> None:
+        """Sets `range_noise`, of a standard deviation [m]."""
+        self.range_noise = self._make_noise((NoiseModel(stddev=stddev),), "nearest range")
 
     # ------------------------------------------------------------------ messages
 
@@ -245,8 +246,10 @@ class Lidar(Sensor):
         """All rays of a planar lidar; of several layers the middle one."""
         o, n = self.options, self.options.horizontal.samples
         first = o.vertical.samples // 2 * n
-        intensities = reading.intensities[first : first + n].astype(np.float32)
-        if self.min_intensity > 0:
+        if self._retro is None and self.min_intensity <= 0:
+            intensities = self._dark_layer
+        else:
+            intensities = reading.intensities[first : first + n].astype(np.float32)
             np.maximum(intensities, self.min_intensity, out=intensities)
         return self._scan_type(
             msgs.header(time_ns, self.frame_id),
@@ -284,6 +287,21 @@ class Lidar(Sensor):
             points[name] = places[:, axis]
         points["intensity"] = np.maximum(reading.intensities[which], self.min_intensity)
 
+    def _velodyne_cloud(self, reading: LidarReading, time_ns: int) -> Any:
+        """Points within `cloud_range`, layer by layer from the lowest, or every ray, not a number where it has none."""
+        height, width = self.options.vertical.samples, self.options.horizontal.samples
+        low, high = self.cloud_range
+        wanted = (reading.ranges > low) & (reading.ranges < high) & (reading.intensities >= self.min_intensity)
+        which = np.arange(self._fan.count) if self.keeps_order else np.flatnonzero(wanted)
+        points = np.zeros(len(which), dtype=_WIDE_POINT)
+        self._fill(points, reading, which)
+        points["ring"] = which // width
+        if not self.keeps_order:
+            return point_cloud(msgs.header(time_ns, self.frame_id), points, 1, len(points), True)
+        for axis in "xyz":
+            points[axis][~wanted] = np.nan
+        return point_cloud(msgs.header(time_ns, self.frame_id), points, height, width, bool(wanted.all()))
+
     def _old_cloud(self, reading: LidarReading, time_ns: int) -> Any:
         hit = np.flatnonzero(np.isfinite(reading.ranges))
         places = self._directions[hit] * reading.ranges[hit, None]
@@ -302,8 +320,20 @@ class Lidar(Sensor):
             RANGE,
             header=msgs.header(time_ns, self.frame_id),
             radiation_type=self.radiation,
-            field_of_view=max(o.horizontal.high - o.horizontal.low, o.vertical.high - o.vertical.low),
+            field_of_view=self._view_of_rays() if self.field_of_view is None else self.field_of_view,
             min_range=o.range_min,
             max_range=o.range_max,
             range=float(reading.ranges.min()),
         )
+
+    def _view_of_rays(self) -> float:
+        o = self.options
+        return max(o.horizontal.high - o.horizontal.low, o.vertical.high - o.vertical.low)
+
+
+def _scoped_names(compiled: Any) -> npt.NDArray[np.object_]:
+    """Of the collision or visual that each geom is part of; the last, for no geom, is empty."""
+    count = compiled.model.ngeom
+    table = np.empty(count + 1, dtype=object)
+    table[:] = [*(compiled.names.geom_owner(geom)[1] for geom in range(count)), ""]
+    return table

@@ -26,3 +26,10 @@ def given_frame(params: Params) -> str:
     """The frame that the sensor's block names, in today's spelling or an older one; empty where it names none."""
     names = [params.text(element, "") for element in ("frame_id", "gz_frame_id", "ignition_frame_id")]
     return next((name for name in names if name), "")
+
+
+def check_topic(topic: str, block: Params) -> None:
+    """Reports a `<topic>` of a block of which no character may stand in a topic's name."""
+    if topic and valid_topic(topic) == "/":
+        found = f"found <topic>{topic}</topic>"
+        block.block("topic").error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -18,7 +18,7 @@ from simkit.sensors.motion import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 if TYPE_CHECKING:
-    from simkit.scene import SceneSensor
+    from simkit.scene import SceneSensor, SphericalCoordinates
 
 FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stamped", "gps_msgs/msg/GPSFix"
 _UNKNOWN, _DIAGONAL = 0, 2  # types of a position's covariance
@@ -103,14 +103,25 @@ class NavSat(Sensor):
         flat, climb = options.horizontal_velocity, options.vertical_velocity
         self.noise = self._make_noise((level, level, plumb, flat, flat, climb), "navsat")
         self._quirks = self.sim.world.gazebo_quirks
-        self._place = None if place is None else PlaceOnPlanet(place)
+        self._place: PlaceOnPlanet | None = None
         if place is None:
             message = f"sensor {self.scoped!r} gives nothing: the world has no <spherical_coordinates>"
             hint = "give the world <spherical_coordinates> with latitude_deg, longitude_deg and elevation"
             self.diagnostics.warning("SK-SENSOR-067", message, self.scene.where, hint)
         else:
-            sine, cosine = math.sin(place.heading), math.cos(place.heading)
-            self._heading = np.array(((cosine, -sine), (sine, cosine)))
+            self._stand(place)
+
+    def _stand(self, place: SphericalCoordinates) -> None:
+        self._place = PlaceOnPlanet(place)
+        sine, cosine = math.sin(place.heading), math.cos(place.heading)
+        self._heading = np.array(((cosine, -sine), (sine, cosine)))
+
+    def err_as_classic(self) -> None:
+        """With `<gazebo_quirks>` the world's heading is half a turn off, as in Gazebo Classic, and nothing else is."""
+        place = self.sim.world.spherical_coordinates
+        if self._quirks and place is not None:
+            self._quirks = False
+            self._stand(replace(place, heading=place.heading + math.pi))
 
     def accepts(self, tick: int) -> bool:
         return self._place is not None

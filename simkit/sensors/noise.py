@@ -81,17 +81,20 @@ class NoiseModel:
 NO_NOISE = NoiseModel()
 
 
-def read_noise(owner: Params) -> NoiseModel:
+def read_noise(owner: Params, default: str = "none") -> NoiseModel:
     """The `<noise>` of a block; its type may be an attribute or an element.
 
-    With none of the two it is `none`, as in SDF, unless it is in a data sheet's words, which SDF has not.
+    With none of the two it is `default`, unless it is in a data sheet's words, which SDF has not.
+
+    Args:
+        default: SDF's for this block: `gaussian` for rays and cameras, `none` for everything else.
     """
     params = owner.child("noise")
     if params is None:
         return NO_NOISE
     in_our_words = any(params.has(name) for name in _DATA_SHEET)
     given = params.attribute("type") or params.text("type", "")
-    kind = given or ("gaussian" if in_our_words else "none")
+    kind = given or ("gaussian" if in_our_words else default)
     if kind not in _TYPES:
         params.error("SK-PARAM-002", f"found noise of type {kind!r}, allowed is {', '.join(_TYPES)}")
     if kind == "none":

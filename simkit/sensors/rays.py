@@ -1,133 +1,240 @@
-"""Casting a fan of rays from one point, by MuJoCo's own ray casting."""
+"""Casting a fan of rays from one point.
+
+How is decided by the number of rays and by what the compiled model holds, never by what happened before:
+
+- Without triangles (meshes, heightmaps), fewer than `MANY_RAYS` rays are cast by the engine through planes and shapes
+  alone, more of them in NumPy.
+- Triangles are traced by Embree where `embreex` is installed, what stands still as one scene that all fans share, each
+  moving body by the rays that may meet it. Of many rays, boxes that stand still are traced as triangles too.
+- Without `embreex` a model with triangles is left to the engine whole.
+
+All ways agree: shapes and planes are exact everywhere, triangles are met in their own plane, worked out in float64. It is
+only Embree's float32 that says on which side of the edge of a mesh a ray passes.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
-from typing import Any
+from typing import Any, Final
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.pose import Vector
+from simkit.pose import Pose, Vector
+from simkit.sensors.ray_engine import Rays, limit_of
+from simkit.sensors.ray_shapes import Fan, Shapes, cast_on_plane, cast_on_shapes, turned
+from simkit.sensors.ray_sight import may_meet
+from simkit.sensors.ray_targets import MOST_MOVING, Ids, RayTargets
+from simkit.sensors.ray_triangles import Movers, TriangleBody
 
-_UNUSED_GROUP = 0
-"""Nothing of ours is in this group, so what is put there for a moment is not hit."""
-_ENDLESS = 1e9  # [m]
+MANY_RAYS: Final = 2048
+"""From so many rays on NumPy is faster on shapes than the engine."""
+
+
+_SOME = 1 << 18  # rays traced at a time: bounds what is needed besides the result
+_LARGEST = float(np.finfo(np.float64).max)
 
 
 class RayFan:
     """Fixed directions in a frame, cast again and again.
 
+    Attributes:
+        distances: of the last cast [m], shape (n,); infinite where nothing is hit within the reach.
+        infinite: where they are, shape (n,).
+        hits: what was hit, shape (n,), as positions in `ids`; -1 for nothing. Each cast makes these arrays anew.
+        ids: geoms of the compiled model; the last is -1.
+        groups: geom groups that are seen, shape (6,), 1 for each.
+        body: that is not hit; 0 for none.
+
     Args:
         directions: unit vectors in the sensor's frame, shape (n, 3).
         groups: geom groups that are seen.
-        reach: longest distance of interest [m].
+        reach: longest distance [m].
+        grid: elevations and azimuths [rad], ascending, where the directions are all their pairs, layer by layer.
+        use_embree: False leaves triangles to the engine even where `embreex` is installed.
     """
 
-    def __init__(self, directions: Vector, groups: Sequence[int], reach: float) -> None:
+    def __init__(
+        self,
+        directions: Vector,
+        groups: Sequence[int],
+        reach: float,
+        *,
+        grid: tuple[Vector, Vector] | None = None,
+        use_embree: bool = True,
+    ) -> None:
         self.directions = np.ascontiguousarray(directions, dtype=np.float64)
         self.count = len(directions)
-        self.reach = float(reach)
+        self.reach, self._limit = float(reach), limit_of(reach)
+        self._clear()
+        self.infinite = np.full(self.count, True)
+        self.ids = np.array((-1,), dtype=np.int32)
+        self._sight: Ids | None = None
+        self._standing: list[TriangleBody] | None = None
+        self._movers = Movers([])
         self._rotated = np.empty((self.count, 3))
-        self._flat = self._rotated.reshape(-1)
-        self.distances = np.empty(self.count)
-        self.geoms = np.empty(self.count, dtype=np.int32)
-        self._groups = np.zeros(6, dtype=np.uint8)
-        self._groups[list(groups)] = 1
+        self.groups = np.zeros(6, dtype=np.uint8)
+        self.groups[list(groups)] = 1
+        self._grid, self._fan = grid, None if self.count < MANY_RAYS else Fan(self.directions, grid)
+        self._use_embree = use_embree
+        self._bounds = -np.pi / 2, np.pi / 2
+        if grid is not None and np.abs(grid[0]).max() <= np.pi / 2:
+            self._bounds = float(grid[0].min()), float(grid[0].max())
 
-    def bind(self, model: Any, names: Any, body: int, own_geoms: Sequence[int]) -> None:
-        """Says what is not hit: the geoms of a moving body, or some geoms of the world; `names` are the model's."""
-        self._exclude = body if body > 0 else -1
-        self._hidden = list(own_geoms) if body <= 0 else []
-        bounds = partial(_bounds_to_widen, model, self._groups)
-        self._roots, self._wide = names.shared(f"bounds of groups {self._groups.tolist()}", bounds)
-        self._narrow = model.bvh_aabb[self._roots]
+    @property
+    def geoms(self) -> npt.NDArray[np.int32]:
+        """What was hit, shape (n,): geoms of the compiled model, -1 for nothing."""
+        return self.ids[self.hits]
 
-    def cast(self, model: Any, data: Any, origin: Vector, rotation: Vector) -> None:
-        """Fills `distances` [m] (negative: nothing hit) and `geoms`, shape (n,).
+    def bind(
+        self,
+        model: Any,
+        names: Any,
+        body: int,
+        own_geoms: Sequence[int],
+        *,
+        hidden: Sequence[int] = (),
+        offset: Pose | None = None,
+    ) -> None:
+        """Says in what the rays are cast.
 
         Args:
-            origin: where the rays start, in the world, shape (3,).
+            model: compiled.
+            names: the compiler's name map of it.
+            body: that carries the rays: it is not hit, where it moves.
+            own_geoms: what is not hit of a body that does not.
+            hidden: other geoms that are not seen.
+            offset: the directions' frame in the body's, where that stays: less has to be looked at then.
+        """
+        self.body = body if body > 0 else 0
+        self._own = [] if body > 0 else list(own_geoms)
+        self._targets = self._find_targets(model, names, hidden)
+        self._carrier = self._targets.carrier_of(self.body, self._own)
+        if self._carrier < 0 and not self._targets.needs_engine:
+            self._targets = self._find_targets(model, names, (*hidden, *self._own))
+            self._carrier = 0
+        self._offset, self._sight, self._standing = offset, None, None
+        targets = self._targets
+        # only the reduced model has numbers of its own
+        self.ids = np.append(np.arange(model.ngeom), -1).astype(np.int32)
+        self._by_engine = self.count < MANY_RAYS and targets.moving_shapes <= MOST_MOVING
+        if not self._by_engine and self._fan is None:
+            self._fan = Fan(self.directions, self._grid)
+
+    def _find_targets(self, model: Any, names: Any, hidden: Sequence[int]) -> RayTargets:
+        def find() -> RayTargets:
+            seen = self.groups[model.geom_group] > 0
+            seen[list(hidden)] = False
+            return RayTargets(model, names, seen, self._use_embree)
+
+        what = f"seen by rays: groups {self.groups.tolist()}, {self._use_embree}, without {sorted(hidden)}"
+        found: RayTargets = names.shared(what, find)
+        return found
+
+    def cast(self, model: Any, data: Any, origin: Vector, rotation: Vector, start: float = 0.0) -> None:
+        """Fills `distances` and `geoms`.
+
+        Args:
+            model: the one that the fan is bound to.
+            data: of that model, with up-to-date places.
+            origin: where distances are counted from, in the world, shape (3,) [m].
             rotation: of the sensor's frame, shape (3, 3).
+            start: how far from there the rays begin [m].
         """
-        np.matmul(self.directions, rotation.T, out=self._rotated)
-        kept = self._open_eyes(model)
-        try:
-            mujoco.mj_multiRay(
-                model, data, origin, self._flat, self._groups, 1, self._exclude,
-                self.geoms, self.distances, None, self.count, self.reach,
-            )  # fmt: skip
-        finally:
-            self._shut_eyes(model, kept)
+        turned(self.directions, rotation.T, out=self._rotated)
+        rays = Rays(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self._bounds)
+        targets = self._targets
+        if targets.needs_engine:
+            self.distances, self.hits, self.infinite = targets.whole.cast(data, rays, self.body, self._own)
+            return
+        if self._by_engine:
+            shapes = targets.shapes_by_engine
+            if shapes is not None:
+                if self._sight is None:
+                    self._sight = shapes.sight(self._carrier, self.body, self._offset, *self._bounds)
+                self.distances, self.hits, self.infinite = shapes.cast(data, rays, self._sight)
+                if not targets.triangles_for_engine:
+                    self.ids = shapes.ids
+                    return
+                self.hits = shapes.ids[self.hits]
+            else:
+                self._clear()
+            self._cast_on_triangles(targets.triangles_for_engine, data, rays)
+        else:
+            self._cast_by_numpy(targets, data, rays, rotation)
+        self.infinite = self.distances > min(self.reach, _LARGEST)
+        np.copyto(self.distances, np.inf, where=self.infinite)
 
-    def recast(self, model: Any, data: Any, origin: Vector, start: float, which: npt.NDArray[np.intp]) -> None:
-        """Casts some rays of the last `cast` again, from `start` [m] along each; distances count from the origin."""
-        geom = np.empty(1, dtype=np.int32)
-        kept = self._open_eyes(model)
-        try:
-            for i in which.tolist():
-                direction = self._rotated[i]
-                found = mujoco.mj_ray(
-                    model, data, origin + start * direction, direction, self._groups, 1, self._exclude, geom, None
-                )
-                self.distances[i] = start + found if found >= 0 else -1.0
-                self.geoms[i] = geom[0]
-        finally:
-            self._shut_eyes(model, kept)
+    def _clear(self) -> None:
+        self.hits = np.full(self.count, -1, dtype=np.int32)
+        self.distances = np.full(self.count, np.inf)
 
-    def _open_eyes(self, model: Any) -> Any:
-        """Changes the model for one cast; gives what `_shut_eyes` needs.
+    def _cast_by_numpy(self, targets: RayTargets, data: Any, rays: Rays, rotation: Vector) -> None:
+        self._clear()
+        self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
+        self._cast_on_planes(targets, data, rays)
+        self._cast_on_shapes(targets, data, rays, rotation)
 
-        One body can be excluded, but for a static link that would be the whole world, so its geoms are put into a
-        group that is not seen. And a body is passed over where a ray misses what collides of it, even if another of
-        its geoms is in the way: its bounds are made to hold all that is seen.
-        """
-        kept = None
-        if self._hidden:
-            groups = model.geom_group
-            kept = groups[self._hidden]
-            groups[self._hidden] = _UNUSED_GROUP
-        if len(self._roots):
-            model.bvh_aabb[self._roots] = self._wide
-        return kept
+    def _cast_on_planes(self, targets: RayTargets, data: Any, rays: Rays) -> None:
+        best = self.distances
+        for i in targets.planes.tolist():
+            if self._carrier and targets.carriers[i] == self._carrier:
+                continue
+            geom = int(targets.geoms[i])
+            turn, size = data.geom_xmat[geom].reshape(3, 3), targets.model.geom_size[geom]
+            found = cast_on_plane(rays.origin, rays.directions, data.geom_xpos[geom], turn, size, rays.start)
+            if found is not None:
+                nearer = found < best
+                np.copyto(best, found, where=nearer)
+                self.hits[nearer] = geom
 
-    def _shut_eyes(self, model: Any, kept: Any) -> None:
-        if len(self._roots):
-            model.bvh_aabb[self._roots] = self._narrow
-        if kept is not None:
-            model.geom_group[self._hidden] = kept
+    def _cast_on_shapes(self, targets: RayTargets, data: Any, rays: Rays, rotation: Vector) -> None:
+        which = targets.shapes
+        if self._carrier:
+            which = which[targets.carriers[which] != self._carrier]
+        if not len(which):
+            return
+        assert self._fan is not None
+        geoms = targets.geoms[which]
+        model = targets.model
+        shapes = Shapes(
+            targets.types[which],
+            model.geom_size[geoms],
+            turned(data.geom_xpos[geoms] - rays.origin, rotation),
+            np.einsum("ji,njk->nik", rotation, data.geom_xmat[geoms].reshape(-1, 3, 3)),
+            model.geom_rbound[geoms],
+            geoms.astype(np.int32),
+        )
+        cast_on_shapes(self._fan, shapes, rays.reach, rays.start, self.distances, self.hits)
 
+    def _cast_on_triangles(self, bodies: list[TriangleBody], data: Any, rays: Rays) -> None:
+        """First what stands still, then each body by the rays that may meet it."""
+        if self._standing is None:
+            self._standing = [body for body in bodies if not body.carrier]
+            self._movers = Movers([body for body in bodies if body.carrier and self._may_meet(body)])
+        for body in self._standing:
+            for first in range(0, self.count, _SOME):
+                part = slice(first, first + _SOME)
+                limit = np.minimum(self.distances[part], rays.reach, dtype=np.float32)
+                found = body.cast(data, rays.origin, rays.directions[part], rays.start, limit)
+                self._shorten(found[0] + first, *found[1:])
+        for body, some in self._movers.met(data, rays):
+            limit = np.minimum(self.distances.take(some), rays.reach, dtype=np.float32)
+            found = body.cast(data, rays.origin, rays.directions.take(some, 0), rays.start, limit)
+            self._shorten(some[found[0]], *found[1:])
 
-def _bounds_to_widen(model: Any, groups: npt.NDArray[np.uint8]) -> tuple[npt.NDArray[np.intp], Vector]:
-    """Bounds of bodies (rows of `bvh_aabb`: centre and half size, in the inertial frame) that seen geoms stick out of.
+    def _shorten(self, which: Ids, found: Vector, geoms: npt.NDArray[np.int32]) -> None:
+        """Takes distances of some rays where they are shorter than those so far."""
+        nearer = found < self.distances.take(which)
+        which = which[nearer]
+        self.distances[which], self.hits[which] = found[nearer], geoms[nearer]
 
-    Returns:
-        The rows, shape (k,), and what they should be, shape (k, 6).
-    """
-    seen = np.flatnonzero(groups[model.geom_group] > 0)
-    bodies = model.geom_bodyid[seen]
-    seen = seen[model.body_bvhnum[bodies] > 0]
-    bodies = model.geom_bodyid[seen]
-    turn = np.empty((model.nbody, 9))
-    for body in np.unique(bodies):
-        mujoco.mju_quat2Mat(turn[body], model.body_iquat[body])
-    centre = model.geom_pos[seen] - model.body_ipos[bodies]
-    centre = np.einsum("gji,gj->gi", turn.reshape(-1, 3, 3)[bodies], centre)
-    # a plane has no radius: it has no end
-    radius = np.where(model.geom_rbound[seen] > 0, model.geom_rbound[seen], _ENDLESS)[:, None]
-    roots = model.body_bvhadr
-    low, high = np.full((model.nbody, 3), np.inf), np.full((model.nbody, 3), -np.inf)
-    np.minimum.at(low, bodies, centre - radius)
-    np.maximum.at(high, bodies, centre + radius)
-    found = np.unique(bodies)
-    rows = roots[found].astype(np.intp)
-    box = model.bvh_aabb[rows]
-    low, high = np.minimum(low[found], box[:, :3] - box[:, 3:]), np.maximum(high[found], box[:, :3] + box[:, 3:])
-    wide = np.hstack(((low + high) / 2, (high - low) / 2))
-    changed = (wide[:, 3:] > box[:, 3:] + 1e-12).any(axis=1)
-    return rows[changed], wide[changed]
+    def _may_meet(self, body: TriangleBody) -> bool:
+        if body.carrier == self._carrier:
+            return False
+        if self._offset is None:
+            return True
+        return bool(may_meet(self._targets.model, self.body, self._offset, body.geoms, *self._bounds).any())
 
 
 def fan_directions(azimuths: Vector, elevations: Vector) -> Vector:

@@ -27,6 +27,7 @@ FINEST = math.radians(0.5)
 MOST_RINGS = 24
 SPHERE_RAYS = 2000
 _GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # [rad]
+_LARGEST = 3e38  # of a message's numbers, which have 32 bits
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +65,7 @@ def read_options(params: Params) -> SonarOptions:
     block = params.block("sonar")
     geometry = block.choice("geometry", ("cone", "sphere"), "cone")
     low = block.number("min", 0.0, minimum=0)
-    high = block.number("max", 1.0, minimum=0)
+    high = block.number("max", 1.0, minimum=0, maximum=_LARGEST)
     if not high > low:
         block.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
         low, high = 0.0, 1.0
@@ -166,7 +167,7 @@ class Sonar(Sensor):
             min_range=o.range_min,
             max_range=o.range_max,
             range=reading.range,
-            variance=self.noise.variance(),
+            variance=min(self.noise.variance(), _LARGEST),
         )
 
 

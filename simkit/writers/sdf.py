@@ -83,7 +83,7 @@ class _Writer:
                     type="adiabatic",
                 ),
                 None if world.spherical_coordinates is None else _coordinates(world.spherical_coordinates),
-                other("simkit:gazebo_quirks", world.gazebo_quirks, False),
+                other("gazebo_quirks", world.gazebo_quirks, False),
                 _surroundings(world),
                 *(parts.plugin(p) for p in world.plugins),
                 *(parts.light(li, li.pose_world) for li in world.lights),
@@ -320,7 +320,7 @@ def _surroundings(world: SceneWorld) -> Params:
             text("shadows", around.shadows),
             text("grid", around.grid),
             element("sky") if around.sky else None,
-            other("simkit:quality", world.quality, "fast"),
+            other("quality", world.quality, "fast"),
         ],
     )
 

@@ -244,7 +244,7 @@ def light(value: SceneLight, at: Pose) -> Params:
             other("intensity", value.intensity, 1.0),
             text("cast_shadows", value.cast_shadows),
             other("light_on", value.on, True),
-            None if value.irradiance is None else text("simkit:irradiance", value.irradiance),
+            None if value.irradiance is None else text("irradiance", value.irradiance),
             element("attenuation", "", fade),
             element("spot", "", spot) if any(value.spot) else None,
             text("direction", value.direction),

@@ -8,6 +8,7 @@ from html import escape
 
 from simkit.params import Params
 from simkit.pose import Pose
+from simkit.scene.own_elements import written_name
 
 _KNOWN = {
     "gz": "http://gazebosim.org/schema",
@@ -54,10 +55,18 @@ def pose(value: Pose, **attributes: str) -> Params | None:
 
 
 def document(root: Params) -> str:
-    """The file: declaration, the prefixes that are used, elements indented by two spaces."""
+    """The file: declaration, elements indented by two spaces, our own with our prefix, the prefixes that are used."""
+    root = _with_prefixes(root)
     for prefix in sorted(_prefixes(root)):
         root.attributes.setdefault(f"xmlns:{prefix}", _KNOWN.get(prefix, f"urn:{prefix}"))
     return "\n".join(['<?xml version="1.0" encoding="utf-8"?>', *_lines(root, "")]) + "\n"
+
+
+def _with_prefixes(node: Params) -> Params:
+    """A copy in which elements of our own have our prefix; what is inside a plugin's is its own."""
+    children = node.children if node.name == "plugin" else [_with_prefixes(child) for child in node.children]
+    copies = [Params(written_name(c.name, node.name), c.value, c.attributes, c.children) for c in children]
+    return Params(node.name, node.value, node.attributes, copies)
 
 
 def _lines(node: Params, indent: str) -> Iterator[str]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
@@ -11,7 +13,9 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import simkit
+from simkit import msgs
 from simkit.cli import app
+from simkit.scene.own_elements import OWN_ELEMENTS
 
 ROOT = Path(__file__).resolve().parents[2]
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
@@ -252,3 +256,51 @@ def test_a_world_with_errors_leaves_nothing_behind(here: Path) -> None:
     before = sorted(here.iterdir())
     assert run("vendor", "w.sdf", "box").exit_code == 2
     assert sorted(here.iterdir()) == before
+
+
+OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks><scene><quality>high</quality></scene>
+<light name="sun" type="directional"><irradiance>900</irradiance></light>
+<model name="m"><link name="l">
+<sensor name="imu" type="imu"><update_rate>100</update_rate><phase>0.001</phase><jitter>0.002</jitter>
+  <simkit:latency>0.01</simkit:latency><latency_jitter>0.004</latency_jitter><set_rate_topic>r</set_rate_topic>
+  <imu><simkit:orientation><noise type="gaussian"><stddev>0.1</stddev></noise></simkit:orientation><angular_velocity><x>
+  <noise type="gaussian"><noise_density>0.1</noise_density><bias_instability>0.2</bias_instability>
+  <random_walk>0.3</random_walk><correlation_time>4</correlation_time></noise></x></angular_velocity></imu></sensor>
+<sensor name="sonar" type="sonar"><sonar><axis>1 0 0</axis><noise type="gaussian"><stddev>0.1</stddev></noise></sonar>
+</sensor><sensor name="field" type="magnetometer"><magnetometer><date>2026.5</date></magnetometer></sensor>
+<sensor name="lds" type="ray"><preset>LDS-01</preset></sensor>
+<sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
+</sensor></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
+<sensor name="e" type="custom" gz:type="encoder"><encoder><resolution>0.001</resolution></encoder></sensor></joint>
+<plugin filename="user" name="user"><latency>1</latency><sensor><phase>0</phase></sensor></plugin>
+<plugin filename="libgazebo_ros_diff_drive.so" name="d"><left_joint>j</left_joint><right_joint>j</right_joint>
+<odometry_noise><wheel_variance>1e-4</wheel_variance></odometry_noise></plugin></model></world></sdf>"""
+
+
+def test_elements_of_our_own_come_out_with_their_prefix_and_mean_the_same(here: Path) -> None:
+    Path("own.sdf").write_text(OWN)
+    assert run("convert", "own.sdf", "-o", "again.sdf").exit_code == 0
+    root = ElementTree.parse("again.sdf").getroot()
+    ours = {e.tag.removeprefix("{urn:simkit}") for e in root.iter() if e.tag.startswith("{urn:simkit}")}
+    assert ours == {name for names in OWN_ELEMENTS.values() for name in names}
+    bare = {f"{parent.tag}/{child.tag}" for parent in root.iter() for child in parent if child.tag in ours}
+    # what the format has itself, what is inside one of our own, and what a plugin of others has
+    assert bare == {"joint/axis", "x/noise", "{urn:simkit}orientation/noise", "plugin/latency", "sensor/phase"}
+    assert messages("again.sdf") == messages("own.sdf")
+
+
+def messages(path: str) -> dict[str, list[bytes]]:
+    heard: dict[str, list[bytes]] = {}
+    with simkit.load(path, seed=3) as sim:
+        for sensor in sim.sensors.values():
+            sim.bus.tap(sensor.topic, lambda m, n=sensor.scoped: heard.setdefault(n, []).append(msgs.serialize(m)))
+        sim.run(0.1)
+    return heard
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs/sensors").glob("*.md")), ids=lambda p: p.name)
+def test_a_page_gives_the_prefix_to_what_is_written_with_it(page: Path) -> None:
+    named = set(re.findall(r"<simkit:(\w+)>", page.read_text(encoding="utf-8")))
+    # what a solar sensor looks at is inside one of our own; its plugin has the same elements
+    inside = {"angular_noise", "falloff", "field_of_view", "irradiance", "normal", "panel", "shadow", "towards"}
+    assert named - (inside if page.name == "solar.md" else set()) <= set().union(*OWN_ELEMENTS.values())

@@ -44,3 +44,22 @@ def test_on_another_sensor_it_is_an_error() -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(classic("", "altimeter"))
     assert "SK-PLUGIN-003" in [d.code for d in caught.value.diagnostics]
+
+
+@pytest.mark.parametrize("quirks", [False, True])
+def test_the_half_turn_of_classic_is_a_quirk(quirks: bool) -> None:
+    """A world that undoes it with a heading of 180 degrees is warned of, and right with the quirks."""
+    text = classic("").replace("<heading_deg>90<", "<heading_deg>180<")
+    if quirks:
+        text = text.replace("<gravity>", "<gazebo_quirks>true</gazebo_quirks><gravity>")
+    with simkit.load(text) as sim:
+        velocity = sim.subscribe("/my_gps/vel")
+        sim.model("m").set_pose(simkit.Pose((100.0, 200.0, 0.0)))
+        sim.model("m").set_velocity((1.0, 2.0, 0.0), (0, 0, 0))
+        sim.step(40)
+        fix = sim.sensor("m::mast::s").latest
+        sign = 1 if quirks else -1
+        assert (fix.latitude + 22.9) * sign == pytest.approx(200 / 110_700, rel=0.01)
+        assert (fix.longitude + 43.2) * sign == pytest.approx(100 / 102_600, rel=0.01)
+        assert velocity.latest.vector.x == pytest.approx(sign * 1.0, abs=1e-3)
+        assert ("SK-SENSOR-068" in [d.code for d in sim.diagnostics]) != quirks

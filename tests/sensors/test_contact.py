@@ -356,3 +356,17 @@ def test_odd_names_are_names(name: str) -> None:
     with simkit.load(world(GROUND, odd)) as sim:
         sim.run(0.1)
         assert names(sim.sensor("b::l::s").latest) == [(f"b::l::{name}", "ground::l::c")]
+
+
+@pytest.mark.parametrize("is_named", [True, False])
+def test_names_are_left_out_where_the_physics_system_asks_for_it(is_named: bool) -> None:
+    said = f"<contacts><include_entity_names>{str(is_named).lower()}</include_entity_names></contacts>"
+    system = f"<plugin filename='gz-sim-physics-system' name='gz::sim::systems::Physics'>{said}</plugin>"
+    with simkit.load(world(system, GROUND, BOX)) as sim:
+        sub = sim.subscribe(topic("b"))
+        sim.run(0.5)
+        (touch,) = sub.latest.contacts
+        pair = (touch.collision1, touch.collision2)
+        assert [one.name for one in pair] == (["b::l::c", "ground::l::c"] if is_named else ["", ""])
+        assert touch.collision1.id != touch.collision2.id
+        assert bool(touch.wrenches[0].body_1_name.data) == is_named

@@ -185,3 +185,126 @@ def test_a_spawned_box_is_seen_and_a_removed_one_is_not() -> None:
         sim.remove("new")
         sim.run(0.02)
         assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(3.0)
+
+
+def test_it_tells_what_each_ray_hit() -> None:
+    scene = AHEAD + box("left", "0 3.5 1 0 0 0", "1 1 1")
+    for kind, part in (("lidar", "c"), ("gpu_lidar", "v")):
+        with simkit.load(world(sensor(kind, block(rng=(0.1, 10))), others=scene)) as sim:
+            lidar = sim.sensor("m::l::s")
+            assert lidar.hits is None
+            sim.run(0.02)
+            assert lidar.hits.tolist() == ["", f"ahead::l::{part}", f"left::l::{part}"]
+
+
+def test_what_is_too_near_is_named_and_what_is_too_far_is_not() -> None:
+    scene = box("near", "1.0 0 1 0 0 0", "1 0.1 1") + box("far", "0 9 1 0 0 0", "1 1 1")
+    with simkit.load(world(sensor("gpu_lidar", block(rng=(1.0, 5))), others=scene)) as sim:
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.ranges.tolist() == [math.inf, -math.inf, math.inf]
+        assert sim.sensor("m::l::s").hits.tolist() == ["", "near::l::v", ""]
+
+
+def test_a_reading_asked_for_later_names_what_was_there_then() -> None:
+    """Nobody read when it was taken; since then another box came, and geoms have other numbers."""
+    with simkit.load(world(sensor("lidar", block(), rate=1), others=AHEAD)) as sim:
+        sim.run(0.5)
+        sim.spawn(f'<sdf version="1.9">{box("aaa", "2.5 0 1 0 0 0", "1 1 1")}</sdf>')
+        assert sim.sensor("m::l::s").hits.tolist() == ["", "ahead::l::c", ""]
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(3.0)
+        sim.run(0.6)
+        assert sim.sensor("m::l::s").hits.tolist() == ["", "aaa::l::c", ""]
+        sim.remove("aaa")
+        assert sim.sensor("m::l::s").hits.tolist() == ["", "aaa::l::c", ""]
+
+
+def flagged(flags: str) -> str:
+    return box("ahead", "2.5 0 1 0 0 0", "1 1 1").replace(
+        '<visual name="v">', f'<visual name="v"><visibility_flags>{flags}</visibility_flags>'
+    )
+
+
+@pytest.mark.parametrize(
+    ("mask", "flags", "distance"),
+    [("1", "1", 2.0), ("1", "2", 3.0), ("3", "2", 2.0), ("0xFE", "1", 3.0), ("4294967295", "0", 3.0), ("-1", "8", 2.0)],
+)
+def test_a_rendered_lidar_sees_visuals_that_share_a_bit_with_its_mask(mask: str, flags: str, distance: float) -> None:
+    behind = box("behind", "3.5 0 1 0 0 0", "1 1 1")
+    text = block(more=f"<visibility_mask>{mask}</visibility_mask>")
+    assert scan_of(world(sensor("gpu_lidar", text), others=flagged(flags) + behind)).ranges[1] == pytest.approx(
+        distance
+    )
+    with simkit.load(world(sensor("lidar", text), others=flagged(flags) + behind)) as sim:
+        sim.run(0.02)
+        assert sim.sensor("m::l::s").latest.ranges[1] == pytest.approx(2.0)
+        assert ("SK-SENSOR-004" in [d.code for d in sim.diagnostics]) == (mask not in ("4294967295", "-1"))
+
+
+def test_a_mask_that_is_no_number_is_an_error() -> None:
+    with pytest.raises(simkit.LoadError, match="visibility_mask"):
+        simkit.load(world(sensor("gpu_lidar", block(more="<visibility_mask>all</visibility_mask>"))))
+
+
+@pytest.mark.parametrize("transparency", [0.5, 1.0])
+def test_transparent_visuals_are_seen(transparency: float) -> None:
+    """Gazebo draws all visuals opaque for its lidars."""
+    glass = AHEAD.replace('<visual name="v">', f'<visual name="v"><transparency>{transparency}</transparency>')
+    assert scan_of(world(sensor("gpu_lidar", block()), others=glass)).ranges[1] == pytest.approx(3.0)
+
+
+def test_gazebos_quirks_limit_reflectance_and_drop_quantised_noise() -> None:
+    bright = box("ahead", "3.5 0 1 0 0 0", "1 1 1", retro=5000)
+    quantised = noise(0.1, more="<precision>0.07</precision>").replace('"gaussian"', '"gaussian_quantized"')
+    for quirks, retro in ((False, 5000.0), (True, 2000.0)):
+        top = f"<gazebo_quirks>{str(quirks).lower()}</gazebo_quirks>"
+        with simkit.load(world(sensor("gpu_lidar", block(more=quantised)), others=bright, top=top)) as sim:
+            sim.run(0.02)
+            lidar = sim.sensor("m::l::s")
+            assert lidar.latest.intensities[1] == retro
+            assert (lidar.latest.ranges[1] == lidar.truth.ranges[1]) == quirks
+
+
+def test_who_reads_changes_nothing() -> None:
+    moving = box("loose", "3.5 0 1 0 0 0", "1 1 1").replace("<static>true</static>", "")
+    text = world(sensor("lidar", block(samples=30, more=noise(0.01)), rate=20), others=moving)
+    with simkit.load(text, seed=3) as read, simkit.load(text, seed=3) as unread:
+        read.subscribe(TOPIC + "lidar/points")
+        tap = read.subscribe(TOPIC + "lidar")
+        read.run(0.5)
+        unread.run(0.5)
+        one, other = tap.latest, unread.sensor("m::l::s").latest
+        assert one.ranges.tobytes() == other.ranges.tobytes()
+        assert read.sensor("m::l::s").truth.ranges.tobytes() == unread.sensor("m::l::s").truth.ranges.tobytes()
+
+
+def velodyne(more: str = "") -> str:
+    layers = """<ray><scan><horizontal><samples>5</samples><min_angle>-0.2</min_angle><max_angle>0.2</max_angle>
+      </horizontal><vertical><samples>3</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical></scan>
+      <range><min>0.1</min><max>10</max></range></ray>"""
+    plugin = f"""<plugin name="v" filename="libgazebo_ros_velodyne_laser.so"><topicName>/velodyne_points</topicName>
+      <frameName>velodyne</frameName><max_range>3.02</max_range>{more}</plugin>"""
+    return world(sensor("ray", layers, extra=plugin), others=box("wall", "3.5 0 1 0 0 0", "1 9 9"))
+
+
+def test_the_velodyne_plugin_gives_points_within_its_range_layer_by_layer() -> None:
+    with simkit.load(velodyne()) as sim:
+        points = sim.subscribe("/velodyne_points")
+        sim.run(0.02)
+        message, found = points.latest, cloud(points.latest)[0]
+        assert (message.header.frame_id, message.point_step, message.height) == ("velodyne", 32, 1)
+        ranges = np.sqrt(found["x"] ** 2 + found["y"] ** 2 + found["z"] ** 2)
+        assert (ranges < 3.02).all()
+        assert found["ring"].tolist() == [0, 1, 1, 1, 2]
+        np.testing.assert_allclose(found["x"], 3.0, atol=1e-5)
+
+
+def test_an_organised_velodyne_cloud_keeps_every_ray_in_its_place() -> None:
+    more = "<organize_cloud>true</organize_cloud><gaussianNoise>0.001</gaussianNoise>"
+    with simkit.load(velodyne(more)) as sim:
+        points = sim.subscribe("/velodyne_points")
+        sim.run(0.02)
+        found = cloud(points.latest)
+        assert found.shape == (3, 5)
+        assert not points.latest.is_dense
+        assert np.isfinite(found["x"]).sum(axis=1).tolist() == [1, 3, 1]
+        assert 1e-5 < np.nanstd(found["x"]) < 5e-3

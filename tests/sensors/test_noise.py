@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from sensor_worlds import sensor, world
+from sensor_worlds import box, sensor, world
 
 import simkit
 from simkit.diagnostics import Diagnostics
@@ -373,3 +373,17 @@ def test_image_noise_depends_on_seed_name_and_frame_alone() -> None:
         noise.on_depths(flat, k)
     np.testing.assert_array_equal(noise.on_depths(flat, 7), late)
     assert not np.array_equal(image_noise(1.0, seed=2).on_depths(flat, 7), late)
+
+
+def test_without_a_type_it_is_what_sdf_says_for_the_kind() -> None:
+    """None, but gaussian on rays (and on cameras)."""
+    wall = box("wall", "3.5 0 1 0 0 0", "1 4 4")
+    biased = "<noise><mean>1</mean></noise>"
+    ray = "<scan><horizontal><samples>1</samples></horizontal></scan><range><min>0.1</min><max>10</max></range>"
+    sensors = sensor("lidar", f"<lidar>{ray}{biased}</lidar>", name="rays")
+    sensors += sensor("altimeter", f"<altimeter><vertical_position>{biased}</vertical_position></altimeter>", name="up")
+    with simkit.load(world(sensors, others=wall)) as sim:
+        sim.step()
+        assert sim.sensor("m::l::rays").latest.ranges[0] == pytest.approx(4.0)
+        assert sim.sensor("m::l::up").latest.vertical_position == 0.0
+        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-SENSOR-020"]

@@ -394,3 +394,24 @@ def test_a_sensor_on_a_joint_without_a_child_is_no_traceback() -> None:
     with pytest.raises(simkit.LoadError) as caught:
         simkit.load(JOINT.format(link="", child="nobody", joint='<sensor name="s" type="force_torque"/>'))
     assert [d.code for d in caught.value.diagnostics if d.severity == "error"] == ["SK-SDF-004"]
+
+
+def test_a_rate_below_zero_is_every_step_as_in_gazebo() -> None:
+    """Worlds of Gazebo's own write `<update_rate>-1`."""
+    with load(rate=-1) as sim:
+        sub = sim.subscribe("/i")
+        sim.step(7)
+        assert len(sub.messages) == 7
+        assert sim.sensor("m::l::s").update_rate == 0
+        assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-029"] == ["note"]
+
+
+@pytest.mark.parametrize("kind", ["imu", "contact"])
+def test_a_topic_without_a_letter_or_digit_is_an_error(kind: str) -> None:
+    topic = "<topic>@@@/</topic>"
+    bad = f'<sensor name="s" type="{kind}">{f"<contact>{topic}</contact>" if kind == "contact" else topic}</sensor>'
+    with pytest.raises(simkit.LoadError) as caught:
+        simkit.load(world(bad))
+    (error,) = [d for d in caught.value.diagnostics if d.severity == "error"]
+    assert error.code == "SK-PARAM-002"
+    assert "@@@/" in error.message

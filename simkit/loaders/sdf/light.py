@@ -58,7 +58,7 @@ def read_light(
         cast_shadows=element.boolean("cast_shadows", False),
         on=element.boolean("light_on", True),
         where=element.where,
-        irradiance=element.number("irradiance", minimum=0) if element.has("irradiance") else None,
+        irradiance=element.number("irradiance", minimum=0, maximum=1e100) if element.has("irradiance") else None,
     )
 
 

@@ -1,4 +1,8 @@
-"""SDF 1.0 and 1.1 wrote values as attributes (`<box size="1 1 1"/>`); here they become elements, as in later ones."""
+"""Spellings of SDF before 1.2 and before 1.6.
+
+1.0 and 1.1 wrote values as attributes (`<box size="1 1 1"/>`); here they become elements, as in later ones. Before 1.6
+the noise of an IMU was one element for all axes, `<imu><noise><type>…<rate>…<accel>…`; here each axis gets its own.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +16,38 @@ _OWN_TEXT = {
     "link": ("parent", "child"),
 }
 _ATTRIBUTE_VERSION = (1, 2)
+_NOISE_VERSION = (1, 6)
+_NOISE_OF = {"rate": "angular_velocity", "accel": "linear_acceleration"}
 
 
 def modern(root: Params, version: tuple[int, int]) -> Params:
-    """The tree in the spelling of SDF 1.2 and later; newer files come back as they are."""
-    return _element(root) if version < _ATTRIBUTE_VERSION else root
+    """The tree in the spelling of SDF 1.6 and later; newer files come back as they are."""
+    if version < _ATTRIBUTE_VERSION:
+        root = _element(root)
+    if version < _NOISE_VERSION:
+        _spread_imu_noise(root)
+    return root
+
+
+def _spread_imu_noise(element: Params) -> None:
+    """Gives each axis of every IMU within the noise that is written once for all; what an axis says itself stays."""
+    for child in element.children:
+        if child.name == "imu" and element.name == "sensor":
+            _spread_noise(child)
+        elif child.name != "plugin":
+            _spread_imu_noise(child)
+
+
+def _spread_noise(imu: Params) -> None:
+    noise = next((c for c in imu.children if c.name == "noise"), None)
+    said = {c.name for c in imu.children}
+    kind = next((c.value for c in noise.children if c.name == "type"), "gaussian") if noise is not None else ""
+    for part in noise.children if noise is not None else ():
+        if part.name in _NOISE_OF and _NOISE_OF[part.name] not in said:
+            values = [_made(c.name, c.value, c) for c in part.children]
+            own = Params("noise", "", {"type": kind}, values, part.where, part.diagnostics)
+            imu.children.append(_made(_NOISE_OF[part.name], "", part, [own]))
+    imu.children = [c for c in imu.children if c is not noise]
 
 
 def _element(element: Params) -> Params:
