@@ -6,8 +6,8 @@ import abc
 from typing import Any
 
 from simkit.scene import Atmosphere
-from simkit.sensors.atmosphere import HIGHEST, LOWEST, AirColumn, air_column
 from simkit.sensors.base import Sensor
+from simkit.sensors.earth.atmosphere import HIGHEST, LOWEST, AirColumn, air_column
 from simkit.sensors.reports import report_once
 
 

@@ -13,8 +13,8 @@ from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SceneWorld
 from simkit.sensors.base import Product, Sensor
-from simkit.sensors.earth_field import DEFAULT_DATE, FIRST, HIGHEST, LAST, LOWEST, EarthField, decimal_year
-from simkit.sensors.geodesy import PlaceOnPlanet
+from simkit.sensors.earth.field import DEFAULT_DATE, FIRST, HIGHEST, LAST, LOWEST, EarthField, decimal_year
+from simkit.sensors.earth.geodesy import PlaceOnPlanet
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 from simkit.sensors.reports import report_once
 

@@ -14,9 +14,9 @@ from sensor_worlds import box, sensor, world
 
 import simkit
 from simkit.compiler.groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION
-from simkit.sensors.ray_shapes import Fan
-from simkit.sensors.ray_targets import has_embree
 from simkit.sensors.rays import MANY_RAYS, RayFan, fan_directions
+from simkit.sensors.rays.shapes import Fan
+from simkit.sensors.rays.targets import has_embree
 
 GROUPS = (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
 FEW, MANY = (5, 120), (20, 240)  # rows and columns
@@ -141,7 +141,7 @@ def test_distances_are_geometrys(shape: str, pose: str, distance: float, grid: t
 @needs_embree
 def test_no_ray_slips_between_triangles() -> None:
     """Rays at the corners and along the edges of a wall of many triangles."""
-    from simkit.sensors.ray_triangles import TriangleScene
+    from simkit.sensors.rays.triangles import TriangleScene
 
     side = 40
     y, z = np.meshgrid(np.linspace(-1, 1, side + 1), np.linspace(-1, 1, side + 1))

@@ -128,7 +128,7 @@ spot/outer_angle      = no light outside [rad]
 spot/falloff          = how it fades between them
 cast_shadows          = whether it throws shadows
 light_on              = whether it is on
-irradiance            = of a surface that faces it [W/m2], of a lamp at 1 m, for solar sensors (our own: `<simkit:irradiance>`)
+irradiance            = of a surface facing it [W/m2], a lamp at 1 m, for solar sensors (our own: `<simkit:irradiance>`)
 visualize             = accepted: nothing is drawn for it
 plugin                - plugins on lights are not run
 """,

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from simkit.pose import Vector
-from simkit.sensors.geodesy import PlaceOnPlanet
+from simkit.sensors.earth.geodesy import PlaceOnPlanet
 
 DEFAULT_DATE: Final = 2025.0
 """Decimal year of the field where a file names no date."""

@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
-from simkit.sensors.ray_sight import ENDLESS, half_sizes, may_meet, within_cones
+from simkit.sensors.rays.sight import ENDLESS, half_sizes, may_meet, within_cones
 
 if TYPE_CHECKING:
-    from simkit.sensors.ray_targets import Ids, RayTargets
+    from simkit.sensors.rays.targets import Ids, RayTargets
 
 _SEEN, _UNSEEN = 0, 1  # geom groups of the copy
 _INFINITE = np.array(np.inf)

@@ -14,12 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
-from simkit.sensors.ray_shapes import turned
-from simkit.sensors.ray_sight import within_cones
-from simkit.sensors.ray_targets import BOX, HFIELD, MESH, Ids
+from simkit.sensors.rays.shapes import turned
+from simkit.sensors.rays.sight import within_cones
+from simkit.sensors.rays.targets import BOX, HFIELD, MESH, Ids
 
 if TYPE_CHECKING:
-    from simkit.sensors.ray_engine import Rays
+    from simkit.sensors.rays.engine import Rays
 
 Faces = npt.NDArray[np.int32]
 

@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from simkit.sensors.ray_engine import ReducedModel, WholeModel
-    from simkit.sensors.ray_triangles import TriangleBody
+    from simkit.sensors.rays.engine import ReducedModel, WholeModel
+    from simkit.sensors.rays.triangles import TriangleBody
 
 Ids = npt.NDArray[np.intp]
 
@@ -123,14 +123,14 @@ class RayTargets:
     @cached_property
     def whole(self) -> WholeModel:
         """Everything, by the engine."""
-        from simkit.sensors.ray_engine import WholeModel
+        from simkit.sensors.rays.engine import WholeModel
 
         return WholeModel(self.model, self.seen)
 
     @cached_property
     def shapes_by_engine(self) -> ReducedModel | None:
         """Planes and shapes, by the engine; None where there are none."""
-        from simkit.sensors.ray_engine import ReducedModel
+        from simkit.sensors.rays.engine import ReducedModel
 
         which = self._select(lambda t: t in (PLANE, *_SHAPES))
         if self._boxes_are_triangles:
@@ -178,7 +178,7 @@ class RayTargets:
         return np.array([i for i, t in enumerate(self.types.tolist()) if wanted(t)], dtype=np.intp)
 
     def _triangle_bodies(self, which: Ids) -> list[TriangleBody]:
-        from simkit.sensors.ray_triangles import TriangleBody
+        from simkit.sensors.rays.triangles import TriangleBody
 
         carriers = self.carriers[which]
         scenes: dict[Any, Any] = {}

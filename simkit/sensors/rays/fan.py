@@ -8,8 +8,8 @@ How is decided by the number of rays and by what the compiled model holds, never
   moving body by the rays that may meet it. Of many rays, boxes that stand still are traced as triangles too.
 - Without `embreex` a model with triangles is left to the engine whole.
 
-All ways agree: shapes and planes are exact everywhere, triangles are met in their own plane, worked out in float64. It is
-only Embree's float32 that says on which side of the edge of a mesh a ray passes.
+All ways agree: shapes and planes are exact everywhere, triangles are met in their own plane, worked out in float64.
+It is only Embree's float32 that says on which side of the edge of a mesh a ray passes.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
-from simkit.sensors.ray_engine import Rays, limit_of
-from simkit.sensors.ray_shapes import Fan, Shapes, cast_on_plane, cast_on_shapes, turned
-from simkit.sensors.ray_sight import may_meet
-from simkit.sensors.ray_targets import MOST_MOVING, Ids, RayTargets
-from simkit.sensors.ray_triangles import Movers, TriangleBody
+from simkit.sensors.rays.engine import Rays, limit_of
+from simkit.sensors.rays.shapes import Fan, Shapes, cast_on_plane, cast_on_shapes, turned
+from simkit.sensors.rays.sight import may_meet
+from simkit.sensors.rays.targets import MOST_MOVING, Ids, RayTargets
+from simkit.sensors.rays.triangles import Movers, TriangleBody
 
 MANY_RAYS: Final = 2048
 """From so many rays on NumPy is faster on shapes than the engine."""
