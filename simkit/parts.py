@@ -74,7 +74,13 @@ def _sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
         message = f"sensor {scene.scoped!r}: kind {scene.kind!r} is not simulated"
         diagnostics.warning("SK-SENSOR-001", message, scene.where, hint)
         return None
-    return kinds[scene.kind](scene, diagnostics)
+    cls, place = kinds[scene.kind], "joint" if scene.on_joint else "link"
+    if place not in cls.belongs_to:
+        message = f"sensor {scene.scoped!r}: {scene.kind} belongs to a {' or a '.join(cls.belongs_to)}, not to a {place}"
+        hint = f"move it from the {place} {scene.parent!r} into a <{cls.belongs_to[0]}>"
+        diagnostics.warning("SK-SENSOR-024", f"{message}; it is left out, as in Gazebo", scene.where, hint)
+        return None
+    return cls(scene, diagnostics)
 
 
 def _add_plugin(

@@ -58,7 +58,7 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SK-SENSOR-024",
-        "error",
+        "warning",
         "a sensor under a link that belongs to a joint, or the other way round",
         "move it",
         model(

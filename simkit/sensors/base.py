@@ -71,11 +71,6 @@ class Sensor(Sampler):
             message = "<enable_metrics> publishes nothing here: wall-clock rates would differ from run to run"
             params.diagnostics.note("SK-SENSOR-025", message, params.block("enable_metrics").where, "simkit bench")
         self.timing = read_timing(params, scene.rate)
-        place = "joint" if scene.on_joint else "link"
-        if place not in self.belongs_to:
-            message = f"sensor {scene.scoped!r}: {scene.kind} belongs to a {' or a '.join(self.belongs_to)}"
-            hint = f"move it from the {place} {scene.parent!r} into a <{self.belongs_to[0]}>"
-            params.diagnostics.error("SK-SENSOR-024", f"{message}, not to a {place}", scene.where, hint)
 
     # ------------------------------------------------------------------ what a kind says
 
