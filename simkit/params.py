@@ -283,12 +283,13 @@ class Params:
         self.diagnostics.error(code, message, self.where, hint)
 
     def unread(self) -> Iterator[tuple[Params, str]]:
-        """Each element nobody read, with the closest name that its reader asked for."""
+        """Each element nobody read, with the closest name that its reader asked for, or that it comes twice."""
         for c in self.children:
             if ":" in c.name:
                 continue
             if not c._read:
-                yield c, did_you_mean(c.name, self._asked or ())
+                comes_twice = any(o._read and o.name == c.name for o in self.children)
+                yield c, f"the first <{c.name}> is" if comes_twice else did_you_mean(c.name, self._asked or ())
             else:
                 yield from c.unread()
 

@@ -76,7 +76,8 @@ def _sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
         return None
     cls, place = kinds[scene.kind], "joint" if scene.on_joint else "link"
     if place not in cls.belongs_to:
-        message = f"sensor {scene.scoped!r}: {scene.kind} belongs to a {' or a '.join(cls.belongs_to)}, not to a {place}"
+        places = " or a ".join(cls.belongs_to)
+        message = f"sensor {scene.scoped!r}: {scene.kind} belongs to a {places}, not to a {place}"
         hint = f"move it from the {place} {scene.parent!r} into a <{cls.belongs_to[0]}>"
         diagnostics.warning("SK-SENSOR-024", f"{message}; it is left out, as in Gazebo", scene.where, hint)
         return None

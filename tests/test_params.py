@@ -61,6 +61,13 @@ def test_what_nobody_read_is_reported_except_foreign_prefixes():
     assert problems(p) == [("SK-PARAM-003", "did you mean 'radius'?"), ("SK-PARAM-003", "")]
 
 
+def test_of_an_element_that_comes_twice_the_second_is_reported():
+    p = block("<max>1</max><max>2</max>")
+    assert p.number("max") == 1.0
+    p.report_unread("SK-PARAM-003", "sonar")
+    assert problems(p) == [("SK-PARAM-003", "the first <max> is")]
+
+
 def test_a_pose_may_be_in_degrees_or_a_quaternion():
     p = block("<a degrees='true'>0 0 0 0 0 90</a><b rotation_format='quat_xyzw'>1 2 3 0 0 0 1</b><c>1 2</c>")
     assert p.pose("a").rpy[2] == pytest.approx(math.pi / 2)

@@ -28,7 +28,7 @@ def main(out: Path) -> None:
             sim.run(0.02)
             readings.append(sensor.latest)
             truths.append(sensor.truth)
-    times = [m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in readings]
+    times = plots.stamps(readings)
     figure, axes = plots.figure("Altimeter: a ball dropped from 20 m", rows=2, sharex=True)
     for ax, field, unit in zip(axes, ("vertical_position", "vertical_velocity"), ("m", "m/s"), strict=True):
         ax.plot(times, [getattr(m, field) for m in readings], ".", markersize=3, label="reading")

@@ -37,7 +37,7 @@ def main(out: Path) -> None:
         sim.joint("table::bearing").set_velocity(START)
         sim.run(6.0)
         messages = received.messages
-    times = np.array([m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in messages])
+    times = plots.stamps(messages)
     force = np.array([(m.linear_acceleration.x, m.linear_acceleration.y, m.linear_acceleration.z) for m in messages])
     speed = START * np.exp(-DAMPING / INERTIA * times)
     figure, axes = plots.figure("IMU: 0.5 m out on an arm that slows down", rows=2, sharex=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -69,6 +69,11 @@ def save(fig: Any, out: Path | str) -> None:
     few = pixels.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     few.save(out, format="PNG", optimize=True, dpi=(DPI, DPI))
     print(f"wrote {out}")
+
+
+def stamps(messages: Iterable[Any]) -> np.ndarray:
+    """Times of messages with a header [s]."""
+    return np.array([m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in messages])
 
 
 def run(main: Callable[[Path], None], default_name: str) -> None:

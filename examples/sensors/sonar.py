@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import numpy as np
-from plots import BLUE, TRUTH, figure, run, save
+from plots import BLUE, TRUTH, figure, run, save, stamps
 
 import simkit
 
@@ -34,8 +34,7 @@ def drive() -> tuple[np.ndarray, np.ndarray, float]:
         sonar = sim.subscribe(sim.sensor("cart::l::sonar").topic)
         sim.model("cart").set_velocity(linear=(0, SPEED, 0), angular=(0, 0, 0))
         sim.run(1.2 / SPEED)
-        times = [m.header.stamp.sec + m.header.stamp.nanosec * 1e-9 for m in sonar.messages]
-        places = -0.6 + SPEED * np.array(times)
+        places = -0.6 + SPEED * stamps(sonar.messages)
         return places, np.array([m.range for m in sonar.messages]), sonar.latest.field_of_view / 2
 
 

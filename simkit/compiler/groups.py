@@ -18,3 +18,6 @@ COLLISION_RAY: Final = 4
 
 COLLISION_CONTACT: Final = 5
 """The convex pieces that collide in place of such a mesh; seen by no ray."""
+
+SEEN_AS_COLLISIONS: Final = (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
+"""All that rays against collisions see."""

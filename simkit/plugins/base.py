@@ -209,3 +209,8 @@ class SensorPlugin(Plugin):
     """Hangs on a sensor; `load` gets the `Sensor`, `prepare` the `SceneSensor`."""
 
     parent_kind = "sensor"
+
+    def refuse(self, sensor: Any, wanted: str) -> None:
+        """Reports that it hangs on a sensor of another type than the one it is for."""
+        message = f"plugin {self.name!r} is for a sensor of type {wanted}, this is {sensor.kind!r}"
+        self.params.error("SK-PLUGIN-003", message)

@@ -22,8 +22,7 @@ class GazeboRosBumper(SensorPlugin):
         frame = params.text("frame_name", "") or params.text("frameName", "") or "world"
         params.child("alwaysOn")
         if not hasattr(parent, "tell_states"):
-            message = f"plugin {self.name!r} is for a sensor of type contact, this is {parent.kind!r}"
-            params.error("SK-PLUGIN-003", message)
+            self.refuse(parent, "contact")
             return
         if not parent.tell_states(topic, frame):
             links = [scoped.rsplit("::", 1)[-1] for scoped in self.sim.names.links]

@@ -26,7 +26,7 @@ class GazeboRosCamera(SensorPlugin):
         triggered = params.boolean("triggered", False)
         baseline = params.number("hack_baseline", params.number("hackBaseline", 0.0))
         if not hasattr(parent, "set_baseline"):
-            params.error("SK-PLUGIN-003", f"plugin {self.name!r} is for a camera, this sensor is {parent.kind!r}")
+            self.refuse(parent, "camera")
             return
         topics = {"image": f"{camera}/{image}", "camera_info": f"{camera}/{info}"}
         if parent.has_depth:

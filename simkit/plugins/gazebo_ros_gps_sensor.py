@@ -23,7 +23,7 @@ class GazeboRosGpsSensor(SensorPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         if parent.kind not in _KINDS:
-            params.error("SK-PLUGIN-003", f"plugin {self.name!r} is for a sensor of type gps, this is {parent.kind!r}")
+            self.refuse(parent, "gps")
             return
         parent.frame_id = given_frame(parent, params)
         parent.err_as_classic()

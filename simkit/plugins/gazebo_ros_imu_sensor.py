@@ -28,7 +28,7 @@ class GazeboRosImuSensor(SensorPlugin):
         from_start = params.boolean("initial_orientation_as_reference", old)
         body = params.text("bodyName", "")
         if not hasattr(parent, "measure_against"):
-            params.error("SK-PLUGIN-003", f"plugin {self.name!r} is for a sensor of type imu, this is {parent.kind!r}")
+            self.refuse(parent, "imu")
             return
         is_named = any(params.has(name) for name in ("frame_name", "frameName"))
         frame = given_frame(parent, params)

@@ -6,9 +6,8 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
+from simkit.plugins.gazebo_ros_ray_sensor import RADIATION
 from simkit.plugins.sensor_topics import given_frame
-
-_RADIATION = {"ultrasound": 0, "infrared": 1}
 
 
 class GazeboRosRange(SensorPlugin):
@@ -22,12 +21,12 @@ class GazeboRosRange(SensorPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         topic = self.ros.topic(params.text("topicName", "range"))
-        radiation = _RADIATION[params.choice("radiation", tuple(_RADIATION), "ultrasound")]
+        radiation = RADIATION[params.choice("radiation", tuple(RADIATION), "ultrasound")]
         view = params.number("fov", 0.05, minimum=0, maximum=1e6)
         stddev = params.number("gaussianNoise", 0.0, minimum=0, maximum=1e6)
         rate = params.number("updateRate", 0.0, minimum=0)
         if not hasattr(parent, "range_noise"):
-            params.error("SK-PLUGIN-003", f"plugin {self.name!r} is for a sensor of type ray, this is {parent.kind!r}")
+            self.refuse(parent, "ray")
             return
         parent.frame_id = given_frame(parent, params)
         parent.radiation, parent.field_of_view = radiation, view

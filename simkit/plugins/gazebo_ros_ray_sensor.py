@@ -15,7 +15,7 @@ _OUTPUTS = {
     "sensor_msgs/PointCloud": "old_hits",
     "sensor_msgs/Range": "range",
 }
-_RADIATION = {"ultrasound": 0, "infrared": 1}
+RADIATION = {"ultrasound": 0, "infrared": 1}  # of a Range
 
 
 class GazeboRosRaySensor(SensorPlugin):
@@ -29,7 +29,7 @@ class GazeboRosRaySensor(SensorPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         output = _OUTPUTS[params.choice("output_type", tuple(_OUTPUTS), "sensor_msgs/PointCloud2")]
-        radiation = _RADIATION[params.choice("radiation_type", tuple(_RADIATION), "infrared")]
+        radiation = RADIATION[params.choice("radiation_type", tuple(RADIATION), "infrared")]
         least = params.number("min_intensity", 0.0)
         topic = topic_of(self, "out", "topicName")
         _connect(self, parent, {output: topic}, least, radiation)
@@ -42,7 +42,7 @@ class GazeboRosLaser(SensorPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         topic = self.ros.topic(params.text("topicName", "scan"))
-        _connect(self, parent, {"scan": topic}, 0.0, _RADIATION["infrared"])
+        _connect(self, parent, {"scan": topic}, 0.0, RADIATION["infrared"])
 
 
 class GazeboRosVelodyneLaser(SensorPlugin):
@@ -60,18 +60,17 @@ class GazeboRosVelodyneLaser(SensorPlugin):
         least = params.number("min_intensity", -math.inf)
         noise = params.number("gaussianNoise", 0.0, minimum=0)
         topic = topic_of(self, "out", "topicName")
-        if _connect(self, parent, {"velodyne": topic}, least, _RADIATION["infrared"]):
+        if _connect(self, parent, {"velodyne": topic}, least, RADIATION["infrared"]):
             parent.cloud_range, parent.keeps_order = limits, keeps_order
             if noise > 0:
                 parent.add_ray_noise(noise)
 
 
 def _connect(plugin: SensorPlugin, sensor: Any, topics: dict[str, str], min_intensity: float, radiation: int) -> bool:
-    params = plugin.params
     if not hasattr(sensor, "min_intensity"):
-        params.error("SK-PLUGIN-003", f"plugin {plugin.name!r} is for a lidar, this sensor is {sensor.kind!r}")
+        plugin.refuse(sensor, "ray")
         return False
-    sensor.frame_id = given_frame(sensor, params)
+    sensor.frame_id = given_frame(sensor, plugin.params)
     sensor.min_intensity, sensor.radiation = min_intensity, radiation
     sensor.publish_on(topics)
     return True

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
 COMMAND_TYPES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-_UNKNOWN = 1e12  # variance of what a planar base does not measure, as Gazebo writes it
+UNKNOWN = 1e12  # variance of what a planar base does not measure, as Gazebo writes it
 
 
 @dataclass(slots=True)
@@ -108,7 +108,7 @@ class TrueMotion:
 
 def planar_covariance(x: float, y: float, yaw: float) -> Vector:
     """6×6 row-major covariance, shape (36,): the three planar variances, and a huge one for the rest."""
-    return np.diag((x, y, _UNKNOWN, _UNKNOWN, _UNKNOWN, yaw)).reshape(36)
+    return np.diag((x, y, UNKNOWN, UNKNOWN, UNKNOWN, yaw)).reshape(36)
 
 
 def odometry_message(

@@ -16,10 +16,9 @@ from typing import Any
 import numpy as np
 
 from simkit.params import Params
-from simkit.plugins.odometry import BodyTwist, DeadReckoning
+from simkit.plugins.odometry import UNKNOWN, BodyTwist, DeadReckoning
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 
-_UNKNOWN = 1e12  # variance of what wheels do not measure, as Gazebo writes it
 _PLANAR = np.ix_((0, 1, 5), (0, 1, 5))
 _FAR = 0.9  # of itself; a wheel is not taken for one of no size
 
@@ -121,7 +120,7 @@ class ErringOdometry:
 
         What wheels do not measure has a huge variance; the speed across, which they forbid, that of the speed ahead.
         """
-        pose, twist = (np.diag([_UNKNOWN] * 6) for _ in range(2))
+        pose, twist = (np.diag([UNKNOWN] * 6) for _ in range(2))
         pose[_PLANAR] = self.covariance
         ahead, turn = self.twist_covariance
         twist[_PLANAR] = [[ahead[0], 0, ahead[1]], [0, ahead[0], 0], [turn[0], 0, turn[1]]]

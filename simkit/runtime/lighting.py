@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION, VISUAL
+from simkit.compiler.groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.compiler.lights import spot_share
 from simkit.pose import Pose, Vector
 
@@ -147,6 +147,5 @@ def _casters(model: Any, names: Any) -> list[int]:
         if link.visuals:
             found.update(g for g in link.visuals if drawn[g] and model.geom_group[g] in (VISUAL, DRAWN_COLLISION))
         else:
-            seen = (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
-            found.update(g for g in link.ray_geoms if model.geom_group[g] in seen)
+            found.update(g for g in link.ray_geoms if model.geom_group[g] in SEEN_AS_COLLISIONS)
     return sorted(found)

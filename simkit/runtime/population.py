@@ -51,13 +51,14 @@ class Population:
         compiled = builder.recompile(old.compiled, sim.mj_data)
         models, all_parts = {**old.models, scene.name: scene}, {**old.parts, scene.name: parts}
         self.switch(Structure(builder, compiled, models, old.movable, all_parts))
-        own = {link.scoped for link in scene.all_links()}
-        soften(sim, {g for n, link in compiled.names.links.items() if n in own for g in link.geoms})
         try:
             self.start([parts], found)
         except SimkitError:
             sim.restore(before)
             raise
+        # a new schedule asks every sensor when it is due, so they have been started
+        own = {link.scoped for link in scene.all_links()}
+        soften(sim, {g for n, link in compiled.names.links.items() if n in own for g in link.geoms})
         sim.reports.extend(found)
         return scene.name
 

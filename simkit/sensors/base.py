@@ -5,14 +5,14 @@ from __future__ import annotations
 import abc
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from simkit.diagnostics import Diagnostics
 from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
 from simkit.sensors.names import check_topic, entity_topic, given_frame
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
-from simkit.sensors.sampling import Product, Sample, Sampler
+from simkit.sensors.sampling import Product, Remembered, Sample, Sampler
 from simkit.sensors.timing import Flight, SampleTimes, read_timing
 
 if TYPE_CHECKING:
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 __all__ = ["Product", "Sample", "Sensor"]
 
 _READ_BY_ALL = ("visualize", "pose", "update_rate", "topic")
-_HAVE_DYNAMIC_BIAS = ("imu", "force_torque")  # the kinds to whose noise Gazebo tells the time between samples
 _RATE = "std_msgs/msg/Float64"
+
+AnyRemembered = TypeVar("AnyRemembered", bound=Remembered)
 
 
 class Sensor(Sampler):
@@ -39,6 +40,7 @@ class Sensor(Sampler):
             of them, where nobody is called back.
         needs_acceleration: whether `measure` reads body accelerations or forces between bodies.
         reads_contacts: whether `measure` reads contacts; what rests on a static link with such a sensor never sleeps.
+        has_dynamic_bias: whether Gazebo tells the noise of the kind the time between samples, so that its bias wanders.
         name, scoped, kind: as in the file.
         update_rate: [Hz]; 0 is every step. Change it with `set_rate`.
         frame_id: of the messages.
@@ -49,6 +51,7 @@ class Sensor(Sampler):
     kinds: ClassVar[tuple[str, ...]] = ()
     example: ClassVar[str] = ""
     belongs_to: ClassVar[tuple[str, ...]] = ("link",)
+    has_dynamic_bias: ClassVar[bool] = False
 
     options: Any = None
     noise: Noise | UniformNoise | None = None
@@ -71,6 +74,7 @@ class Sensor(Sampler):
             message = "<enable_metrics> publishes nothing here: wall-clock rates would differ from run to run"
             params.diagnostics.note("SK-SENSOR-025", message, params.block("enable_metrics").where, "simkit bench")
         self.timing = read_timing(params, scene.rate)
+        check_topic(self.timing.set_rate_topic, params, "set_rate_topic")
 
     # ------------------------------------------------------------------ what a kind says
 
@@ -113,6 +117,14 @@ class Sensor(Sampler):
         if sample.truth_message is None:
             sample.truth_message = self._make(sample, next(iter(self._topics)), sample.truth)
         return sample.truth_message
+
+    def _true_reading(self) -> Any | None:
+        """The newest reading, without noise, or None before the first."""
+        sample = self._sample
+        if sample is None:
+            return None
+        self._settle(sample)
+        return sample.truth
 
     @property
     def pose(self) -> Pose:
@@ -222,9 +234,7 @@ class Sensor(Sampler):
         """The same noise on every one of many channels; for `self.noise`."""
         quirks = self.sim.world.gazebo_quirks
         model = NO_NOISE if quirks and model.is_quantized else self._noise_of(model)  # Gazebo has none of it on rays
-        noise = UniformNoise(model, width, *self._named(group), **self._noise_terms())
-        self._add_noise(noise)
-        return noise
+        return self._add_noise(UniformNoise(model, width, *self._named(group), **self._noise_terms()))
 
     def _named(self, group: str) -> tuple[Any, str, str]:
         return self.sim.streams, self.scoped, group
@@ -234,9 +244,9 @@ class Sensor(Sampler):
         return {"interval": interval, "random_sign": self.sim.world.gazebo_quirks}
 
     def _noise_of(self, model: NoiseModel) -> NoiseModel:
-        return model.as_gazebo(self.kind in _HAVE_DYNAMIC_BIAS) if self.sim.world.gazebo_quirks else model
+        return model.as_gazebo(self.has_dynamic_bias) if self.sim.world.gazebo_quirks else model
 
-    def _add_noise(self, noise: Noise) -> Noise:
+    def _add_noise(self, noise: AnyRemembered) -> AnyRemembered:
         if noise not in self._noises:
             self._noises.append(noise)
         if noise.wanders:

@@ -101,7 +101,7 @@ class Encoder(Sensor):
 
     def build(self, builder: SpecBuilder) -> None:
         joint = builder.names.joints.get(self.scene.parent)
-        if joint is None:  # left out for a fault of its own, or on a link: said already
+        if joint is None:  # left out for a fault of its own, which is said already
             return
         where = self.scene.where
         if joint.type not in (*_TURNING, *_SLIDING):
@@ -125,9 +125,7 @@ class Encoder(Sensor):
         self._track: Track | None = None
         if options.from_counts:
             # last, so that the noise of a sample has moved on before its position is read
-            track: Any = Track(self, round(options.window * 1e9))
-            self._track = track
-            self._add_noise(track)
+            self._track = self._add_noise(Track(self, round(options.window * 1e9)))
 
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)

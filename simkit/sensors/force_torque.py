@@ -13,13 +13,12 @@ from simkit.params import Params
 from simkit.pose import Vector
 from simkit.runtime.transmission import transmitted_wrench
 from simkit.sensors.base import Product, Sensor
-from simkit.sensors.noise import Noise, NoiseModel, read_noise
+from simkit.sensors.noise import Noise, ThreeAxes, read_axes
 
 if TYPE_CHECKING:
     from simkit.scene import SceneSensor
 
 TYPE = "geometry_msgs/msg/WrenchStamped"
-Three = tuple[NoiseModel, NoiseModel, NoiseModel]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +33,8 @@ class ForceTorqueOptions:
 
     frame: str
     from_parent: bool
-    force: Three
-    torque: Three
+    force: ThreeAxes
+    torque: ThreeAxes
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,15 +51,9 @@ def read_options(params: Params) -> ForceTorqueOptions:
     return ForceTorqueOptions(
         frame=block.choice("frame", ("child", "parent", "sensor"), "child"),
         from_parent=direction == "parent_to_child",
-        force=_axes(block, "force"),
-        torque=_axes(block, "torque"),
+        force=read_axes(block.block("force")),
+        torque=read_axes(block.block("torque")),
     )
-
-
-def _axes(block: Params, name: str) -> Three:
-    axes = block.block(name)
-    x, y, z = (read_noise(axes.block(axis)) for axis in "xyz")
-    return x, y, z
 
 
 class ForceTorque(Sensor):
@@ -73,6 +66,7 @@ class ForceTorque(Sensor):
     kinds = ("force_torque",)
     example = "<force_torque/>"
     belongs_to = ("joint",)
+    has_dynamic_bias = True
     needs_acceleration = True
     # a load that sleeps on something that never moves would weigh nothing
     reads_contacts = True

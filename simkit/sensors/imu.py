@@ -15,14 +15,13 @@ from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector, quat_conjugate, quat_from_rpy, quat_multiply
 from simkit.sensors.base import Product, Sensor
-from simkit.sensors.noise import Noise, NoiseModel, read_noise
+from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_noise
 from simkit.sensors.references import OrientationReference, orientation_of, read_reference
 
 if TYPE_CHECKING:
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/Imu"
-Axes = tuple[NoiseModel, NoiseModel, NoiseModel]
 Four = tuple[float, float, float, float]
 _NUMBERS = struct.Struct("=31d").unpack  # of what is captured
 _AS_IT_IS: Four = (1.0, 0.0, 0.0, 0.0)
@@ -40,9 +39,9 @@ class ImuOptions:
         enable_orientation: False leaves the orientation out.
     """
 
-    angular_velocity: Axes
-    linear_acceleration: Axes
-    orientation: Axes
+    angular_velocity: ThreeAxes
+    linear_acceleration: ThreeAxes
+    orientation: ThreeAxes
     reference: OrientationReference | None
     enable_orientation: bool
 
@@ -80,11 +79,9 @@ def read_options(params: Params) -> ImuOptions:
     )
 
 
-def _axes(quantity: Params) -> Axes:
+def _axes(quantity: Params) -> ThreeAxes:
     """`<x>`, `<y>`, `<z>` with a `<noise>` each; one `<noise>` beside them is for the axes that have none."""
-    shared = read_noise(quantity)
-    x, y, z = (read_noise(quantity.block(axis)) if quantity.block(axis).has("noise") else shared for axis in "xyz")
-    return x, y, z
+    return read_axes(quantity, read_noise(quantity))
 
 
 class Imu(Sensor):
@@ -97,6 +94,7 @@ class Imu(Sensor):
     kinds = ("imu",)
     example = "<imu/>"
     gathers = True
+    has_dynamic_bias = True
     needs_acceleration = True
     options: ImuOptions
     noise: Noise

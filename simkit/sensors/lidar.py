@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit import msgs
-from simkit.compiler.groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION, VISUAL
+from simkit.compiler.groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
@@ -87,7 +87,7 @@ class Lidar(Sensor):
         if not self.sees_visuals and options.visibility_mask != ALL_VISIBLE:
             message = "<visibility_mask> hides nothing from this sensor: collisions have no <visibility_flags>"
             diagnostics.warning("SK-SENSOR-004", message, scene.where, f"a gpu_{scene.kind} sees visuals")
-        groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
+        groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else SEEN_AS_COLLISIONS
         grid = options.vertical.angles, options.horizontal.angles
         self._directions = fan_directions(grid[1], grid[0])
         self._fan = RayFan(self._directions, groups, options.range_max, grid=grid)
@@ -183,11 +183,9 @@ class Lidar(Sensor):
         Scoped names of collisions (of visuals for a rendered lidar), layer by layer from the lowest, shape
         (layers · samples,); empty where nothing is within the range.
         """
-        sample = self._sample
-        if sample is None:
+        reading: LidarReading | None = self._true_reading()
+        if reading is None:
             return None
-        self._settle(sample)
-        reading = sample.truth
         geoms = reading.geoms[reading.hits]
         geoms[reading.ranges == np.inf] = -1
         names: npt.NDArray[np.object_] = reading.names[geoms]

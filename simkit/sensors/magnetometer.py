@@ -15,7 +15,7 @@ from simkit.scene import SceneWorld
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.earth.field import DEFAULT_DATE, FIRST, HIGHEST, LAST, LOWEST, EarthField, decimal_year
 from simkit.sensors.earth.geodesy import PlaceOnPlanet
-from simkit.sensors.noise import Noise, NoiseModel, read_noise
+from simkit.sensors.noise import Noise, ThreeAxes, read_axes
 from simkit.sensors.reports import report_once
 
 if TYPE_CHECKING:
@@ -36,14 +36,13 @@ class MagnetometerOptions:
         year: decimal year of the Earth's field.
     """
 
-    axes: tuple[NoiseModel, NoiseModel, NoiseModel]
+    axes: ThreeAxes
     year: float
 
 
 def read_options(params: Params) -> MagnetometerOptions:
     block = params.block("magnetometer")
-    x, y, z = (read_noise(block.block(axis)) for axis in "xyz")
-    return MagnetometerOptions((x, y, z), _year(block))
+    return MagnetometerOptions(read_axes(block), _year(block))
 
 
 def _year(block: Params) -> float:

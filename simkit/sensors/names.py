@@ -28,8 +28,8 @@ def given_frame(params: Params) -> str:
     return next((name for name in names if name), "")
 
 
-def check_topic(topic: str, block: Params) -> None:
-    """Reports a `<topic>` of a block of which no character may stand in a topic's name."""
+def check_topic(topic: str, block: Params, element: str = "topic") -> None:
+    """Reports a `<topic>`, or other element of a block, of which no character may stand in a topic's name."""
     if topic and valid_topic(topic) == "/":
-        found = f"found <topic>{topic}</topic>"
-        block.block("topic").error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")
+        found = f"found <{element}>{topic}</{element}>"
+        block.block(element).error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")

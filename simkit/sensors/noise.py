@@ -79,6 +79,7 @@ class NoiseModel:
 
 
 NO_NOISE = NoiseModel()
+ThreeAxes = tuple[NoiseModel, NoiseModel, NoiseModel]
 
 
 def read_noise(owner: Params, default: str = "none") -> NoiseModel:
@@ -118,6 +119,12 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
         is_quantized=kind == "gaussian_quantized",
     )
     return _said_once(model, params) if in_our_words else model
+
+
+def read_axes(block: Params, otherwise: NoiseModel = NO_NOISE) -> ThreeAxes:
+    """The `<noise>` of each of `<x>`, `<y>`, `<z>` of a block; `otherwise` for those that have none."""
+    x, y, z = (read_noise(block.block(axis)) if block.block(axis).has("noise") else otherwise for axis in "xyz")
+    return x, y, z
 
 
 def _says_something(text: str) -> bool:

@@ -6,14 +6,13 @@ import abc
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from simkit.sensors.timing import Departures, Flight, SampleTimes
 
 if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
     from simkit.runtime.scheduler import Timetable
-    from simkit.sensors.noise import Noise
 
 
 _MOST_ROWS = 64  # gathered before samples are made of them
@@ -61,6 +60,35 @@ class Sample:
         self.untold: tuple[str, ...] = ()
 
 
+class Remembered(Protocol):
+    """What goes on from sample to sample beside the physics: noise, and whatever else a kind remembers.
+
+    Attributes:
+        state: what of it depends on the sample; never written to, only replaced, for samples that wait keep theirs.
+    """
+
+    state: Any
+
+    @property
+    def wanders(self) -> bool:
+        """Whether the state changes from sample to sample."""
+
+    def evolve(self, index: int, dt: float) -> None:
+        """Moves on by `dt` [s] to sample `index`; 0 where there is no sample before it."""
+
+    def restart(self) -> None:
+        """Back at t = 0."""
+
+    def set_interval(self, interval: float) -> None:
+        """Says that samples are `interval` [s] apart from now on, if nothing else is known of one."""
+
+    def memory(self) -> Any:
+        """What `remember` takes back."""
+
+    def remember(self, memory: Any) -> None:
+        """Takes back what `memory` gave."""
+
+
 class Sampler(abc.ABC):
     """What of a sensor has to do with its samples; the rest is `simkit.sensors.base.Sensor`."""
 
@@ -73,8 +101,8 @@ class Sampler(abc.ABC):
     _times: SampleTimes
 
     def __init__(self) -> None:
-        self._noises: list[Noise] = []
-        self._wandering: tuple[Noise, ...] = ()
+        self._noises: list[Remembered] = []
+        self._wandering: tuple[Remembered, ...] = ()
         self._topics: dict[str, str] = {}
         self._products: Mapping[str, Product] = {}
         self._is_told_where = False
@@ -103,6 +131,10 @@ class Sampler(abc.ABC):
     def capture(self, model: Any, data: Any) -> Any:
         """What must be taken from the data at once; `finish` makes the reading of it. As a rule that is the reading."""
         return self.measure(model, data)
+
+    def capture_held(self, model: Any, data: Any, sample: Sample) -> Any:
+        """`capture` of the physics that was held for a sample; for kinds that read more than the physics."""
+        return self.capture(model, data)
 
     def finish(self, raw: Any) -> Any:
         """The reading without noise, of what was captured."""
@@ -304,7 +336,7 @@ class Sampler(abc.ABC):
     def _take(self, sample: Sample) -> None:
         """Captures what was held, once."""
         if sample.held is not None:
-            sample.raw = self.capture(sample.held.model, self.sim.data_of(sample.held))
+            sample.raw = self.capture_held(sample.held.model, self.sim.data_of(sample.held), sample)
             sample.held = None
             if self._is_reticent:
                 self._choose(sample)

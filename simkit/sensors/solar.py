@@ -69,7 +69,6 @@ class SolarSensor(Sensor):
         # rounding is of the angles and not of their errors
         self._precision = np.array((1.0, 1.0)) * options.noise.precision
         self._motions: list[tuple[int, LightMotion | None]] = []
-        self._then: tuple[LightState | None] | None = None  # the light of the sample that is measured later
         self._view: SolarView | None = None
 
     def describe(self) -> dict[str, Any]:
@@ -161,16 +160,6 @@ class SolarSensor(Sensor):
             del motions[0]
         motions.append((index, motion))
 
-    def _take(self, sample: Sample) -> None:
-        if sample.held is None:
-            return
-        motion = next((motion for index, motion in reversed(self._motions) if index <= sample.index), None)
-        self._then = (motion.at(sample.time_ns) if motion is not None else None,)
-        try:
-            super()._take(sample)
-        finally:
-            self._then = None
-
     def restart(self) -> None:
         super().restart()
         self._motions.clear()
@@ -186,10 +175,17 @@ class SolarSensor(Sensor):
     # ------------------------------------------------------------------ measuring
 
     def measure(self, model: Any, data: Any) -> SolarReading:
-        if self._view is None:
+        return self._measure(model, data, self.light.state if self.light is not None else None)
+
+    def capture_held(self, model: Any, data: Any, sample: Sample) -> SolarReading:
+        motion = next((motion for index, motion in reversed(self._motions) if index <= sample.index), None)
+        return self._measure(model, data, motion.at(sample.time_ns) if motion is not None else None)
+
+    def _measure(self, model: Any, data: Any, state: LightState | None) -> SolarReading:
+        """With the light as it was at the time of the data; None where there is none."""
+        if self._view is None or state is None:
             return NO_LIGHT
-        state = self._then[0] if self._then is not None else self._view.light.state
-        return NO_LIGHT if state is None else self._view.measure(model, data, state, *self._frame_in_world(data))
+        return self._view.measure(model, data, state, *self._frame_in_world(data))
 
     def perturb(self, reading: SolarReading, index: int) -> SolarReading:
         orientation = reading.orientation
@@ -225,11 +221,7 @@ class SolarSensor(Sensor):
     @property
     def reading(self) -> SolarReading | None:
         """What is true of the newest sample (direction, shadow, incidence, light, power), or None before the first."""
-        sample = self._sample
-        if sample is None:
-            return None
-        self._settle(sample)
-        found: SolarReading = sample.truth
+        found: SolarReading | None = self._true_reading()
         return found
 
     @property

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit import msgs
-from simkit.compiler.groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION
+from simkit.compiler.groups import SEEN_AS_COLLISIONS
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
@@ -100,7 +100,7 @@ class Sonar(Sensor):
         super().__init__(scene, diagnostics)
         self.options = options = read_options(scene.params)
         self._directions = cone_directions(options.half_angle, options.axis)
-        self._fan = RayFan(self._directions, (COLLISION, COLLISION_RAY, DRAWN_COLLISION), options.range_max)
+        self._fan = RayFan(self._directions, SEEN_AS_COLLISIONS, options.range_max)
 
     def describe(self) -> dict[str, Any]:
         o = self.options
@@ -132,11 +132,8 @@ class Sonar(Sensor):
     @property
     def hit(self) -> str:
         """Scoped name of the collision that the newest reading is of; empty for none."""
-        sample = self._sample
-        if sample is None:
-            return ""
-        self._settle(sample)
-        return str(sample.truth.hit)
+        reading: SonarReading | None = self._true_reading()
+        return reading.hit if reading is not None else ""
 
     def measure(self, model: Any, data: Any) -> SonarReading:
         options, fan = self.options, self._fan

@@ -14,6 +14,7 @@ from simkit.runtime.clock import Clock, Timing, exact, exact_rate
 if TYPE_CHECKING:
     from simkit.runtime.random import RandomStreams
     from simkit.runtime.scheduler import Timetable
+    from simkit.sensors.sampling import Sampler
 
 LONGEST_LATENCY = 3600.0  # [s]; all readings on their way are kept
 _MILLISECOND = Fraction(1, 1000)
@@ -137,7 +138,7 @@ class Departures:
         sensor: whose readings are on their way; what is measured next is its sample `_index` + 1.
     """
 
-    def __init__(self, grid: Timetable, flight: Flight, sensor: Any) -> None:
+    def __init__(self, grid: Timetable, flight: Flight, sensor: Sampler) -> None:
         self._grid, self._flight, self._sensor = grid, flight, sensor
 
     def is_sample(self, tick: int) -> bool:

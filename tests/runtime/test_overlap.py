@@ -78,6 +78,14 @@ def test_a_model_spawned_into_another_comes_out_slowly_too() -> None:
     assert sim.model("b").pose.position[2] == pytest.approx(1.5, abs=3e-3)
 
 
+def test_what_is_spawned_into_another_may_have_a_sensor() -> None:
+    sim = simkit.load(world(GROUND, box("a", 0.5)))
+    sensor = '<sensor name="s" type="imu"><update_rate>100</update_rate></sensor>'
+    sim.spawn(f'<sdf version="1.9">{box("b", 1.45)}</sdf>'.replace("</link>", f"{sensor}</link>"))
+    sim.run(0.1)
+    assert sim.sensor("b::l::s").latest.header.stamp.nanosec == 100_000_000
+
+
 def test_bodies_that_only_touch_are_left_as_they_are() -> None:
     sim = simkit.load(world(GROUND, box("a", 0.499), box("b", 1.497)))
     assert not (sim.mj_model.geom_priority == 2**31 - 1).any()

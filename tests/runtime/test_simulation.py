@@ -171,6 +171,14 @@ def test_spawn_and_remove_leave_the_others_bits_alone():
             box.pose  # noqa: B018
 
 
+def test_a_snapshot_is_of_one_simulation_only():
+    with load(BALL.format(extra="")) as sim, load(BALL.format(extra="")) as other:
+        with pytest.raises(ValueError, match="another simulation"):
+            other.restore(sim.snapshot())
+        other.step(3)
+        assert other.tick == 3
+
+
 def test_restore_brings_back_what_was_removed_and_takes_away_what_was_spawned():
     with load(BALL.format(extra="")) as sim:
         sim.spawn(BOX.format(name="box", x=3.0))

@@ -337,9 +337,10 @@ def test_on_a_joint_of_the_world_itself_it_is_left_out_and_said() -> None:
         assert not sim.sensors
 
 
-def test_on_a_link_it_is_an_error() -> None:
-    with pytest.raises(simkit.LoadError, match="SK-SENSOR-024"):
-        simkit.load(world(link("a", more=ft())))
+def test_on_a_link_it_is_left_out_and_said() -> None:
+    with simkit.load(world(link("a", more=ft()))) as sim:
+        assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-024"] == ["warning"]
+        assert not sim.sensors
 
 
 # ------------------------------------------------------------------ loads

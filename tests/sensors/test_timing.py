@@ -416,3 +416,10 @@ def test_a_topic_without_a_letter_or_digit_is_an_error(kind: str) -> None:
     (error,) = [d for d in caught.value.diagnostics if d.severity == "error"]
     assert error.code == "SK-PARAM-002"
     assert "@@@/" in error.message
+
+
+def test_a_rate_topic_without_a_letter_is_an_error() -> None:
+    with pytest.raises(simkit.LoadError) as caught:
+        load("<set_rate_topic>\u00fc</set_rate_topic>")
+    (found,) = [d for d in caught.value.diagnostics if d.severity == "error"]
+    assert found.code == "SK-PARAM-002" and "<set_rate_topic>" in found.message

@@ -6,13 +6,14 @@ import math
 from typing import Any
 
 from simkit.sensors.presets.preset import Settings
+from simkit.sensors.wander import FLOOR
 
 DEGREE = math.pi / 180.0  # rad
 DEGREE_PER_HOUR = DEGREE / 3600.0  # rad/s
 GRAVITY = 9.80665  # m/s²
-MILLI_G, MICRO_G = 1e-3 * GRAVITY, 1e-6 * GRAVITY  # m/s²
+MICRO_G = 1e-6 * GRAVITY  # m/s²
 GAUSS = 1e-4  # T
-ALLAN_FLOOR = math.sqrt(2.0 * math.log(2.0) / math.pi)
+ALLAN_FLOOR = FLOOR
 """Lowest Allan deviation of a bias instability of 1 (IEEE Std 952-1997, annex C): 0.664.
 
 Makers call that lowest point the in-run bias stability, so an instability is their number divided by this.

@@ -30,7 +30,6 @@ from simkit.sensors.rays.triangles import Movers, TriangleBody
 MANY_RAYS: Final = 2048
 """From so many rays on NumPy is faster on shapes than the engine."""
 
-
 _SOME = 1 << 18  # rays traced at a time: bounds what is needed besides the result
 _LARGEST = float(np.finfo(np.float64).max)
 
@@ -132,7 +131,7 @@ class RayFan:
         return found
 
     def cast(self, model: Any, data: Any, origin: Vector, rotation: Vector, start: float = 0.0) -> None:
-        """Fills `distances` and `geoms`.
+        """Makes `distances`, `hits` and `infinite` anew.
 
         Args:
             model: the one that the fan is bound to.
