@@ -14,7 +14,8 @@ from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.pose import IDENTITY, Pose
 
 T = TypeVar("T")
-_LARGEST = 1e100  # of a vector's components
+LARGEST = 1e100
+"""Of a vector's components, deviations and the like: the square of a larger number is none."""
 _FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
 _TRUE, _FALSE = {"true", "1"}, {"false", "0"}
 
@@ -210,7 +211,7 @@ class Params:
             parts = p.first_of(size)
             if len(parts) != size:
                 raise ValueError
-            return tuple(_number(v, -_LARGEST, _LARGEST, True) for v in parts)
+            return tuple(_number(v, -LARGEST, LARGEST, True) for v in parts)
 
         fallback = None if default is None else tuple(float(v) for v in default)
         return self._value(name, fallback, (0.0,) * size, required, parse, f"{size} numbers")

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_joint, find_link
 from simkit.pose import Vector
@@ -45,7 +45,7 @@ class GazeboRosFtSensor(ModelPlugin):
             joint_name, rate, noise = ("jointName", "updateRate", "gaussianNoise")
         self._topic = params.text("topicName", required=True) if is_old else "wrench"
         self.after_step_rate = params.number(rate, 0.0, minimum=0)
-        self._deviation = params.number(noise, 0.0, minimum=0)
+        self._deviation = params.number(noise, 0.0, minimum=0, maximum=LARGEST)
         self._joint = self._link = ""
         body = "" if is_old else params.text("body_name", "")
         if body:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.sensor_topics import given_frame, topic_of
 
 _WORLD = (1.0, 0.0, 0.0, 0.0)
-_LARGEST = 1e100  # beyond it the variance leaves the numbers
 
 
 class GazeboRosImuSensor(SensorPlugin):
@@ -38,7 +37,7 @@ class GazeboRosImuSensor(SensorPlugin):
         self._read_ros_1(parent, params)
 
     def _read_ros_1(self, imu: Any, params: Params) -> None:
-        stddev = params.number("gaussianNoise", 0.0, minimum=0, maximum=_LARGEST)
+        stddev = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
         if stddev:
             imu.add_white_noise(stddev)
         turn = params.vector3("rpyOffset", (0.0, 0.0, 0.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.sensor_topics import given_frame, topic_of
 
@@ -58,7 +58,7 @@ class GazeboRosVelodyneLaser(SensorPlugin):
         limits = params.number("min_range", 0.0, minimum=0), params.number("max_range", math.inf, finite=False)
         keeps_order = params.boolean("organize_cloud", False)
         least = params.number("min_intensity", -math.inf)
-        noise = params.number("gaussianNoise", 0.0, minimum=0)
+        noise = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
         topic = topic_of(self, "out", "topicName")
         if _connect(self, parent, {"velodyne": topic}, least, RADIATION["infrared"]):
             parent.cloud_range, parent.keeps_order = limits, keeps_order

@@ -11,12 +11,12 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import NOWHERE
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_light, find_link
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
 from simkit.runtime import solar
-from simkit.runtime.solar import LARGEST_NOISE, SolarReading, SolarView
+from simkit.runtime.solar import SolarReading, SolarView
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -55,8 +55,8 @@ class SolarSensor(ModelPlugin):
         self._frame = frame or self._link_name.rsplit("::", 1)[-1]
         self._xyz = _offset(params, "xyz_offset")
         self._rpy = _offset(params, "rpy_offset")
-        self._noise = params.number("gaussian_noise", 0.0, minimum=0, maximum=LARGEST_NOISE)
-        self._angular = params.number("angular_noise", 0.0, minimum=0, maximum=LARGEST_NOISE)
+        self._noise = params.number("gaussian_noise", 0.0, minimum=0, maximum=LARGEST)
+        self._angular = params.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
         self._options = solar.read_options(params, "position")
         self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
 

@@ -6,12 +6,13 @@ import math
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from simkit.params import Params
+from simkit.earth.atmosphere import air_column
+from simkit.params import LARGEST, Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.lookups import find_light
-from simkit.plugins.sun_position import Site, SunPath, clear_sky, pressure_at
+from simkit.plugins.sun_position import Site, SunPath, clear_sky
 from simkit.pose import Pose
-from simkit.runtime.solar import LARGEST
+from simkit.scene import Atmosphere
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -123,7 +124,7 @@ def _site(params: Params, world: SphericalCoordinates | None) -> Site:
         longitude=angle("longitude_deg", world.longitude if world else 0.0, 360),
         elevation=elevation,
         heading=angle("heading_deg", world.heading if world else 0.0, 360),
-        pressure=params.number("pressure", pressure_at(elevation), minimum=0, maximum=1e6),
+        pressure=params.number("pressure", air_column(Atmosphere()).at(elevation).pressure, minimum=0, maximum=1e6),
         temperature=params.number("temperature", 285.15, minimum=1, maximum=_MOST_KELVIN),
     )
 

@@ -155,11 +155,6 @@ def clear_sky(elevation: float, pressure: float) -> float:
     return float(_BEYOND_AIR * 0.7 ** ((air_mass(elevation) * pressure / _SEA_LEVEL) ** 0.678))
 
 
-def pressure_at(elevation: float) -> float:
-    """Pressure [Pa] of the international standard atmosphere at a height [m] of its lowest layer; 0 far above it."""
-    return float(_SEA_LEVEL * max(0.0, 1.0 - 2.25577e-5 * elevation) ** 5.25588)
-
-
 @cache
 def _algorithm() -> Callable[..., Any]:
     """pvlib's `spa.solar_position`.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
 from simkit.runtime.lighting import Lamp, ShadowRay, faded
 
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 STANDARD_IRRADIANCE: Final = 1000.0
 """[W/m²] of a light of which nothing says it: that of standard test conditions (IEC 60904-3)."""
 
-LARGEST_NOISE: Final = 1e100  # [rad]; beyond it the variance leaves the numbers
-LARGEST: Final = 1e100
 """Of an irradiance [W/m²] and of an area [m²], whose product is a number then."""
 
 _UP: Final = (0.0, 0.0, 1.0)

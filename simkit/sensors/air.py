@@ -5,9 +5,9 @@ from __future__ import annotations
 import abc
 from typing import Any
 
+from simkit.earth.atmosphere import HIGHEST, LOWEST, AirColumn, air_column
 from simkit.scene import Atmosphere
 from simkit.sensors.base import Sensor
-from simkit.sensors.earth.atmosphere import HIGHEST, LOWEST, AirColumn, air_column
 from simkit.sensors.reports import report_once
 
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from simkit.runtime.random import RandomStreams
 
 _WORDS = 1 << 16
+_LONGEST = 1e30  # [m] of a depth's noise, which has 32 bits
 
 
 @functools.cache
@@ -77,7 +78,8 @@ class ImageNoise:
     def on_depths(self, depths: npt.NDArray[np.float32], index: int) -> npt.NDArray[np.float32]:
         """Depths [m], shape (h, w), with a draw per pixel; infinite ones stay."""
         if self._lengths is None:
-            self._lengths = (_normal_table() * self._model.stddev + self._model.mean).astype(np.float32)
+            lengths = _normal_table() * self._model.stddev + self._model.mean
+            self._lengths = np.clip(lengths, -_LONGEST, _LONGEST).astype(np.float32)
         if self._model.stddev == 0:
             shifted: npt.NDArray[np.float32] = depths + self._lengths[0]
             return shifted

@@ -9,12 +9,12 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
+from simkit.earth.field import DEFAULT_DATE, FIRST, HIGHEST, LAST, LOWEST, EarthField, decimal_year
+from simkit.earth.geodesy import PlaceOnPlanet
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.scene import SceneWorld
 from simkit.sensors.base import Product, Sensor
-from simkit.sensors.earth.field import DEFAULT_DATE, FIRST, HIGHEST, LAST, LOWEST, EarthField, decimal_year
-from simkit.sensors.earth.geodesy import PlaceOnPlanet
 from simkit.sensors.noise import Noise, ThreeAxes, read_axes
 from simkit.sensors.reports import report_once
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
+from simkit.earth.geodesy import PlaceOnPlanet, east_north_up
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
-from simkit.sensors.earth.geodesy import PlaceOnPlanet, east_north_up
 from simkit.sensors.motion import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 

@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.pose import Vector
 from simkit.sensors.wander import Drift, Interval, Wanderer, gauss_markov, instability
 
 if TYPE_CHECKING:
     from simkit.runtime.random import RandomStreams, Stream
 
-LARGEST_DEVIATION = 1e100  # of any channel, biases too; beyond it the variance leaves the numbers
 _TYPES = ("none", "gaussian", "gaussian_quantized")
 _DATA_SHEET = ("noise_density", "random_walk", "bias_instability", "correlation_time")
 _DYNAMIC = ("dynamic_bias_stddev", "dynamic_bias_correlation_time")
@@ -105,16 +104,16 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
         params.mark_all_read()
         return NO_NOISE
     model = NoiseModel(
-        mean=params.number("mean", 0.0, minimum=-LARGEST_DEVIATION, maximum=LARGEST_DEVIATION),
-        stddev=params.number("stddev", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
-        bias_mean=params.number("bias_mean", 0.0, minimum=-LARGEST_DEVIATION, maximum=LARGEST_DEVIATION),
-        bias_stddev=params.number("bias_stddev", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
-        dynamic_bias_stddev=params.number("dynamic_bias_stddev", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
+        mean=params.number("mean", 0.0, minimum=-LARGEST, maximum=LARGEST),
+        stddev=params.number("stddev", 0.0, minimum=0, maximum=LARGEST),
+        bias_mean=params.number("bias_mean", 0.0, minimum=-LARGEST, maximum=LARGEST),
+        bias_stddev=params.number("bias_stddev", 0.0, minimum=0, maximum=LARGEST),
+        dynamic_bias_stddev=params.number("dynamic_bias_stddev", 0.0, minimum=0, maximum=LARGEST),
         dynamic_bias_correlation_time=params.number("dynamic_bias_correlation_time", 0.0, minimum=0),
         precision=params.number("precision", 0.0, minimum=0),
-        noise_density=params.number("noise_density", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
-        random_walk=params.number("random_walk", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
-        bias_instability=params.number("bias_instability", 0.0, minimum=0, maximum=LARGEST_DEVIATION),
+        noise_density=params.number("noise_density", 0.0, minimum=0, maximum=LARGEST),
+        random_walk=params.number("random_walk", 0.0, minimum=0, maximum=LARGEST),
+        bias_instability=params.number("bias_instability", 0.0, minimum=0, maximum=LARGEST),
         correlation_time=params.number("correlation_time", 0.0, minimum=0),
         is_quantized=kind == "gaussian_quantized",
     )

@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import NOWHERE, Diagnostics, did_you_mean
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.pose import quat_from_rpy, quat_rotate, rpy_from_quat
 from simkit.runtime import solar
 from simkit.runtime.solar import NO_LIGHT, SolarOptions, SolarReading, SolarView
@@ -44,7 +44,7 @@ class SolarSensorOptions:
 
 def read_options(params: Params) -> SolarSensorOptions:
     block = params.block("solar")
-    noise, plain = read_noise(block), block.number("angular_noise", 0.0, minimum=0, maximum=solar.LARGEST_NOISE)
+    noise, plain = read_noise(block), block.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
     if plain > 0:
         noise = replace(noise, stddev=math.hypot(noise.stddev, plain))
     return SolarSensorOptions(block.text("light_name", ""), solar.read_options(block, "direction"), noise)

@@ -6,7 +6,7 @@ import math
 
 from simkit.diagnostics import Diagnostics, closest
 from simkit.loaders.sdf.material import read_colour
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.pose import Pose
 from simkit.scene import SceneLight
 from simkit.scene.geometry import Vec3
@@ -58,7 +58,7 @@ def read_light(
         cast_shadows=element.boolean("cast_shadows", False),
         on=element.boolean("light_on", True),
         where=element.where,
-        irradiance=element.number("irradiance", minimum=0, maximum=1e100) if element.has("irradiance") else None,
+        irradiance=element.number("irradiance", minimum=0, maximum=LARGEST) if element.has("irradiance") else None,
     )
 
 

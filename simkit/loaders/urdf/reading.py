@@ -6,11 +6,10 @@ import math
 from collections.abc import Sequence
 
 from simkit.diagnostics import did_you_mean
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3
 
-LARGEST = 1e100  # of a vector's components: their squares have to be numbers
 FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
 _XACRO_HINT = "the file looks like xacro that was not expanded: load the .xacro file itself"
 

@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
+from simkit.earth.geodesy import PlaceOnPlanet
 from simkit.pose import Vector
-from simkit.sensors.earth.geodesy import PlaceOnPlanet
 
 DEFAULT_DATE: Final = 2025.0
 """Decimal year of the field where a file names no date."""

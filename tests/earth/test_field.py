@@ -8,9 +8,9 @@ from datetime import date
 import numpy as np
 import pytest
 
+from simkit.earth.field import EarthField, MagneticModel, decimal_year, earth_model
+from simkit.earth.geodesy import Ellipsoid, PlaceOnPlanet, east_north_up
 from simkit.scene import SphericalCoordinates
-from simkit.sensors.earth.field import EarthField, MagneticModel, decimal_year, earth_model
-from simkit.sensors.earth.geodesy import Ellipsoid, PlaceOnPlanet, east_north_up
 
 WGS84 = Ellipsoid(6378137.0, 6356752.314245)
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from simkit.earth.geodesy import Ellipsoid, PlaceOnPlanet, east_north_up
 from simkit.scene import SphericalCoordinates
-from simkit.sensors.earth.geodesy import Ellipsoid, PlaceOnPlanet, east_north_up
 
 WGS84 = Ellipsoid(6378137.0, 6356752.314245)
 MOON = Ellipsoid(1737400.0, 1737400.0)
