@@ -99,6 +99,10 @@ def _add_plugin(
     cls = find_plugin(plugin, plugin_paths, diagnostics, parent_kind)
     if cls is None:
         return
+    if cls.drives and getattr(scene, "static", False):
+        message = f"plugin {plugin.name!r} drives joints of {scene.scoped!r}, which is static; it is left out"
+        diagnostics.warning("SK-PLUGIN-010", message, plugin.where, "nothing moves in a static model")
+        return
     instance = cls()
     instance.source = plugin
     faults = diagnostics.error_count

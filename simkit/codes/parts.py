@@ -137,6 +137,18 @@ CODES: tuple[Code, ...] = (
         ),
     ),
     Code(
+        "SK-PLUGIN-010",
+        "warning",
+        "a plugin that drives joints, on a static model; it is left out",
+        "make the model movable, or remove the plugin",
+        model(
+            '<static>true</static>\n<link name="base"/>\n<link name="wheel"/>\n'
+            '<joint name="axle" type="revolute">\n  <parent>base</parent><child>wheel</child><axis/>\n</joint>\n'
+            '<plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">\n'
+            "  <joint_name>axle</joint_name>\n</plugin>"
+        ),
+    ),
+    Code(
         "SK-SENSOR-001",
         "warning",
         "a kind of sensor that is not simulated; it is left out",

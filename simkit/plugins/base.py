@@ -53,6 +53,7 @@ class Plugin(abc.ABC):
     filenames: ClassVar[tuple[str, ...]] = ()
     names: ClassVar[tuple[str, ...]] = ()
     parent_kind: ClassVar[ParentKind]
+    drives: ClassVar[bool] = False  # whether it moves joints of its model; on a static one it is left out
 
     before_step_rate: float | None = None
     after_step_rate: float | None = None

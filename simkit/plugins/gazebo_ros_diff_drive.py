@@ -168,6 +168,7 @@ class GazeboRosDiffDrive(ModelPlugin):
     """
 
     filenames = ("libgazebo_ros_diff_drive.so",)
+    drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.options = read_options(params)

@@ -88,6 +88,7 @@ class DiffDrive(ModelPlugin):
     """
 
     filenames = ("gz-sim-diff-drive-system",)
+    drives = True
     names = ("gz::sim::systems::DiffDrive",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:

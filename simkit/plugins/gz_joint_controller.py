@@ -32,6 +32,7 @@ class JointController(ModelPlugin):
     """
 
     filenames = ("gz-sim-joint-controller-system",)
+    drives = True
     names = ("gz::sim::systems::JointController",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:

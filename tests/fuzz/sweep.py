@@ -18,6 +18,9 @@ BOX = f"<geometry>{SHAPES[1]}</geometry>"
 NOISE = """<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev><bias_mean>0</bias_mean>
   <bias_stddev>0</bias_stddev>  <precision>0.001</precision><dynamic_bias_stddev>0.1</dynamic_bias_stddev>
   <dynamic_bias_correlation_time>1</dynamic_bias_correlation_time></noise>"""
+DATA_SHEET = """<noise type="gaussian_quantized"><noise_density>0.01</noise_density>
+  <bias_instability>0.01</bias_instability><random_walk>0.01</random_walk><correlation_time>10</correlation_time><bias_mean>0.1</bias_mean></noise>"""
+TIMING = """<phase>0.01</phase><jitter>0.01</jitter><latency>0.03</latency><latency_jitter>0.01</latency_jitter>"""
 SCAN = f"""<scan><horizontal><samples>9</samples><resolution>1</resolution><min_angle>-1</min_angle>
   <max_angle>1</max_angle></horizontal><vertical><samples>2</samples><resolution>1</resolution><min_angle>0</min_angle>
   <max_angle>0.1</max_angle></vertical></scan><range><min>0.1</min><max>9</max><resolution>0.01</resolution></range>
@@ -31,21 +34,57 @@ CAMERA = f"""<camera><horizontal_fov>1</horizontal_fov><image><width>8</width><h
 IMU = f"""<imu><orientation_reference_frame><localization>CUSTOM</localization><custom_rpy>0 0 0</custom_rpy>
   <grav_dir_x>1 0 0</grav_dir_x></orientation_reference_frame><angular_velocity><x>{NOISE}</x></angular_velocity>
   <linear_acceleration><z>{NOISE}</z></linear_acceleration></imu>"""
+BEAM = "<beam><aperture>0.05</aperture><rotation>0.7</rotation><tilt>0.5</tilt></beam>"
 SENSORS = {
     "lidar": f"<lidar>{SCAN}</lidar>",
     "ray": f"<ray>{SCAN}</ray>",
     "gpu_lidar": f"<lidar>{SCAN}</lidar>",
     "imu": IMU,
+    "sonar": f"""<sonar><min>0.02</min><max>4</max><radius>0.5</radius><axis>1 0 0</axis>{NOISE}</sonar>{TIMING}""",
+    "altimeter": f"""<altimeter><vertical_position>{NOISE}</vertical_position><vertical_velocity>{DATA_SHEET}
+      </vertical_velocity></altimeter>{TIMING}""",
+    "air_pressure": f"""<air_pressure><reference_altitude>400</reference_altitude><pressure>{NOISE}</pressure>
+      </air_pressure>""",
+    "air_speed": f"<air_speed><pressure>{DATA_SHEET}</pressure></air_speed>",
+    "magnetometer": f"<magnetometer><date>2026.5</date><x>{NOISE}</x><y>{DATA_SHEET}</y></magnetometer>",
+    "navsat": f"""<navsat><position_sensing><horizontal>{NOISE}</horizontal><vertical>{DATA_SHEET}</vertical>
+      </position_sensing><velocity_sensing><horizontal>{NOISE}</horizontal></velocity_sensing></navsat>""",
+    "solar": f"""<solar><field_of_view>3</field_of_view><irradiance>900</irradiance><panel><area>0.5</area>
+      <efficiency>0.2</efficiency><normal>0 0 1</normal></panel><normal>0 0.1 1</normal>
+      <angular_noise>0.01</angular_noise>{NOISE}</solar>""",
+    "dvl": f"""<gz:dvl><resolution>0.01</resolution><minimum_range>0.1</minimum_range>
+      <maximum_range>80</maximum_range><arrangement>{BEAM * 3}</arrangement></gz:dvl>""",
+    "wireless_receiver": """<transceiver><min_frequency>2412</min_frequency><max_frequency>2484</max_frequency>
+      <gain>2.5</gain><power>14</power><sensitivity>-90</sensitivity></transceiver>""",
     "camera": CAMERA,
     "depth_camera": CAMERA,
     "rgbd_camera": CAMERA,
 }
+JOINT_SENSORS = {
+    "force_torque": f"<force_torque><force><x>{NOISE}</x></force><torque><z>{DATA_SHEET}</z></torque></force_torque>",
+    "encoder": f"""<encoder><resolution>0.001</resolution><absolute>0</absolute><position>{NOISE}</position><velocity>
+      <window>0.05</window><resolution>0.01</resolution>{DATA_SHEET}</velocity></encoder>""",
+    "encoder ": "<encoder><counts_per_revolution>4096</counts_per_revolution></encoder>",
+}
+OUR_OWN = ("encoder", "solar", "dvl")
+ODOMETRY_NOISE = """<odometry_noise><wheel_variance>1e-4</wheel_variance><left_radius_error>0.01</left_radius_error>
+      <right_radius_error>-0.01</right_radius_error><separation_error>0.02</separation_error><counts_per_revolution>1000
+      </counts_per_revolution></odometry_noise>"""
+SUN = """<light name="sun" type="directional"><irradiance>800</irradiance></light><plugin filename="simkit-sun"
+  name="simkit::Sun"><start>2024-06-21T10:30:00Z</start><time_scale>100</time_scale><latitude_deg>46</latitude_deg>
+  <longitude_deg>6</longitude_deg><elevation>400</elevation><heading_deg>10</heading_deg><irradiance>900</irradiance>
+  <pressure>96000</pressure><temperature>290</temperature><update_rate>10</update_rate></plugin>"""
+PLACE = """<spherical_coordinates><latitude_deg>46.5</latitude_deg><longitude_deg>6.6</longitude_deg>
+  <elevation>400</elevation></spherical_coordinates>"""
 DRIVE = "<left_joint>a</left_joint><right_joint>b</right_joint>"
 PLUGINS = {
     "gz-sim-diff-drive-system": f"""{DRIVE}<wheel_separation>1</wheel_separation><wheel_radius>0.1</wheel_radius>
       <odom_publish_frequency>50</odom_publish_frequency><max_velocity>1</max_velocity><min_velocity>-1</min_velocity>
       <min_linear_acceleration>-1</min_linear_acceleration><max_linear_acceleration>1</max_linear_acceleration>
       <max_angular_jerk>1</max_angular_jerk>""",
+    "gz-sim-diff-drive-system ": f"""{DRIVE}<wheel_separation>1</wheel_separation><wheel_radius>0.1</wheel_radius>
+      {ODOMETRY_NOISE}""",
+    "gz-sim-touchplugin-system": """<target>l</target><time>0.1</time><namespace>n</namespace><enabled>1</enabled>""",
     "gz-sim-joint-controller-system": """<joint_name>a</joint_name><initial_velocity>1</initial_velocity>
       <use_force_commands>1</use_force_commands><p_gain>1</p_gain><i_gain>1</i_gain><d_gain>1</d_gain><i_max>1</i_max>
       <i_min>-1</i_min><cmd_max>1</cmd_max><cmd_min>-1</cmd_min><cmd_offset>0</cmd_offset>""",
@@ -186,11 +225,18 @@ def documents() -> dict[str, str]:
             <child>c</child><axis/></joint><joint name="j" type="{kind}"><parent>a</parent><child>b</child>{POSE}
             <axis>{axis}</axis>{second}{inside.get(kind, "")}</joint>"""
         )
-    for kind, block in SENSORS.items():
-        sensor = (
-            f'<sensor name="s" type="{kind}">{POSE}<update_rate>2</update_rate><always_on>1</always_on>{block}</sensor>'
-        )
-        found[f"{kind} sensor.sdf"] = _model(f'<link name="l">{sensor}</link>')
+    found["sun.sdf"] = _world(SUN)
+    for kind, block in {**SENSORS, **JOINT_SENSORS}.items():
+        plain = kind.strip()
+        name = f'type="custom" gz:type="{plain}"' if plain in OUR_OWN else f'type="{plain}"'
+        sensor = f'<sensor name="s" {name}>{POSE}<update_rate>2</update_rate><always_on>1</always_on>{block}</sensor>'
+        around = SUN if plain == "solar" else PLACE if plain in ("navsat", "magnetometer") else ""
+        if kind in JOINT_SENSORS:
+            joint = f'<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>{sensor}</joint>'
+            model = f'<model name="m"><link name="l"/><link name="k"/>{joint}</model>'
+        else:
+            model = f'<model name="m"><link name="l">{sensor}</link></model>'
+        found[f"{kind} sensor.sdf"] = _world(around + model)
     for filename, block in PLUGINS.items():
         moving = "".join(
             f'<link name="w{n}"/><joint name="{n}" type="revolute"><parent>l</parent><child>w{n}</child><axis/></joint>'

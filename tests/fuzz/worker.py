@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import shutil
 import sys
 import tempfile
@@ -135,7 +136,20 @@ def loaded(sim: Any) -> dict[str, str]:
     sim.step(3)
     while sim.tick < STEPS and time.perf_counter() < until:
         sim.step(10)
-    return {"outcome": "loaded"}
+    return {"outcome": unreadable(sim) or "loaded"}
+
+
+def unreadable(sim: Any) -> str:
+    """A sensor, not a drawn one, whose reading has a number that is none; empty where all are fine."""
+    from simkit.sensors.camera import RenderedSensor
+
+    for sensor in sim.sensors.values():
+        if isinstance(sensor, RenderedSensor):
+            continue
+        for message in (sensor.latest, sensor.truth):
+            if re.search(r"\bnan\b", str(message)):
+                return f"not a number in what {sensor.kind} reads"
+    return ""
 
 
 def numbers_that_are_none(model: Any) -> str:

@@ -148,3 +148,20 @@ def test_an_unknown_plugin_does_not_stop_the_run() -> None:
         sim.run(0.1)
         found = [(d.code, d.severity) for d in sim.diagnostics if "libgazebo_tutorials.so" in d.message]
     assert found == [("SK-PLUGIN-001", "warning")]
+
+
+@pytest.mark.parametrize("outer", [False, True])
+def test_a_plugin_that_drives_is_left_out_of_a_static_model(outer: bool) -> None:
+    plugins = {
+        "gz-sim-diff-drive-system": "<left_joint>j</left_joint><right_joint>j</right_joint>",
+        "libgazebo_ros_diff_drive.so": "<left_joint>j</left_joint><right_joint>j</right_joint>",
+        "gz-sim-joint-controller-system": "<joint_name>j</joint_name>",
+    }
+    text = "".join(f'<plugin filename="{file}" name="{file}">{inner}</plugin>' for file, inner in plugins.items())
+    links = '<link name="l"/><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>'
+    model = f'<model name="m"><static>{not outer}</static>{links}</joint>{text}</model>'
+    if outer:
+        model = f'<model name="o"><static>1</static><link name="l"/>{model}</model>'
+    with simkit.load(world(model)) as sim:
+        sim.step(10)
+        assert [d.code for d in sim.diagnostics if d.severity != "note"] == ["SK-PLUGIN-010"] * len(plugins)

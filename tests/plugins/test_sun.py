@@ -282,6 +282,14 @@ def test_bad_values_are_said() -> None:
     assert [code for code, _ in errors(world(**bad))] == ["SK-PARAM-002"] * 4
 
 
+@pytest.mark.parametrize("elevation", [-1e9, 1e9])
+def test_a_world_that_is_not_on_the_ground_needs_a_place_for_its_sun(elevation: float) -> None:
+    high, start = place().replace("<elevation>200", f"<elevation>{elevation}"), "2024-06-21"
+    assert [code for code, _ in errors(world(high, start=start))] == ["SK-PARAM-002"]
+    with simkit.load(world(high, start=start, elevation=0)) as sim:
+        sim.step()
+
+
 def test_only_a_directional_light_can_be_the_sun() -> None:
     ((code, message),) = errors(
         world(**NREL).replace("'directional'", "'point'").replace("<start>", "<light_name>sun</light_name><start>")

@@ -35,6 +35,23 @@ def test_a_bias_keeps_its_sign_and_is_drawn_once() -> None:
     assert firsts.std() == pytest.approx(0.1, rel=0.2)
 
 
+def test_numbers_at_the_ends_of_their_range_stay_numbers() -> None:
+    far = np.array([1e100, -1e300, math.inf])
+    np.testing.assert_array_equal(quantise(far, np.array([1e-300])), far)
+    with np.errstate(all="raise", under="ignore"):
+        odd = NoiseModel(bias_instability=1e100, correlation_time=1e-308, dynamic_bias_stddev=1e100)
+        assert np.isfinite(samples(odd, 5)).all()
+        odd = NoiseModel(dynamic_bias_stddev=1e100, dynamic_bias_correlation_time=1e-308, precision=1e-308)
+        assert np.isfinite(samples(odd, 5, dt=1e6)).all()
+
+
+@pytest.mark.parametrize("element", ["mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev"])
+def test_a_channel_that_leaves_the_numbers_is_an_error(element: str) -> None:
+    text = f'<altimeter><vertical_position><noise type="gaussian"><{element}>1e101</{element}></noise>'
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002.*1e\\+100"):
+        simkit.load(world(sensor("altimeter", f"{text}</vertical_position></altimeter>")))
+
+
 @pytest.mark.parametrize("dt", [0.01, 0.1])
 def test_a_wandering_bias_has_its_spread_and_its_memory(dt: float) -> None:
     tau, sigma = 0.5, 0.3
