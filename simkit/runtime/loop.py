@@ -66,12 +66,17 @@ class Loop:
             tick = physics.tick
             # nothing is measured or published of a state with bad numbers
             physics.check()
+            # who is called back may reset or restore: then the rest of this tick is not to be
             if sense.next <= tick or sense.every:
                 for task in sense.due(tick):
                     task(tick)
-            if after.next <= tick or after.every:
+                    if physics.tick != tick:
+                        break
+            if physics.tick == tick and (after.next <= tick or after.every):
                 for task in after.due(tick):
                     task(tick)
+                    if physics.tick != tick:
+                        break
             if self._is_outdated:
                 self._refill()
 
@@ -90,6 +95,8 @@ class Loop:
             physics.check()
             for task in after:
                 task(tick)
+                if physics.tick != tick:
+                    break
         if self._is_outdated:
             self._refill()
 

@@ -15,7 +15,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.clouds import point_cloud
-from simkit.sensors.lidar_options import ALL_VISIBLE, LidarOptions, read_options
+from simkit.sensors.lidar_options import ALL_VISIBLE, LARGEST_RANGE, LidarOptions, read_options
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
 from simkit.sensors.rays import RayFan, fan_directions
 
@@ -255,7 +255,7 @@ class Lidar(Sensor):
             o.horizontal.high,
             o.horizontal.step,
             0.0,
-            1.0 / self.update_rate if self.update_rate > 0 else self.sim.timestep,
+            min(1.0 / self.update_rate, LARGEST_RANGE) if self.update_rate > 0 else self.sim.timestep,
             o.range_min,
             o.range_max,
             reading.ranges[first : first + n].astype(np.float32),

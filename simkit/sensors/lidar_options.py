@@ -12,6 +12,8 @@ from simkit.sensors.noise import NoiseModel, read_noise
 
 ALL_VISIBLE = 0xFFFFFFFF
 _MOST_RAYS = 4_000_000
+LARGEST_RANGE = 3e38  # [m]; a message's numbers have 32 bits
+_FARTHEST_ANGLE = 1e6  # [rad]; beyond it the rays of a scan are no longer told apart
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +58,9 @@ def read_options(params: Params) -> LidarOptions:
     block.child("visualize")
     low = limits.number("min", 0.0, minimum=0)
     high = limits.number("max", 0.0, minimum=0, finite=False)
+    if LARGEST_RANGE < high < np.inf:
+        limits.block("max").error("SK-PARAM-002", f"found {high:g} m, allowed is at most {LARGEST_RANGE:g}, or inf")
+        low, high = 0.0, 1.0
     if not high > low:
         limits.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
     horizontal = _read_sweep(scan.block("horizontal"), 640)
@@ -73,7 +78,8 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
     if count > 1 and resolution not in (0.0, 1.0):
         message = f"<resolution>{resolution:g}</resolution>: one ray per sample is cast, as Gazebo does"
         params.diagnostics.note("SK-SENSOR-003", message, params.where)
-    low, high = params.number("min_angle", 0.0), params.number("max_angle", 0.0)
+    low = params.number("min_angle", 0.0, minimum=-_FARTHEST_ANGLE, maximum=_FARTHEST_ANGLE)
+    high = params.number("max_angle", 0.0, minimum=-_FARTHEST_ANGLE, maximum=_FARTHEST_ANGLE)
     if high < low:
         params.error(
             "SK-PARAM-002", f"found angles from {low:g} to {high:g}, allowed is a <max_angle> of at least <min_angle>"

@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from typing import Any
 
 import numpy as np
 import pytest
@@ -317,3 +318,29 @@ def test_importing_simkit_loads_neither_the_engine_nor_gl():
     code = f"import simkit, sys; bad = {heavy} & set(sys.modules); sys.exit(str(bad) if bad else 0)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_reset_by_who_is_called_back_ends_its_tick() -> None:
+    imu = '<sensor name="{}" type="imu"><update_rate>100</update_rate><imu><angular_velocity><x><noise type="gaussian">'
+    imu += "<stddev>1</stddev></noise></x></angular_velocity></imu></sensor>"
+    text = f"""<sdf version="1.9"><world name="w"><model name="m"><static>true</static><link name="l">
+      {imu.format("a")}{imu.format("b")}</link></model></world></sdf>"""
+
+    def numbers(reset_at: int) -> list[tuple[int, float]]:
+        found: list[tuple[int, float]] = []
+        with simkit.load(text, seed=3) as sim:
+            topics = {name: sim.sensor(f"m::l::{name}").topic for name in "ab"}
+
+            def look(_message: Any) -> None:
+                nonlocal reset_at
+                if sim.tick == reset_at:
+                    reset_at = -1
+                    found.clear()
+                    sim.reset()
+
+            sim.subscribe(topics["a"], look)
+            sim.subscribe(topics["b"], lambda m: found.append((sim.tick, m.angular_velocity.x)))
+            sim.step(100)
+        return found
+
+    assert numbers(reset_at=50) == numbers(reset_at=-1)
