@@ -179,10 +179,10 @@ def check(
 
 
 def render_view(simulation: Simulation, width: int, height: int, **view: Any) -> Any:
-    """A picture of a simulation from anywhere; see `simkit.sensors.renderer.render_view`."""
-    from simkit.sensors import renderer
+    """A picture of a simulation from anywhere; see `simkit.sensors.rendering.overview.render_view`."""
+    from simkit.sensors.rendering import overview
 
-    return renderer.render_view(simulation, width, height, **view)
+    return overview.render_view(simulation, width, height, **view)
 
 
 def _scene(

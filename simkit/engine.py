@@ -9,7 +9,7 @@ def import_engine() -> None:
     """Imports MuJoCo; where that fails for what `MUJOCO_GL` says, once more without a renderer.
 
     MuJoCo opens the renderer's library when it is imported: a value that it does not know, or a library that is not
-    there, would end a run that draws nothing. Whoever does draw gets the reason from `simkit.sensors.gl`.
+    there, would end a run that draws nothing. Whoever does draw gets the reason from `simkit.sensors.rendering.gl`.
     """
     try:
         import mujoco

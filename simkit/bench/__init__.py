@@ -16,8 +16,8 @@ from simkit.bench.bare import Bare, HandWritten, bare_pass, bare_scan
 from simkit.plugins import WorldPlugin
 from simkit.runtime.loop import guarded
 from simkit.runtime.scheduler import Phase
-from simkit.sensors.camera import RenderedSensor
 from simkit.sensors.lidar import Lidar
+from simkit.sensors.rendered import RenderedSensor
 
 _CHUNK = 500  # steps a round
 _CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})

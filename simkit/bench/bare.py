@@ -9,9 +9,10 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from simkit.sensors import gl
 from simkit.sensors.lidar import Lidar
-from simkit.sensors.renderer import aim, renderer_of
+from simkit.sensors.rendering import gl
+from simkit.sensors.rendering.renderer import renderer_of
+from simkit.sensors.rendering.view import aim
 
 _EULER = (mujoco.mjtIntegrator.mjINT_EULER,)
 
@@ -143,14 +144,17 @@ def bare_pass(sim: Any, sensor: Any) -> Callable[[], None]:
 
     The picture is left as the driver gives it: bottom row first, black background, depth not in metres.
     """
-    renderer, view = renderer_of(sim), sensor._aimed()
-    sensor.measure(sim.mj_model, sim.fresh_data())  # so that context, scene and aim are there
+    renderer = renderer_of(sim)
+    position, rotation = sensor._frame_in_world(sim.fresh_data())
+    composition = renderer.compose(sim.mj_model, sim.mj_data, position, rotation)
+    (shot,) = sensor.shots()
+    renderer.draw(composition, shot)  # so that the context is there
+    view = shot.view
     rectangle = mujoco.MjrRect(0, 0, view.width, view.height)
     colours = np.empty((view.height, view.width, 3), np.uint8)
-    depths = np.empty((view.height, view.width), np.float32) if sensor.has_depth else None
+    depths = np.empty((view.height, view.width), np.float32) if shot.depth else None
     every = int(mujoco.mjtCatBit.mjCAT_ALL)
-    model, data, scene, context = sim.mj_model, sim.mj_data, renderer._scene, renderer._context
-    position, rotation = sensor._frame_in_world(data)
+    model, data, scene, context = sim.mj_model, sim.mj_data, composition.scene, renderer._context
 
     def draw() -> None:
         with gl.current():

@@ -39,8 +39,8 @@ _DRAW = """
 import simkit
 from simkit.engine import import_engine
 import_engine()
-from simkit.sensors.gl import describe_renderer
-from simkit.sensors.renderer import render_view
+from simkit.sensors.rendering.gl import describe_renderer
+from simkit.sensors.rendering.overview import render_view
 world = ("<sdf version='1.12'><world name='w'><model name='m'><static>true</static><link name='l'><visual name='v'>"
          "<geometry><sphere><radius>1</radius></sphere></geometry></visual></link></model></world></sdf>")
 with simkit.load(world) as sim:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.sensors.renderer import View
+from simkit.sensors.rendering.view import View
 
 MOST_PIXELS = 4096
 _MOST_PIXELS = 1e9  # of focal lengths and principal points

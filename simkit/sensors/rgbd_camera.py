@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from simkit.sensors import pictures
 from simkit.sensors.base import Product
-from simkit.sensors.camera import RenderedSensor
 from simkit.sensors.clouds import point_cloud
+from simkit.sensors.rendered import RenderedSensor
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation

@@ -141,7 +141,7 @@ def loaded(sim: Any) -> dict[str, str]:
 
 def unreadable(sim: Any) -> str:
     """A sensor, not a drawn one, whose reading has a number that is none; empty where all are fine."""
-    from simkit.sensors.camera import RenderedSensor
+    from simkit.sensors.rendered import RenderedSensor
 
     for sensor in sim.sensors.values():
         if isinstance(sensor, RenderedSensor):

@@ -13,7 +13,7 @@ import numpy as np
 import simkit
 from simkit import msgs
 from simkit.sensors import sensor_kinds
-from simkit.sensors.camera import RenderedSensor
+from simkit.sensors.rendered import RenderedSensor
 
 RATE = 40
 DURATION = 0.26

@@ -11,8 +11,9 @@ from sensor_worlds import box, cloud, colours, depths, noise, sensor, world
 
 import simkit
 from simkit.errors import RenderError
-from simkit.sensors import gl
-from simkit.sensors.renderer import metres, render_view
+from simkit.sensors.rendering import gl
+from simkit.sensors.rendering.depths import metres
+from simkit.sensors.rendering.overview import render_view
 
 try:
     with gl.current():

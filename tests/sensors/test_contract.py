@@ -19,8 +19,9 @@ from contract_worlds import digest, heard, load, plain, sensor_of
 import simkit
 from simkit import msgs
 from simkit.errors import RenderError
-from simkit.sensors import gl, sensor_kinds
+from simkit.sensors import sensor_kinds
 from simkit.sensors.noise import NoiseModel
+from simkit.sensors.rendering import gl
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {

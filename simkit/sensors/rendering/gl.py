@@ -173,7 +173,7 @@ def _renderer_name() -> str:
 def _close() -> None:
     """At exit, before the libraries go: a context freed later writes to the terminal."""
     global _context, _failure
-    from simkit.sensors import renderer
+    from simkit.sensors.rendering import renderer
 
     renderer.free_all()
     context, _context = _context, None
