@@ -144,10 +144,20 @@ class RenderedSensor(Sensor):
     def measure(self, model: Any, data: Any) -> Any:
         renderer = renderer_of(self.sim)
         composition = renderer.compose(model, data, *self._frame_in_world(data))
-        return self.develop(renderer.films(composition, self.shots()))
+        notes = self.note(model, data)
+        return self.develop(renderer.films(composition, self.shots()), notes)
 
-    def develop(self, films: Iterator[Film]) -> Any:
-        """The reading without noise, of what was drawn; takes one film of each shot, in their order."""
+    def note(self, model: Any, data: Any) -> Any:
+        """What `develop` needs of the state besides pictures."""
+        return None
+
+    def develop(self, films: Iterator[Film], notes: Any) -> Any:
+        """The reading without noise, of what was drawn.
+
+        Args:
+            films: one of each shot, in their order; to be taken in turn.
+            notes: what `note` gave.
+        """
         options, film = self.options, next(films)
         colours, raw, view = film.colours, film.depths, film.view
         assert colours is not None
