@@ -28,7 +28,7 @@ from simkit.pose import Pose
 
 if TYPE_CHECKING:
     from simkit.build import check, describe, load
-    from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, WorldPlugin
+    from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
     from simkit.runtime import Simulation
 
 __version__ = "0.1.0"
@@ -48,6 +48,7 @@ __all__ = [
     "SimkitError",
     "Simulation",
     "SimulationDiverged",
+    "VisualPlugin",
     "WorldPlugin",
     "__version__",
     "check",
@@ -65,6 +66,7 @@ _LAZY = {
     "WorldPlugin": "simkit.plugins.base",
     "ModelPlugin": "simkit.plugins.base",
     "SensorPlugin": "simkit.plugins.base",
+    "VisualPlugin": "simkit.plugins.base",
 }
 
 

@@ -60,6 +60,7 @@ def load(
     overrides: Sequence[str] = (),
     sleep: bool = True,
     package_paths: Mapping[str, Source] | None = None,
+    render_thread: bool | None = None,
 ) -> Simulation:
     """Opens a world or a bare model and makes it ready to step.
 
@@ -75,6 +76,8 @@ def load(
         overrides: `PATH=VALUE` texts as for `--set`.
         sleep: whether what rests is left out of the physics until something reaches it; see `docs/sleeping.md`.
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`.
+        render_thread: whether pictures are drawn on a second thread beside the physics, which gives the same bits;
+            by default where the process may use two processor cores or more.
 
     Returns:
         The simulation at t = 0.
@@ -86,6 +89,7 @@ def load(
     import_engine()
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation, Structure
+    from simkit.sensors.rendering.thread import usable_cores
 
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
@@ -93,9 +97,10 @@ def load(
     world = scene.world if sleep else _sleepless(scene.world)
     allowed = [Path(p) for p in plugin_paths]
     if diagnostics.has_errors:
-        _look_further(world, diagnostics, allowed)
+        _look_further(world, diagnostics, allowed, resolver)
     diagnostics.raise_if_errors()
     builder = SpecBuilder(world, diagnostics)
+    builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
     parts: dict[str, Any] = {}
     try:
         for model in world.models:
@@ -115,6 +120,7 @@ def load(
     make_parts = partial(parts_of_model, plugin_paths=allowed)
     structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts)
+    simulation.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     try:
         report_unread(parts.values())
         diagnostics.raise_if_errors(strict)
@@ -220,7 +226,9 @@ def _sleepless(world: SceneWorld) -> SceneWorld:
     return replace(world, physics=replace(world.physics, sleep=False))
 
 
-def _look_further(world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> None:
+def _look_further(
+    world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path], resolver: Resolver
+) -> None:
     """What else is wrong with a file that has errors: it is built without its faulty parts, as far as that goes.
 
     So everything comes in one pass: meshes, inertias, and what plugins find in `prepare` and `load`. What only follows
@@ -233,6 +241,7 @@ def _look_further(world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Seq
     before = tuple(diagnostics)
     try:
         builder = SpecBuilder(world, diagnostics)
+        builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
         parts = {m.name: parts_of_model(m, builder, diagnostics, plugin_paths) for m in world.models}
         parts[""] = parts_of_world(world, builder, diagnostics, plugin_paths, ())
         _load_the_rest(world, builder, parts, diagnostics)

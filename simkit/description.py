@@ -246,14 +246,16 @@ def _totals(scene: Scene) -> Block:
     lights = (
         sum(len(w.lights) for w in scene.worlds) + (scene.light is not None) + sum(len(link.lights) for link in links)
     )
-    carriers: list[SceneModel | SceneLink | SceneJoint | SceneSensor] = [*models, *owners, *sensors]
+    visuals = [visual for link in links for visual in link.visuals]
+    carriers: list[SceneModel | SceneLink | SceneJoint | SceneSensor | SceneVisual]
+    carriers = [*models, *owners, *sensors, *visuals]
     owned = [p for carrier in carriers for p in carrier.plugins]
     return {
         "models": len(models),
         "links": len(links),
         "joints": len(joints),
         "collisions": sum(len(link.collisions) for link in links),
-        "visuals": sum(len(link.visuals) for link in links),
+        "visuals": len(visuals),
         "sensors": len(sensors),
         "lights": lights,
         "plugins": len(owned) + sum(len(w.plugins) for w in scene.worlds),

@@ -1,7 +1,8 @@
 """`--set PATH=VALUE`: one value of a loaded scene replaced by another, before anything is built from it.
 
-PATH is `physics`, `world`, or a scoped entity, then element names with dots: `tb3::base_scan::lds.update_rate`,
-`tb3::base_scan::lds.ray.scan.horizontal.samples`, `physics.max_step_size`, `tb3::drive_plugin.max_wheel_torque`.
+PATH is `physics`, `world`, `scene`, or a scoped entity, then element names with dots:
+`tb3::base_scan::lds.update_rate`, `tb3::base_scan::lds.ray.scan.horizontal.samples`, `physics.max_step_size`,
+`scene.quality`, `tb3::drive_plugin.max_wheel_torque`.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.errors import InputError
 from simkit.params import Params
 from simkit.scene import Scene, SceneJoint, SceneLight, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
+from simkit.scene.world import QUALITIES
 
 _CODE = "SK-CLI-014"
 _PLACE = "--set "
 
 _PHYSICS = ("max_step_size", "real_time_factor", "sleep")
 _WORLD = {"gravity": 3, "magnetic_field": 3}
+_SCENE = ("quality", "shadows", "sky", "ambient", "background")
 _LINK = ("gravity", "self_collide", "kinematic", "inertial.mass")
 _MODEL = ("static", "self_collide", "allow_auto_disable")
 _LIGHT = ("intensity", "cast_shadows", "on", "direction")
@@ -84,7 +87,9 @@ class _Override:
     # ------------------------------------------------------------------ finding the entity
 
     def apply(self, scene: Scene, path: str) -> Scene:
-        if path.startswith(("physics.", "world.")):
+        if path.startswith(("physics.", "world.", "scene.")):
+            if scene.model is not None and path.startswith("scene."):
+                return replace(scene, around=self._world(replace(scene.world, models=(), lights=()), path))
             if not scene.worlds:
                 raise _bad(self.text, "the file is a bare model; it has no world")
             return replace(scene, worlds=(self._world(scene.worlds[0], path), *scene.worlds[1:]))
@@ -96,9 +101,9 @@ class _Override:
                 if "::" in path
                 else path.split(".")[0]
             )
-            if path in (*names, "physics", "world"):
+            if path in (*names, "physics", "world", "scene"):
                 raise _bad(self.text, f"{path!r} needs an element, as in {path}.element=value")
-            hint = did_you_mean(asked, [*names, "physics", "world"])
+            hint = did_you_mean(asked, [*names, "physics", "world", "scene"])
             raise _bad(self.text, f"no entity {asked!r}; {hint or 'simkit inspect lists them'}")
         element = path[len(entity) + 1 :]
         worlds = tuple(self._in_world(w, entity, element) for w in scene.worlds)
@@ -135,6 +140,10 @@ class _Override:
             lights=tuple(self._light(li, element) if li.scoped == entity else li for li in link.lights),
             plugins=self._plugins(link.plugins, link.scoped, entity, element),
             collisions=tuple(self._collision(c, element) if c.scoped == entity else c for c in link.collisions),
+            visuals=tuple(
+                replace(v, plugins=self._plugins(v.plugins, v.scoped, entity, element)) if v.plugins else v
+                for v in link.visuals
+            ),
         )
         return self._link(link, element) if entity == link.scoped else link
 
@@ -165,8 +174,25 @@ class _Override:
             positive = element == "max_step_size"
             number = self._number(lambda v: math.isfinite(v) and (v > 0 if positive else v >= 0), "a positive number")
             return replace(world, physics=replace(world.physics, **_change(element, number)))
+        if room == "scene":
+            return self._scene(world, element)
         self._known(element, _WORLD)
         return replace(world, **_change(element, self._vector(_WORLD[element])))
+
+    def _scene(self, world: SceneWorld, element: str) -> SceneWorld:
+        """How pictures are drawn."""
+        self._known(element, _SCENE)
+        if element == "quality":
+            if self.value not in QUALITIES:
+                raise _bad(self.text, f"found {self.value!r}, allowed is one of {', '.join(QUALITIES)}")
+            return replace(world, quality=self.value)
+        if element in ("shadows", "sky"):
+            return replace(world, surroundings=replace(world.surroundings, **_change(element, self._boolean())))
+        red, green, blue = self._vector(3)
+        if not all(0.0 <= part <= 1.0 for part in (red, green, blue)):
+            raise _bad(self.text, f"found {self.value!r}, allowed are red, green and blue from 0 to 1")
+        colour = (red, green, blue, 1.0)
+        return replace(world, surroundings=replace(world.surroundings, **_change(element, colour)))
 
     def _model(self, model: SceneModel, element: str) -> SceneModel:
         self._known(element, _MODEL)
@@ -295,6 +321,7 @@ def _entities(scene: Scene) -> set[str]:
         for link in model.links:
             found |= {link.scoped, *(c.scoped for c in link.collisions), *(li.scoped for li in link.lights)}
             found |= {_joined(link.scoped, p.name) for p in link.plugins}
+            found |= {_joined(visual.scoped, p.name) for visual in link.visuals for p in visual.plugins}
         found |= {j.scoped for j in model.joints}
         owned = [link.sensors for link in model.links] + [joint.sensors for joint in model.joints]
         for sensor in (s for sensors in owned for s in sensors):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
-    """Sensors and plugins of a model, in document order: each sensor's own plugins first, then the models'."""
+    """Sensors and plugins of a model, in document order: each sensor's plugins first, then models', then visuals'."""
     from simkit.runtime import Parts
     from simkit.sensors.presets.apply import with_preset
 
@@ -40,6 +40,10 @@ def parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, pl
         parent = _model_parent(nested.scoped)
         for plugin in (*below, *nested.plugins):
             _add_plugin(parts, plugin, "model", nested, builder, diagnostics, plugin_paths, parent)
+    for visual in (v for link in model.all_links() for v in link.visuals if v.plugins):
+        parent = _visual_parent(visual.scoped)
+        for plugin in visual.plugins:
+            _add_plugin(parts, plugin, "visual", visual, builder, diagnostics, plugin_paths, parent)
     return parts
 
 
@@ -117,6 +121,10 @@ def _sensor_parent(scoped: str) -> Callable[[Any], Any]:
 
 def _model_parent(scoped: str) -> Callable[[Any], Any]:
     return lambda sim: sim.model(scoped)
+
+
+def _visual_parent(scoped: str) -> Callable[[Any], Any]:
+    return lambda sim: sim.visual(scoped)
 
 
 def report_unread(parts: Iterable[Parts]) -> None:

@@ -100,3 +100,19 @@ def test_an_element_that_the_sensor_does_not_know_is_said() -> None:
         pytest.raises(InputError, match="visualise_it"),
     ):
         check_used(sim.diagnostics)
+
+
+@pytest.mark.parametrize("text", [WORLD, '<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>'])
+def test_how_pictures_are_drawn_is_set_for_worlds_and_bare_models(text: str) -> None:
+    given = ["scene.quality=gazebo", "scene.shadows=false", "scene.ambient=0.1 0.2 0.3", "scene.sky=1"]
+    with load(text, overrides=given) as sim:
+        around = sim.world.surroundings
+        assert (sim.world.quality, around.shadows, around.sky) == ("gazebo", False, True)
+        assert around.ambient == (0.1, 0.2, 0.3, 1.0)
+        assert sim.mj_model.vis.headlight.ambient.tolist() == pytest.approx([0.1, 0.2, 0.3])
+
+
+@pytest.mark.parametrize("text", ["scene.quality=fine", "scene.qualty=fast", "scene.ambient=2 0 0", "scene=1"])
+def test_how_pictures_cannot_be_drawn_is_said(text: str) -> None:
+    with pytest.raises(InputError, match="SK-CLI-014"):
+        load(WORLD, overrides=[text])

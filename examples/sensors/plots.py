@@ -55,8 +55,8 @@ def figure(title: str, rows: int = 1, columns: int = 1, **options: Any) -> tuple
     return fig, axes
 
 
-def save(fig: Any, out: Path | str) -> None:
-    """Writes the picture as a PNG of a few colours, and says where.
+def save(fig: Any, out: Path | str, colours: int = _COLOURS) -> None:
+    """Writes the picture as a PNG of a few colours, at most 256, and says where.
 
     It shows in no plot, and the file is a third as large.
     """
@@ -66,7 +66,7 @@ def save(fig: Any, out: Path | str) -> None:
     fig.canvas.draw()
     pixels = Image.fromarray(np.asarray(fig.canvas.buffer_rgba())).convert("RGB")
     plt.close(fig)
-    few = pixels.quantize(_COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    few = pixels.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     few.save(out, format="PNG", optimize=True, dpi=(DPI, DPI))
     print(f"wrote {out}")
 

@@ -9,10 +9,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from simkit.bench.pictures import BarePass
 from simkit.sensors.lidar import Lidar
-from simkit.sensors.rendering import gl
-from simkit.sensors.rendering.renderer import renderer_of
-from simkit.sensors.rendering.view import aim
+from simkit.sensors.rendered import RenderedSensor
 
 _EULER = (mujoco.mjtIntegrator.mjINT_EULER,)
 
@@ -45,6 +44,7 @@ class HandWritten(Bare):
         self.latest: dict[str, Any] = {}
         types = sim.topics()
         sensors = {sensor.topic: sensor for sensor in sim.sensors.values()}
+        self._sim = sim
         self._due = [(p, t, self._reader(types[t], sensors.get(t))) for t, p in periods.items()]
         self._plans: dict[int, list[tuple[int, list[tuple[str, Callable[[], Any]]]]]] = {}
         self._is_fresh = False
@@ -83,6 +83,8 @@ class HandWritten(Bare):
             return self._imu(sensor)
         if isinstance(sensor, Lidar):
             return self._scan(sensor)
+        if isinstance(sensor, RenderedSensor):
+            return BarePass(self._sim, sensor, self.model, self.data).reading(self._random)
         if kind == "Odometry":
             return self._odometry
         if kind == "JointState":
@@ -137,30 +139,3 @@ def bare_scan(sensor: Lidar, model: Any, data: Any) -> Callable[[], Any]:
         return distances
 
     return scan
-
-
-def bare_pass(sim: Any, sensor: Any) -> Callable[[], None]:
-    """One picture of the engine's own from the same place with the same options: drawn, colour and depth read.
-
-    The picture is left as the driver gives it: bottom row first, black background, depth not in metres.
-    """
-    renderer = renderer_of(sim)
-    position, rotation = sensor._frame_in_world(sim.fresh_data())
-    composition = renderer.compose(sim.mj_model, sim.mj_data, position, rotation)
-    (shot,) = sensor.shots()
-    renderer.draw(composition, shot)  # so that the context is there
-    view = shot.view
-    rectangle = mujoco.MjrRect(0, 0, view.width, view.height)
-    colours = np.empty((view.height, view.width, 3), np.uint8)
-    depths = np.empty((view.height, view.width), np.float32) if shot.depth else None
-    every = int(mujoco.mjtCatBit.mjCAT_ALL)
-    model, data, scene, context = sim.mj_model, sim.mj_data, composition.scene, renderer._context
-
-    def draw() -> None:
-        with gl.current():
-            mujoco.mjv_updateScene(model, data, renderer._option, None, renderer._aside, every, scene)
-            aim(scene, position, rotation, view)
-            mujoco.mjr_render(rectangle, scene, context)
-            mujoco.mjr_readPixels(colours, depths, rectangle, context)
-
-    return draw

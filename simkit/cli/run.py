@@ -166,7 +166,7 @@ class _Run:
                 recording = stack.enter_context(
                     Recorder(sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip)
                 )
-            counter = TopicCounter(sim, () if recording and not (request.topics or request.skip) else RENDERED)
+            counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             watch = Stopwatch()
             progress = stack.enter_context(Progress(sim, counter, request.duration, out()))
             watchers: list[Any] = [progress.update]

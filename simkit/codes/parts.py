@@ -38,7 +38,7 @@ sim = simkit.load("ball.sdf", plugins=[Logger()])
 sim.snapshot()
 """
 _CAMERA = "<image><width>64</width><height>48</height></image>"
-_LENS = "<intrinsics><fx>60</fx><fy>60</fy><cx>32</cx><cy>24</cy><s>{skew}</s></intrinsics>"
+_LENS = "<intrinsics><fx>60</fx><fy>60</fy><cx>32</cx><cy>24</cy></intrinsics>"
 
 
 def _camera(content: str) -> str:
@@ -184,25 +184,12 @@ CODES: tuple[Code, ...] = (
         sensor("lidar", _lidar(rest="<visibility_mask>2</visibility_mask>")),
     ),
     Code(
-        "SK-SENSOR-005",
-        "warning",
-        "skew of a camera's intrinsics is not used",
-        "",
-        sensor("camera", _camera(f"<lens>{_LENS.format(skew=0.1)}</lens>")),
-    ),
-    Code(
         "SK-SENSOR-006",
-        "warning",
-        "`<projection>` differs from the intrinsics; the intrinsics stand",
-        "",
-        sensor("camera", _camera(f"<lens>{_LENS.format(skew=0)}<projection><p_fx>90</p_fx></projection></lens>")),
-    ),
-    Code(
-        "SK-SENSOR-007",
-        "warning",
-        "the centre of a lens distortion is not used",
-        "",
-        sensor("camera", _camera("<distortion><k1>0.1</k1><center>0.4 0.5</center></distortion>")),
+        "note",
+        "`<projection>` differs from the intrinsics: P tells it, and the picture is drawn by the intrinsics",
+        "Gazebo draws the picture by `<projection>`, while K tells the intrinsics; so does a world with "
+        "`<simkit:gazebo_quirks>`",
+        sensor("camera", _camera(f"<lens>{_LENS}<projection><p_fx>90</p_fx></projection></lens>")),
     ),
     Code(
         "SK-SENSOR-008",
@@ -216,8 +203,8 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-SENSOR-009",
         "warning",
-        "`<save>` of a camera is not used",
-        "`--record`",
-        sensor("camera", _camera('<save enabled="true"><path>pictures</path></save>')),
+        "`<save>` of a camera is not used: its path leads out of the folders that worlds may write to",
+        "a path below the working directory, or `SIMKIT_SAVE_PATH`",
+        sensor("camera", _camera('<save enabled="true"><path>/var/pictures</path></save>')),
     ),
 )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Final
 
 import mujoco
@@ -12,7 +14,7 @@ from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import drop_twin
 from simkit.compiler.first_state import damp, place_followers, steady_idle
 from simkit.compiler.inertia import put_back
-from simkit.compiler.lights import add_light, refine_for_lamps
+from simkit.compiler.lights import add_light, refine_for_lamps, report_light, report_lights
 from simkit.compiler.masks import FIRST_OWN_BIT, PAIRS_MOST
 from simkit.compiler.mjcf import (
     adopt_settings,
@@ -43,6 +45,8 @@ from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import SceneJoint, SceneModel, SceneWorld
 
+FileFinder = Callable[[str, Path | None], Path | None]
+
 MOST_MOVING: Final = 10_000
 """Links; the engine's compiler takes time in proportion to their square, 7 s for 4000 that are free."""
 
@@ -57,6 +61,12 @@ class Compiled:
     builder: SpecBuilder
 
 
+def _beside(uri: str, folder: Path | None) -> Path | None:
+    """A file by its path alone."""
+    path = Path(uri) if folder is None else folder / uri
+    return path if path.is_file() else None
+
+
 class SpecBuilder:
     """Builds and changes the specification of one world.
 
@@ -67,10 +77,12 @@ class SpecBuilder:
     Attributes:
         spec: MuJoCo's specification. Handles into it die with `copy`; look elements up by name.
         records: what each top-level model put into it, by scoped name; the world's own under the empty name.
+        find_file: the file that a URI names beside the file in that folder; None where there is none.
     """
 
     def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
         self.world, self.diagnostics = world, diagnostics
+        self.find_file: FileFinder = _beside
         self.spec = mujoco.MjSpec()
         self.spec.modelname = world.name
         self.assets = Assets(self.spec)
@@ -83,6 +95,7 @@ class SpecBuilder:
         for light in world.lights:
             if not own:
                 add_light(self.spec.worldbody, light, light.pose_world, world.surroundings.shadows)
+                report_light(light, world, diagnostics)
             self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
         if own:
             self.records.update({model.scoped: ModelRecord(model) for model in own})
@@ -328,6 +341,7 @@ class SpecBuilder:
             except ValueError as problem:
                 self._refused(problem)
             compiled = self._finished(model, None)
+            report_lights(compiled.model, self.diagnostics, self.world.where)
             report_overlaps(compiled.model, compiled.names, self.diagnostics, self.world.where)
         for text in dict.fromkeys(str(w.message) for w in said):
             if not is_expected(text):
@@ -361,6 +375,7 @@ class SpecBuilder:
         """An independent builder with the same content: change it, and this one stays what it was."""
         other = SpecBuilder.__new__(SpecBuilder)
         other.world, other.diagnostics = self.world, self.diagnostics
+        other.find_file = self.find_file
         other.spec = self.spec.copy()
         other.assets = Assets(other.spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}

@@ -17,7 +17,7 @@ from simkit.compiler.heightmap import heights
 from simkit.compiler.looks import look_of
 from simkit.compiler.meshes.collision import bodies_of, hull_of
 from simkit.compiler.meshes.mesh import load_mesh, once
-from simkit.compiler.meshes.part import Floats, Ints, MeshFileError, MeshPart, has_area, joined
+from simkit.compiler.meshes.part import Colour, Floats, Ints, MeshFileError, MeshPart, has_area, joined
 from simkit.compiler.names import GeomOwner, ModelRecord
 from simkit.compiler.shapes import cone, polyline, polyline_pieces, primitive_of, sizes_of
 from simkit.compiler.shapes_textured import textured
@@ -26,6 +26,7 @@ from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
 
 _HALF_SPACE = (50.0, 50.0, 0.05)
+_OVER = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))  # what is below comes to the top
 _HEIGHTS_HINT = "save the heights as an 8- or 16-bit grey PNG"
 LEAST_AREA: Final = 1e-12
 """[m²]; triangles with less in all are not drawn."""
@@ -50,10 +51,17 @@ class Place:
 
 
 class GeomWriter:
-    """Writes the geoms of one top-level model and notes whose they are."""
+    """Writes the geoms of one top-level model and notes whose they are.
 
-    def __init__(self, assets: Assets, record: ModelRecord, timestep: float, diagnostics: Diagnostics) -> None:
+    Args:
+        ambient: the scene's ambient light.
+    """
+
+    def __init__(
+        self, assets: Assets, record: ModelRecord, timestep: float, diagnostics: Diagnostics, ambient: Colour
+    ) -> None:
         self.assets, self.record, self.timestep, self.diagnostics = assets, record, timestep, diagnostics
+        self._ambient = ambient
         self._count: Counter[str] = Counter()
 
     def _add(self, place: Place, owner: GeomOwner, pose: Pose, **settings: Any) -> Any:
@@ -152,7 +160,10 @@ class GeomWriter:
             if isinstance(shape, Plane) and not place.fixed:
                 size, kind = (size[0], size[1], 1e-4), mujoco.mjtGeom.mjGEOM_BOX
                 pixels = None
-            self._add(place, owner, pose @ primitive.pose, type=kind, size=size, **self._drawn(visual, None, pixels))
+            drawn = self._drawn(visual, None, pixels)
+            self._add(place, owner, pose @ primitive.pose, type=kind, size=size, **drawn)
+            if kind == mujoco.mjtGeom.mjGEOM_PLANE and visual.material is not None and visual.material.double_sided:
+                self._add(place, owner, pose @ primitive.pose @ _OVER, type=kind, size=size, **drawn)
 
     def _part(self, place: Place, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any) -> None:
         """Triangles of one material: the file's material wins over the mesh's own."""
@@ -179,9 +190,10 @@ class GeomWriter:
         texture = self.assets.texture(pixels) if pixels is not None else ""
         scale = visual.material.texture_scale if visual.material is not None and part is None else (1.0, 1.0)
         repeat = (1.0 / abs(scale[0]), 1.0 / abs(scale[1]))
+        emission = look.emission_under(self._ambient)
         return {
             "rgba": look.rgba,
-            "material": self.assets.material(look.emission, look.specular, look.shininess, texture, repeat),
+            "material": self.assets.material(emission, look.specular, look.shininess, texture, repeat),
             "contype": 0,
             "conaffinity": 0,
             "group": VISUAL,

@@ -9,12 +9,17 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
-from simkit.scene import SceneLight
+from simkit.scene import SceneLight, SceneWorld
 
 FARTHEST: Final = 100.0
 """Directional lights are drawn from at most this far [m]: their place only frames the shadow map."""
 
+MOST_LIGHTS: Final = 7
+"""So many are drawn at once, beside the ambient light: OpenGL has eight."""
+
+_MOST_LEFT: Final = 0.1  # of a lamp at its range; SDF's own defaults leave 9 %
 _FARTHEST_LAMP: Final = 1e4
 _MOST_FADING: Final = 1e9  # of ranges and attenuations, which the engine holds in single precision
 _EVERYWHERE: Final = 180.0  # the cutoff at which OpenGL's spot is a point light
@@ -57,6 +62,34 @@ def add_light(body: Any, light: SceneLight, pose: Pose, shadows: bool) -> None:
         made.cutoff = _EVERYWHERE
     if light.type == "spot":
         made.cutoff, made.exponent = spot_of(light)
+
+
+def report_light(light: SceneLight, world: SceneWorld, diagnostics: Diagnostics) -> None:
+    """Says what of a light is not drawn: where its range would end it, and shadows all around a lamp."""
+    if light.type == "directional":
+        return
+    reach, constant, linear, quadratic = light.attenuation
+    left = 1.0 / max(constant + reach * (linear + reach * quadratic), 1e-9) if math.isfinite(reach) else 0.0
+    if left > _MOST_LEFT:
+        message = (
+            f"light {light.scoped!r} has a range of {reach:g} m, where {100.0 * min(left, 1.0):.0f} % of it is left; "
+            "in pictures it fades on from there, and does not end"
+        )
+        diagnostics.note("SK-RENDER-013", message, light.where, "a <linear> or <quadratic> that has faded it by there")
+    if light.type == "point" and light.cast_shadows and world.surroundings.shadows and world.quality != "fast":
+        message = f"the point light {light.scoped!r} throws no shadows: they are drawn for directional lights and spots"
+        diagnostics.note("SK-RENDER-014", message, light.where)
+
+
+def report_lights(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where) -> None:
+    """Says that there are more lights than a picture has."""
+    shining = int(np.count_nonzero(model.light_active))
+    if shining > MOST_LIGHTS:
+        message = (
+            f"{shining} lights shine; a picture has the {MOST_LIGHTS} of them that its camera gets most of, "
+            "directional ones before all"
+        )
+        diagnostics.note("SK-RENDER-012", message, where)
 
 
 def spot_of(light: SceneLight) -> tuple[float, float]:

@@ -1,8 +1,9 @@
 """Colours of the file in the words of MuJoCo's lighting: one colour, and how much of it shines, mirrors and glows.
 
 The renderer lights every surface as diffuse + specular + emission in the style of OpenGL. The ambient colour of a
-material is not separate there: it is the diffuse one. PBR's roughness sets the size of highlights; metalness and
-further maps have no counterpart.
+material is not separate there: it is the diffuse one. Where a file's is darker or brighter than that, emission makes up
+for it under the scene's own ambient light (it may be negative), as Gazebo Classic would have it; a hue of its own it
+cannot have. PBR's roughness sets the size of highlights; metalness and further maps have no counterpart.
 """
 
 from __future__ import annotations
@@ -19,22 +20,33 @@ _SHININESS: Final = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """A geom's colour, and its material's shares from 0 to 1."""
+    """A geom's colour, and its material's shares from 0 to 1.
+
+    Attributes:
+        ambient: brightness under ambient light, in parts of that of its colour; 1 is as bright.
+    """
 
     rgba: tuple[float, float, float, float]
     emission: float = 0.0
     specular: float = 0.0
     shininess: float = _SHININESS
+    ambient: float = 1.0
+
+    def emission_under(self, ambient: Colour) -> float:
+        """Emission that makes up for a material's own ambient colour under the scene's ambient light."""
+        return self.emission + (self.ambient - 1.0) * brightness(ambient)
 
 
 def look_of(visual: SceneVisual, part: MeshPart | None) -> Look:
     """How a visual (or one part of its mesh) looks; the file's material wins over the mesh's own."""
     material = visual.material
-    emission, specular, shininess = 0.0, 0.0, _SHININESS
+    emission, specular, shininess, ambient = 0.0, 0.0, _SHININESS, 1.0
     if material is not None:
         colour, emission = _glowing(material)
-        specular = max(material.specular[:3])
-        if material.roughness is not None:
+        specular, ambient = max(material.specular[:3]), _ambient_share(material)
+        if material.shininess is not None:
+            shininess = min(1.0, material.shininess / 128.0)
+        elif material.roughness is not None:
             shininess = 1.0 - min(1.0, max(0.0, material.roughness))
     elif part is not None:
         colour = part.colour or PLAIN
@@ -45,7 +57,15 @@ def look_of(visual: SceneVisual, part: MeshPart | None) -> Look:
     a *= 1.0 - min(1.0, max(0.0, visual.transparency))
     if (r, g, b, a) == (0.5, 0.5, 0.5, 1.0):
         r = 0.5001  # exactly MuJoCo's default would be taken for "not given"
-    return Look((r, g, b, a), min(1.0, emission), min(1.0, specular), shininess)
+    return Look((r, g, b, a), min(1.0, emission), min(1.0, specular), shininess, ambient)
+
+
+def _ambient_share(material: Material) -> float:
+    """How bright the ambient colour is, in parts of the diffuse one; 1 where that is black or what glows decides."""
+    own = brightness(material.diffuse)
+    if own <= 0.0 or brightness(material.emissive) > own:
+        return 1.0
+    return brightness(material.ambient) / own
 
 
 def _glowing(material: Material) -> tuple[Colour, float]:

@@ -13,7 +13,7 @@ from simkit.compiler.bodies import KINEMATIC_ARMATURE, add_body, is_massless
 from simkit.compiler.geoms import GeomWriter, Place
 from simkit.compiler.inertia import Written, plan_inertials
 from simkit.compiler.joints import JointWriter
-from simkit.compiler.lights import add_light
+from simkit.compiler.lights import add_light, report_light
 from simkit.compiler.masks import keep_apart
 from simkit.compiler.names import LightBinding, LinkBinding, ModelRecord
 from simkit.compiler.tree import WORLD, Tree, plan_tree
@@ -33,7 +33,7 @@ class ModelWriter:
     ) -> None:
         self.spec, self.record, self.world, self.diagnostics = spec, record, world, diagnostics
         step = float(spec.option.timestep)
-        self.geoms = GeomWriter(assets, record, step, diagnostics)
+        self.geoms = GeomWriter(assets, record, step, diagnostics, world.surroundings.ambient)
         self.joints = JointWriter(spec, record, step, diagnostics)
 
     def write(self, joints: list[SceneJoint]) -> None:
@@ -268,6 +268,7 @@ class ModelWriter:
         for light in link.lights:
             pose = link.pose_world.inverse() @ light.pose_world
             add_light(place.body, light, place.offset @ pose, self.world.surroundings.shadows)
+            report_light(light, self.world, self.diagnostics)
             self.record.lights[light.scoped] = LightBinding(light.scoped, light, self.record.scene.scoped, body_name)
 
 

@@ -275,6 +275,21 @@ class NameMap:
         """The link of a collision or visual by its scoped name; empty where there is none."""
         return next((o.link for o in self._owners.values() if o.scoped == scoped), "")
 
+    def drawn(self, link: str) -> dict[str, tuple[int, ...]]:
+        """The drawn geoms of a link by the scoped name of their visual; what is not drawn is not in it."""
+        found: dict[str, tuple[int, ...]] = {}
+        for geom in self.link(link).visuals:
+            scoped = self.geom_owner(geom)[1]
+            found[scoped] = (*found.get(scoped, ()), geom)
+        return found
+
+    def model_frame(self, model: SceneModel) -> tuple[int, Pose]:
+        """The body that moves with a model's frame, and the frame in it; in the world for a model without links."""
+        canonical = self.links.get(model.canonical_link)
+        if canonical is None:
+            return 0, model.pose_world
+        return canonical.body, canonical.offset @ canonical.scene.pose_world.inverse() @ model.pose_world
+
     def _id(self, kind: str, name: str) -> int:
         import mujoco
 

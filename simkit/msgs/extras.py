@@ -70,6 +70,22 @@ std_msgs/Header header
 float64 diff_pressure
 float64 temperature
 """,
+    "ros_gz_interfaces/msg/LogicalCameraImageModel": """
+string name
+geometry_msgs/Pose pose
+""",
+    "ros_gz_interfaces/msg/LogicalCameraImage": """
+std_msgs/Header header
+geometry_msgs/Pose pose
+ros_gz_interfaces/LogicalCameraImageModel[] model
+""",
+    "simkit_msgs/msg/LogicalCameraSensor": """
+std_msgs/Header header
+float64 near_clip
+float64 far_clip
+float64 horizontal_fov
+float64 aspect_ratio
+""",
     "ros_gz_interfaces/msg/Float32Array": """
 float32[] data
 """,
@@ -143,5 +159,50 @@ float64 err_roll
 float64 err_dip
 float64[9] position_covariance
 uint8 position_covariance_type
+""",
+    "vision_msgs/msg/ObjectHypothesis": """
+string class_id
+float64 score
+""",
+    "vision_msgs/msg/ObjectHypothesisWithPose": """
+vision_msgs/ObjectHypothesis hypothesis
+geometry_msgs/PoseWithCovariance pose
+""",
+    "vision_msgs/msg/Point2D": """
+float64 x
+float64 y
+""",
+    "vision_msgs/msg/Pose2D": """
+vision_msgs/Point2D position
+float64 theta
+""",
+    "vision_msgs/msg/BoundingBox2D": """
+vision_msgs/Pose2D center
+float64 size_x
+float64 size_y
+""",
+    "vision_msgs/msg/BoundingBox3D": """
+geometry_msgs/Pose center
+geometry_msgs/Vector3 size
+""",
+    "vision_msgs/msg/Detection2D": """
+std_msgs/Header header
+vision_msgs/ObjectHypothesisWithPose[] results
+vision_msgs/BoundingBox2D bbox
+string id
+""",
+    "vision_msgs/msg/Detection2DArray": """
+std_msgs/Header header
+vision_msgs/Detection2D[] detections
+""",
+    "vision_msgs/msg/Detection3D": """
+std_msgs/Header header
+vision_msgs/ObjectHypothesisWithPose[] results
+vision_msgs/BoundingBox3D bbox
+string id
+""",
+    "vision_msgs/msg/Detection3DArray": """
+std_msgs/Header header
+vision_msgs/Detection3D[] detections
 """,
 }

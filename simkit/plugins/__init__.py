@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, closest
-from simkit.plugins.base import ModelPlugin, ParentKind, Plugin, SensorPlugin, WorldPlugin
+from simkit.plugins.base import ModelPlugin, ParentKind, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
 from simkit.plugins.ros_names import RosNames
 from simkit.registry import discover
 from simkit.scene import ScenePlugin
@@ -18,6 +18,7 @@ __all__ = [
     "Plugin",
     "RosNames",
     "SensorPlugin",
+    "VisualPlugin",
     "WorldPlugin",
     "find_plugin",
     "normalise",
@@ -95,12 +96,12 @@ def aliases(plugin: ScenePlugin) -> list[str]:
 
 def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostics: Diagnostics) -> bool:
     """Whether the class may hang where the file puts it; a warning says where it belongs."""
-    if "any" in {cls.parent_kind, parent} or cls.parent_kind == parent:
+    kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
+    if parent == "any" or "any" in kinds or parent in kinds:
         return True
-    message = (
-        f"plugin {plugin.filename!r} belongs on a {cls.parent_kind}, the file puts it on a {parent}; it is left out"
-    )
-    hint = f"move it into the <{cls.parent_kind}> that it is for"
+    places = " or a ".join(kinds)
+    message = f"plugin {plugin.filename!r} belongs on a {places}, the file puts it on a {parent}; it is left out"
+    hint = f"move it into the {' or '.join(f'<{kind}>' for kind in kinds)} that it is for"
     diagnostics.warning("SK-PLUGIN-007", message, plugin.where, hint)
     return False
 

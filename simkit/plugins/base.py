@@ -1,4 +1,4 @@
-"""What a plugin is: Python that hangs on a world, a model or a sensor and is called as the run goes.
+"""What a plugin is: Python that hangs on a world, a model, a visual or a sensor and is called as the run goes.
 
 Write a class with a `load` method; everything else is optional:
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from simkit.scene import ScenePlugin
 
 Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
-ParentKind = Literal["world", "model", "sensor", "any"]
+ParentKind = Literal["world", "model", "visual", "sensor", "any"]
 
 
 class Plugin(abc.ABC):
-    """Base of all plugins; derive from `WorldPlugin`, `ModelPlugin` or `SensorPlugin`.
+    """Base of all plugins; derive from `WorldPlugin`, `ModelPlugin`, `VisualPlugin` or `SensorPlugin`.
 
     A hook that a class does not override costs nothing. Hooks run on the grid of simulated time: with a rate of
     r Hz at the first step at or after k/r, k = 1, 2, …; with None or 0 at every step.
@@ -39,7 +39,8 @@ class Plugin(abc.ABC):
     Attributes:
         filenames: library names in files that stand for this class (`libgazebo_ros_diff_drive.so`).
         names: gz class names that do (`gz::sim::systems::DiffDrive`).
-        parent_kind: what it may hang on; the four base classes set it.
+        parent_kind: what it may hang on; the base classes set it. Several kinds where the file may choose.
+        lets_sleep: whether a model that it hangs on may sleep while it rests: nobody could tell by this plugin.
         before_step_rate, after_step_rate: [Hz]; set in the class, or on the instance in `load`.
         sim: the simulation.
         name: the plugin's name in the file.
@@ -52,7 +53,8 @@ class Plugin(abc.ABC):
 
     filenames: ClassVar[tuple[str, ...]] = ()
     names: ClassVar[tuple[str, ...]] = ()
-    parent_kind: ClassVar[ParentKind]
+    parent_kind: ClassVar[ParentKind | tuple[ParentKind, ...]]
+    lets_sleep: ClassVar[bool] = False
     drives: ClassVar[bool] = False  # whether it moves joints of its model; on a static one it is left out
 
     before_step_rate: float | None = None
@@ -73,7 +75,7 @@ class Plugin(abc.ABC):
         """Before the model is compiled: check names, add actuators and sites through `builder`.
 
         Args:
-            scene: the resolved entity: `SceneWorld`, `SceneModel` or `SceneSensor`.
+            scene: the resolved entity: `SceneWorld`, `SceneModel`, `SceneVisual` or `SceneSensor`.
             params: the plugin's parameters; problems recorded here stop the load like any other.
             builder: the door to the MuJoCo spec.
         """
@@ -83,7 +85,7 @@ class Plugin(abc.ABC):
         """Once, when everything is built: read parameters, open topics, find links and joints.
 
         Args:
-            parent: the `Simulation`, `Model` or `Sensor` it hangs on.
+            parent: the `Simulation`, `Model`, `Visual` or `Sensor` it hangs on.
             params: the plugin's parameters, to be read by type and default.
         """
 
@@ -204,6 +206,12 @@ class ModelPlugin(Plugin):
     """Hangs on a model; `load` gets the `Model`, `prepare` the `SceneModel`."""
 
     parent_kind = "model"
+
+
+class VisualPlugin(Plugin):
+    """Hangs on a visual; `load` gets the `Visual`, `prepare` the `SceneVisual`."""
+
+    parent_kind = "visual"
 
 
 class SensorPlugin(Plugin):

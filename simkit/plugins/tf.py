@@ -19,7 +19,8 @@ class StaticTransforms(WorldPlugin):
 
     Frames are plain link names as in ROS; where two models have a link of one name, the later model's frames are
     `<model>/<link>`. A sensor whose frame is not a link's but its own (`model::link::sensor`, as gz has it) gets a
-    transform from its link. Part of every world; looks once a second of simulated time for models that came or went.
+    transform from its link, on static models too; a camera's `<optical_frame_id>` gets one from the sensor's frame,
+    unless it is a link's. Part of every world; looks once a second of simulated time for models that came or went.
     """
 
     after_step_rate = 1.0
@@ -45,15 +46,14 @@ class StaticTransforms(WorldPlugin):
 
     def _all(self) -> Iterator[tuple[str, str, Pose]]:
         taken: set[str] = set()
-        for handle in self.sim.models.values():
-            scene = handle.scene
-            if scene.static:
-                continue
+        # those that move come first: what stands around takes no name from a robot
+        for scene in sorted((handle.scene for handle in self.sim.models.values()), key=lambda scene: scene.static):
             links = {link.scoped: link for link in scene.all_links()}
             clash = any(link.name in taken for link in links.values())
             frames = {s: f"{scene.name}/{link.name}" if clash else link.name for s, link in links.items()}
             taken.update(frames.values())
-            yield from self._links(scene, frames)
+            if not scene.static:
+                yield from self._links(scene, frames)
             yield from self._sensors(scene, frames)
 
     def _links(self, scene: SceneModel, frames: dict[str, str]) -> Iterator[tuple[str, str, Pose]]:
@@ -65,12 +65,19 @@ class StaticTransforms(WorldPlugin):
 
     def _sensors(self, scene: SceneModel, frames: dict[str, str]) -> Iterator[tuple[str, str, Pose]]:
         children = {joint.scoped: joint.child_link for joint in scene.all_joints()}
-        for sensor in scene.all_sensors():
-            link = children[sensor.parent] if sensor.on_joint else sensor.parent
-            own = {sensor.name, sensor.scoped} - set(frames.values())
-            if sensor.plugins:
-                continue  # a Classic plugin names a link's frame
-            # a kind that simkit does not have is in the scene and not in the simulation
-            frame = self.sim.sensor(sensor.scoped).frame_id if self.sim.has_sensor(sensor.scoped) else ""
-            if link in frames and frame in own:
-                yield frames[link], str(frame), sensor.pose_link
+        links = {frames[link.scoped]: link.pose_world for link in scene.all_links()}
+        for described in scene.all_sensors():
+            link = children[described.parent] if described.on_joint else described.parent
+            # a Classic plugin names a link's frame; a kind that simkit does not have is in the scene only
+            if described.plugins or link not in frames or not self.sim.has_sensor(described.scoped):
+                continue
+            sensor = self.sim.sensor(described.scoped)
+            frame, pose = sensor.frame_id, sensor.scene.pose_link
+            if frame in {described.name, described.scoped} - set(links):
+                yield frames[link], frame, pose
+            for optical, turned in sensor.optical_frames().items():
+                if optical in links or optical == frame:
+                    continue
+                if frame in links:  # another link's perhaps
+                    turned = links[frame].inverse() @ links[frames[link]] @ pose @ turned
+                yield frame, optical, turned

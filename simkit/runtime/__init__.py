@@ -8,6 +8,7 @@ from simkit.runtime.parts import Parts, Structure
 from simkit.runtime.simulation import Simulation
 from simkit.runtime.snapshot import Snapshot
 from simkit.runtime.topics import Publisher, Subscription
+from simkit.runtime.visual import Visual
 
 __all__ = [
     "Joint",
@@ -20,4 +21,5 @@ __all__ = [
     "Snapshot",
     "Structure",
     "Subscription",
+    "Visual",
 ]

@@ -15,6 +15,7 @@ from simkit.runtime.light import Light
 from simkit.runtime.link import Link
 from simkit.runtime.model import Model
 from simkit.runtime.parts import Structure
+from simkit.runtime.visual import Visual
 from simkit.scene import SceneLink, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
@@ -87,6 +88,20 @@ class Entities:
         """A handle by scoped name; KeyError names the closest."""
         return look_up(self.tables[what], name, what)
 
+    def find_visual(self, name: str) -> Visual:
+        """A visual by scoped name; KeyError names the closest."""
+        link: Link | None = self.tables["link"].get(name.rpartition("::")[0])
+        if link is not None:
+            found = next((v for v in link.visuals.values() if v.scoped == name), None)
+            if found is not None:
+                return found
+        visual: Visual = look_up(self.visuals(), name, "visual")
+        return visual
+
+    def visuals(self) -> dict[str, Visual]:
+        """All there are, by scoped name."""
+        return {v.scoped: v for link in self.tables["link"].values() for v in link.visuals.values()}
+
     def scene_link(self, scoped: str) -> SceneLink:
         """A link of the file by scoped name."""
         link: SceneLink = self.find("link", scoped).scene
@@ -94,7 +109,8 @@ class Entities:
 
     def stateful(self) -> list[Any]:
         """Handles with a state of their own."""
-        return [*self.tables["joint"].values(), *self.tables["light"].values()]
+        handles = [*self.tables["joint"].values(), *self.tables["light"].values()]
+        return [*handles, self._sim.labels, self._sim.temperatures]
 
 
 def place_light(model: Any, light: Light, offset: Pose, touch: Any) -> None:

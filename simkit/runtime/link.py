@@ -11,6 +11,7 @@ import numpy as np
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.handles import Handle
 from simkit.runtime.physics import CONTROL, STALE
+from simkit.runtime.visual import Visual
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -25,6 +26,7 @@ class Link(Handle):
     def __init__(self, sim: Simulation, scene: SceneLink) -> None:
         super().__init__(sim, scene.name, scene.scoped)
         self.scene = scene
+        self._visuals: dict[str, Visual] | None = None
 
     def _bind(self, names: Any) -> None:
         binding = names.link(self.scoped)
@@ -120,3 +122,10 @@ class Link(Handle):
     def sensors(self) -> dict[str, Any]:
         """Its sensors by name."""
         return {s.name: self._sim.sensor(s.scoped) for s in self.scene.sensors if self._sim.has_sensor(s.scoped)}
+
+    @property
+    def visuals(self) -> dict[str, Visual]:
+        """Its visuals by name."""
+        if self._visuals is None:  # a large world has thousands, and few are ever asked for
+            self._visuals = {v.name: Visual(self._sim, v, self) for v in self.scene.visuals}
+        return dict(self._visuals)

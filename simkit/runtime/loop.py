@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import atexit
+import threading
+import weakref
 from collections.abc import Callable
 from typing import Any
 
@@ -11,6 +14,8 @@ from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.topics import TopicBus
 
 Fill = Callable[[Scheduler], None]
+
+_LONGEST_WAIT = 5.0  # [s] of wall time, for what runs on other threads at the end of the program
 
 
 class Loop:
@@ -26,6 +31,9 @@ class Loop:
         self.scheduler = Scheduler(physics.clock)
         self._physics, self._bus, self._fill = physics, bus, fill
         self._running = self._is_outdated = False
+        self._idle = threading.Event()
+        self._idle.set()
+        _loops.add(self)
 
     def reschedule(self) -> None:
         """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
@@ -34,12 +42,18 @@ class Loop:
             self._refill()
 
     def advance(self, target: int) -> None:
-        """Runs up to the tick `target`."""
+        """Runs up to the tick `target`.
+
+        Raises:
+            SystemExit: the program has ended, and this is a thread that nobody waits for.
+        """
         self._running = True
+        self._idle.clear()
         try:
             self._run(target)
         finally:
             self._running = False
+            self._idle.set()
 
     def _refill(self) -> None:
         self._is_outdated = False
@@ -51,6 +65,7 @@ class Loop:
         physics, bus = self._physics, self._bus
         before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
         while physics.tick < target:
+            _stop_at_the_end()
             tick = physics.tick
             stop = min(target, before.next, sense.next, after.next)
             has_every = before.every or after.every or sense.every
@@ -86,6 +101,7 @@ class Loop:
         before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]
         tick = physics.tick
         while tick < stop and not self._is_outdated:
+            _stop_at_the_end()
             if bus.inbox:
                 bus.deliver_inputs()
             for task in before:
@@ -99,6 +115,28 @@ class Loop:
                     break
         if self._is_outdated:
             self._refill()
+
+
+_loops: weakref.WeakSet[Loop] = weakref.WeakSet()
+_ending: int | None = None
+"""The thread that ends the program, once it does."""
+
+
+def _stop_at_the_end() -> None:
+    if _ending is not None and _ending != threading.get_ident():
+        raise SystemExit  # ends this thread, without a word
+
+
+def end_others() -> None:
+    """Ends the loops of other threads: the engine must not be at work when the interpreter goes away under it."""
+    global _ending
+    _ending = threading.get_ident()
+    for loop in list(_loops):
+        if not loop._idle.wait(_LONGEST_WAIT):
+            break
+
+
+atexit.register(end_others)
 
 
 def guarded(sim: Any, plugin: Any, hook: str) -> Callable[..., None]:

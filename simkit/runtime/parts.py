@@ -57,7 +57,8 @@ def awake_bodies(structure: Structure) -> set[int]:
     for name, scene in structure.models.items():
         parts = structure.parts.get(name, Parts())
         for model in scene.all_models():
-            if parts.plugins or not getattr(model, "allow_auto_disable", True):
+            kept_awake = any(not getattr(plugin, "lets_sleep", False) for plugin, _ in parts.plugins)
+            if kept_awake or not getattr(model, "allow_auto_disable", True):
                 bodies |= {int(links[link.scoped].body) for link in model.links}
         if any(getattr(plugin, "reads_contacts", False) for plugin, _ in parts.plugins):
             own = [int(links[link.scoped].body) for link in scene.all_links()]

@@ -120,6 +120,8 @@ class Population:
         sim.physics.sleep.restrict(awake_bodies(structure))
         sim.physics.hears_controls = any(n.mjcf for m in structure.models.values() for n in m.all_models())
         sim.entities.bind(structure)
+        sim.labels.bind(structure)
+        sim.temperatures.bind(structure)
         sim.stand_wrenches(are_applied=True)
         sim.bus.set_active([*structure.all_sensors(), *structure.all_plugins()])
         for sensor in structure.all_sensors():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from simkit.runtime import overlap, sleep
 from simkit.runtime.joint import Joint
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
 _LIMIT_GRID = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
+_INFO = "sensor_msgs/msg/CameraInfo"
 
 
 def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -> None:
@@ -56,15 +57,38 @@ def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -
 
 
 def _report_shared_topics(sim: Simulation) -> None:
-    """Warns of a topic on which two sensors publish: whoever reads it gets both in turn."""
-    owners: dict[str, str] = {}
+    """Tells of a topic on which two messages are published: whoever reads it gets both in turn."""
+    first: dict[str, tuple[str, str]] = {}
     for sensor in sim.structure.all_sensors():
-        for topic in sorted(set(sensor._topics.values())):
-            other = owners.setdefault(topic, sensor.scoped)
-            if other != sensor.scoped:
-                message = f"sensors {other!r} and {sensor.scoped!r} publish on one topic, {topic!r}"
-                hint = "give each a <topic> of its own, or leave <topic> out"
-                sim.reports.warning("SK-SENSOR-027", message, sensor.scene.where, hint)
+        types = [(topic, sensor._products[product].type_name) for product, topic in sensor._topics.items()]
+        told: set[str] = set()
+        # what goes with a picture comes last: where the pictures share a topic too, that is enough to say
+        for topic, kind in sorted(types, key=lambda pair: (pair[1] == _INFO, pair)):
+            if topic not in first:
+                first[topic] = sensor.scoped, kind
+                continue
+            other, other_kind = first[topic]
+            if kind != _INFO or kind != other_kind or other not in told:
+                _report_shared(sim, sensor, topic, other, {other_kind, kind})
+            told.add(other)
+
+
+def _report_shared(sim: Simulation, sensor: Any, topic: str, other: str, kinds: set[str]) -> None:
+    """Tells that a sensor and another, perhaps itself, publish messages of these types on one topic."""
+    where = sensor.scene.where
+    if other == sensor.scoped:
+        message = f"sensor {other!r} publishes two messages on one topic, {topic!r}"
+    else:
+        message = f"sensors {other!r} and {sensor.scoped!r} publish on one topic, {topic!r}"
+    if len(kinds) > 1:
+        message = f"{message}: {' and '.join(sorted(kinds))}, and ROS gives a reader one type only"
+        sim.reports.warning("SK-SENSOR-128", message, where, "give each a topic of its own")
+    elif kinds == {_INFO}:
+        hint = "a <camera_info_topic> for each, where readers have to tell them apart otherwise than by frame"
+        sim.reports.note("SK-SENSOR-127", message, where, hint)
+    else:
+        own = "camera a name" if other == sensor.scoped else "a <topic>"
+        sim.reports.warning("SK-SENSOR-027", message, where, f"give each {own} of its own, or leave it out")
 
 
 def _coasts_over_limit(joint: Joint) -> bool:

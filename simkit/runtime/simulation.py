@@ -12,6 +12,7 @@ from simkit.pose import IDENTITY, Pose
 from simkit.runtime.clock import Clock
 from simkit.runtime.entities import Entities, place_light
 from simkit.runtime.joint import Joint
+from simkit.runtime.labels import Labels
 from simkit.runtime.light import Light
 from simkit.runtime.link import Link
 from simkit.runtime.loop import Loop, guarded
@@ -24,7 +25,9 @@ from simkit.runtime.random import RandomStreams
 from simkit.runtime.schedule import fill
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.snapshot import Snapshot, bring_back, take
+from simkit.runtime.temperatures import Temperatures
 from simkit.runtime.topics import Callback, Subscription, TopicBus
+from simkit.runtime.visual import Visual
 from simkit.runtime.weld import set_weld
 from simkit.runtime.wrenches import StandingWrenches
 from simkit.scene import SceneLink, SceneWorld
@@ -34,7 +37,15 @@ class Simulation:
     """A loaded world. Made by `simkit.load`; also a context manager.
 
     Everything read shows the state at `time`.
+
+    Attributes:
+        labels: what segmentation and bounding box cameras call things, by scoped name of a model or a visual.
+        temperatures: what thermal cameras see, by scoped name of a model, a link or a visual.
+        render_thread: whether pictures of cameras are drawn beside the physics where nobody waits for them; to be
+            changed at any time, for it changes no message.
     """
+
+    render_thread = False
 
     def __init__(
         self,
@@ -59,6 +70,8 @@ class Simulation:
         self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
         self._loop = Loop(self.physics, self.bus, self._fill)
         self.entities = Entities(self, world)
+        self.labels = Labels(self)
+        self.temperatures = Temperatures(self)
         self._population = Population(self, load_model, make_parts)
         self._population.adopt(structure)
         self._population.start(list(structure.parts.values()), diagnostics)
@@ -186,6 +199,10 @@ class Simulation:
         """A link by scoped name; KeyError names the closest."""
         found: Link = self.entities.find("link", name)
         return found
+
+    def visual(self, name: str) -> Visual:
+        """A visual by scoped name; KeyError names the closest."""
+        return self.entities.find_visual(name)
 
     def joint(self, name: str) -> Joint:
         """A joint by scoped name; KeyError names the closest."""

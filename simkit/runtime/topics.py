@@ -20,18 +20,37 @@ def absolute(topic: str) -> str:
     return topic if topic.startswith("/") else "/" + topic
 
 
+NOTHING = object()
+"""What is given instead of a message that cannot be made."""
+
+
 class Later:
-    """A message that is made when somebody looks at it."""
+    """A message that is made when somebody looks at it.
 
-    __slots__ = ("_make", "_message")
+    Attributes:
+        is_awaited: whether it will be looked at for all that is known: a reader keeps every message, or records it.
+        work: what is being done on another thread that the message waits for; None where there is no such thing.
+    """
 
-    def __init__(self, make: Callable[[], Any]) -> None:
+    __slots__ = ("_make", "_message", "is_awaited", "work")
+
+    def __init__(self, make: Callable[[], Any], is_awaited: bool = False, work: Any = None) -> None:
+        self.is_awaited, self.work = is_awaited, work
         self._make: Callable[[], Any] | None = make
         self._message: Any = None
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether `get` gives the message without waiting for another thread."""
+        return self.work is None or self.work.is_done
+
     def get(self) -> Any:
-        if self._make is not None:
-            self._message, self._make = self._make(), None
+        """The message; NOTHING where it turned out that there is none."""
+        make = self._make
+        if make is not None:
+            # in this order, since two threads may ask at the same time: both are given the same message
+            self._message = make()
+            self._make = self.work = None
         return self._message
 
 
@@ -42,20 +61,22 @@ class Audience:
         readers: the subscriptions.
         receivers: what takes a message, one for each of them.
         is_called: whether one of them is called back with each message, and not only keeps it.
+        looks_at_all: whether one of them will look at every message for all that is known.
         feeds: whether command inputs hear the topic.
     """
 
-    __slots__ = ("feeds", "is_called", "readers", "receivers")
+    __slots__ = ("feeds", "is_called", "looks_at_all", "readers", "receivers")
 
     def __init__(self) -> None:
         self.readers: list[Subscription] = []
         self.receivers: tuple[Callback, ...] = ()
-        self.is_called = self.feeds = False
+        self.is_called = self.looks_at_all = self.feeds = False
 
     def count(self) -> None:
         """After a change of the readers."""
         self.receivers = tuple(reader.receive for reader in self.readers)
         self.is_called = any(reader.is_called for reader in self.readers)
+        self.looks_at_all = any(type(reader) is _Stream or reader.keeps == math.inf for reader in self.readers)
 
     @property
     def keeps(self) -> float:
@@ -82,7 +103,8 @@ class Subscription:
     @property
     def messages(self) -> list[Any]:
         self._bus.gather(self.topic)
-        return [m.get() if type(m) is Later else m for m in self._messages]
+        found = [m.get() if type(m) is Later else m for m in self._messages]
+        return [m for m in found if m is not NOTHING]
 
     @property
     def latest(self) -> Any | None:
@@ -91,7 +113,12 @@ class Subscription:
         if not self._messages:
             return None
         newest = self._messages[-1]
-        return newest.get() if type(newest) is Later else newest
+        if type(newest) is Later:
+            newest = newest.get()
+        if newest is NOTHING:  # as if it had not been sent
+            self._messages.pop()
+            return self.latest
+        return newest
 
     def close(self) -> None:
         """Stops receiving; what was received stays."""
@@ -109,9 +136,10 @@ class Subscription:
 class _Stream(Subscription):
     """A subscription that only calls back and keeps nothing (a recorder's)."""
 
-    def __init__(self, bus: TopicBus, topic: str, callback: Callback) -> None:
+    def __init__(self, bus: TopicBus, topic: str, callback: Callback, takes_later: bool) -> None:
         super().__init__(bus, topic, callback, 0)
         self.receive = callback
+        self.is_called = not takes_later
 
 
 class Publisher:
@@ -159,14 +187,23 @@ class Publisher:
         if audience.feeds:
             self._bus.inbox.append((self.topic, message))
 
-    def publish_later(self, make: Callable[[], Any]) -> None:
-        """Publishes what `make()` gives, made at once only where somebody is called back with it."""
+    def publish_later(self, make: Callable[[], Any], work: Any = None) -> Later | None:
+        """Publishes what `make()` gives, made at once only where somebody is called back with it.
+
+        Args:
+            make: gives the message.
+            work: what is being done on another thread that `make` waits for.
+
+        Returns:
+            What was handed out instead of the message; None where it was made.
+        """
         if self.is_live:
             self.publish(make())
-            return
-        later = Later(make)
+            return None
+        later = Later(make, self._audience.looks_at_all, work)
         for receive in self._audience.receivers:
             receive(later)
+        return later
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
         return self
@@ -244,9 +281,15 @@ class TopicBus:
         """Receives a topic, whether its publisher exists yet or not."""
         return self._add_reader(Subscription(self, absolute(topic), callback, keep))
 
-    def tap(self, topic: str, callback: Callback) -> Subscription:
-        """Receives a topic without keeping its messages."""
-        return self._add_reader(_Stream(self, absolute(topic), callback))
+    def tap(self, topic: str, callback: Callback, *, takes_later: bool = False) -> Subscription:
+        """Receives a topic without keeping its messages.
+
+        Args:
+            topic: absolute, or taken as such.
+            callback: called with each message.
+            takes_later: whether it may be called with a `Later` instead, which it keeps as long as it needs.
+        """
+        return self._add_reader(_Stream(self, absolute(topic), callback, takes_later))
 
     def close(self, end: Publisher | Listener) -> None:
         """Takes a publisher or a listener away for good."""

@@ -81,6 +81,7 @@ class Material:
         double_sided: whether faces are seen from behind as well.
         texture_scale: size of the picture in parts of what wears it, across and up, about its middle; with 0.5 it is
             there twice each way.
+        shininess: exponent of the gloss; None where not given.
     """
 
     ambient: Colour = (1.0, 1.0, 1.0, 1.0)
@@ -92,6 +93,7 @@ class Material:
     roughness: float | None = None
     double_sided: bool = False
     texture_scale: tuple[float, float] = (1.0, 1.0)
+    shininess: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +121,7 @@ class SceneVisual:
     visibility_flags: int = 0xFFFFFFFF
     laser_retro: float = 0.0
     where: Where = NOWHERE
+    plugins: tuple[ScenePlugin, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

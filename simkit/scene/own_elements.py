@@ -21,6 +21,7 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
             {"encoder", "jitter", "latency", "latency_jitter", "phase", "preset", "set_rate_topic", "solar"}
         ),
         "noise": frozenset({"bias_instability", "correlation_time", "noise_density", "random_walk"}),
+        "camera": frozenset({"disparity_noise"}),
         "imu": frozenset({"orientation"}),
         "magnetometer": frozenset({"date"}),
         "sonar": frozenset({"axis", "noise"}),

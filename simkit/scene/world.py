@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Final
 
 from simkit.diagnostics import NOWHERE, Where
 from simkit.pose import IDENTITY, Pose
@@ -114,15 +114,41 @@ class SceneActor:
     where: Where = NOWHERE
 
 
+QUALITIES: Final = ("fast", "gazebo", "high")
+"""How pictures can be drawn: as fast as it goes, with Gazebo's shadows and smooth edges, or finer than that."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fog:
+    """Mist that grows with the depth z [m] of a surface in a picture.
+
+    Attributes:
+        type: linear (none up to `start`, full from `end` [m] on), exp (1 - e^(-density z)) or exp2
+            (1 - e^(-(density z)²)), density in 1/m.
+    """
+
+    type: str
+    colour: Colour = (1.0, 1.0, 1.0, 1.0)
+    start: float = 1.0
+    end: float = 100.0
+    density: float = 1.0
+
+
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """`<scene>`: colours RGBA from 0 to 1."""
+    """`<scene>`: colours RGBA from 0 to 1.
+
+    Attributes:
+        sky: whether a sky is drawn in place of the background.
+        fog: None where the air is clear.
+    """
 
     ambient: Colour = (0.4, 0.4, 0.4, 1.0)
     background: Colour = (0.7, 0.7, 0.7, 1.0)
     shadows: bool = True
     grid: bool = True
     sky: bool = False
+    fog: Fog | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -141,10 +141,14 @@ class Sensor(Sampler):
         if not (math.isfinite(rate) and rate >= 0):
             raise ValueError(f"a rate is a number of at least 0 [Hz], got {rate}")
         self.sim.bus.settle()
-        if self.is_deferred and self._sample is not None:
+        if self._noises and self._sample is not None:
             self.latest  # noqa: B018 - its message may tell the rate that it was measured at
         self._take_rate(float(rate))
         self.sim.reschedule()
+
+    def optical_frames(self) -> dict[str, Pose]:
+        """Frames that messages of it name beside the sensor's, and where they are in that."""
+        return {}
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
         """Publishes these products on these topics, instead of on its own (what a sensor plugin does).

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+import threading
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,26 +14,31 @@ _MOST = 6
 
 
 class Spares:
-    """Arrays of one shape, each used again once nobody holds it or a view of it any more.
+    """Arrays of one shape, each used again once nobody holds it or a view of it any more. Several threads may ask.
 
     A picture's worth of fresh memory costs as much as what is written into it: the system hands it out page by page.
     Whoever keeps a picture keeps its array from being used again, for as long as it likes.
 
     Args:
         shape, dtype: of the arrays.
+        make: makes one of them; `np.zeros` for arrays that are not written to everywhere.
     """
 
-    def __init__(self, shape: tuple[int, ...], dtype: npt.DTypeLike) -> None:
-        self._shape, self._dtype = shape, dtype
-        self._arrays: list[npt.NDArray[Any]] = [np.empty(shape, dtype)]
+    def __init__(
+        self, shape: tuple[int, ...], dtype: npt.DTypeLike, make: Callable[..., npt.NDArray[Any]] = np.empty
+    ) -> None:
+        self._shape, self._dtype, self._make = shape, dtype, make
+        self._arrays: list[npt.NDArray[Any]] = [make(shape, dtype)]
+        self._turn = threading.Lock()
         self._idle = self._holders(0)
 
     def take(self) -> npt.NDArray[Any]:
         """An array that nobody else uses, with anything in it."""
-        for i in range(len(self._arrays)):
-            if self._holders(i) <= self._idle:
-                return self._arrays[i]
-        array = np.empty(self._shape, self._dtype)
+        with self._turn:  # until whoever asked holds it
+            for i in range(len(self._arrays)):
+                if self._holders(i) <= self._idle:
+                    return self._arrays[i]
+        array = self._make(self._shape, self._dtype)
         if len(self._arrays) < _MOST:
             self._arrays.append(array)
         return array

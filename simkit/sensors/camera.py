@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from simkit.sensors.base import Product
 from simkit.sensors.rendered import RenderedSensor
 
@@ -9,7 +11,7 @@ from simkit.sensors.rendered import RenderedSensor
 class Camera(RenderedSensor):
     """`camera`: colour or grey images with their `CameraInfo`."""
 
-    kinds = ("camera",)
+    kinds: ClassVar[tuple[str, ...]] = ("camera",)
 
     def products(self) -> dict[str, Product]:
         return {"image": self._colour_product(), "camera_info": self._info_product()}

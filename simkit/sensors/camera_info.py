@@ -17,17 +17,19 @@ class CameraInfoMaker:
 
     Args:
         model: the camera.
-        baseline: distance [m] to the left camera of a stereo pair; P's last column becomes -fx·baseline.
+        baseline: distance [m] to the left camera of a stereo pair; P's last column becomes -fx·baseline, with P's fx.
     """
 
     def __init__(self, model: CameraModel, baseline: float = 0.0) -> None:
+        model = model.told or model
         self._size = model.height, model.width
-        self._d = model.distortion.coefficients
+        self._distortion_model = model.distortion_model
+        self._d = model.coefficients
         self._k = model.matrix
         self._r = np.eye(3).reshape(9)
         self._p = model.projection
         if baseline:
-            self._p[3] = -model.fx * baseline
+            self._p[3] = -self._p[0] * baseline
 
     def make(self, time_ns: int, frame_id: str) -> Any:
         """The message of one picture."""
@@ -37,7 +39,7 @@ class CameraInfoMaker:
             header=msgs.header(time_ns, frame_id),
             height=height,
             width=width,
-            distortion_model="plumb_bob",
+            distortion_model=self._distortion_model,
             d=self._d.copy(),
             k=self._k.copy(),
             r=self._r.copy(),

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, TypeVar
 
+from simkit.diagnostics import did_you_mean
 from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
 from simkit.sensors import pictures
 from simkit.sensors.camera_model import MOST_PIXELS, CameraModel, read_camera_model
+from simkit.sensors.depth_range import read_depth_range
+from simkit.sensors.names import check_topic
 from simkit.sensors.noise import NoiseModel, read_noise
+from simkit.sensors.saved_pictures import read_save
+from simkit.sensors.visibility import ALL_VISIBLE, read_mask
+
+ModelReader = Callable[[Params, int, int], CameraModel]
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +30,12 @@ class CameraOptions:
         noise: white noise; 1 is white for colours, 1 m for depths.
         triggered: pictures are taken only when a message on `trigger_topic` has come in.
         depth_near, depth_far: range of depths [m].
+        anti_aliasing: samples of each pixel; any but 0 are as many as the world's quality takes.
+        name: `<camera name="…">`, or empty.
+        pose: of the camera in the sensor's frame.
+        optical_frame_id: frame of images and their `CameraInfo`, z forward; empty where they have the sensor's.
+        visibility_mask: visuals are seen that have one of its bits among their `<visibility_flags>`.
+        save: folder where each picture is saved; None saves none.
     """
 
     model: CameraModel
@@ -29,31 +46,79 @@ class CameraOptions:
     info_topic: str
     depth_near: float
     depth_far: float
+    anti_aliasing: int = 4
+    name: str = ""
+    pose: Pose = IDENTITY
+    optical_frame_id: str = ""
+    visibility_mask: int = ALL_VISIBLE
+    save: Path | None = None
 
 
-def read_options(params: Params) -> CameraOptions:
-    block = params.block("camera")
+AnyOptions = TypeVar("AnyOptions", bound=CameraOptions)
+
+
+def extended(options: CameraOptions, kind: type[AnyOptions], **more: Any) -> AnyOptions:
+    """The options of a camera as those of a kind that has more."""
+    return kind(**{field.name: getattr(options, field.name) for field in fields(CameraOptions)}, **more)
+
+
+def read_options(params: Params, read_model: ModelReader = read_camera_model, has_depth: bool = False) -> CameraOptions:
+    """The options of a `<sensor>` with one camera."""
+    return read_camera(params.block("camera"), read_model, has_depth)
+
+
+def read_camera(block: Params, read_model: ModelReader = read_camera_model, has_depth: bool = False) -> CameraOptions:
+    """The options in a `<camera>` block.
+
+    Args:
+        read_model: reads its optics for an image of a width and a height.
+        has_depth: whether the sensor's `<format>` may be that of its depths.
+    """
     image = block.block("image")
     width, height = image.integer("width", 320, minimum=1), image.integer("height", 240, minimum=1)
     if max(width, height) > MOST_PIXELS:
         image.error("SK-PARAM-002", f"found an image of {width}x{height}, allowed is up to {MOST_PIXELS}x{MOST_PIXELS}")
         width, height = min(width, MOST_PIXELS), min(height, MOST_PIXELS)
-    image.child("anti_aliasing")
-    model = read_camera_model(block, width, height)
-    depth = block.child("depth_camera")
-    clip = depth.child("clip") if depth is not None else None
-    if depth is not None:
-        depth.child("output")
+    samples = image.integer("anti_aliasing", 4, minimum=0)
+    model = read_model(block, width, height)
+    depth_near, depth_far = read_depth_range(block, model)
+    trigger_topic, info_topic = block.text("trigger_topic", ""), block.text("camera_info_topic", "")
+    check_topic(trigger_topic, block, "trigger_topic")
+    check_topic(info_topic, block, "camera_info_topic")
     return CameraOptions(
         model=model,
-        encoding=pictures.ENCODINGS[image.choice("format", tuple(pictures.ENCODINGS), "R8G8B8")],
+        encoding=_read_encoding(image, has_depth),
         noise=_read_image_noise(block),
         triggered=block.boolean("triggered", False),
-        trigger_topic=block.text("trigger_topic", ""),
-        info_topic=block.text("camera_info_topic", ""),
-        depth_near=clip.number("near", 0.1, minimum=1e-6) if clip else model.near,
-        depth_far=clip.number("far", 10.0, minimum=1e-6) if clip else model.far,
+        trigger_topic=trigger_topic,
+        info_topic=info_topic,
+        depth_near=depth_near,
+        depth_far=depth_far,
+        anti_aliasing=samples,
+        visibility_mask=read_mask(block),
+        name=block.attribute("name"),
+        pose=block.pose("pose"),
+        optical_frame_id=block.text("optical_frame_id", ""),
+        save=read_save(block),
     )
+
+
+def _read_encoding(image: Params, has_depth: bool) -> str:
+    """What ROS calls the `<format>`."""
+    found = image.child("format")
+    given = found.value if found is not None else "R8G8B8"
+    if found is None or (has_depth and given in pictures.DEPTH_FORMATS):
+        return "rgb8"
+    if given in pictures.ENCODINGS:
+        return pictures.ENCODINGS[given]
+    allowed = "allowed is one of " + ", ".join(pictures.ENCODINGS)
+    if given in pictures.WITHOUT_ENCODING:
+        message = f"no image message holds <format>{given}</format>; the pictures are R8G8B8"
+        image.diagnostics.warning("SK-SENSOR-120", message, found.where, allowed)
+    else:
+        message = f"found <format>{given}</format>, {allowed}"
+        found.error("SK-PARAM-002", message, did_you_mean(given.upper(), pictures.ENCODINGS))
+    return "rgb8"
 
 
 def _read_image_noise(block: Params) -> NoiseModel:
@@ -62,9 +127,4 @@ def _read_image_noise(block: Params) -> NoiseModel:
     if any(extras):
         message = "of a camera's noise only mean and stddev are used, as in Gazebo"
         block.diagnostics.warning("SK-SENSOR-008", message, block.block("noise").where)
-    save = block.child("save")
-    if save is not None and save.attribute("enabled", "false") in ("true", "1"):
-        block.diagnostics.warning("SK-SENSOR-009", "<save> is not used: record the topic instead", save.where)
-    if save is not None:
-        save.mark_all_read()
     return noise

@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit import msgs
 
-_DATATYPES = {"u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
+DATATYPES = {"u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
 
 
 @functools.lru_cache(maxsize=32)
@@ -18,7 +18,7 @@ def _fields(dtype: np.dtype[Any]) -> tuple[Any, ...]:
     assert dtype.fields is not None
     assert dtype.names is not None
     return tuple(
-        field(name, dtype.fields[name][1], _DATATYPES[dtype.fields[name][0].str[1:]], 1) for name in dtype.names
+        field(name, dtype.fields[name][1], DATATYPES[dtype.fields[name][0].str[1:]], 1) for name in dtype.names
     )
 
 

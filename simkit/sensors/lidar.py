@@ -15,9 +15,10 @@ from simkit.diagnostics import Diagnostics
 from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.clouds import point_cloud
-from simkit.sensors.lidar_options import ALL_VISIBLE, LARGEST_RANGE, LidarOptions, read_options
+from simkit.sensors.lidar_options import LARGEST_RANGE, LidarOptions, read_options
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
 from simkit.sensors.rays import RayFan, fan_directions
+from simkit.sensors.visibility import ALL_VISIBLE, hidden_by
 
 if TYPE_CHECKING:
     from simkit.scene import SceneSensor
@@ -139,23 +140,11 @@ class Lidar(Sensor):
         own = link.visuals if self.sees_visuals else link.ray_geoms
         self._is_moved = bool(self._offset_position.any())
         self._is_turned = not np.array_equal(self._offset_rotation, np.eye(3))
-        hidden = self._masked(names)
+        hidden = hidden_by(self.options.visibility_mask, names) if self.sees_visuals else []
         self._fan.bind(compiled.model, names, self._body, own, hidden=hidden, offset=self._offset)
         kind = "visuals" if self.sees_visuals else "collisions"
         self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
         self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
-
-    def _masked(self, names: Any) -> list[int]:
-        """Geoms of the visuals that the mask hides."""
-        mask = self.options.visibility_mask
-        if not self.sees_visuals:
-            return []
-        found: list[int] = []
-        for link in names.links.values():
-            hidden = {visual.scoped for visual in link.scene.visuals if not visual.visibility_flags & mask}
-            if hidden:
-                found += [geom for geom in link.visuals if names.geom_owner(geom)[1] in hidden]
-        return found
 
     def _reflectances(self, compiled: Any) -> Vector | None:
         """`laser_retro` by geom id (the last entry, index -1, is for no hit), or None where all are 0."""

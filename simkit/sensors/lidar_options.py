@@ -9,8 +9,8 @@ import numpy as np
 from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.noise import NoiseModel, read_noise
+from simkit.sensors.visibility import ALL_VISIBLE, read_mask
 
-ALL_VISIBLE = 0xFFFFFFFF
 _MOST_RAYS = 4_000_000
 LARGEST_RANGE = 3e38  # [m]; a message's numbers have 32 bits
 _FARTHEST_ANGLE = 1e6  # [rad]; beyond it the rays of a scan are no longer told apart
@@ -69,7 +69,7 @@ def read_options(params: Params) -> LidarOptions:
         rays = horizontal.samples * vertical.samples
         scan.error("SK-PARAM-002", f"found {rays} rays, allowed are at most {_MOST_RAYS}")
         horizontal = vertical = Sweep(1, 0.0, 0.0)
-    return LidarOptions(horizontal, vertical, low, high, read_noise(block, "gaussian"), _read_mask(block))
+    return LidarOptions(horizontal, vertical, low, high, read_noise(block, "gaussian"), read_mask(block))
 
 
 def _read_sweep(params: Params, samples: int) -> Sweep:
@@ -85,18 +85,3 @@ def _read_sweep(params: Params, samples: int) -> Sweep:
             "SK-PARAM-002", f"found angles from {low:g} to {high:g}, allowed is a <max_angle> of at least <min_angle>"
         )
     return Sweep(count, low, high)
-
-
-def _read_mask(block: Params) -> int:
-    """Decimal or hexadecimal, from -1 to 4294967295."""
-    text = block.text("visibility_mask", str(ALL_VISIBLE))
-    try:
-        mask = int(text, 0)
-    except ValueError:
-        mask = -2
-    if not -1 <= mask <= ALL_VISIBLE:
-        child = block.block("visibility_mask")
-        child.error(
-            "SK-PARAM-002", f"found <visibility_mask> {text!r}, allowed is a whole number from 0 to {ALL_VISIBLE}"
-        )
-    return mask & ALL_VISIBLE

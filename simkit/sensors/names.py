@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
+from simkit.pose import Pose
 from simkit.scene import SceneSensor
+
+OPTICAL = Pose.from_rpy(0.0, 0.0, 0.0, -math.pi / 2, 0.0, -math.pi / 2)
+"""A camera's optical frame (z forward, x right, y down) in its own (x forward, y left, z up); REP 103."""
 
 
 def entity_topic(world: str, sensor: SceneSensor, suffix: str = "") -> str:
@@ -29,7 +35,10 @@ def given_frame(params: Params) -> str:
 
 
 def check_topic(topic: str, block: Params, element: str = "topic") -> None:
-    """Reports a `<topic>`, or other element of a block, of which no character may stand in a topic's name."""
-    if topic and valid_topic(topic) == "/":
-        found = f"found <{element}>{topic}</{element}>"
+    """Reports a `<topic>`, or other element of a block, with characters that may not stand in a topic's name."""
+    name, found = valid_topic(topic), f"found <{element}>{topic}</{element}>"
+    if topic and name == "/":
         block.block(element).error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")
+    elif topic and name.strip("/") != topic.strip("/"):
+        message = f"{found}, allowed are letters, digits and _ / . : -; the topic is {name!r}, as in Gazebo"
+        block.diagnostics.note("SK-SENSOR-129", message, block.block(element).where)

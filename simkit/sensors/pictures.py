@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,12 +13,26 @@ from simkit import msgs
 
 TYPE = "sensor_msgs/msg/Image"
 
-ENCODINGS = {
-    "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8", "L8": "mono8", "L_INT8": "mono8",
-    "L16": "mono16", "L_INT16": "mono16", "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
-    "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8", "R_FLOAT32": "rgb8",
-}  # fmt: skip
-"""SDF's image formats and what ROS calls them; a float format is a depth camera's, whose colours are plain."""
+ENCODINGS: Mapping[str, str] = MappingProxyType(
+    {
+        "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8",
+        "L8": "mono8", "L_INT8": "mono8", "L16": "mono16", "L_INT16": "mono16", "L_UINT16": "mono16",
+        "RGBA_INT8": "rgba8", "BGRA_INT8": "bgra8",
+        "R16G16B16": "rgb16", "RGB_INT16": "rgb16", "BGR_INT16": "bgr16",
+        "R_FLOAT32": "32FC1", "RGB_FLOAT32": "32FC3",
+        "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
+        "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8",
+    }
+)  # fmt: skip
+"""SDF's image formats (sdformat, Camera.cc, and Classic's spellings) and what ROS calls them."""
+
+WITHOUT_ENCODING = ("R_FLOAT16", "RGB_FLOAT16", "RGB_INT32", "BGR_INT32")
+"""SDF's image formats that no `Image` message can hold."""
+
+DEPTH_FORMATS = ("R_FLOAT32", "R_FLOAT16")
+"""What files of depth cameras say of their depths; such a camera's colours are plain."""
+
+_WHITE_16 = 65535 // 255  # 8 bits to 16: white stays white
 
 
 def is_grey(encoding: str) -> bool:
@@ -31,7 +47,7 @@ def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
 
 
 def image_message(header: Any, pixels: npt.NDArray[Any], encoding: str) -> Any:
-    """A message of pixels, shape (h, w) or (h, w, 3), in their own byte order (little-endian)."""
+    """A message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
     data = np.ascontiguousarray(pixels)
     height, width = data.shape[:2]
     return msgs.type_of(TYPE)(
@@ -40,14 +56,32 @@ def image_message(header: Any, pixels: npt.NDArray[Any], encoding: str) -> Any:
 
 
 def colour_message(header: Any, colours: npt.NDArray[np.uint8], encoding: str) -> Any:
-    """A message of colours (h, w, 3), or of brightness (h, w) for a grey encoding."""
-    if encoding == "bgr8":
-        return image_message(header, colours[..., ::-1], encoding)
-    if encoding == "mono16":
-        return image_message(header, colours.astype(np.uint16) * 257, encoding)
+    """A message of colours (h, w, 3), or of brightness (h, w) for a grey encoding.
+
+    Of 16 bits, white is 65535; of floats it is 1, and one channel alone is red, as a render target of SDF's
+    `R_FLOAT32` keeps it.
+    """
+    return image_message(header, _encoded(colours, encoding), encoding)
+
+
+def _encoded(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[Any]:
+    import cv2
+
     if encoding.startswith("bayer_"):
-        return image_message(header, _mosaic(colours, encoding), encoding)
-    return image_message(header, colours, encoding)
+        return _mosaic(colours, encoding)
+    if encoding.startswith("bgr") and encoding != "bgra8":
+        colours = np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2BGR), dtype=np.uint8)
+    if encoding.endswith("16"):
+        return colours * np.uint16(_WHITE_16)
+    if encoding == "rgba8":
+        return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2RGBA), dtype=np.uint8)
+    if encoding == "bgra8":
+        return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2BGRA), dtype=np.uint8)
+    if encoding == "32FC1":
+        return colours[..., 0] * np.float32(1 / 255)
+    if encoding == "32FC3":
+        return colours * np.float32(1 / 255)
+    return colours
 
 
 def _mosaic(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[np.uint8]:
@@ -57,3 +91,20 @@ def _mosaic(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[np.uin
         row, column = divmod(place, 2)
         out[row::2, column::2] = colours[row::2, column::2, "rgb".index(letter)]
     return out
+
+
+_PIXELS: Mapping[str, tuple[str, int]] = MappingProxyType(
+    {
+        "rgb8": ("u1", 3), "bgr8": ("u1", 3), "rgba8": ("u1", 4), "bgra8": ("u1", 4), "mono8": ("u1", 1),
+        "8UC1": ("u1", 1), "mono16": ("<u2", 1), "16UC1": ("<u2", 1), "rgb16": ("<u2", 3), "bgr16": ("<u2", 3),
+        "32FC1": ("<f4", 1), "32FC3": ("<f4", 3),
+    }
+)  # fmt: skip
+
+
+def pixels_of(message: Any) -> npt.NDArray[Any]:
+    """The pixels of an `Image`, shape (h, w), or (h, w, n) with more channels than one."""
+    kind, channels = _PIXELS.get(message.encoding, ("u1", 1))
+    flat = np.asarray(message.data, dtype=np.uint8).view(kind)
+    shape = (message.height, message.width) + ((channels,) if channels > 1 else ())
+    return flat.reshape(shape)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -14,23 +15,30 @@ from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.errors import RenderError
 from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.runtime.topics import NOTHING
 from simkit.sensors import camera_info, pictures
 from simkit.sensors.base import Product, Sample, Sensor
 from simkit.sensors.buffers import Spares
 from simkit.sensors.camera_info import CameraInfoMaker
-from simkit.sensors.camera_model import Distorter
+from simkit.sensors.camera_model import CameraModel, read_camera_model
 from simkit.sensors.camera_options import CameraOptions, read_options
+from simkit.sensors.distortion import Distorter
 from simkit.sensors.image_noise import ImageNoise
-from simkit.sensors.names import sibling_topic
-from simkit.sensors.rendering.depths import clip_depths, metres
-from simkit.sensors.rendering.renderer import free_renderer, renderer_of
+from simkit.sensors.names import OPTICAL, sibling_topic
+from simkit.sensors.rendering import gl, thread
+from simkit.sensors.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
 from simkit.sensors.rendering.view import Film, Shot, View
+from simkit.sensors.saved_pictures import SavedPictures
+from simkit.sensors.visibility import hidden_by
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Publisher, Simulation
+    from simkit.runtime.topics import Later
     from simkit.scene import SceneSensor
 
-_TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
+TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
 
 
 @dataclass(frozen=True)
@@ -42,39 +50,55 @@ class Picture:
 
 
 class NoisyPicture:
-    """A picture with noise, drawn when it is asked for: who wants no depths pays for none."""
+    """Colours with noise, drawn when they are first asked for."""
 
-    def __init__(self, picture: Picture, noise: ImageNoise, index: int, near: float, far: float) -> None:
+    def __init__(self, picture: Picture, noise: ImageNoise, index: int) -> None:
         self._picture, self._noise, self._index = picture, noise, index
-        self._near, self._far = near, far
+        self._colours: npt.NDArray[np.uint8] | None = None
 
-    @functools.cached_property
+    @property
     def colours(self) -> npt.NDArray[np.uint8]:
-        return self._noise.on_colours(self._picture.colours, self._index)
-
-    @functools.cached_property
-    def depths(self) -> npt.NDArray[np.float32] | None:
-        if self._picture.depths is None:
-            return None
-        return clip_depths(self._noise.on_depths(self._picture.depths, self._index), self._near, self._far)
+        if self._colours is None:
+            self._colours = self._noise.on_colours(self._picture.colours, self._index)
+        return self._colours
 
 
 class RenderedSensor(Sensor):
     """A camera: looks along its x axis, y to its left, z up.
 
+    What is to be drawn is taken of the state when a sample is due; drawing, and all that is made of the pictures,
+    happens on the render thread where the simulation has one and nobody is called back with the messages.
+
     Without a renderer it is switched off, which is said once; all else goes on.
     """
 
+    is_deferred = True
     has_depth: ClassVar[bool] = False
     options: CameraOptions
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
         scene.params.child("camera")
-        self.options = read_options(scene.params)
+        self.options = self._read(scene)
+        self.optical_frame_id = self.options.optical_frame_id
         self._failure: RenderError | None = None
-        self._is_triggered = self._waits = False
+        self._lost: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
+        self._is_called = False
+        self._waits = self._counts_triggers = False
+        self._pending = 0  # triggers that have come in
         self._baseline = 0.0
+
+    @staticmethod
+    def read_model(params: Params, width: int, height: int) -> CameraModel:
+        """The optics in a `<camera>` block, for an image of `width` by `height` [px]."""
+        return read_camera_model(params, width, height)
+
+    def _read(self, scene: SceneSensor) -> CameraOptions:
+        """The options of the file; a camera that stands elsewhere in its sensor takes the sensor there."""
+        options = read_options(scene.params, type(self).read_model, self.has_depth)
+        if options.pose != IDENTITY:
+            self.scene = replace(scene, pose_link=scene.pose_link @ options.pose)
+        return options
 
     def describe(self) -> dict[str, Any]:
         model = self.options.model
@@ -82,70 +106,131 @@ class RenderedSensor(Sensor):
         return {"camera": block}
 
     def attach(self, sim: Simulation) -> None:
+        if sim.world.gazebo_quirks:
+            self.options = replace(self.options, model=self.options.model.as_gazebo())
+            self.optical_frame_id = ""  # gz-sensors' main branch passes it over (CameraSensor.cc, OpticalFrameId)
         options = self.options
-        self._noise = ImageNoise(options.noise, sim.streams, self.scoped)
+        self._noise = ImageNoise(options.noise, sim.streams, self.scoped, as_ogre=sim.world.gazebo_quirks)
         self._view: View | None = None
         self._info = CameraInfoMaker(options.model, self._baseline)
         size = options.model.height, options.model.width
-        self._spare_colours, self._spare_depths = Spares((*size, 3), np.uint8), Spares(size, np.float32)
+        self._spare_colours = Spares((*size, 3), np.uint8)
         super().attach(sim)
         if options.triggered:
-            self.trigger_on(valid_topic(options.trigger_topic) if options.trigger_topic else self.topic + "/trigger")
+            self.trigger_on(self._trigger_topic())
 
     def _aimed(self) -> View:
         """The frustum; found out at the first picture, since a lens takes a while."""
         if self._view is None:
             model = self.options.model
-            self._distorter = Distorter(model) if model.distortion else None
-            # surfaces nearer than the range of depths are to be seen as such, not to be cut away
-            near = min(model.near, self.options.depth_near) * 0.1 if self.has_depth else model.near
-            self._view = model.view(near, self._distorter.margin if self._distorter else 0)
+            self._distorter = Distorter(model) if model.is_bent else None
+            self._view = self._distorter.view() if self._distorter else model.view()
         return self._view
 
     def shots(self) -> Sequence[Shot]:
         """What is drawn for one sample."""
-        return (Shot(self._aimed(), depth=self.has_depth),)
+        return (Shot(self._aimed()),)
 
-    def bound_depths(self, near: float | None, far: float | None) -> None:
-        """Sets the range of depths [m]; None leaves an end as it is."""
-        old = self.options
-        near, far = old.depth_near if near is None else near, old.depth_far if far is None else far
-        self.options = replace(old, depth_near=near, depth_far=far)
-        self._view = None
+    def tell(self, change: Callable[[CameraModel], CameraModel]) -> None:
+        """Says in `CameraInfo` what another camera would see; the pictures stay as they are.
+
+        Args:
+            change: gives that camera for the one that there is.
+        """
+        model = self.options.model
+        self.options = replace(self.options, model=replace(model, told=change(model)))
+        self._info = CameraInfoMaker(self.options.model, self._baseline)
+
+    def rework(self, product: str, change: Callable[[Any], Any]) -> None:
+        """Publishes what `change` makes of each message of a product, instead of it; before the first."""
+        of = self._products[product]
+        made = of.make
+        changed = replace(of, make=lambda reading, time_ns: change(made(reading, time_ns)))
+        self._products = {**self._products, product: changed}
+
+    def name_frame(self, frame: str) -> None:
+        """Names the frame of all its messages."""
+        self.frame_id, self.optical_frame_id = frame, ""
+
+    def optical_frames(self) -> dict[str, Pose]:
+        return {self.optical_frame_id: OPTICAL} if self.optical_frame_id else {}
 
     def set_baseline(self, baseline: float) -> None:
         """Says how far [m] the left camera of a stereo pair is; it shows in the projection matrix."""
         self._baseline = baseline
         self._info = CameraInfoMaker(self.options.model, baseline)
 
-    def trigger_on(self, topic: str) -> None:
-        """Takes pictures only when a message has come in on `topic`: one at the next due time."""
-        self._waits = True
-        self.sim.bus.listen(topic, _TRIGGER_TYPES, self._on_trigger)
+    def _trigger_topic(self) -> str:
+        given = self.options.trigger_topic
+        return valid_topic(given or (self.scene.topic or self.topic) + "/trigger")
+
+    def trigger_on(self, topic: str, types: Sequence[str] = TRIGGER_TYPES, counts: bool = False) -> None:
+        """Takes pictures only when a message has come in on `topic`: one at the next due time.
+
+        Args:
+            topic: absolute.
+            types: of the messages, whatever they say; the first is the listed one.
+            counts: whether messages that come in before a due time give a picture each, at that and the next ones;
+                else they give one.
+        """
+        self._waits, self._counts_triggers = True, counts
+        self.sim.bus.listen(topic, types, self._on_trigger)
 
     def _on_trigger(self, _: Any) -> None:
-        self._is_triggered = True
+        self._pending = self._pending + 1 if self._counts_triggers else 1
 
     def accepts(self, tick: int) -> bool:
         if not self._waits:
             return True
-        triggered, self._is_triggered = self._is_triggered, False
-        return triggered
+        if self._pending == 0:
+            return False
+        self._pending -= 1
+        return True
 
     def bind(self, compiled: Any) -> None:
+        thread.drain()
         try:
             for sample in self._kept():
                 self._settle(sample)
         except RenderError:
             self._drop()
         super().bind(compiled)
+        self._unseen = hidden_by(self.options.visibility_mask, compiled.names)
         renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
 
     def measure(self, model: Any, data: Any) -> Any:
+        return thread.at_once(self._exposed(model, data)).result()
+
+    def capture(self, model: Any, data: Any) -> thread.Work:
+        """Composes what is to be drawn, and has it drawn: on the render thread, unless somebody waits for it."""
+        expose = self._exposed(model, data)
+        # the first picture of all is drawn here, so that it is known at once whether there is a renderer
+        if self._is_called or not (self.sim.render_thread and gl.is_open()):
+            return thread.at_once(expose)
+        return thread.submit(expose)
+
+    def capture_held(self, model: Any, data: Any, sample: Sample) -> thread.Work:
+        return thread.at_once(self._exposed(model, data))
+
+    def finish(self, raw: thread.Work) -> Any:
+        return raw.result()
+
+    def _exposed(self, model: Any, data: Any) -> Callable[[], Any]:
+        """What draws and develops the pictures of a state; it needs the state no more."""
         renderer = renderer_of(self.sim)
-        composition = renderer.compose(model, data, *self._frame_in_world(data))
-        notes = self.note(model, data)
-        return self.develop(renderer.films(composition, self.shots()), notes)
+        smooth = self.options.anti_aliasing > 0
+        composition = renderer.compose(model, data, *self._frame_in_world(data), unseen=self._unseen, smooth=smooth)
+        return functools.partial(self._expose, renderer, composition, self.shots(), self.note(model, data))
+
+    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Any) -> Any:
+        films = renderer.films(composition, shots)
+        try:
+            return self.develop(films, notes)
+        except RenderError as error:
+            self._lost = error
+            raise
+        finally:
+            films.close()
 
     def note(self, model: Any, data: Any) -> Any:
         """What `develop` needs of the state besides pictures."""
@@ -158,41 +243,38 @@ class RenderedSensor(Sensor):
             films: one of each shot, in their order; to be taken in turn.
             notes: what `note` gave.
         """
-        options, film = self.options, next(films)
-        colours, raw, view = film.colours, film.depths, film.view
+        colours = next(films).colours
         assert colours is not None
-        depths = None
-        if raw is not None:
-            if self._distorter and self._distorter.margin:
-                edge = self._distorter.margin
-                raw = raw[edge:-edge, edge:-edge]
-            far = options.depth_far if options.depth_far < view.far else np.inf
-            depths = metres(raw, view.near, view.far, options.depth_near, far, self._spare_depths.take())
+        return Picture(self._coloured(colours), None)
+
+    def _coloured(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+        """Colours (h, w, 3) that were drawn, through the lens, in memory of their own; brightness (h, w) for grey."""
         if self._distorter:
             colours = self._distorter.bend(colours)
-        if pictures.is_grey(options.encoding):
-            colours = pictures.grey(colours)
-        elif not self._distorter:
-            kept = self._spare_colours.take()
-            np.copyto(kept, colours)
-            colours = kept
-        return Picture(colours, depths)
+        if pictures.is_grey(self.options.encoding):
+            return pictures.grey(colours)
+        if self._distorter:
+            return colours
+        kept: npt.NDArray[np.uint8] = self._spare_colours.take()
+        np.copyto(kept, colours)
+        return kept
 
     def perturb(self, reading: Picture, index: int) -> Any:
         if self._noise.is_silent:
             return reading
-        return NoisyPicture(reading, self._noise, index, self.options.depth_near, self.options.depth_far)
+        return NoisyPicture(reading, self._noise, index)
 
     def memory(self) -> Any:
-        return self._is_triggered
+        return self._pending
 
     def remember(self, memory: Any) -> None:
-        self._is_triggered = memory
+        self._pending = memory
 
     def restart(self) -> None:
-        self._is_triggered = False
+        self._pending = 0
 
     def close(self) -> None:
+        thread.drain()
         free_renderer(self.sim)
 
     # ------------------------------------------------------------------ when there is no renderer
@@ -200,10 +282,44 @@ class RenderedSensor(Sensor):
     def sample(self, tick: int) -> None:
         if self._failure is not None:
             return
+        if self._lost is not None:
+            self._switch_off(self._lost)
+            return
         try:
             super().sample(tick)
         except RenderError as error:
             self._switch_off(error)
+
+    def _look_who_reads(self) -> None:
+        super()._look_who_reads()
+        # what has a latency is not waited for when it is taken
+        self._is_called = self._flight is None and any(end.is_live for _, end, needs in self._wanted if needs)
+
+    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[Later]:
+        put_off = super()._publish(sample, wanted)
+        drawing = self._work_on(sample)
+        # what somebody will look at is made as soon as the picture is there; what may never be seen is not
+        awaited = [later for later in put_off if later.is_awaited]
+        if drawing is not None and awaited:
+            sample.work = thread.submit(functools.partial(_make_ahead, drawing, awaited))
+            for later in put_off:
+                later.work = sample.work
+        return put_off
+
+    def _work_on(self, sample: Sample) -> thread.Work | None:
+        drawing: thread.Work | None = sample.raw
+        return None if drawing is None or drawing.is_at_once else drawing
+
+    def _message(self, sample: Sample, product: str) -> Any:
+        if sample.work is not None and self._products[product].needs_reading:
+            sample.work.wait()
+        return super()._message(sample, product)
+
+    def _message_later(self, sample: Sample, product: str) -> Any:
+        try:
+            return super()._message_later(sample, product)
+        except RenderError:
+            return NOTHING  # it has been said why
 
     @property
     def latest(self) -> Any | None:
@@ -220,6 +336,8 @@ class RenderedSensor(Sensor):
         return super().truth
 
     def _settle(self, sample: Sample) -> None:
+        if sample.work is not None:
+            sample.work.wait()
         try:
             super()._settle(sample)
         except RenderError as error:
@@ -227,11 +345,33 @@ class RenderedSensor(Sensor):
             raise
 
     def _switch_off(self, error: RenderError) -> None:
+        if self._failure is not None:
+            return
         self._failure = error
         self._drop()
         message = f"camera {self.scoped!r} is switched off: {str(error).removeprefix(error.code).strip()}"
         self.sim.reports.warning(error.code, message, self.scene.where)
         self.sim.log.error("%s %s", error.code, message)
+
+    # ------------------------------------------------------------------ saved pictures
+
+    def saved(self) -> dict[str, str]:
+        """Image product -> name of the files that it is saved in, where the file says so."""
+        names = (name for name in (*self._topics, *self._products) if self._products[name].type_name == pictures.TYPE)
+        return dict.fromkeys([next(names)], self.scoped)
+
+    def _open(self, topics: Mapping[str, str]) -> None:
+        super()._open(topics)
+        folder = self.options.save
+        if folder is None or any(isinstance(end, SavedPictures) for _, end, _ in self._ends):
+            return
+        for product, name in self.saved().items():
+            self._ends.append((product, self._writer(folder, name), True))
+
+    def _writer(self, folder: Path, name: str) -> SavedPictures:
+        """What writes a product's pictures to files."""
+        far = self.options.depth_far if self.has_depth else None
+        return SavedPictures(self.sim, self.scene, folder, name, far)
 
     # ------------------------------------------------------------------ messages
 
@@ -244,12 +384,23 @@ class RenderedSensor(Sensor):
     def _info_product(self) -> Product:
         return Product(camera_info.TYPE, self._info_message, needs_reading=False)
 
+    def _image_header(self, time_ns: int) -> Any:
+        """Of images, whose axes are optical."""
+        return msgs.header(time_ns, self.optical_frame_id or self.frame_id)
+
     def _colour_message(self, reading: Any, time_ns: int) -> Any:
-        return pictures.colour_message(self._header(time_ns), reading.colours, self.options.encoding)
+        return pictures.colour_message(self._image_header(time_ns), reading.colours, self.options.encoding)
 
     def _info_message(self, _: Any, time_ns: int) -> Any:
-        return self._info.make(time_ns, self.frame_id)
+        return self._info.make(time_ns, self.optical_frame_id or self.frame_id)
 
     def _info_topic(self, beside: str) -> str:
         given = self.options.info_topic
         return valid_topic(given) if given else sibling_topic(beside, "camera_info")
+
+
+def _make_ahead(work: thread.Work, messages: Sequence[Later]) -> None:
+    """Makes messages of a picture that was drawn before."""
+    work.result()
+    for message in messages:
+        message.get()

@@ -13,6 +13,7 @@ from simkit.sensors.timing import Departures, Flight, SampleTimes
 if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
     from simkit.runtime.scheduler import Timetable
+    from simkit.runtime.topics import Later
 
 
 _MOST_ROWS = 64  # gathered before samples are made of them
@@ -44,9 +45,12 @@ class Sample:
         messages: made so far, by product.
         drifts: states of the noise at this sample where they change from sample to sample.
         untold: products that are not published of it.
+        work: what another thread does with it; whoever looks at the sample waits for that first.
     """
 
-    __slots__ = ("drifts", "held", "index", "messages", "noisy", "raw", "time_ns", "truth", "truth_message", "untold")
+    __slots__ = (
+        "drifts", "held", "index", "messages", "noisy", "raw", "time_ns", "truth", "truth_message", "untold", "work",
+    )  # fmt: skip
 
     def __init__(self, index: int, time_ns: int) -> None:
         self.index, self.time_ns = index, time_ns
@@ -58,6 +62,7 @@ class Sample:
         self.truth_message: Any = None
         self.drifts: tuple[Any, ...] = ()
         self.untold: tuple[str, ...] = ()
+        self.work: Any = None
 
 
 class Remembered(Protocol):
@@ -320,14 +325,28 @@ class Sampler(abc.ABC):
                 self._take(sample)
             self._publish(sample, wanted)
 
-    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> None:
-        for product, publisher, _ in wanted:
+    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[Later]:
+        """Hands the wanted messages out; gives those that are still to be made of the reading."""
+        put_off = []
+        for product, publisher, needs_reading in wanted:
             if product in sample.untold:
                 continue
             if self.is_deferred and not publisher.is_live:
-                publisher.publish_later(partial(self._message, sample, product))
+                work = self._work_on(sample) if needs_reading else None
+                later = publisher.publish_later(partial(self._message_later, sample, product), work)
+                if needs_reading and later is not None:
+                    put_off.append(later)
             else:
                 publisher.publish(self._message(sample, product))
+        return put_off
+
+    def _work_on(self, sample: Sample) -> Any:
+        """What another thread still does with a sample; None as a rule."""
+        return None
+
+    def _message_later(self, sample: Sample, product: str) -> Any:
+        """The message for somebody who looks after the sample; NOTHING where it cannot be made any more."""
+        return self._message(sample, product)
 
     def _choose(self, sample: Sample) -> None:
         """What of a captured sample is published."""

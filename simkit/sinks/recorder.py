@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import os
+from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
 from simkit.errors import InputError, SimkitError
+from simkit.runtime.topics import NOTHING, Later
 from simkit.sinks.mcap_bag import McapBag
 
 if TYPE_CHECKING:
@@ -97,6 +99,8 @@ class Recorder:
         self._count = 0
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         self._taps: dict[str, Any] = {}
+        # behind a picture that is still being drawn, other messages wait as bytes, so that all stay in order
+        self._waiting: deque[tuple[str, int, Later | tuple[str, bytes]]] = deque()
         sim.bus.on_topic(self._add)
 
     @property
@@ -128,6 +132,7 @@ class Recorder:
         for tap in self._taps.values():
             tap.close()
         self._taps.clear()
+        self._write_waiting(to_the_end=True)
         bag, self._bag = self._bag, None
         if bag is None:
             return
@@ -144,22 +149,55 @@ class Recorder:
             return
         if any(fnmatch.fnmatchcase(topic, p) for p in self._skip):
             return
-        self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._write(topic, message))
+        self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._take(topic, message), takes_later=True)
 
-    def _write(self, topic: str, message: Any) -> None:
+    def records(self, topic: str) -> bool:
+        """Whether the topic is one of those that are recorded."""
+        return topic in self._taps
+
+    def _take(self, topic: str, message: Any) -> None:
+        """A message that was published now."""
+        now, waiting = self._sim.time_ns, self._waiting
+        if waiting or (type(message) is Later and not message.is_ready):
+            # it may be written to after this
+            kept = message if type(message) is Later else (msgs.type_name(message), msgs.serialize(message))
+            waiting.append((topic, now, kept))
+            self._write_waiting()
+            return
+        if type(message) is Later:
+            message = message.get()
+        if message is not NOTHING:
+            self._write(topic, now, msgs.type_name(message), msgs.serialize(message))
+
+    def _write_waiting(self, *, to_the_end: bool = False) -> None:
+        """Writes what is there by now, in order; all of it where asked for."""
+        waiting = self._waiting
+        while waiting:
+            topic, time_ns, kept = waiting[0]
+            if isinstance(kept, Later):
+                if not (kept.is_ready or to_the_end):
+                    return
+                message = kept.get()
+                found = None if message is NOTHING else (msgs.type_name(message), msgs.serialize(message))
+            else:
+                found = kept
+            waiting.popleft()
+            if found is not None:
+                self._write(topic, time_ns, *found)
+
+    def _write(self, topic: str, time_ns: int, type_name: str, data: bytes) -> None:
         bag = self._bag
         if bag is None:
             return
-        type_name = msgs.type_name(message)
-        data = msgs.serialize(message)
         try:
             channel = bag.channels.get((topic, type_name))
             if channel is None:
                 channel = bag.channel(topic, type_name, topic in self._sim.bus.latched())
-            bag.write_raw(channel, data, self._sim.time_ns)
+            bag.write_raw(channel, data, time_ns)
         except OSError as error:
             # Not raised here: this runs inside whoever publishes, and it is not the publisher's fault.
             self._fail(error)
+            self._waiting.clear()
             self.close()
 
     def _fail(self, error: OSError) -> None:

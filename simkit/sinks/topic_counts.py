@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Callable, Collection
 
     from simkit.runtime import Simulation
 
@@ -45,10 +45,13 @@ class TopicCounter:
     Args:
         sim: the simulation.
         skip: types that are listed but not read.
+        is_read: whether somebody else reads a topic, which is then counted whatever its type.
     """
 
-    def __init__(self, sim: Simulation, skip: Collection[str] = ()) -> None:
-        self._sim, self._skip = sim, frozenset(skip)
+    def __init__(
+        self, sim: Simulation, skip: Collection[str] = (), is_read: Callable[[str], bool] | None = None
+    ) -> None:
+        self._sim, self._skip, self._is_read = sim, frozenset(skip), is_read
         self._rows: dict[str, TopicCount] = {}
         self._taps: list[Any] = []
         sim.bus.on_topic(self._add)
@@ -72,7 +75,8 @@ class TopicCounter:
     def _add(self, topic: str, type_name: str) -> None:
         if topic in self._rows:
             return
-        row = self._rows[topic] = TopicCount(topic, type_name, type_name not in self._skip, self._sim.time_ns)
+        is_counted = type_name not in self._skip or (self._is_read is not None and self._is_read(topic))
+        row = self._rows[topic] = TopicCount(topic, type_name, is_counted, self._sim.time_ns)
         if not row.counted:
             return
 
@@ -86,4 +90,5 @@ class TopicCounter:
             if row.count == 2:
                 row.second = now
 
-        self._taps.append(self._sim.bus.tap(topic, count))
+        # a picture that is still being drawn counts as well
+        self._taps.append(self._sim.bus.tap(topic, count, takes_later=True))

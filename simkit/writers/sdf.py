@@ -22,6 +22,7 @@ from simkit.scene import (
     SceneWorld,
     SphericalCoordinates,
 )
+from simkit.scene.world import Fog
 from simkit.writers import sdf_parts as parts
 from simkit.writers.sdf_parts import Place, given, other, text
 from simkit.writers.text import document, element, numbers, pose
@@ -320,7 +321,22 @@ def _surroundings(world: SceneWorld) -> Params:
             text("shadows", around.shadows),
             text("grid", around.grid),
             element("sky") if around.sky else None,
+            None if around.fog is None else _fog(around.fog),
             other("quality", world.quality, "fast"),
+        ],
+    )
+
+
+def _fog(fog: Fog) -> Params:
+    return element(
+        "fog",
+        "",
+        [
+            text("color", fog.colour),
+            text("type", fog.type),
+            text("start", fog.start),
+            text("end", fog.end),
+            text("density", fog.density),
         ],
     )
 

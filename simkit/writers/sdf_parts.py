@@ -203,6 +203,7 @@ def visual(value: SceneVisual, place: Place) -> Params:
             other("cast_shadows", value.cast_shadows, True),
             flags,
             other("laser_retro", value.laser_retro, 0.0),
+            *(plugin(p) for p in value.plugins),
         ],
         name=value.name,
     )
@@ -224,6 +225,7 @@ def material(value: Material, place: Place) -> Params:
             text("specular", value.specular),
             text("emissive", value.emissive),
             text("double_sided", value.double_sided) if value.double_sided else None,
+            given("shininess", value.shininess),
             element("pbr", "", [element("metal", "", metal)]) if any(metal) else None,
         ],
     )

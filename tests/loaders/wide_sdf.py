@@ -93,6 +93,7 @@ WORLD = f"""<sdf version="1.6"><world name="w">{MODEL}{LIGHT}{PLUGIN}<frame name
   <atmosphere type="adiabatic"><temperature>288</temperature><temperature_gradient>-0.0065</temperature_gradient>
     <pressure>101325</pressure></atmosphere>
   <scene><ambient>1 1 1 1</ambient><background>1 1 1 1</background><shadows>1</shadows><grid>1</grid><sky/>
+    <fog><type>exp</type><color>1 1 1 1</color><start>1</start><end>9</end><density>0.1</density></fog>
     <simkit:quality>fast</simkit:quality></scene><simkit:gazebo_quirks>true</simkit:gazebo_quirks>
   <spherical_coordinates><surface_model>EARTH_WGS84</surface_model><world_frame_orientation>ENU</world_frame_orientation>
     <latitude_deg>1</latitude_deg><longitude_deg>1</longitude_deg><elevation>1</elevation><heading_deg>0</heading_deg>

@@ -25,6 +25,9 @@ PUBLISHED = {
     "ros_gz_interfaces/msg/Altimeter": "c1e452c867a0dd147e2a612d1f78e5da9675ae5ef75c0950ad1520f004101703",
     "ros_gz_interfaces/msg/Float32Array": "8114db062e00379eb805879d9440d10beb7000352ad92bdc4e1385d988bd6cd9",
     "gps_msgs/msg/GPSFix": "f4e11a63872a198f70300a3990f50b096ed822f2db2bb626f6cdcee5f0f92942",
+    "vision_msgs/msg/ObjectHypothesisWithPose": "41c12344c0396c48b81df12467c192d99b2a0eb1463c5c37194e4223251c80bc",
+    "vision_msgs/msg/Detection2DArray": "214274120007f4a683866481336b70310268cfa107aebe9d594a6acf75bda968",
+    "vision_msgs/msg/Detection3DArray": "793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018",
 }
 
 

@@ -31,6 +31,7 @@ _CAMERA = (
     "<camera><image><width>32</width><height>24</height></image><clip><near>0.1</near><far>20</far></clip>"
     '<noise type="gaussian"><stddev>0.02</stddev></noise></camera>'
 )
+_RIGHT = '<camera name="right"><pose>0 -0.1 0 0 0 0</pose>'
 NOISY = {
     "air_pressure": "<air_pressure><pressure>N</pressure></air_pressure>",
     "air_speed": "<air_speed><pressure>N</pressure></air_speed>",
@@ -45,9 +46,19 @@ NOISY = {
     "solar": "<solar>N</solar>",
     "sonar": "<sonar><min>0.02</min><max>4</max><radius>0.5</radius>N</sonar>",
     **dict.fromkeys(("lidar", "ray", "gpu_lidar", "gpu_ray"), _LIDAR),
+    **dict.fromkeys(("thermal_camera", "thermal"), _CAMERA),
+    "multicamera": f"{_CAMERA}{_CAMERA}".replace("<camera>", '<camera name="left">', 1).replace("<camera>", _RIGHT),
     **dict.fromkeys(("camera", "depth", "depth_camera", "rgbd_camera"), _CAMERA),
+    **dict.fromkeys(("wide_angle_camera", "wideanglecamera"), _CAMERA),
 }
 """Kind -> its block with noise at every N; a kind that is not here has none."""
+
+_PLAIN_CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
+NOISELESS = {
+    **dict.fromkeys(("segmentation_camera", "segmentation", "boundingbox_camera", "boundingbox"), _PLAIN_CAMERA),
+}
+"""Kind -> a block that makes little work; a kind that is in neither has its example."""
+_LABEL = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>{}</label></plugin>'
 
 _INERTIAL = "<inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.02</iyy><izz>0.03</izz></inertia></inertial>"
 _BALL = "<geometry><sphere><radius>0.1</radius></sphere></geometry>"
@@ -58,10 +69,10 @@ _WORLD = """<sdf version="1.9"><world name="w">
   <light name="sun" type="directional"><direction>0.3 0.2 -1</direction></light>
   <model name="ground"><static>true</static><link name="l">
     <collision name="c"><geometry><box><size>20 20 0.2</size></box></geometry></collision>
-    <visual name="v"><geometry><box><size>20 20 0.2</size></box></geometry></visual></link></model>
+    <visual name="v"><geometry><box><size>20 20 0.2</size></box></geometry></visual></link>{ground}</model>
   <model name="wall"><static>true</static><pose>3 0 1 0 0 0.2</pose><link name="l">
     <collision name="c"><geometry><box><size>0.2 9 9</size></box></geometry></collision>
-    <visual name="v"><geometry><box><size>0.2 9 9</size></box></geometry></visual></link></model>
+    <visual name="v"><geometry><box><size>0.2 9 9</size></box></geometry></visual></link>{wall}</model>
   <model name="m"><pose>0 0 0.21 0.1 0.2 0.3</pose>
     <link name="l">{inertial}<collision name="c">{ball}</collision>{link}</link>
     <link name="k"><pose>0 0.4 0 0 0 0</pose>{inertial}<collision name="c">{ball}</collision></link>
@@ -77,7 +88,7 @@ def is_rendered(kind: str) -> bool:
 def source(kind: str, *, noisy: bool = False, extra: str = "") -> str:
     """A two-link thing that falls, tumbles and hits the ground, with a sensor of a kind on it."""
     cls = sensor_kinds()[kind]
-    block = NOISY.get(kind, cls.example).replace("N</", f"{_NOISE if noisy else ''}</")
+    block = NOISY.get(kind, NOISELESS.get(kind, cls.example)).replace("N</", f"{_NOISE if noisy else ''}</")
     if not noisy:
         block = block.replace('<noise type="gaussian"><stddev>0.02</stddev></noise>', "")
     text = (
@@ -86,7 +97,9 @@ def source(kind: str, *, noisy: bool = False, extra: str = "") -> str:
     )
     place = cls.belongs_to[0]
     parts = {"link": "", "joint": "", place: text}
-    return _WORLD.format(inertial=_INERTIAL, ball=_BALL, **parts)
+    label = _LABEL if kind in NOISELESS else ""
+    labels = {"ground": label.format(20), "wall": label.format(10)}
+    return _WORLD.format(inertial=_INERTIAL, ball=_BALL, **labels, **parts)
 
 
 def load(kind: str, **how: Any) -> Any:

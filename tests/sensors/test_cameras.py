@@ -7,21 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, noise, sensor, world
 
 import simkit
-from simkit.errors import RenderError
-from simkit.sensors.rendering import gl
 from simkit.sensors.rendering.depths import metres
 from simkit.sensors.rendering.overview import render_view
 
-try:
-    with gl.current():
-        pass
-    _no_renderer = ""
-except RenderError as error:
-    _no_renderer = str(error)
-pytestmark = pytest.mark.skipif(bool(_no_renderer), reason=_no_renderer)
+pytestmark = NEEDS_RENDERER
 
 SCENE = "<scene><ambient>1 1 1 1</ambient><background>0.2 0.4 0.6 1</background></scene>"
 BACKGROUND = (51, 102, 153)
@@ -89,7 +82,8 @@ def test_depth_of_a_floor_follows_the_pixels(far: float) -> None:
     f = 64 / (2 * math.tan(0.6))
     rows = np.arange(25, 48)
     expected = f / (rows + 0.5 - 24)  # 1 m above the floor
-    expected[expected > far] = math.inf
+    distance = np.sqrt(expected**2 + 1 + (expected * (32 - 10.5) / f) ** 2)
+    expected[distance > far] = math.inf
     np.testing.assert_allclose(found[25:, 10], expected, rtol=1e-4)
     assert (found[:24] == math.inf).all()
 
@@ -192,7 +186,7 @@ def test_topics_of_every_kind() -> None:
 def test_camera_info_alone_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     with simkit.load(scene(sensor("camera", camera(), extra="<topic>a/b</topic>"))) as sim:
         sub = sim.subscribe("/a/camera_info")
-        monkeypatch.setattr(type(sim.sensor("m::l::s")), "measure", lambda *_: pytest.fail("drawn"))
+        monkeypatch.setattr(type(sim.sensor("m::l::s")), "develop", lambda *_: pytest.fail("drawn"))
         sim.run(0.02)
         assert sub.latest.width == 64
 

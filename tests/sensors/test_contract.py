@@ -15,33 +15,27 @@ from typing import Any, get_type_hints
 import contract_worlds as worlds
 import pytest
 from contract_worlds import digest, heard, load, plain, sensor_of
+from renderer import RENDERS
 
 import simkit
 from simkit import msgs
-from simkit.errors import RenderError
 from simkit.sensors import sensor_kinds
 from simkit.sensors.noise import NoiseModel
-from simkit.sensors.rendering import gl
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {
     **dict.fromkeys(("ray", "gpu_ray", "gpu_lidar"), "lidar"),
-    **dict.fromkeys(("camera", "depth", "depth_camera", "rgbd_camera"), "index"),
+    "depth": "depth_camera",
     "gps": "navsat",
+    "thermal": "thermal_camera",
+    "wideanglecamera": "wide_angle_camera",
+    "segmentation": "segmentation_camera",
+    "boundingbox": "boundingbox_camera",
 }
 """Kind -> its page under `docs/sensors`, where that has another name."""
 
 
-@functools.cache
-def renders() -> bool:
-    try:
-        with gl.current():
-            return True
-    except RenderError:
-        return False
-
-
-KINDS = [k for k in sensor_kinds() if not worlds.is_rendered(k) or renders()]
+KINDS = [k for k in sensor_kinds() if not worlds.is_rendered(k) or RENDERS]
 kinds = pytest.mark.parametrize("kind", KINDS)
 
 

@@ -12,11 +12,13 @@ import pytest
 from sensor_worlds import box, cloud, sensor, world
 
 import simkit
+from simkit.errors import RenderError
 from simkit.params import Params
 from simkit.sensors import sensor_kinds
 from simkit.sensors.presets import Preset, find, presets
 from simkit.sensors.presets.page import in_words, page
 from simkit.sensors.presets.preset import outline
+from simkit.sensors.rendering import gl
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "sensors" / "presets.md"
 PLACE = """<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>47</latitude_deg>
@@ -54,7 +56,12 @@ def leaves(settings: Mapping[str, Any], path: tuple[str, ...] = ()) -> list[tupl
     return found
 
 
-KNOWN = [p for p in presets() if p.kind in sensor_kinds()]
+try:
+    with gl.current():
+        _renders = True
+except RenderError:
+    _renders = False
+KNOWN = [p for p in presets() if p.kind in sensor_kinds() and (_renders or p.block != "camera")]
 
 
 @pytest.mark.parametrize("preset", KNOWN, ids=lambda p: f"{p.kind}-{p.name}")
@@ -77,7 +84,7 @@ def test_every_preset_loads_without_a_word_but_its_note_and_reads(preset: Preset
 def test_a_preset_is_whole(preset: Preset) -> None:
     assert preset.maker and len(preset.source) > 15
     (block,) = preset.settings
-    assert block == preset.kind
+    assert block == preset.block
     for path, value in leaves(preset.elements):
         assert isinstance(value, (int, float, bool, str)), path
         if isinstance(value, float):

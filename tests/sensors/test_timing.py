@@ -364,15 +364,6 @@ def test_what_has_no_effect_is_told(extra: str, rate: float, expected: list[str]
         assert codes(sim) == expected
 
 
-def test_two_sensors_on_one_topic_are_told_once() -> None:
-    two = imu(name="a") + imu(name="b") + imu(name="c", topic="other")
-    with simkit.load(world(two)) as sim:
-        (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-027"]
-        assert "'m::l::a' and 'm::l::b'" in found.message and found.severity == "warning"
-        sim.sensor("m::l::a").set_rate(3)
-        assert codes(sim) == ["SK-SENSOR-027"]
-
-
 JOINT = """<sdf version="1.9"><model name="m"><link name="a">{link}</link><link name="b"/>
   <joint name="j" type="fixed"><parent>a</parent><child>{child}</child>{joint}</joint></model></sdf>"""
 

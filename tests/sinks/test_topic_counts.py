@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import simkit
 from simkit import msgs
+from simkit.sinks.recorder import Recorder
 from simkit.sinks.topic_counts import TopicCounter
 
 WORLD = """
@@ -47,3 +50,23 @@ def test_a_topic_that_comes_later_is_counted_from_then_on() -> None:
             publisher.publish(msgs.make("std_msgs/msg/Float64"))
         row = next(row for row in counter.rows if row.topic == "/late")
         assert row.rate() == pytest.approx(10.0, rel=1e-3)
+
+
+def test_what_is_recorded_is_counted_whatever_its_type(tmp_path: Path) -> None:
+    with simkit.load(WORLD) as sim, Recorder(sim, tmp_path / "r.mcap", topics=["/im*"]) as recording:
+        assert recording.records("/imu") and not recording.records("/clock")
+        counter = TopicCounter(sim, ["sensor_msgs/msg/Imu", "rosgraph_msgs/msg/Clock"], recording.records)
+        sim.run(1.0)
+        counts = {row.topic: row.count for row in counter.rows if row.counted}
+    assert counts["/imu"] == recording.message_count == 31
+    assert "/clock" not in counts
+
+
+def test_counting_does_not_make_messages() -> None:
+    """So pictures can be drawn on another thread while they are counted and recorded."""
+    with simkit.load(WORLD) as sim:
+        TopicCounter(sim)
+        made: list[int] = []
+        publisher = sim.bus.advertise("/later", "std_msgs/msg/Float64")
+        publisher.publish_later(lambda: made.append(1))
+        assert made == []

@@ -106,6 +106,7 @@ def _visual(part: Part, element: Params, name: str, link: str, workspace: Worksp
         visibility_flags=element.integer("visibility_flags", 0xFFFFFFFF) & 0xFFFFFFFF,
         laser_retro=element.number("laser_retro", 0.0),
         where=element.where,
+        plugins=read_plugins(element.all("plugin"), scoped(link, name)),
     )
 
 

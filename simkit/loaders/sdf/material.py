@@ -51,6 +51,7 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
         roughness=workflow.number("roughness", minimum=0.0, maximum=1.0) if _says(workflow, "roughness") else None,
         double_sided=block.boolean("double_sided", ogre.is_double_sided if ogre is not None else False),
         texture_scale=scale,
+        shininess=block.number("shininess", minimum=0.0) if _says(block, "shininess") else None,
     )
 
 

@@ -8,9 +8,13 @@ from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.loaders.sdf.material import read_colour
 from simkit.params import Params
 from simkit.scene import Atmosphere, SphericalCoordinates, Surroundings
+from simkit.scene.world import QUALITIES, Fog
 
 # Semi-axes [m] of the surfaces that have a name: WGS84 (NIMA TR8350.2) and the Moon's mean sphere.
 SURFACES = {"EARTH_WGS84": (6378137.0, 6356752.314245), "MOON_SCS": (1737400.0, 1737400.0), "CUSTOM_SURFACE": None}
+
+_FOGS = ("linear", "exp", "exp2")
+_FOG_HINT = "Gazebo Classic draws none for the format's own constant and quadratic either"
 
 
 def read_surroundings(world: Params) -> Surroundings:
@@ -21,13 +25,37 @@ def read_surroundings(world: Params) -> Surroundings:
         background=read_colour(scene, "background", (0.7, 0.7, 0.7, 1.0)),
         shadows=scene.boolean("shadows", True),
         grid=scene.boolean("grid", True),
-        sky=scene.has("sky"),
+        sky=scene.child("sky") is not None,
+        fog=_fog(scene),
     )
+
+
+def _fog(scene: Params) -> Fog | None:
+    """`<fog>` as Gazebo Classic draws it, which knows three types by other names than the format lists."""
+    block = scene.child("fog")
+    if block is None:
+        return None
+    kind = block.text("type", "none")
+    fog = Fog(
+        type=kind,
+        colour=read_colour(block, "color", (1.0, 1.0, 1.0, 1.0)),
+        start=block.number("start", 1.0, minimum=0.0),
+        end=block.number("end", 100.0, minimum=0.0),
+        density=block.number("density", 1.0, minimum=0.0),
+    )
+    if kind == "none":
+        return None
+    if kind not in _FOGS:
+        place = block.child("type") or block
+        message = f"found <type>{kind}</type> of a fog, allowed is one of none, {', '.join(_FOGS)}; there is no fog"
+        scene.diagnostics.warning("SK-RENDER-010", message, place.where, did_you_mean(kind, _FOGS) or _FOG_HINT)
+        return None
+    return fog
 
 
 def read_quality(world: Params) -> str:
     """`<quality>` of the scene, an element of our own: fast, gazebo or high."""
-    return world.block("scene").choice("quality", ("fast", "gazebo", "high"), "fast")
+    return world.block("scene").choice("quality", QUALITIES, "fast")
 
 
 def read_atmosphere(world: Params, diagnostics: Diagnostics) -> Atmosphere:

@@ -108,7 +108,7 @@ _GAZEBO = (
             ("light", f"light on the link, {_AS_SDF}"),
             ("plugin", f"plugin, {_AS_SDF}"),
             ("material", "name of a Gazebo material, or <material> as in SDF, for every visual of the link"),
-            ("visual", f"material, transparency, cast_shadows, visibility_flags, laser_retro, {_AS_SDF}"),
+            ("visual", f"material, transparency, cast_shadows, visibility_flags, laser_retro, plugin, {_AS_SDF}"),
             ("collision", f"surface, {_AS_SDF}"),
             ("mu1", "friction along fdir1, for every collision of the link"),
             ("mu2", "friction across fdir1"),

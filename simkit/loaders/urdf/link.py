@@ -191,6 +191,7 @@ def _visuals(
                 cast_shadows=blob.boolean("cast_shadows", seen.cast_shadows),
                 visibility_flags=blob.integer("visibility_flags", seen.visibility_flags) & 0xFFFFFFFF,
                 laser_retro=blob.number("laser_retro", seen.laser_retro),
+                plugins=(*seen.plugins, *read_plugins(blob.all("plugin"), seen.scoped)),
             )
         found.append(seen)
     return tuple(found)

@@ -44,8 +44,9 @@ one standard deviation here, which the sheet does not say. A number marked *unco
 compare it with the sheet of your device before you rely on it.
 
 What they are not: offsets and scale errors, which a calibration takes away, and errors that follow the range, the
-target or the temperature; [noise](noise.md) has elements for a bias. Where a sheet gives no rate, the file should, for
-without one a sensor reads at every step.
+target or the temperature; [noise](noise.md) has elements for a bias, and a [depth camera](depth_camera.md) one for
+errors that grow with the square of the range. Where a sheet gives no rate, the file should, for without one a sensor
+reads at every step.
 
 Left out, for their beams are not evenly spaced: HDL-64E, VLP-32C, the Livox scanners.
 
@@ -56,6 +57,8 @@ One hall as four presets see it ([examples/sensors/presets.py](../../examples/se
 
 _TITLES = {
     "lidar": "Lidars (`lidar`, `ray`, `gpu_lidar`, `gpu_ray`)",
+    "rgbd_camera": "Colour and depth (`rgbd_camera`)",
+    "depth_camera": "Depth cameras (`depth_camera`, `depth`)",
     "imu": "Inertial measurement units (`imu`)",
     "magnetometer": "Magnetometers (`magnetometer`)",
     "air_pressure": "Barometers (`air_pressure`)",

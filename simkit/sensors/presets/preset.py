@@ -12,8 +12,11 @@ Settings = Mapping[str, Any]
 SENSOR_KINDS: Mapping[str, tuple[str, ...]] = {
     "lidar": ("lidar", "ray", "gpu_lidar", "gpu_ray"),
     "navsat": ("navsat", "gps"),
+    "depth_camera": ("depth_camera", "depth"),
 }
 """Sensor types that share a block; a kind that is not here is the one type of its name."""
+
+_BLOCKS = {"depth_camera": "camera", "rgbd_camera": "camera"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +49,11 @@ class Preset:
     def sensor_kinds(self) -> tuple[str, ...]:
         """The `<sensor type>`s that may name it."""
         return SENSOR_KINDS.get(self.kind, (self.kind,))
+
+    @property
+    def block(self) -> str:
+        """The element that the settings are in."""
+        return _BLOCKS.get(self.kind, self.kind)
 
     @property
     def elements(self) -> Settings:

@@ -6,6 +6,7 @@ import atexit
 import ctypes
 import ctypes.util
 import importlib
+import importlib.util
 import logging
 import os
 import sys
@@ -28,6 +29,11 @@ _LIBRARY_CHOICES = {
     "wgl": ("glfw",),
 }
 _PLATFORM_DEVICE = 0x313F
+
+_FORKED = (
+    "this process was forked from one that had drawn pictures already, and the graphics library does not survive that; "
+    "start it with multiprocessing's 'spawn' or 'forkserver', or fork before the first picture"
+)
 
 _context: Any = None
 _failure: RenderError | None = None
@@ -135,10 +141,18 @@ def _osmesa_problem() -> str:
     return "libOSMesa not found"
 
 
+def _glfw_problem() -> str:
+    if importlib.util.find_spec("glfw") is None:
+        return "the Python package glfw is not installed"
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return "there is no display, and without one only egl and osmesa draw"
+    return ""
+
+
 _PROBES: dict[str, Callable[[], str]] = {
     "egl": _egl_problem,
     "osmesa": _osmesa_problem,
-    "glfw": lambda: "",
+    "glfw": _glfw_problem,
     "cgl": lambda: "",
 }
 
@@ -148,34 +162,73 @@ def _open() -> Any:
     library = find_library()
     try:
         logging.getLogger("OpenGL.acceleratesupport").setLevel(logging.WARNING)  # says nothing a user can use
-        if library in ("egl", "osmesa"):
-            os.environ.setdefault("PYOPENGL_PLATFORM", library)
-        context = importlib.import_module(f"mujoco.{library}").GLContext(16, 16)
-        with context.as_current():
-            name = _renderer_name()
+        with _platform(library):
+            context = importlib.import_module(f"mujoco.{library}").GLContext(16, 16)
+            with context.as_current():
+                name = _renderer_name()
     except Exception as error:
         # drivers fail in their own ways: ImportError, AttributeError, ctypes errors, GLError
         raise RenderError(f"no renderer for cameras ({library}: {type(error).__name__}: {error}); {_HINT}") from error
     _description = f"{name} through {'EGL' if library == 'egl' else library}"
-    logging.getLogger("simkit").info("renderer: %s", _description)
     return context
 
 
-def _renderer_name() -> str:
+@contextmanager
+def _platform(library: str) -> Iterator[None]:
+    """While it lasts, PyOpenGL is told the library that was chosen: whoever imports it decides for good."""
+    kept = os.environ.get("PYOPENGL_PLATFORM")
+    if library in ("egl", "osmesa"):
+        os.environ["PYOPENGL_PLATFORM"] = library
     try:
-        from OpenGL import GL
+        yield
+    finally:
+        if kept:
+            os.environ["PYOPENGL_PLATFORM"] = kept
 
-        return str(GL.glGetString(GL.GL_RENDERER).decode())
-    except Exception:  # noqa: BLE001 - the name is only for the log
-        return "OpenGL"
+
+def _renderer_name() -> str:
+    from OpenGL import GL
+
+    name = GL.glGetString(GL.GL_RENDERER)
+    if not name:
+        raise RuntimeError("the context cannot be used")
+    return str(name.decode())
 
 
 def _close() -> None:
     """At exit, before the libraries go: a context freed later writes to the terminal."""
     global _context, _failure
+    from simkit.runtime.loop import end_others
+    from simkit.sensors.rendering import renderer, thread
+
+    end_others()  # or their cameras would find the context gone
+    thread.end()
+    with _turn:  # a thread that still runs draws to the end, and nothing more
+        if _context is None:
+            return
+        renderer.free_all()
+        context, _context = _context, None
+        _failure = RenderError("the interpreter is shutting down")
+        context.free()
+
+
+def _begin_anew() -> None:
+    """In a forked child: the threads of the software renderer have stayed behind, so that drawing would never end."""
+    global _context, _failure, _turn
+    _turn = threading.RLock()  # another thread may have held it
+    if _context is None:
+        return
     from simkit.sensors.rendering import renderer
 
-    renderer.free_all()
-    context, _context = _context, None
-    _failure = RenderError("the interpreter is shutting down")
-    context.free()
+    # nobody may free what is the parent's: not even the interpreter, which would when the child ends
+    for kept in (_context, *renderer.all_uploads()):
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
+    terminate = getattr(sys.modules.get(type(_context).__module__), "_terminate_display", None)
+    if terminate is not None:
+        atexit.unregister(terminate)
+    _context = None
+    _failure = RenderError(_FORKED, "SK-RENDER-011")
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_begin_anew)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.pose import Vector
+from simkit.sensors.rendering import thread
 from simkit.sensors.rendering.renderer import renderer_of
 from simkit.sensors.rendering.view import Colours, Shot, View, look_at
 
@@ -58,6 +59,7 @@ def render_view(
 
     renderer = renderer_of(sim)
     composition = renderer.compose(model, sim.fresh_data(), place, look_at(place, middle), prepare)
+    thread.drain()  # what it draws goes through the same buffers
     colours = renderer.draw(composition, Shot(view)).colours
     renderer.give_back(composition)
     assert colours is not None

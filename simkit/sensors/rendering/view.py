@@ -42,6 +42,8 @@ class Shot:
         view: image size and frustum.
         depth: whether depths are read beside the colours.
         ids: whether, instead of colours, each pixel tells which geom is seen there.
+        sharp: whether depths are all that is wanted: they are of each pixel's middle then, also where the quality has
+            several samples of a pixel, of which a depth is but one.
         position: of the view in the sensor's frame [m], shape (3,); None is its origin.
         rotation: of the view (x forward, y left, z up) in the sensor's frame, shape (3, 3); None is the sensor's own.
     """
@@ -49,6 +51,7 @@ class Shot:
     view: View
     depth: bool = False
     ids: bool = False
+    sharp: bool = False
     position: Vector | None = None
     rotation: Vector | None = None
 
@@ -59,7 +62,7 @@ class Film:
 
     Attributes:
         view: that it was drawn through.
-        colours: (height, width, 3); None for a shot of ids.
+        colours: (height, width, 3); None for a shot of ids, or of depths alone.
         depths: raw, (height, width): 0 is the far plane or nothing, 1 the near plane, `metres` converts; None where
             they were not asked for.
         ids: (height, width): the model's geom at each pixel, -1 where there is none; None for a shot of colours.

@@ -13,7 +13,7 @@ transparency     = from 0 to 1
 cast_shadows     = whether it throws a shadow
 visibility_flags = which cameras and lidars see it
 laser_retro      = intensity that a lidar reads
-plugin           ! plugins on visuals are not run
+plugin           = a plugin on the visual > plugin
 meta             - layers of Gazebo's window
 """,
 )
@@ -103,7 +103,7 @@ shader                        - the renderer has one of its own
 lighting                      - everything is lit
 double_sided                  = whether faces are seen from behind
 render_order                  - the depth decides
-shininess                     - the gloss is the renderer's
+shininess                     = exponent of the gloss, up to 128
 """,
 )
 

@@ -42,8 +42,18 @@ scene/background      = colour of the background
 scene/shadows         = whether lights throw shadows
 scene/grid            = whether a grid is drawn
 scene/origin_visual   - no axes are drawn at the origin
-scene/sky             ~ the renderer's own sky
-scene/fog             - the air is clear
+scene/sky             ~ a sky without clouds and time of day, in place of the background
+scene/sky/time        - the sky is that of noon
+scene/sky/sunrise     - the sky is that of noon
+scene/sky/sunset      - the sky is that of noon
+scene/sky/clouds      - the sky has no clouds
+scene/sky/cubemap_uri - the sky is our own
+scene/fog             = mist
+scene/fog/color       = its colour
+scene/fog/type        = none, linear, exp or exp2
+scene/fog/start       = depth where a linear fog begins [m]
+scene/fog/end         = depth from which a linear fog hides all [m]
+scene/fog/density     = how fast exp and exp2 thicken [1/m]
 scene/quality         = fast, gazebo or high (our own: `<simkit:quality>` for files that Gazebo reads too)
 spherical_coordinates = the place on a planet
 spherical_coordinates/surface_model = EARTH_WGS84, MOON_SCS or CUSTOM_SURFACE

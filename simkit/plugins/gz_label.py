@@ -1,0 +1,37 @@
+"""gz's labels: `gz::sim::systems::Label`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from simkit.params import Params
+from simkit.plugins.base import Plugin
+from simkit.runtime.labels import LARGEST_LABEL
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+
+
+class Label(Plugin):
+    """Gives its model, or its one visual, the number that segmentation and bounding box cameras tell.
+
+    A visual's own counts more than its model's, a nested model's more than the outer one's. Of two on one element the
+    later counts.
+    """
+
+    parent_kind = ("model", "visual")
+    lets_sleep = True
+    gives_labels: ClassVar[bool] = True
+    filenames = ("gz-sim-label-system",)
+    names = ("gz::sim::systems::Label",)
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        self._label = params.integer("label", required=True, minimum=0, maximum=LARGEST_LABEL)
+        self._is_lost = self.scoped != scene.scoped
+        if self._is_lost:
+            message = f"plugin {self.name!r} labels a model or a visual, it hangs on {self.scoped!r}; it has no effect"
+            params.diagnostics.warning("SK-PLUGIN-007", message, self.where, "move it into the <model> or a <visual>")
+
+    def load(self, parent: Any, params: Params) -> None:
+        if not self._is_lost:
+            self.sim.labels[parent.scoped] = self._label

@@ -1,0 +1,141 @@
+"""gz's temperatures: `gz::sim::systems::Thermal` on what is warm, `gz::sim::systems::ThermalSensor` on what sees it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.plugins.base import Plugin, SensorPlugin
+from simkit.runtime.temperatures import HeatSignature, Temperature
+from simkit.scene import Atmosphere, SceneModel, SceneVisual
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Simulation
+
+_WITHOUT_EFFECT = "SK-SENSOR-141"
+
+
+class Thermal(Plugin):
+    """Gives its visual a temperature [K], or a picture of temperatures.
+
+    On a model or a link, where it does nothing in Gazebo, it counts for every visual there that has none of its own.
+    """
+
+    parent_kind = ("visual", "model")
+    lets_sleep = True
+    filenames = ("gz-sim-thermal-system",)
+    names = ("gz::sim::systems::Thermal",)
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        self._temperature: Temperature | None = None
+        self._range: tuple[float | None, float | None] = (None, None)
+        self._picture: Path | None = None
+        if params.has("heat_signature"):
+            if params.has("temperature"):
+                params.child("temperature")
+                message = "found both <temperature> and <heat_signature>: the latter is used, as in Gazebo"
+                params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("temperature").where)
+            self._range = _read_range(params)
+            self._picture = _find_picture(params, builder)
+        elif params.has("temperature"):
+            self._temperature = _read_kelvins(params, "temperature")
+            for name in ("min_temp", "max_temp"):
+                if params.has(name):
+                    message = f"<{name}> is for a <heat_signature>; beside <temperature> it has no effect"
+                    params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block(name).where)
+        else:
+            params.error("SK-PARAM-001", f"plugin {self.name!r} needs a <temperature> [K] or a <heat_signature>")
+        if not self._has_place(scene, builder.world.gazebo_quirks):
+            message = f"plugin {self.name!r} on {self.scoped!r} has no effect: nothing is drawn of that"
+            params.diagnostics.warning(_WITHOUT_EFFECT, message, self.where, "move it into the <visual>")
+            self._temperature = self._picture = None
+
+    def _has_place(self, scene: SceneVisual | SceneModel, quirks: bool) -> bool:
+        if isinstance(scene, SceneVisual):
+            return True
+        return not quirks and self.scoped in (scene.scoped, *(link.scoped for link in scene.links))
+
+    def load(self, parent: Any, params: Params) -> None:
+        found = self._temperature
+        if self._picture is not None:
+            found = HeatSignature(self._picture, *_sorted_range(self._range, self.sim))
+        if found is not None:
+            self.sim.temperatures[self.scoped] = found
+
+
+def _read_kelvins(params: Params, name: str) -> float:
+    found = params.number(name)
+    if found < 0:
+        message = f"found <{name}> {found:g}: nothing is colder than 0 K, which is used, as in Gazebo"
+        params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block(name).where)
+    return max(found, 0.0)
+
+
+def _read_range(params: Params) -> tuple[float | None, float | None]:
+    """Temperatures [K] of a heat signature where it is black and where it is red; None where not given."""
+    low, high = (_read_kelvins(params, name) if params.has(name) else None for name in ("min_temp", "max_temp"))
+    if low is not None and high is not None and low > high:
+        message = f"found <min_temp> {low:g} above <max_temp> {high:g}: they are exchanged, as in Gazebo"
+        params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("min_temp").where)
+    return low, high
+
+
+def _find_picture(params: Params, builder: SpecBuilder) -> Path | None:
+    """The file of a heat signature; where there is none that can be read, its surface is as warm as the air."""
+    from simkit.compiler.meshes.files import pixels_of
+    from simkit.compiler.meshes.part import MeshFileError
+
+    element, uri = params.block("heat_signature"), params.text("heat_signature")
+    folder = Path(element.where.file).parent if element.where.file else None
+    path = builder.find_file(uri, folder)
+    problem = "is not found"
+    if path is not None:
+        try:
+            pixels_of(path)
+            return path
+        except MeshFileError as error:
+            problem = str(error)
+    message = f"heat signature {uri!r} {problem}; its surface has the temperature of the air"
+    params.diagnostics.warning("SK-SENSOR-142", message, element.where)
+    return None
+
+
+def _sorted_range(given: tuple[float | None, float | None], sim: Simulation) -> tuple[float, float]:
+    """Temperatures where a picture is black and where it is red [K]: that of the air where none is given."""
+    air = (sim.world.atmosphere or Atmosphere()).temperature
+    low, high = (air if end is None else end for end in given)
+    return min(low, high), max(low, high)
+
+
+class ThermalSensor(SensorPlugin):
+    """Sets the range [K] and the resolution [K] of a thermal camera."""
+
+    filenames = ("gz-sim-thermal-sensor-system",)
+    names = ("gz::sim::systems::ThermalSensor",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        if not hasattr(parent, "set_temperatures"):
+            self.refuse(parent, "thermal_camera")
+            params.mark_all_read()
+            return
+        resolution = self._resolution(params)
+        low = params.number("min_temp", 0.0, finite=False)
+        high = params.number("max_temp", math.inf, finite=False)
+        if low > high:
+            message = f"found <min_temp> {low:g} above <max_temp> {high:g}: all temperatures are shown, as in Gazebo"
+            params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("min_temp").where)
+            low, high = 0.0, math.inf
+        parent.set_temperatures(max(low, 0.0), high, resolution)
+
+    def _resolution(self, params: Params) -> float | None:
+        if not params.has("resolution"):
+            return None
+        found = params.number("resolution")
+        if found > 0:
+            return found
+        message = f"found <resolution> {found:g}, allowed is a number above 0: the default is used, as in Gazebo"
+        params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("resolution").where)
+        return None

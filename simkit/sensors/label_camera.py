@@ -1,0 +1,141 @@
+"""What the cameras that tell labels share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.errors import RenderError
+from simkit.params import Params
+from simkit.sensors import pictures
+from simkit.sensors.base import Product
+from simkit.sensors.label_items import Items, items_of
+from simkit.sensors.rendered import RenderedSensor
+from simkit.sensors.rendering.view import Film, Ids
+from simkit.sensors.saved_pictures import SavedPictures
+from simkit.sensors.saved_samples import SavedSamples
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation, Structure
+    from simkit.scene import SceneSensor
+
+
+class LabelCamera(RenderedSensor):
+    """A camera that knows which geom it sees at each pixel, exactly: without noise, and with no edge blended."""
+
+    reads_labels: ClassVar[bool] = True
+    makes_boxes: ClassVar[bool] = False
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self._items: Items | None = None
+        self._items_of: tuple[Any, Any] = (None, None)
+        image = scene.params.block("camera").block("image")
+        if self.options.encoding != "rgb8":
+            message = f"<format> {image.text('format')!r} is not used by a {scene.kind}: its pictures are R8G8B8"
+            diagnostics.warning("SK-SENSOR-130", message, image.block("format").where)
+            self.options = replace(self.options, encoding="rgb8")
+        noise = self.options.noise
+        if noise.mean or noise.stddev:
+            message = f"<noise> is not used by a {scene.kind}, as in Gazebo: it tells what is there"
+            diagnostics.warning("SK-SENSOR-131", message, scene.params.block("camera").block("noise").where)
+
+    @property
+    def items(self) -> Items:
+        """What wears which label at the newest sample."""
+        if self._items is None:
+            self._look_at_labels()
+        assert self._items is not None
+        return self._items
+
+    @property
+    def structure(self) -> Structure:
+        """What was in the world at the newest sample."""
+        structure: Structure = self._items_of[1]
+        return structure
+
+    def _look_at_labels(self) -> None:
+        sim = self.sim
+        now = sim.labels.state, sim.structure
+        if self._items is None or self._items_of[0] is not now[0] or self._items_of[1] is not now[1]:
+            self._items, self._items_of = items_of(sim, self.makes_boxes), now
+
+    def seen(self, film: Film) -> Ids:
+        """The geom at each pixel of the camera's picture, -1 where there is none."""
+        assert film.ids is not None
+        if self._distorter:
+            return self._distorter.bend_ids(film.ids)
+        return film.ids
+
+    def attach(self, sim: Simulation) -> None:
+        super().attach(sim)
+        self._report_unlabelled(sim)
+
+    def sample(self, tick: int) -> None:
+        # samples that wait are measured before labels or structure change, so what holds now holds for them all
+        self._look_at_labels()
+        super().sample(tick)
+
+    def _writer(self, folder: Path, name: str) -> SavedPictures:
+        return SavedSamples(self.sim, self.scene, folder, name)
+
+    def _picture_product(self) -> Product:
+        """The picture as it is saved beside what is told of it; it has no topic."""
+        return Product(pictures.TYPE, self._colour_message)
+
+    def _picture(self, film: Film) -> npt.NDArray[np.uint8]:
+        """The colours of a film, through the lens."""
+        assert film.colours is not None
+        kept = self._spare_colours.take()
+        if self._distorter:
+            return self._distorter.bend(film.colours, kept)
+        np.copyto(kept, film.colours)
+        return kept
+
+    def perturb(self, reading: Any, index: int) -> Any:
+        return reading
+
+    def settle(self) -> None:
+        """Measures what waits to be looked at, before labels change."""
+        try:
+            for sample in self._kept():
+                self._settle(sample)
+        except RenderError:
+            self._drop()
+
+    def _report_unlabelled(self, sim: Simulation) -> None:
+        if not len(sim.labels) and not any(getattr(p, "gives_labels", False) for p in sim.structure.all_plugins()):
+            message = f"sensor {self.scoped!r} tells labels, and nothing in the world has one"
+            hint = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>10</label></plugin>'
+            sim.reports.warning("SK-SENSOR-132", message, self.scene.where, f"in a <model> or <visual>: {hint}")
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """An element that says what a camera tells, and the words that it may hold: each with what it means."""
+
+    element: str
+    meanings: dict[str, str]
+    default: str
+
+
+def read_word(params: Params, word: Word) -> str:
+    """The meaning of a word in `<camera>`, or in `<sensor>`, where older files have it; in any case of letters."""
+    camera = params.block("camera")
+    place = camera if camera.has(word.element) or not params.has(word.element) else params
+    found = place.child(word.element)
+    if found is None:
+        return word.meanings[word.default]
+    asked = found.value.strip().lower()
+    if asked not in word.meanings:
+        allowed: Sequence[str] = tuple(word.meanings)
+        message = f"found <{word.element}>{found.value}</{word.element}>, allowed is one of {', '.join(allowed)}"
+        found.error("SK-PARAM-002", message, did_you_mean(asked, allowed))
+        return word.meanings[word.default]
+    return word.meanings[asked]

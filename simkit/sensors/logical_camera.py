@@ -1,0 +1,193 @@
+"""Logical camera: which models are in its view, and where, without a picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.pose import Pose, Vector, quat_multiply
+from simkit.sensors.base import Product, Sensor
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneModel, SceneSensor
+
+IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
+MODEL = "ros_gz_interfaces/msg/LogicalCameraImageModel"
+FRUSTUM = "simkit_msgs/msg/LogicalCameraSensor"
+
+_ROUNDING = 1e-9
+"""What an origin may be outside a plane [m]: the sensor's own model is often exactly at the frustum's tip."""
+
+
+@dataclass(frozen=True, slots=True)
+class LogicalCameraOptions:
+    """The `<logical_camera>` block: a frustum along the sensor's x axis.
+
+    Attributes:
+        near, far: its ends [m] along the axis.
+        horizontal_fov: angle between its left and right side [rad].
+        aspect_ratio: the ratio of its width to its height.
+    """
+
+    near: float
+    far: float
+    horizontal_fov: float
+    aspect_ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class LogicalImage:
+    """What it sees.
+
+    Attributes:
+        pose: of the sensor in the world.
+        models: (name, pose in the sensor's frame) of each model in the frustum, by name.
+    """
+
+    pose: Pose
+    models: tuple[tuple[str, Pose], ...]
+
+
+def read_options(params: Params) -> LogicalCameraOptions:
+    block = params.block("logical_camera")
+    near, far = block.number("near", 0.0, minimum=0.0), block.number("far", 1.0, minimum=0.0)
+    if near >= far:
+        block.error("SK-PARAM-002", f"found <near> {near:g} and <far> {far:g}, allowed is near < far")
+    fov, aspect = block.number("horizontal_fov", 1.0), block.number("aspect_ratio", 1.0)
+    if not 0 < fov < math.pi:
+        block.error("SK-PARAM-002", f"found <horizontal_fov> {fov:g}, allowed is an angle above 0 and below pi")
+        fov = 1.0
+    if aspect <= 0:
+        block.error("SK-PARAM-002", f"found <aspect_ratio> {aspect:g}, allowed is a number above 0")
+        aspect = 1.0
+    return LogicalCameraOptions(near, far, fov, aspect)
+
+
+class Frustum:
+    """The part of space that a logical camera looks at.
+
+    Args:
+        options: its measures.
+        as_gazebo: as Gazebo computes its planes: where they start in one point (near = 0) only the far and the right
+            one are left, since the others are made of two corners that are the same.
+    """
+
+    def __init__(self, options: LogicalCameraOptions, as_gazebo: bool = False) -> None:
+        self._near, self._far = options.near, options.far
+        self._across = math.tan(options.horizontal_fov / 2)
+        self._up = self._across / options.aspect_ratio
+        self._is_broken = as_gazebo and options.near == 0
+
+    def contains(self, points: Vector) -> npt.NDArray[np.bool_]:
+        """Whether points, shape (n, 3) [m] in the sensor's frame, are within; what is on a plane is."""
+        x, y, z = points.T
+        within = (x <= self._far + _ROUNDING) & (-y <= x * self._across + _ROUNDING)
+        if not self._is_broken:
+            within &= (x >= self._near - _ROUNDING) & (y <= x * self._across + _ROUNDING)
+            within &= np.abs(z) <= x * self._up + _ROUNDING
+        inside: npt.NDArray[np.bool_] = within
+        return inside
+
+
+class LogicalCamera(Sensor):
+    """`logical_camera`: name and pose of every model whose origin is in its frustum, whatever is in between.
+
+    That is what gz-sensors does; Gazebo Classic asks for bounding boxes instead. Nested models count, and so does the
+    one that carries the sensor.
+    """
+
+    kinds = ("logical_camera",)
+    example = "<logical_camera><far>5</far></logical_camera>"
+    options: LogicalCameraOptions
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        scene.params.child("logical_camera")
+        self.options = read_options(scene.params)
+
+    def describe(self) -> dict[str, Any]:
+        """Lengths in m, angle in rad."""
+        o = self.options
+        frustum = {"near": o.near, "far": o.far, "hfov": o.horizontal_fov, "aspect_ratio": o.aspect_ratio}
+        return {"logical_camera": frustum}
+
+    def prepare(self) -> None:
+        self._frustum = Frustum(self.options, self.sim.world.gazebo_quirks)
+        self._image_type, self._model_type = msgs.type_of(IMAGE), msgs.type_of(MODEL)
+        self._frustum_type = msgs.type_of(FRUSTUM)
+        self._pose_type = msgs.type_of("geometry_msgs/msg/Pose")
+        self._point_type, self._quaternion_type = (
+            msgs.type_of(f"geometry_msgs/msg/{name}") for name in ("Point", "Quaternion")
+        )
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        found: dict[str, tuple[int, Pose]] = {}
+        quirks = self.sim.world.gazebo_quirks
+        for top in self.sim.structure.models.values():
+            poses = {model.scoped: model.pose_world for model in top.all_models()}
+            for model in top.all_models():
+                # Gazebo tells the last part of a name, so that one model hides another, and takes a nested model's pose
+                # in its parent for one in the world
+                if quirks and model is not top:
+                    found[model.name] = 0, poses[model.scoped.rpartition("::")[0]].inverse() @ model.pose_world
+                else:
+                    found[model.scoped] = self._place_of(model, compiled.names)
+        self._names = sorted(found)
+        self._bodies = np.array([found[name][0] for name in self._names], dtype=np.intp)
+        self._frames = [found[name][1] for name in self._names]
+        self._origins = np.array([frame.position for frame in self._frames]).reshape(-1, 3)
+
+    def _place_of(self, model: SceneModel, names: Any) -> tuple[int, Pose]:
+        """The engine's body that carries a model, and the model's frame in it."""
+        if model.canonical_link not in names.links:  # a model without links stays where it is put
+            return 0, self.sim.model(model.scoped).pose
+        body, frame = names.model_frame(model)
+        return body, frame
+
+    def products(self) -> dict[str, Product]:
+        return {
+            "image": Product(IMAGE, self._image_message),
+            "frustum": Product(FRUSTUM, self._frustum_message, needs_reading=False),
+        }
+
+    def default_topics(self) -> dict[str, str]:
+        topic = self._default_topic("logical_camera")
+        return {"image": topic, "frustum": topic + "/frustum"}
+
+    def measure(self, model: Any, data: Any) -> LogicalImage:
+        position, rotation = self._frame_in_world(data)
+        turn = data.xquat[self._body]
+        pose = Pose(position, quat_multiply(turn, self._offset.quaternion))
+        bodies = self._bodies
+        axes = data.xmat[bodies].reshape(-1, 3, 3)
+        origins = data.xpos[bodies] + np.einsum("nij,nj->ni", axes, self._origins)
+        inside = np.flatnonzero(self._frustum.contains((origins - position) @ rotation))
+        to_sensor = pose.inverse()
+        seen = []
+        for i in inside.tolist():
+            body = bodies[i]
+            seen.append((self._names[i], to_sensor @ Pose(data.xpos[body], data.xquat[body]) @ self._frames[i]))
+        return LogicalImage(pose, tuple(seen))
+
+    # ------------------------------------------------------------------ messages
+
+    def _pose_message(self, pose: Pose) -> Any:
+        w, x, y, z = pose.quaternion.tolist()
+        return self._pose_type(self._point_type(*pose.position.tolist()), self._quaternion_type(x, y, z, w))
+
+    def _image_message(self, reading: LogicalImage, time_ns: int) -> Any:
+        models = [self._model_type(name, self._pose_message(pose)) for name, pose in reading.models]
+        return self._image_type(msgs.header(time_ns, self.frame_id), self._pose_message(reading.pose), models)
+
+    def _frustum_message(self, _: Any, time_ns: int) -> Any:
+        o = self.options
+        header = msgs.header(time_ns, self.frame_id)
+        return self._frustum_type(header, o.near, o.far, o.horizontal_fov, o.aspect_ratio)

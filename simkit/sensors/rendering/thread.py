@@ -1,0 +1,178 @@
+"""The thread that draws: one for the process, since there is one OpenGL context.
+
+What is asked for is done in order. At most a few things wait at a time, since each holds on to what it is made of; who
+asks for more waits until there is room. The thread starts when first asked and ends before the context is closed.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from simkit.errors import RenderError
+
+_MOST_WAITING = 8  # a picture is two of them: drawing it, and making messages of it
+
+
+class Work:
+    """Something that is done on another thread, or was done at once.
+
+    Args:
+        do: gives the result, or raises.
+        is_at_once: whether it is done where it is asked for.
+    """
+
+    __slots__ = ("_do", "_done", "_error", "_owner", "_result", "is_at_once")
+
+    def __init__(self, do: Callable[[], Any], is_at_once: bool = False) -> None:
+        self.is_at_once = is_at_once
+        self._do: Callable[[], Any] | None = do
+        self._owner, self._done = _thread, threading.Event()
+        self._result: Any = None
+        self._error: BaseException | None = None
+
+    @property
+    def is_done(self) -> bool:
+        return self._done.is_set()
+
+    def wait(self) -> None:
+        """Until it is done, whether it went well or not; not where the thread that does it asks itself."""
+        if not self._done.is_set() and threading.get_ident() != _thread.number:
+            if self._owner is not _thread:
+                raise RenderError("this process was forked while the picture was being drawn", "SK-RENDER-011")
+            self._done.wait()
+
+    def result(self) -> Any:
+        """What it gave, once it is done; raises what it raised."""
+        self.wait()
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+    def run(self) -> None:
+        """Does it, here and now."""
+        do, self._do = self._do, None
+        assert do is not None
+        try:
+            self._result = do()
+        except BaseException as error:  # raised where the result is asked for
+            self._error = error
+            if not isinstance(error, Exception) and threading.get_ident() != _thread.number:
+                raise  # an interrupt is heard where it comes
+        finally:
+            self._done.set()
+
+
+class _RenderThread:
+    """The thread and what waits for it.
+
+    Attributes:
+        number: of the thread; None while there is none.
+    """
+
+    def __init__(self) -> None:
+        self.number: int | None = None
+        self._waiting: deque[Work] = deque()
+        self._changed = threading.Condition()
+        self._thread: threading.Thread | None = None
+        self._is_busy = self._is_ended = False
+
+    def submit(self, work: Work) -> None:
+        if threading.get_ident() == self.number:
+            work.run()  # who draws must not wait for room
+            return
+        with self._changed:
+            while len(self._waiting) >= _MOST_WAITING and not self._is_ended:
+                self._changed.wait()
+            if not self._is_ended:
+                self._waiting.append(work)
+                if self._thread is None:
+                    self._start()
+                self._changed.notify_all()
+                return
+        work.run()
+
+    def drain(self) -> None:
+        if threading.get_ident() == self.number or self._thread is None:
+            return
+        with self._changed:
+            while self._waiting or self._is_busy:
+                self._changed.wait()
+
+    def end(self) -> None:
+        """Does what waits, then stops; later work is done where it is asked for."""
+        with self._changed:
+            self._is_ended = True
+            self._changed.notify_all()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _start(self) -> None:
+        # a daemon: at exit the interpreter waits for all others before anybody could tell them to stop
+        self._thread = threading.Thread(target=self._work, name="simkit-render", daemon=True)
+        self._thread.start()
+
+    def _work(self) -> None:
+        self.number = threading.get_ident()
+        while True:
+            with self._changed:
+                self._is_busy = False
+                self._changed.notify_all()
+                while not self._waiting:
+                    if self._is_ended:
+                        return
+                    self._changed.wait()
+                work = self._waiting.popleft()
+                self._is_busy = True
+                self._changed.notify_all()
+            work.run()
+            del work  # what it was made of is not held while nothing is to be done
+
+
+_thread = _RenderThread()
+
+
+def submit(do: Callable[[], Any]) -> Work:
+    """Has the render thread do something after all that was submitted before; waits while too much is waiting."""
+    work = Work(do)
+    _thread.submit(work)
+    return work
+
+
+def at_once(do: Callable[[], Any]) -> Work:
+    """Does something here, after all that was submitted before."""
+    _thread.drain()
+    work = Work(do, is_at_once=True)
+    work.run()
+    work.result()
+    return work
+
+
+def drain() -> None:
+    """Waits until all that was submitted is done; not on the render thread itself."""
+    _thread.drain()
+
+
+def end() -> None:
+    """Lets the render thread finish, and starts none again."""
+    _thread.end()
+
+
+def usable_cores() -> int:
+    """Processor cores that this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _after_fork() -> None:
+    """A forked child has no render thread; what waited for it there is not to be drawn."""
+    global _thread
+    _thread = _RenderThread()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)

@@ -1,0 +1,107 @@
+"""Plugins inside a `<visual>`: how the file reaches the class, and what the class gets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plugin_worlds import world
+from typer.testing import CliRunner
+
+import simkit
+from simkit.cli import app
+
+PAINTER = """
+from simkit import VisualPlugin
+
+class Painter(VisualPlugin):
+    filenames = ("libpainter.so",)
+
+    def prepare(self, scene, params, builder):
+        self.told = [scene.scoped]
+
+    def load(self, parent, params):
+        self.told += [parent.scoped, parent.link.scoped, len(parent.geoms), params.text("colour", "red")]
+        self.visual = parent
+"""
+SHAPE = "<geometry><box><size>1 1 1</size></box></geometry>"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "painter.py").write_text(PAINTER)
+    return tmp_path
+
+
+def thing(plugin: str, on_model: str = "", name: str = "m") -> str:
+    return (
+        f'<model name="{name}"><pose>1 2 3 0 0 1.5707963267948966</pose><static>true</static><link name="l">'
+        f'<pose>0 0 1 0 0 0</pose><visual name="v"><pose>1 0 0 0 0 0</pose>{SHAPE}{plugin}</visual>'
+        f'<visual name="w">{SHAPE}</visual></link>{on_model}</model>'
+    )
+
+
+PLUGIN = '<plugin name="p" filename="libpainter.so"><colour>blue</colour></plugin>'
+
+
+def plugin_of(sim: simkit.Simulation) -> object:
+    (found,) = [p for p in sim.structure.all_plugins() if type(p).__name__ == "Painter"]
+    return found
+
+
+def test_it_is_prepared_with_the_scene_and_loaded_with_a_handle(folder: Path) -> None:
+    with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder]) as sim:
+        plugin = plugin_of(sim)
+        assert plugin.told == ["m::l::v", "m::l::v", "m::l", 1, "blue"]  # type: ignore[attr-defined]
+        assert plugin.scoped == "m::l::v"  # type: ignore[attr-defined]
+        assert plugin.visual is sim.visual("m::l::v") is sim.link("m::l").visuals["v"]  # type: ignore[attr-defined]
+
+
+def test_a_visual_says_where_it_is_also_after_its_model_was_moved(folder: Path) -> None:
+    with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder]) as sim:
+        visual = sim.visual("m::l::v")
+        np.testing.assert_allclose(visual.pose.position, (1, 3, 4), atol=1e-12)
+        sim.model("m").set_pose(simkit.Pose((5, 0, 0)))
+        np.testing.assert_allclose(visual.pose.position, (6, 0, 1), atol=1e-9)
+        sim.remove("m")
+        assert "removed" in repr(visual)
+        with pytest.raises(simkit.InputError, match="was removed"):
+            _ = visual.geoms
+
+
+def test_an_unknown_visual_is_a_key_error_with_the_closest_name() -> None:
+    with simkit.load(world(thing(""))) as sim, pytest.raises(KeyError, match="did you mean 'm::l::v'"):
+        sim.visual("m::l::vv")
+
+
+def test_it_comes_with_a_spawned_model(folder: Path) -> None:
+    with simkit.load(world(), plugin_paths=[folder]) as sim:
+        sim.spawn(f'<sdf version="1.9">{thing(PLUGIN, name="late")}</sdf>')
+        assert plugin_of(sim).told[0] == "late::l::v"  # type: ignore[attr-defined]
+
+
+def test_on_anything_else_it_is_left_out_with_a_warning(folder: Path) -> None:
+    found = simkit.check(world(thing("", on_model=PLUGIN)), plugin_paths=[folder])
+    (warning,) = [d for d in found if d.code == "SK-PLUGIN-007"]
+    assert "belongs on a visual, the file puts it on a model" in warning.message
+
+
+def test_what_it_does_not_read_is_reported(folder: Path) -> None:
+    text = thing(PLUGIN.replace("colour>", "color>"))
+    found = [d for d in simkit.check(world(text), plugin_paths=[folder]) if d.code == "SK-PARAM-003"]
+    assert len(found) == 1
+    assert "colour" in found[0].hint
+
+
+def test_set_reaches_its_parameters(folder: Path) -> None:
+    with simkit.load(world(thing(PLUGIN)), plugin_paths=[folder], overrides=["m::l::v::p.colour=green"]) as sim:
+        assert plugin_of(sim).told[-1] == "green"  # type: ignore[attr-defined]
+
+
+def test_a_converted_file_still_has_it(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "in.sdf").write_text(world(thing(PLUGIN)))
+    done = CliRunner().invoke(app, ["convert", str(tmp_path / "in.sdf"), "-o", str(tmp_path / "out.sdf")])
+    assert done.exit_code == 0, done.output
+    with simkit.load(tmp_path / "out.sdf", plugin_paths=[folder]) as sim:
+        assert plugin_of(sim).told[-1] == "blue"  # type: ignore[attr-defined]

@@ -1,0 +1,25 @@
+"""Whether pictures can be drawn here, for tests that need some."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pytest
+
+from simkit.errors import RenderError
+from simkit.sensors.rendering import gl
+
+
+def _why_not() -> str:
+    try:
+        with gl.current():
+            return ""
+    except RenderError as error:
+        return str(error)
+
+
+_REASON: Final = _why_not()
+
+RENDERS: Final = not _REASON
+
+NEEDS_RENDERER: Final = pytest.mark.skipif(not RENDERS, reason=_REASON)

@@ -1,0 +1,134 @@
+"""How a process that has drawn ends, forks and spawns: without a word, and without hanging."""
+
+from __future__ import annotations
+
+import ctypes.util
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+from sensor_worlds import sensor, world
+
+ROOT = Path(__file__).resolve().parents[2]
+CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
+WORLD = world(sensor("camera", CAMERA, name="c") + sensor("imu", "<imu/>", name="i"))
+START = """
+import os, sys, threading
+import simkit
+
+def draw():
+    sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"])
+    sim.run(0.02)
+    try:
+        return sim, sim.sensor("m::l::c").latest.data.max()
+    except simkit.RenderError as error:
+        return sim, error.code
+"""
+
+
+def run(script: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    kept = {k: v for k, v in os.environ.items() if k not in ("MUJOCO_GL", "PYOPENGL_PLATFORM")}
+    return subprocess.run(
+        [sys.executable, "-c", START + textwrap.dedent(script)],
+        env={**kept, "PYTHONPATH": str(ROOT), "SIMKIT_TEST_WORLD": WORLD, **environment},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+
+
+def needs_a_renderer(done: subprocess.CompletedProcess[str]) -> None:
+    if "SK-RENDER-001" in done.stdout:
+        pytest.skip("no renderer")
+
+
+def test_an_interrupt_after_pictures_from_several_threads_is_all_that_is_said() -> None:
+    done = run(
+        """
+        kept = [draw()]
+        for _ in range(2):
+            thread = threading.Thread(target=lambda: kept.append(draw()))
+            thread.start()
+            thread.join()
+        kept[1][0].run(0.02)
+        print(*[found for _, found in kept])
+        raise KeyboardInterrupt
+        """
+    )
+    needs_a_renderer(done)
+    assert done.stderr.splitlines()[-1] == "KeyboardInterrupt"
+    assert "Error" not in done.stderr and done.stderr.count("Traceback") == 1
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+def test_a_forked_child_says_that_it_cannot_draw_and_all_else_goes_on() -> None:
+    done = run(
+        """
+        sim, found = draw()
+        print(found, flush=True)
+        child = os.fork()
+        if child == 0:
+            forked, code = draw()
+            forked.run(0.02)
+            print(code, forked.sensor("m::l::i").latest is not None, flush=True)
+            sys.exit(0)
+        print(os.waitpid(child, 0)[1])
+        sim.run(0.02)
+        assert sim.sensor("m::l::c").latest is not None
+        """
+    )
+    needs_a_renderer(done)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[1:] == ["SK-RENDER-011 True", "0"]
+
+
+def test_a_child_that_is_forked_before_the_first_picture_draws_whatever_pyopengl_is_told() -> None:
+    done = run(
+        """
+        child = os.fork()
+        sim, found = draw()
+        print(found, flush=True)
+        if child:
+            print("child", os.waitpid(child, 0)[1], os.environ["PYOPENGL_PLATFORM"])
+        """,
+        PYOPENGL_PLATFORM="glx",
+    )
+    needs_a_renderer(done)
+    assert done.returncode == 0, done.stderr
+    assert "child 0 glx" in done.stdout and "SK-RENDER" not in done.stdout
+
+
+@pytest.mark.skipif(not ctypes.util.find_library("OSMesa"), reason="OSMesa is not installed")
+def test_without_egl_osmesa_draws() -> None:
+    broken = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent.json", "__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent"}
+    done = run("print(draw()[1])", **broken)
+    assert done.returncode == 0, done.stderr
+    assert "SK-RENDER" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("environment", "reason"),
+    [
+        ({"MUJOCO_GL": "glfw", "DISPLAY": "", "WAYLAND_DISPLAY": ""}, "no display"),
+        ({"MUJOCO_EGL_DEVICE_ID": "77", "MUJOCO_GL": "egl"}, "egl"),
+    ],
+)
+def test_a_renderer_that_cannot_work_is_one_error_with_its_reason(environment: dict[str, str], reason: str) -> None:
+    done = run(
+        """
+        sim, code = draw()
+        print(code, sim.sensor("m::l::i").latest is not None)
+        try:
+            sim.sensor("m::l::c").latest
+        except simkit.RenderError as error:
+            print(error)
+        """,
+        **environment,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("SK-RENDER-001 True")
+    assert reason in done.stdout

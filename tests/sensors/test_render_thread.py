@@ -1,0 +1,317 @@
+"""Pictures drawn beside the physics: the same bits, in order, whatever happens while they are on their way."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sensor_worlds import box, noise, sensor, world
+
+import simkit
+from simkit import msgs
+from simkit.errors import RenderError
+from simkit.sensors.camera import Camera
+from simkit.sensors.rendering import gl, thread
+from simkit.sensors.rgbd_camera import RgbdCamera
+from simkit.sinks.recorder import Recorder
+
+try:
+    with gl.current():
+        pass
+    _no_renderer = ""
+except RenderError as error:
+    _no_renderer = str(error)
+pytestmark = pytest.mark.skipif(bool(_no_renderer), reason=_no_renderer)
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENE = "<scene><ambient>1 1 1 1</ambient><background>0.2 0.4 0.6 1</background></scene>"
+CRATE = f'<sdf version="1.9">{box("crate", "2 0.3 1 0 0 0", "0.3 0.3 0.3", colour="0 1 0")}</sdf>'
+
+
+def camera(more: str = "", width: int = 48, height: int = 32) -> str:
+    return f"""<camera><horizontal_fov>1.2</horizontal_fov>
+      <image><width>{width}</width><height>{height}</height></image><clip><near>0.1</near><far>20</far></clip>{more}</camera>"""
+
+
+def two_cameras(latency: str = "") -> str:
+    """A turning body with two noisy cameras of different rates and an IMU, a wall, and a ball that falls past."""
+    sensors = (
+        sensor("rgbd_camera", camera(noise(0.02)), rate=30, name="a", extra="<topic>a</topic>" + latency)
+        + sensor("camera", camera(noise(0.05), width=32), rate=50, name="b", extra="<topic>b/image</topic>")
+        + sensor("imu", "<imu/>", rate=200, name="i", extra="<topic>imu</topic>")
+    )
+    ball = """<model name="ball"><pose>3 0 2 0 0 0</pose><link name="l"><visual name="v"><geometry><sphere>
+      <radius>0.2</radius></sphere></geometry></visual></link></model>"""
+    others = box("wall", "5 0 1 0 0 0.4", "1 9 9", colour="1 0 0") + ball
+    return world(sensors, others=others, top=SCENE, static=False, pose="0 0 1 0 0.1 0.2")
+
+
+TOPICS = ("/a/image", "/a/depth_image", "/a/points", "/a/camera_info", "/b/image", "/imu")
+
+
+def as_bytes(messages: list[Any]) -> list[bytes]:
+    return [msgs.serialize(message) for message in messages]
+
+
+def on_both(script: Callable[[Any], Any], text: str = "") -> tuple[Any, Any]:
+    """What a script gives of a simulation without the render thread, and of one with it."""
+    found = []
+    for is_on in (False, True):
+        with simkit.load(text or two_cameras(), render_thread=is_on) as sim:
+            assert sim.render_thread is is_on
+            found.append(script(sim))
+    return found[0], found[1]
+
+
+# ---------------------------------------------------------------------- the same bits
+
+
+def test_every_message_is_the_same_with_a_spawn_in_the_middle() -> None:
+    def script(sim: Any) -> list[list[bytes]]:
+        subs = [sim.subscribe(topic) for topic in TOPICS]
+        sim.run(0.15)
+        sim.spawn(CRATE)
+        sim.run(0.1)
+        sim.remove("crate")
+        sim.run(0.1)
+        return [as_bytes(sub.messages) for sub in subs]
+
+    alone, beside = on_both(script)
+    assert [len(messages) for messages in alone] == [11, 11, 11, 11, 18, 71]
+    assert alone == beside
+
+
+@pytest.mark.parametrize("latency", ["", "<latency>0.05</latency>"])
+def test_a_recorded_bag_is_the_same_byte_for_byte(tmp_path: Path, latency: str) -> None:
+    def script(sim: Any) -> bytes:
+        path = tmp_path / f"{sim.render_thread}.mcap"
+        with Recorder(sim, path):
+            sim.run(0.12)
+            sim.spawn(CRATE)
+            sim.run(0.12)
+        return path.read_bytes()
+
+    alone, beside = on_both(script, two_cameras(latency))
+    assert len(alone) > 10_000
+    assert alone == beside
+
+
+def test_a_reset_and_a_restore_find_pictures_on_their_way() -> None:
+    def script(sim: Any) -> list[list[bytes]]:
+        subs = [sim.subscribe(topic) for topic in TOPICS]
+        sim.run(0.1)
+        before = sim.snapshot()
+        sim.run(0.05)
+        sim.restore(before)
+        sim.run(0.1)
+        sim.reset(seed=7)
+        sim.run(0.05)
+        return [as_bytes(sub.messages) for sub in subs]
+
+    alone, beside = on_both(script)
+    assert alone == beside
+
+
+def test_who_is_called_back_who_looks_later_and_who_reads_latest_see_the_same() -> None:
+    called: list[Any] = []
+
+    def script(sim: Any) -> list[bytes]:
+        called.clear()
+        live = sim.subscribe("/b/image", called.append, keep=0)
+        sim.run(0.02)
+        live.close()
+        kept, newest = sim.subscribe("/b/image"), sim.subscribe("/b/image", keep=1)
+        sim.run(0.06)
+        camera = sim.sensor("m::l::b")
+        return as_bytes([*called, *kept.messages, newest.latest, camera.latest, camera.truth])
+
+    alone, beside = on_both(script)
+    assert alone == beside
+    assert alone[-2] == alone[-3] == alone[-4]
+
+
+def test_a_thread_that_is_switched_on_and_off_changes_nothing() -> None:
+    def script(sim: Any) -> list[bytes]:
+        sub = sim.subscribe("/a/points")
+        for _ in range(4):
+            sim.run(0.04)
+            sim.render_thread = not sim.render_thread
+        return as_bytes(sub.messages)
+
+    alone, beside = on_both(script)
+    assert alone == beside
+
+
+def test_the_thread_draws_where_nobody_waits() -> None:
+    drawn: list[bool] = []
+    with simkit.load(two_cameras(), render_thread=True) as sim:
+        camera = sim.sensor("m::l::b")
+        develop = camera.develop
+
+        def noticed(films: Any, notes: Any) -> Any:
+            drawn.append(threading.current_thread() is threading.main_thread())
+            return develop(films, notes)
+
+        camera.develop = noticed
+        sub = sim.subscribe("/b/image")
+        sim.run(0.1)
+        assert len(sub.messages) == 6
+        assert not any(drawn)
+        drawn.clear()
+        sub.close()
+        sim.subscribe("/b/image", lambda message: None)
+        sim.run(0.1)
+        assert drawn
+        assert all(drawn)
+
+
+# ---------------------------------------------------------------------- what is made, and what is not
+
+
+def counted(monkeypatch: pytest.MonkeyPatch, kind: type, method: str) -> list[int]:
+    calls, original = [0], getattr(kind, method)
+
+    def counting(*what: Any) -> Any:
+        calls[0] += 1
+        return original(*what)
+
+    monkeypatch.setattr(kind, method, counting)
+    return calls
+
+
+@pytest.mark.parametrize("is_on", [False, True])
+def test_only_what_is_read_is_made_and_only_once(monkeypatch: pytest.MonkeyPatch, is_on: bool) -> None:
+    pictures, clouds = counted(monkeypatch, RgbdCamera, "develop"), counted(monkeypatch, RgbdCamera, "_cloud")
+    images = counted(monkeypatch, RgbdCamera, "_colour_message")
+    with simkit.load(two_cameras(), render_thread=is_on) as sim:
+        sim.subscribe("/a/camera_info")
+        sim.run(0.05)
+        assert pictures == [0]
+        subs = [sim.subscribe("/a/image") for _ in range(4)]
+        sim.run(0.1)
+        assert [len(sub.messages) for sub in subs] == [3, 3, 3, 3]
+        assert (pictures, images, clouds) == ([3], [3], [0])
+        assert subs[0].messages[1] is subs[3].messages[1]
+
+
+# ---------------------------------------------------------------------- when it goes wrong
+
+
+@pytest.mark.parametrize("is_on", [False, True])
+def test_a_picture_that_fails_switches_its_camera_off_and_is_said_once(
+    monkeypatch: pytest.MonkeyPatch, is_on: bool
+) -> None:
+    develop, made = Camera.develop, [0]
+
+    def failing(self: Any, films: Any, notes: Any) -> Any:
+        made[0] += 1
+        if made[0] == 3:
+            raise RenderError("drawing a picture failed: out of memory", "SK-RENDER-002")
+        return develop(self, films, notes)
+
+    monkeypatch.setattr(Camera, "develop", failing)
+    with simkit.load(two_cameras(), render_thread=is_on) as sim:
+        image, depth = sim.subscribe("/b/image"), sim.subscribe("/a/depth_image")
+        sim.run(0.2)
+        thread.drain()
+        sim.run(0.2)
+        assert made[0] < 20
+        assert [m.header.stamp.nanosec for m in image.messages[:2]] == [1_000_000, 20_000_000]
+        assert len(image.messages) == made[0] - 1
+        assert len(depth.messages) == 13
+        assert [d.code for d in sim.diagnostics].count("SK-RENDER-002") == 1
+        with pytest.raises(RenderError, match="out of memory"):
+            sim.sensor("m::l::b").latest  # noqa: B018
+
+
+def test_a_mistake_in_a_kind_comes_out_where_the_picture_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    with simkit.load(two_cameras(), render_thread=True) as sim:
+        sub = sim.subscribe("/b/image")
+        sim.run(0.05)
+        monkeypatch.setattr(Camera, "develop", lambda *_: 1 / 0)
+        sim.run(0.05)
+        with pytest.raises(ZeroDivisionError):
+            sub.messages  # noqa: B018
+
+
+def test_messages_stay_after_the_simulation_is_closed() -> None:
+    with simkit.load(two_cameras(), render_thread=True) as sim:
+        sub = sim.subscribe("/a/depth_image")
+        sim.run(0.1)
+    assert len(sub.messages) == 4
+    assert np.isfinite(np.asarray(sub.messages[-1].data).view(np.float32)).any()
+
+
+def test_only_so_much_waits() -> None:
+    gate, count, done = threading.Event(), 40, []
+    first = thread.submit(gate.wait)
+    accepted: list[thread.Work] = []
+    filling = threading.Thread(
+        target=lambda: [accepted.append(thread.submit(lambda i=i: done.append(i))) for i in range(count)]
+    )
+    filling.start()
+    filling.join(0.2)
+    assert filling.is_alive()
+    assert len(accepted) <= 8
+    gate.set()
+    filling.join()
+    thread.drain()
+    assert first.is_done
+    assert done == list(range(count))
+
+
+def run(script: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "SIMKIT_TEST_WORLD": two_cameras()}
+    return subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script)],
+        env=environment, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("end", ["sys.exit(3)", "raise KeyboardInterrupt", "threading.Thread(target=more).start()"])
+def test_the_interpreter_ends_with_pictures_on_their_way(end: str) -> None:
+    done = run(
+        f"""
+        import os, sys, threading, simkit
+        sim = simkit.load(os.environ["SIMKIT_TEST_WORLD"], render_thread=True)
+        subs = [sim.subscribe("/a/points"), sim.subscribe("/b/image")]
+        def more():
+            sim.run(0.1)
+            sim.close()
+        sim.run(0.2)
+        {end}
+        """
+    )
+    assert done.returncode == (3 if "exit" in end else -2 if "Interrupt" in end else 0), done.stderr
+    assert done.stderr == "" or "KeyboardInterrupt" in done.stderr
+
+
+def test_an_interrupt_is_heard_and_the_run_can_go_on() -> None:
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    try:
+        with simkit.load(two_cameras(), render_thread=True) as sim:
+            sub = sim.subscribe("/a/points")
+            sim.run(0.1)
+            whole = as_bytes(sub.messages)
+            signal.setitimer(signal.ITIMER_REAL, 0.03)
+            with pytest.raises(KeyboardInterrupt):
+                sim.run(600.0)
+            until = sim.time + 0.2
+            while sim.time < until:
+                sim.step()
+            stamps = [m.header.stamp.nanosec + m.header.stamp.sec * 10**9 for m in sub.messages]
+            assert stamps == sorted(set(stamps))
+            assert stamps[-1] > 1e9 * (until - 0.04)
+            assert as_bytes(sub.messages)[: len(whole)] == whole
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
