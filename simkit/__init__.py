@@ -1,12 +1,12 @@
 """simkit: opens the Gazebo worlds and robots people have, steps them with MuJoCo, answers with ROS 2 messages.
 
-    import simkit
+import simkit
 
-    with simkit.load("turtlebot3_world", seed=0) as sim:
-        scans = sim.subscribe("/scan")
-        sim.publish("/cmd_vel", {"linear": {"x": 0.2}})
-        sim.run(2.0)
-        print(scans.latest.ranges.min())
+with simkit.load("turtlebot3_world", seed=0) as sim:
+    scans = sim.subscribe("/scan")
+    sim.publish("/cmd_vel", {"linear": {"x": 0.2}})
+    sim.run(2.0)
+    print(scans.latest.ranges.min())
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 """Everything simkit raises on purpose.
 
-    SimkitError                 exit 1
-    ├── InputError              exit 2   the user's input cannot be used
-    │   ├── LoadError                    a file has errors; `.diagnostics` has all of them
-    │   └── MessageError                 a message does not fit its topic
-    ├── SimulationDiverged      exit 3   the physics left the numbers
-    ├── PluginError             exit 4   a plugin raised
-    ├── RegressionError         exit 5   a regression check failed
-    └── RenderError             exit 1   no renderer, or it failed
+SimkitError                 exit 1
+├── InputError              exit 2   the user's input cannot be used
+│   ├── LoadError                    a file has errors; `.diagnostics` has all of them
+│   └── MessageError                 a message does not fit its topic
+├── SimulationDiverged      exit 3   the physics left the numbers
+├── PluginError             exit 4   a plugin raised
+├── RegressionError         exit 5   a regression check failed
+└── RenderError             exit 1   no renderer, or it failed
 """
 
 from __future__ import annotations

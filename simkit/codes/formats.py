@@ -72,8 +72,8 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-SENSOR-125",
         "warning",
-        "cameras of a `multicamera` with different `<visibility_mask>`, `<anti_aliasing>`, `<trigger_topic>` or folders to "
-        "save in; the first is used for all",
+        "cameras of a `multicamera` with different `<visibility_mask>`, `<anti_aliasing>`, `<trigger_topic>` or "
+        "folders to save in; the first is used for all",
         "a sensor for each",
         sensor(
             "multicamera",

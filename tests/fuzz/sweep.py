@@ -31,6 +31,9 @@ CAMERA = f"""<camera><horizontal_fov>1</horizontal_fov><image><width>8</width><h
   <center>0.5 0.5</center></distortion><lens><intrinsics><fx>8</fx><fy>8</fy><cx>4</cx><cy>3</cy><s>0</s></intrinsics>
   <projection><p_fx>8</p_fx><p_fy>8</p_fy><p_cx>4</p_cx><p_cy>3</p_cy><tx>0</tx><ty>0</ty></projection></lens>
   <visibility_mask>255</visibility_mask>{NOISE}</camera>"""
+FRAME = "<image><width>8</width><height>6</height></image><clip><near>0.1</near><far>9</far></clip>"
+LENS = """<lens><type>custom</type><custom_function><c1>1</c1><c2>2</c2><c3>0</c3><f>1</f><fun>sin</fun></custom_function>
+  <scale_to_hfov>1</scale_to_hfov><cutoff_angle>1.5</cutoff_angle><env_texture_size>64</env_texture_size></lens>"""
 IMU = f"""<imu><orientation_reference_frame><localization>CUSTOM</localization><custom_rpy>0 0 0</custom_rpy>
   <grav_dir_x>1 0 0</grav_dir_x></orientation_reference_frame><angular_velocity><x>{NOISE}</x></angular_velocity>
   <linear_acceleration><z>{NOISE}</z></linear_acceleration></imu>"""
@@ -59,6 +62,16 @@ SENSORS = {
     "camera": CAMERA,
     "depth_camera": CAMERA,
     "rgbd_camera": CAMERA,
+    "wide_angle_camera": f"<camera><horizontal_fov>3</horizontal_fov>{FRAME}{LENS}</camera>",
+    "segmentation": f"<camera><horizontal_fov>1</horizontal_fov>{FRAME}</camera>",
+    "boundingbox": f"<camera><horizontal_fov>1</horizontal_fov>{FRAME}</camera>",
+    "thermal": f"""<camera><horizontal_fov>1</horizontal_fov>{FRAME}</camera>
+      <plugin filename="gz-sim-thermal-sensor-system" name="gz::sim::systems::ThermalSensor"><min_temp>250</min_temp>
+      <max_temp>670</max_temp><resolution>3.0</resolution></plugin>""",
+    "multicamera": f"""<camera name="a">{POSE}<horizontal_fov>1</horizontal_fov>{FRAME}</camera>
+      <camera name="b">{POSE}<horizontal_fov>1</horizontal_fov>{FRAME}</camera>""",
+    "logical_camera": """<logical_camera><near>0.5</near><far>5</far><aspect_ratio>1.3</aspect_ratio>
+      <horizontal_fov>1</horizontal_fov></logical_camera>""",
 }
 JOINT_SENSORS = {
     "force_torque": f"<force_torque><force><x>{NOISE}</x></force><torque><z>{DATA_SHEET}</z></torque></force_torque>",
@@ -109,7 +122,8 @@ WORLD = """<physics name="p"><max_step_size>0.001</max_step_size><real_time_fact
   <sor>1.3</sor></solver><constraints><cfm>0</cfm><erp>0.2</erp></constraints></ode></physics>
   <gravity>0 0 -9.8</gravity><magnetic_field>0 0 0</magnetic_field><wind><linear_velocity>1 0 0</linear_velocity></wind>
   <atmosphere type="adiabatic"><temperature>288</temperature><temperature_gradient>-0.0065</temperature_gradient>
-  <pressure>101325</pressure></atmosphere><scene><ambient>1 1 1 1</ambient><background>1 1 1 1</background></scene>
+  <pressure>101325</pressure></atmosphere><scene><ambient>1 1 1 1</ambient><background>1 1 1 1</background>
+  <fog><type>linear</type><color>1 1 1 1</color><start>1</start><end>9</end><density>0.1</density></fog></scene>
   <spherical_coordinates><surface_model>CUSTOM_SURFACE</surface_model><latitude_deg>1</latitude_deg>
   <longitude_deg>1</longitude_deg><elevation>1</elevation><heading_deg>0</heading_deg>
   <surface_axis_equatorial>1</surface_axis_equatorial><surface_axis_polar>1</surface_axis_polar></spherical_coordinates>

@@ -85,10 +85,8 @@ def test_the_axis_is_read_in_the_frame_of_its_version(load, version, attributes,
 
 
 def test_use_parent_model_frame_is_honoured_before_1_7(load):
-    scene, _ = (
-        load("""<sdf version="1.6"><model name="m"><link name="a"/>
+    scene, _ = load("""<sdf version="1.6"><model name="m"><link name="a"/>
       <link name="b"><pose>0 0 0 0 0 1.5707963267948966</pose></link>
       <joint name="j" type="prismatic"><parent>a</parent><child>b</child><axis><xyz>3 0 0</xyz>
       <use_parent_model_frame>true</use_parent_model_frame></axis></joint></model></sdf>""")
-    )
     np.testing.assert_allclose(scene.model.joints[0].axes[0].xyz_world, (1, 0, 0), atol=1e-12)
