@@ -32,8 +32,8 @@ CAMERA = f"""<camera><horizontal_fov>1</horizontal_fov><image><width>8</width><h
   <projection><p_fx>8</p_fx><p_fy>8</p_fy><p_cx>4</p_cx><p_cy>3</p_cy><tx>0</tx><ty>0</ty></projection></lens>
   <visibility_mask>255</visibility_mask>{NOISE}</camera>"""
 FRAME = "<image><width>8</width><height>6</height></image><clip><near>0.1</near><far>9</far></clip>"
-LENS = """<lens><type>custom</type><custom_function><c1>1</c1><c2>2</c2><c3>0</c3><f>1</f><fun>sin</fun></custom_function>
-  <scale_to_hfov>1</scale_to_hfov><cutoff_angle>1.5</cutoff_angle><env_texture_size>64</env_texture_size></lens>"""
+LENS = """<lens><type>custom</type><custom_function><c1>1</c1><c2>2</c2><c3>0</c3><f>1</f><fun>sin</fun>
+  </custom_function><scale_to_hfov>1</scale_to_hfov><cutoff_angle>1.5</cutoff_angle><env_texture_size>64</env_texture_size></lens>"""
 IMU = f"""<imu><orientation_reference_frame><localization>CUSTOM</localization><custom_rpy>0 0 0</custom_rpy>
   <grav_dir_x>1 0 0</grav_dir_x></orientation_reference_frame><angular_velocity><x>{NOISE}</x></angular_velocity>
   <linear_acceleration><z>{NOISE}</z></linear_acceleration></imu>"""
