@@ -207,12 +207,14 @@ def _scene(
         base=base,
         mesh_reader=_triangles,
     )
-    if overrides:
-        from simkit.overrides import apply_overrides
+    from simkit.overrides import apply_overrides
+    from simkit.plugins.sensors_system import with_sensors_colours
 
+    if overrides:
         diagnostics.raise_if_errors()
-        scene = apply_overrides(scene, overrides)
-    return scene
+    of_scene = [text for text in overrides if text.startswith("scene.")]
+    scene = apply_overrides(scene, [text for text in overrides if text not in of_scene])
+    return apply_overrides(with_sensors_colours(scene), of_scene)
 
 
 def _triangles(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:

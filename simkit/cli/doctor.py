@@ -30,6 +30,7 @@ _FOLDERS = (
     "GAZEBO_MODEL_PATH",
     "ROS_PACKAGE_PATH",
     "AMENT_PREFIX_PATH",
+    "SIMKIT_SAVE_PATH",
 )
 _REINSTALL = "pip uninstall -y mujoco mujoco-core && pip install 'mujoco>=4.0,<5'"
 _RENDERER_TIMEOUT = 60.0  # [s]

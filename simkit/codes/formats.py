@@ -114,4 +114,11 @@ CODES: tuple[Code, ...] = (
         "letters, digits and `_ / . : -`",
         sensor("camera", _camera("<triggered>true</triggered><trigger_topic>take one!</trigger_topic>")),
     ),
+    Code(
+        "SK-PLUGIN-012",
+        "warning",
+        "a topic of a plugin has characters that no name may have: spaces become `_`, others are left out",
+        "letters, digits and `_ / . : -`, in names, namespaces and remappings",
+        sensor("camera", _plugin("libgazebo_ros_camera.so", "<camera_name>front eye</camera_name>")),
+    ),
 )

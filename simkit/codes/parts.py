@@ -149,6 +149,18 @@ CODES: tuple[Code, ...] = (
         ),
     ),
     Code(
+        "SK-PLUGIN-011",
+        "warning",
+        "a colour of gz's Sensors system has no effect: another Sensors plugin, or `--set`, says otherwise",
+        "one Sensors plugin, in the world",
+        world(
+            '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors">\n'
+            "  <background_color>0 0 1</background_color>\n</plugin>\n"
+            '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors">\n'
+            "  <background_color>0 1 0</background_color>\n</plugin>"
+        ),
+    ),
+    Code(
         "SK-SENSOR-001",
         "warning",
         "a kind of sensor that is not simulated; it is left out",

@@ -1,5 +1,6 @@
 """Scenes into MuJoCo models: the one place where the physics engine's model is built."""
 
+import simkit.engine.loaded  # noqa: F401  (before any module imports MuJoCo by itself)
 from simkit.compiler import groups
 from simkit.compiler.builder import Compiled, SpecBuilder
 from simkit.compiler.lights import drawn_position

@@ -147,7 +147,9 @@ class GeomWriter:
             return
         owner = GeomOwner(place.link, visual.scoped, True)
         pixels = self._pixels(visual.material, visual.where)
-        worn = textured(shape) if pixels is not None else None
+        # the engine's own shapes, planes apart, have no inner side
+        is_lined = visual.material is not None and visual.material.double_sided and not isinstance(shape, Plane)
+        worn = textured(shape) if pixels is not None or is_lined else None
         primitive = primitive_of(shape, True) if worn is None else None
         pose = visual.pose_link
         if isinstance(shape, Heightmap):

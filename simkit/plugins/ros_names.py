@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 
 _RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
@@ -18,10 +19,18 @@ class RosNames:
         node: node name; `~/x` is `<namespace>/<node>/x`.
         namespace: `tb3`, `/tb3` or empty.
         remappings: from -> to; both sides are expanded before they are compared.
+        params: of whom; names that none may have are reported there.
     """
 
-    def __init__(self, node: str, namespace: str = "", remappings: Mapping[str, str] = MappingProxyType({})) -> None:
+    def __init__(
+        self,
+        node: str,
+        namespace: str = "",
+        remappings: Mapping[str, str] = MappingProxyType({}),
+        params: Params | None = None,
+    ) -> None:
         self.node = node
+        self._params = params
         self.namespace = "/" + namespace.strip("/") if namespace.strip("/") else ""
         self._rules = {self._expand(a): self._expand(b) for a, b in remappings.items()}
 
@@ -32,7 +41,7 @@ class RosNames:
         namespace = params.text("robotNamespace", "")
         ros = params.child("ros")
         if ros is None:
-            return cls(node, namespace)
+            return cls(node, namespace, params=params)
         namespace = ros.text("namespace", namespace)
         for element in ros.all("remapping") + ros.all("argument"):
             for word in element.value.split():
@@ -49,12 +58,20 @@ class RosNames:
                     namespace, node = (target, node) if source == "__ns" else (namespace, target)
                 else:
                     remappings[source.removeprefix(node + ":")] = target
-        return cls(node, namespace, remappings)
+        return cls(node, namespace, remappings, params)
 
     def topic(self, name: str) -> str:
-        """The absolute topic behind `name` (`odom`, `/odom` or `~/odom`), remapped."""
+        """The absolute topic behind `name` (`odom`, `/odom` or `~/odom`), remapped, without what no name may have."""
         full = self._expand(name)
-        return self._rules.get(full, full)
+        full = self._rules.get(full, full)
+        clean = valid_topic(full)
+        if clean.strip("/") == full.strip("/"):
+            return full
+        if self._params is not None:
+            allowed = "allowed are letters, digits and _ / . : -"
+            message = f"plugin {self.node!r}: found a topic {full!r}, {allowed}; it is {clean!r}"
+            self._params.diagnostics.warning("SK-PLUGIN-012", message, self._params.where)
+        return clean
 
     def _expand(self, name: str) -> str:
         if name == "~" or name.startswith("~/"):

@@ -14,7 +14,6 @@ _SYSTEMS = {
     "physics": "Physics",
     "user-commands": "UserCommands",
     "scene-broadcaster": "SceneBroadcaster",
-    "sensors": "Sensors",
     "imu": "Imu",
     "contact": "Contact",
     "forcetorque": "ForceTorque",

@@ -1,5 +1,6 @@
 """The running simulation: clock, loop, topics, random streams, snapshots, handles."""
 
+import simkit.engine.loaded  # noqa: F401  (before any module imports MuJoCo by itself)
 from simkit.runtime.joint import Joint
 from simkit.runtime.light import Light
 from simkit.runtime.link import Link

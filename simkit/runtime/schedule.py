@@ -59,6 +59,7 @@ def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -
 def _report_shared_topics(sim: Simulation) -> None:
     """Tells of a topic on which two messages are published: whoever reads it gets both in turn."""
     first: dict[str, tuple[str, str]] = {}
+    of_sensors: dict[str, set[str]] = {}
     for sensor in sim.structure.all_sensors():
         types = [(topic, sensor._products[product].type_name) for product, topic in sensor._topics.items()]
         told: set[str] = set()
@@ -66,11 +67,20 @@ def _report_shared_topics(sim: Simulation) -> None:
         for topic, kind in sorted(types, key=lambda pair: (pair[1] == _INFO, pair)):
             if topic not in first:
                 first[topic] = sensor.scoped, kind
+                of_sensors[topic] = {kind}
                 continue
+            of_sensors[topic].add(kind)
             other, other_kind = first[topic]
             if kind != _INFO or kind != other_kind or other not in told:
                 _report_shared(sim, sensor, topic, other, {other_kind, kind})
             told.add(other)
+    for topic, kinds in of_sensors.items():
+        others = {end.type_name for end in sim.bus._publishers.get(topic, ()) if end.active} - kinds
+        if others:
+            sensor = sim.sensor(first[topic][0])
+            message = f"sensor {sensor.scoped!r} publishes {' and '.join(sorted(kinds))} on {topic!r}, where a plugin"
+            says = f"{message} publishes {' and '.join(sorted(others))}, and ROS gives a reader one type only"
+            sim.reports.warning("SK-SENSOR-128", says, sensor.scene.where, "give it a <topic> of its own")
 
 
 def _report_shared(sim: Simulation, sensor: Any, topic: str, other: str, kinds: set[str]) -> None:

@@ -313,6 +313,8 @@ class Simulation:
         """A model field to be written to; snapshots and restores cover it from now on."""
         values = getattr(self.mj_model, field)
         if not field.startswith("light_"):
+            for sensor in self.structure.all_sensors():
+                sensor.take_held()
             self.physics.changed_model()
         if field not in self.originals:
             self.originals[field] = values.copy()

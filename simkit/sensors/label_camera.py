@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics, did_you_mean
-from simkit.errors import RenderError
 from simkit.params import Params
 from simkit.sensors import pictures
 from simkit.sensors.base import Product
@@ -48,23 +47,29 @@ class LabelCamera(RenderedSensor):
 
     @property
     def items(self) -> Items:
-        """What wears which label at the newest sample."""
-        if self._items is None:
-            self._look_at_labels()
-        assert self._items is not None
-        return self._items
+        """What wears which label in the sample that is measured, or was measured last."""
+        items: Items = self._around()[0]
+        return items
 
     @property
     def structure(self) -> Structure:
-        """What was in the world at the newest sample."""
-        structure: Structure = self._items_of[1]
+        """What was in the world at that sample."""
+        structure: Structure = self._around()[1]
         return structure
 
-    def _look_at_labels(self) -> None:
+    def _around(self) -> tuple[Any, Any]:
+        if self.around is None:
+            self.around = self.look_around()
+        found: tuple[Any, Any] = self.around
+        return found
+
+    def look_around(self) -> tuple[Items, Structure]:
+        """What wears which label now, and what is in the world."""
         sim = self.sim
         now = sim.labels.state, sim.structure
         if self._items is None or self._items_of[0] is not now[0] or self._items_of[1] is not now[1]:
             self._items, self._items_of = items_of(sim, self.makes_boxes), now
+        return self._items, sim.structure
 
     def seen(self, film: Film) -> Ids:
         """The geom at each pixel of the camera's picture, -1 where there is none."""
@@ -76,11 +81,6 @@ class LabelCamera(RenderedSensor):
     def attach(self, sim: Simulation) -> None:
         super().attach(sim)
         self._report_unlabelled(sim)
-
-    def sample(self, tick: int) -> None:
-        # samples that wait are measured before labels or structure change, so what holds now holds for them all
-        self._look_at_labels()
-        super().sample(tick)
 
     def _writer(self, folder: Path, name: str) -> SavedPictures:
         return SavedSamples(self.sim, self.scene, folder, name)
@@ -100,14 +100,6 @@ class LabelCamera(RenderedSensor):
 
     def perturb(self, reading: Any, index: int) -> Any:
         return reading
-
-    def settle(self) -> None:
-        """Measures what waits to be looked at, before labels change."""
-        try:
-            for sample in self._kept():
-                self._settle(sample)
-        except RenderError:
-            self._drop()
 
     def _report_unlabelled(self, sim: Simulation) -> None:
         if not len(sim.labels) and not any(getattr(p, "gives_labels", False) for p in sim.structure.all_plugins()):

@@ -28,6 +28,7 @@ from simkit.sensors.distortion import Distorter
 from simkit.sensors.image_noise import ImageNoise
 from simkit.sensors.names import OPTICAL, sibling_topic
 from simkit.sensors.rendering import gl, thread
+from simkit.sensors.rendering.lights import lights_of, lit
 from simkit.sensors.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
 from simkit.sensors.rendering.view import Film, Shot, View
 from simkit.sensors.saved_pictures import SavedPictures
@@ -87,6 +88,7 @@ class RenderedSensor(Sensor):
         self._waits = self._counts_triggers = False
         self._pending = 0  # triggers that have come in
         self._baseline = 0.0
+        self.around: Any = None
 
     @staticmethod
     def read_model(params: Params, width: int, height: int) -> CameraModel:
@@ -189,16 +191,21 @@ class RenderedSensor(Sensor):
 
     def bind(self, compiled: Any) -> None:
         thread.drain()
+        self.settle()
+        super().bind(compiled)
+        self._unseen = hidden_by(self.options.visibility_mask, compiled.names)
+        renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
+
+    def settle(self) -> None:
+        """Measures what waits to be looked at, before something that it is made of changes."""
         try:
             for sample in self._kept():
                 self._settle(sample)
         except RenderError:
             self._drop()
-        super().bind(compiled)
-        self._unseen = hidden_by(self.options.visibility_mask, compiled.names)
-        renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
 
     def measure(self, model: Any, data: Any) -> Any:
+        self.around = self.look_around()
         return thread.at_once(self._exposed(model, data)).result()
 
     def capture(self, model: Any, data: Any) -> thread.Work:
@@ -210,7 +217,11 @@ class RenderedSensor(Sensor):
         return thread.submit(expose)
 
     def capture_held(self, model: Any, data: Any, sample: Sample) -> thread.Work:
-        return thread.at_once(self._exposed(model, data))
+        # labels, temperatures, lights and what is in the world may be others by now
+        self.around, lights = sample.around
+        with lit(model, data, lights):
+            expose = self._exposed(model, data)
+        return thread.at_once(expose)
 
     def finish(self, raw: thread.Work) -> Any:
         return raw.result()
@@ -231,6 +242,16 @@ class RenderedSensor(Sensor):
             raise
         finally:
             films.close()
+
+    def look_around(self) -> Any:
+        """What besides the physics a sample is made of, as it is now; `note` finds that of its sample in `around`."""
+        return None
+
+    def _begin(self, tick: int) -> Sample:
+        sample = super()._begin(tick)
+        self.around = self.look_around()
+        sample.around = self.around, lights_of(self.sim.mj_model)
+        return sample
 
     def note(self, model: Any, data: Any) -> Any:
         """What `develop` needs of the state besides pictures."""
@@ -287,6 +308,12 @@ class RenderedSensor(Sensor):
             return
         try:
             super().sample(tick)
+        except RenderError as error:
+            self._switch_off(error)
+
+    def take_held(self) -> None:
+        try:
+            super().take_held()
         except RenderError as error:
             self._switch_off(error)
 
@@ -349,9 +376,12 @@ class RenderedSensor(Sensor):
             return
         self._failure = error
         self._drop()
-        message = f"camera {self.scoped!r} is switched off: {str(error).removeprefix(error.code).strip()}"
+        why = str(error).removeprefix(error.code).strip()
+        is_known = any(d.code == error.code and d.message.endswith(why) for d in self.sim.reports)
+        message = f"camera {self.scoped!r} is switched off: {why}"
         self.sim.reports.warning(error.code, message, self.scene.where)
-        self.sim.log.error("%s %s", error.code, message)
+        if not is_known:  # what ails all cameras is said aloud once
+            self.sim.log.error("%s %s", error.code, message)
 
     # ------------------------------------------------------------------ saved pictures
 

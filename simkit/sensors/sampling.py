@@ -45,11 +45,13 @@ class Sample:
         messages: made so far, by product.
         drifts: states of the noise at this sample where they change from sample to sample.
         untold: products that are not published of it.
+        around: what holds for it besides the physics, where a kind reads more than that.
         work: what another thread does with it; whoever looks at the sample waits for that first.
     """
 
     __slots__ = (
-        "drifts", "held", "index", "messages", "noisy", "raw", "time_ns", "truth", "truth_message", "untold", "work",
+        "around", "drifts", "held", "index", "messages", "noisy", "raw", "time_ns", "truth", "truth_message", "untold",
+        "work",
     )  # fmt: skip
 
     def __init__(self, index: int, time_ns: int) -> None:
@@ -62,6 +64,7 @@ class Sample:
         self.truth_message: Any = None
         self.drifts: tuple[Any, ...] = ()
         self.untold: tuple[str, ...] = ()
+        self.around: Any = None
         self.work: Any = None
 
 
@@ -216,6 +219,11 @@ class Sampler(abc.ABC):
         self._sample = sample
         if wanted:
             self._publish(sample, wanted)
+
+    def take_held(self) -> None:
+        """Captures what waits to be looked at, before the model that it belongs to is written to."""
+        for sample in self._kept():
+            self._take(sample)
 
     def reset(self) -> None:
         """Back at t = 0."""

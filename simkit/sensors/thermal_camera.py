@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+import weakref
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
-from simkit.errors import RenderError
 from simkit.pose import Vector
 from simkit.scene import Atmosphere
 from simkit.sensors import pictures
@@ -78,7 +78,7 @@ class ThermalCamera(RenderedSensor):
         resolution = _COARSE if bits == 8 else _FINE
         self.options = extended(self.options, ThermalOptions, bits=bits, resolution=resolution)
         self._heat: Heat | None = None
-        self._heat_of: tuple[Any, Any] = (None, None)
+        self._heat_of: tuple[Any, Callable[[], Any]] = (None, lambda: None)
 
     def describe(self) -> dict[str, Any]:
         """Temperatures in K."""
@@ -124,12 +124,13 @@ class ThermalCamera(RenderedSensor):
     def shots(self) -> Sequence[Shot]:
         return (Shot(self._aimed(), ids=True),)
 
-    def heat(self) -> Heat:
+    def look_around(self) -> Heat:
         """What is how warm now."""
         sim = self.sim
-        now = sim.temperatures.state, sim.structure
-        if self._heat is None or self._heat_of[0] is not now[0] or self._heat_of[1] is not now[1]:
-            self._heat, self._heat_of = heat_of(sim, self._air, self._span), now
+        state, structure = sim.temperatures.state, sim.structure
+        if self._heat is None or self._heat_of[0] is not state or self._heat_of[1]() is not structure:
+            self._heat = heat_of(sim, self._air, self._span)
+            self._heat_of = state, weakref.ref(structure)  # a removed camera holds on to no world
             table = self._heat.table
             if self._quirks:
                 table[-1] -= self._span / 2  # the sky is black
@@ -137,7 +138,7 @@ class ThermalCamera(RenderedSensor):
         return self._heat
 
     def note(self, model: Any, data: Any) -> Notes:
-        heat = self.heat()
+        heat: Heat = self.around
         views = []
         if heat.surfaces:
             position, rotation = self._frame_in_world(data)
@@ -182,14 +183,6 @@ class ThermalCamera(RenderedSensor):
         draws = self._noise.on_depths(np.zeros_like(reading), index)
         return reading + draws * np.float32(self._largest() * self.options.resolution)
 
-    def settle(self) -> None:
-        """Measures what waits to be looked at, before temperatures change."""
-        try:
-            for sample in self._kept():
-                self._settle(sample)
-        except RenderError:
-            self._drop()
-
     # ------------------------------------------------------------------ messages
 
     def _largest(self) -> int:
@@ -199,7 +192,7 @@ class ThermalCamera(RenderedSensor):
         options = self.options
         steps = np.clip(np.rint(reading / np.float32(options.resolution)), 0, self._largest())
         pixels = steps.astype(np.uint8 if options.bits == 8 else "<u2")
-        return pictures.image_message(self._header(time_ns), pixels, f"mono{options.bits}")
+        return pictures.image_message(self._image_header(time_ns), pixels, f"mono{options.bits}")
 
 
 def _read_bits(scene: SceneSensor, diagnostics: Diagnostics) -> int:

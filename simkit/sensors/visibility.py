@@ -14,7 +14,7 @@ def read_mask(block: Params) -> int:
     """`<visibility_mask>`: decimal or hexadecimal, from -1 to 4294967295."""
     text = block.text("visibility_mask", str(ALL_VISIBLE))
     try:
-        mask = int(text, 0)
+        mask = int(text, 0) if text.isascii() and "_" not in text else -2
     except ValueError:
         mask = -2
     if not -1 <= mask <= ALL_VISIBLE:

@@ -203,10 +203,21 @@ def visual(value: SceneVisual, place: Place) -> Params:
             other("cast_shadows", value.cast_shadows, True),
             flags,
             other("laser_retro", value.laser_retro, 0.0),
-            *(plugin(p) for p in value.plugins),
+            *(_of_visual(plugin(p), place) for p in value.plugins),
         ],
         name=value.name,
     )
+
+
+def _of_visual(written: Params, place: Place) -> Params:
+    """A visual's plugin with the picture of its temperatures named from the new file's place."""
+    children = [
+        text(c.name, place(Path(c.where.file).parent / c.value, c.value))
+        if c.name == "heat_signature" and c.where.file and c.value
+        else c
+        for c in written.children
+    ]
+    return element(written.name, written.value, children, **written.attributes)
 
 
 def material(value: Material, place: Place) -> Params:

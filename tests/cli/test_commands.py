@@ -272,6 +272,14 @@ def test_doctor_names_versions_and_the_renderer() -> None:
         assert re.search(rf"^{name} +\S", result.stdout, re.MULTILINE)
 
 
+def test_doctor_names_the_folders_of_its_variables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, folder in (("SIMKIT_SAVE_PATH", tmp_path), ("SIMKIT_RESOURCE_PATH", tmp_path / "gone")):
+        monkeypatch.setenv(name, str(folder))
+    lines = dict(line.split(maxsplit=1) for line in simkit("doctor").stdout.splitlines() if line.startswith("SIMKIT_"))
+    assert lines["SIMKIT_SAVE_PATH"].split() == [str(tmp_path)]
+    assert lines["SIMKIT_RESOURCE_PATH"].endswith("(is not there)")
+
+
 def test_bench_sets_simkit_beside_the_bare_engine(world: Path) -> None:
     result = simkit("bench", world, "--rounds", 1)
     assert result.exit_code == 0

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import cv2
 import mujoco
 import numpy as np
 import pytest
@@ -228,6 +229,60 @@ def test_a_vendored_world_brings_its_models_with_their_text(here: Path) -> None:
     assert_means_the_same(simkit.describe("box/w.sdf"), before)
     assert "<!-- lamp -->" in (here / "box" / "models" / "lamp" / "m.sdf").read_text()
     assert (here / "box" / "models" / "table" / "LICENSE.txt").is_file()
+
+
+def heated(name: str, picture: str) -> str:
+    thermal = f"<plugin filename='gz-sim-thermal-system' name='gz::sim::systems::Thermal'>{picture}</plugin>"
+    shape = "<geometry><box><size>1 1 1</size></box></geometry>"
+    return (
+        f"<model name='{name}'><static>true</static><link name='l'><visual name='v'>{shape}{thermal}</visual></link>"
+        "</model>"
+    )
+
+
+def test_a_converted_world_brings_its_heat_signatures(here: Path) -> None:
+    cv2.imwrite(str(here / "a.png"), np.full((2, 2, 3), 128, np.uint8))
+    text = (
+        f"<sdf version='1.9'><world name='w'>{heated('near', '<heat_signature>a.png</heat_signature>')}</world></sdf>"
+    )
+    (here / "w.sdf").write_text(text)
+    (here / "out").mkdir()
+    assert run("convert", "w.sdf", "-o", "out/v.sdf").exit_code == 0
+    assert run("convert", "w.sdf", "-o", "as_it_was.sdf", "--keep-uris").exit_code == 0
+    assert "<heat_signature>a.png</heat_signature>" in (here / "as_it_was.sdf").read_text()
+    (here / "a.png").unlink()
+    with simkit.load("out/v.sdf") as sim:
+        assert not [d for d in sim.diagnostics if d.code == "SK-SENSOR-142"]
+        assert [name for name, _ in sim.temperatures.items()] == ["near::l::v"]
+
+
+def test_a_vendored_world_brings_its_heat_signatures(here: Path) -> None:
+    store = here / "store" / "oven"
+    for folder in (store / "textures", here / "worlds" / "warm"):
+        folder.mkdir(parents=True)
+        for name in ("a.png", "b.png"):
+            cv2.imwrite(str(folder / name), np.full((2, 2, 3), 128, np.uint8))
+    (store / "model.config").write_text("<model><name>oven</name><sdf version='1.9'>m.sdf</sdf></model>")
+    inside = heated("oven", "<heat_signature>textures/a.png</heat_signature>")
+    (store / "m.sdf").write_text(f"<sdf version='1.9'>{inside}</sdf>")
+    others = (
+        heated("near", "<heat_signature> warm/a.png </heat_signature>"),
+        heated("far", "<heat_signature>model://oven/textures/b.png</heat_signature>"),
+    )
+    include = "<include><uri>model://oven</uri></include>"
+    text = f"<sdf version='1.9'><world name='w'>{include}{''.join(others)}</world></sdf>"
+    (here / "worlds" / "w.sdf").write_text(text)
+    assert run("vendor", "worlds/w.sdf", "box", "--resource-path", "store").exit_code == 0
+    (here / "store").rename(here / "gone")
+    (here / "worlds").rename(here / "elsewhere")
+    with simkit.load("box/w.sdf") as sim:
+        assert not [d for d in sim.diagnostics if d.code == "SK-SENSOR-142"]
+        pictures = {name: found.picture.relative_to(here / "box") for name, found in sim.temperatures.items()}
+    assert {name: str(path) for name, path in pictures.items()} == {
+        "oven::l::v": "models/oven/textures/a.png",
+        "near::l::v": "warm/a.png",
+        "far::l::v": "models/oven/textures/b.png",
+    }
 
 
 def test_a_vendored_xacro_is_expanded(here: Path) -> None:

@@ -146,6 +146,30 @@ def test_a_face_is_seen_from_behind_only_when_it_is_double_sided(tmp_path):
         assert is_like(image[50, 50], (255, 1, 1)) is is_seen
 
 
+INSIDE = (
+    ("<box><size>6 6 6</size></box>", 3.0),
+    ("<sphere><radius>3</radius></sphere>", 3.0),
+    ("<cylinder><radius>3</radius><length>6</length></cylinder>", 3.0),
+    ("<capsule><radius>3</radius><length>6</length></capsule>", 3.0),
+    ("<ellipsoid><radii>4 3 2</radii></ellipsoid>", 4.0),
+)
+
+
+@pytest.mark.parametrize("shape, away", INSIDE, ids=lambda value: str(value)[1:5])
+@pytest.mark.parametrize("word, is_seen", [("false", False), ("true", True)])
+def test_who_stands_in_a_shape_sees_it_only_when_it_is_double_sided(shape, away, word, is_seen):
+    visual = f"""<visual name="v"><geometry>{shape}</geometry>
+      <material><double_sided>{word}</double_sided></material></visual>"""
+    eye = """<sensor name="s" type="depth_camera"><update_rate>10</update_rate>
+      <camera><image><width>9</width><height>9</height></image></camera></sensor>"""
+    text = f"""<sdf version="1.9"><world name="w"><model name="m"><static>true</static>
+      <link name="l">{visual}{eye}</link></model></world></sdf>"""
+    with simkit.load(text) as sim:
+        sim.run(0.01)
+        middle = sim.sensor("m::l::s").true_depth[4, 4]
+    assert middle == pytest.approx(away if is_seen else np.inf, rel=1e-3)
+
+
 def lamp(kind, pose, more=""):
     return f"""<light type="{kind}" name="lamp"><pose>{pose}</pose><direction>0 1 0</direction>
     <diffuse>1 1 1 1</diffuse>

@@ -58,3 +58,13 @@ def test_gz_topics_become_absolute_and_lose_bad_characters() -> None:
     assert valid_topic("cmd_vel") == "/cmd_vel"
     assert valid_topic("/model/my robot/cmd_vel") == "/model/my_robot/cmd_vel"
     assert valid_topic("/a@b~c") == "/abc"
+
+
+def test_what_no_topic_may_have_is_left_out_and_said() -> None:
+    params = Params.from_dict({"ros": {"namespace": "/my robot"}})
+    ros = RosNames.from_params(params, "driver")
+    assert ros.topic("c/\u0661 raw") == "/my_robot/c/_raw"
+    assert ros.topic("/a//b") == "/a/b"
+    assert ros.topic("/scan") == "/scan"
+    assert [d.code for d in params.diagnostics] == ["SK-PLUGIN-012"] * 2
+    assert "'/my robot/c/\u0661 raw'" in next(iter(params.diagnostics)).message

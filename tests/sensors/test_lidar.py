@@ -240,9 +240,16 @@ def test_a_rendered_lidar_sees_visuals_that_share_a_bit_with_its_mask(mask: str,
         assert ("SK-SENSOR-004" in [d.code for d in sim.diagnostics]) == (mask not in ("4294967295", "-1"))
 
 
-def test_a_mask_that_is_no_number_is_an_error() -> None:
+@pytest.mark.parametrize("mask", ["all", "", "1_0", "\u0661", "4294967296", "-2"])
+def test_a_mask_that_is_no_number_is_an_error(mask: str) -> None:
     with pytest.raises(simkit.LoadError, match="visibility_mask"):
-        simkit.load(world(sensor("gpu_lidar", block(more="<visibility_mask>all</visibility_mask>"))))
+        simkit.load(world(sensor("gpu_lidar", block(more=f"<visibility_mask>{mask}</visibility_mask>"))))
+
+
+@pytest.mark.parametrize("flags", ["1e30", "-2", "4294967296", "two"])
+def test_flags_beyond_32_bits_are_an_error(flags: str) -> None:
+    with pytest.raises(simkit.LoadError, match="visibility_flags"):
+        simkit.load(world(sensor("gpu_lidar", block()), others=flagged(flags)))
 
 
 @pytest.mark.parametrize("transparency", [0.5, 1.0])

@@ -138,3 +138,34 @@ def test_a_renderer_that_is_not_there_stops_only_what_draws(value: str) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert "SK-RENDER-001" in done.stdout or (value == "osmesa" and "OSMesa None" not in done.stdout)
+
+
+@pytest.mark.parametrize("command", ["run", "convert"])
+def test_no_command_minds_a_renderer_that_it_does_not_need(command: str, tmp_path: Path) -> None:
+    (tmp_path / "world.sdf").write_text(WORLD)
+    more = {"run": ["--duration", "0.02", "--record", "bag.mcap"], "convert": ["-o", "other.sdf"]}
+    done = subprocess.run(
+        [sys.executable, "-m", "simkit", command, "world.sdf", *more.get(command, [])],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "MUJOCO_GL": "foo"},
+        cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stderr.count("MUJOCO_GL=foo: no such renderer") == (command == "run")
+
+
+def test_what_ails_all_cameras_is_said_once_and_reported_of_each() -> None:
+    cameras = "".join(sensor("camera", CAMERA, name=f"c{n}") for n in range(3))
+    done = run(
+        f"""
+        import simkit
+        with simkit.load({world(cameras)!r}) as sim:
+            subs = [sim.subscribe(topic) for topic in sim.topics()]
+            sim.run(0.02)
+            print(sum(d.code == "SK-RENDER-001" for d in sim.diagnostics))
+        """,
+        broken=True,
+    )
+    assert done.stdout.split() == ["3"], done.stderr
+    assert done.stderr.count("SK-RENDER-001") == 1
+    assert "libegl1 libgl1-mesa-dri" in done.stderr

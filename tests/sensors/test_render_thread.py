@@ -296,7 +296,7 @@ def test_the_interpreter_ends_with_pictures_on_their_way(end: str) -> None:
 
 
 def test_an_interrupt_is_heard_and_the_run_can_go_on() -> None:
-    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
     try:
         with simkit.load(two_cameras(), render_thread=True) as sim:
             sub = sim.subscribe("/a/points")
@@ -315,3 +315,35 @@ def test_an_interrupt_is_heard_and_the_run_can_go_on() -> None:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+
+
+def test_an_interrupt_amid_a_picture_waits_for_its_end_and_is_no_fault_of_the_renderer() -> None:
+    reached = []
+
+    def draw() -> None:
+        with gl.current():
+            signal.raise_signal(signal.SIGINT)
+            reached.append(gl.describe_renderer())
+
+    with pytest.raises(KeyboardInterrupt):
+        draw()
+    assert reached[0]
+    with gl.current():
+        assert gl.is_open()
+
+
+@pytest.mark.parametrize("wait", [thread.Work.wait, lambda _: thread.drain()], ids=["for_one", "for_all"])
+def test_who_waits_for_pictures_hears_an_interrupt_at_once(wait: Callable[[thread.Work], None]) -> None:
+    gate = threading.Event()
+
+    def interrupt() -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        gate.wait()
+
+    work = thread.submit(interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        wait(work)
+    assert not work.is_done
+    gate.set()
+    thread.drain()
+    assert work.is_done

@@ -232,6 +232,22 @@ def test_shadows_around_the_camera_are_there_in_a_world_of_a_kilometre() -> None
     assert shadowed("gazebo", hat=far) == pytest.approx(76, abs=2)
 
 
+@pytest.mark.parametrize("direction", ["0.4 0.3 -0.9", "-0.5 0.4 -0.9", "0.4 0.3 -0.3"])
+def test_sunlit_ground_throws_no_shadow_on_itself(direction: str) -> None:
+    floor = visual("floor", "0 0 0 0 0 0", "<plane><normal>0 0 1</normal><size>100 100</size></plane>", "1 1 1 1")
+    crate = visual("crate", "0 0 0.5 0 0 0", "<box><size>1 1 1</size></box>", "1 0 0 1")
+    sun = DOWN.replace("0 0 -1", direction)
+    seen = {}
+    for name, others in (("bare", floor), ("both", floor + crate)):
+        text = world(camera(pose="0 0 7 0 1.5707963 0", size=161), others=others, top=scene("", 0.3, sun))
+        ground = picture(text, "scene.quality=gazebo").astype(int)
+        seen[name] = ground[..., 1][ground[..., 0] - ground[..., 1] < 10]  # all but the red crate
+    sunlit = int(np.median(seen["bare"]))
+    assert sunlit > 120
+    assert (np.abs(seen["bare"] - sunlit) < 10).all()
+    assert 0.002 < (seen["both"] < sunlit - 40).mean() < 0.1  # the crate's own
+
+
 def test_edges_are_smooth_at_gazebos_quality_where_the_camera_does_not_say_otherwise() -> None:
     edge = visual("e", "2 0 1 0.3 0 0", "<box><size>0.2 0.6 0.6</size></box>", "1 1 1 1")
     counts = []

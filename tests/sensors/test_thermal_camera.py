@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import weakref
 from pathlib import Path
 from typing import Any
 
@@ -159,6 +161,14 @@ def test_the_message_is_an_image_of_sixteen_bits() -> None:
             assert (message.encoding, message.step, message.width, message.height) == (encoding, step, WIDTH, HEIGHT)
             assert len(message.data) == step * HEIGHT
             assert not [d for d in sim.diagnostics if d.code == "SK-SENSOR-140"]
+
+
+def test_the_image_and_its_camera_info_are_in_the_optical_frame_where_one_is_named() -> None:
+    with simkit.load(world(more="<optical_frame_id>eye_optical</optical_frame_id>")) as sim:
+        base = "/world/w/model/eye/link/l/sensor/s"
+        subs = [sim.subscribe(f"{base}/{name}") for name in ("image", "camera_info")]
+        sim.run(0.001)
+        assert [sub.latest.header.frame_id for sub in subs] == ["eye_optical", "eye_optical"]
 
 
 def test_a_format_without_temperatures_is_said() -> None:
@@ -396,3 +406,17 @@ def test_temperatures_may_change_as_it_runs(tmp_path: Path) -> None:
         sim.reset()
         sim.run(0.05)
         assert pixels(sensor.latest)[MIDDLE] == 31000
+
+
+def test_a_camera_that_was_removed_holds_on_to_no_world() -> None:
+    with simkit.load(world()) as sim:
+        images = sim.subscribe("/world/w/model/eye/link/l/sensor/s/image", keep=1)
+        # a reset goes back to the world of the file, so that one stays
+        sim.spawn(f'<sdf version="1.9">{thing("box", "3 0 0 0 0 0", warm("<temperature>310</temperature>"))}</sdf>')
+        sim.run(0.06)
+        assert pixels(images.latest)[HEIGHT // 2, WIDTH // 2] == 31000
+        there = weakref.ref(sim.structure)
+        sim.remove("eye")
+        sim.step()
+        gc.collect()
+        assert there() is None

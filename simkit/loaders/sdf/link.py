@@ -103,7 +103,7 @@ def _visual(part: Part, element: Params, name: str, link: str, workspace: Worksp
         material=read_material(element, part.file, workspace),
         transparency=element.number("transparency", 0.0, minimum=0.0, maximum=1.0),
         cast_shadows=element.boolean("cast_shadows", True),
-        visibility_flags=element.integer("visibility_flags", 0xFFFFFFFF) & 0xFFFFFFFF,
+        visibility_flags=element.integer("visibility_flags", -1, minimum=-1, maximum=0xFFFFFFFF) & 0xFFFFFFFF,
         laser_retro=element.number("laser_retro", 0.0),
         where=element.where,
         plugins=read_plugins(element.all("plugin"), scoped(link, name)),

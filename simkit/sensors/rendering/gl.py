@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from simkit.errors import RenderError
+from simkit.sensors.rendering.interrupts import interrupts_later
 
 _HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); `simkit doctor` says more"
 _OFF = {"disable", "disabled", "off", "false", "0"}
@@ -45,13 +46,14 @@ _description = ""
 def current() -> Iterator[None]:
     """The process's context, current in this thread while it lasts; opened at the first use.
 
-    Threads take turns; whatever context of somebody else's was current comes back afterwards.
+    Threads take turns; whatever context of somebody else's was current comes back afterwards. An interrupt waits
+    until then.
 
     Raises:
         RenderError: no library gives one; the same error at every call, without trying again.
     """
     global _context, _failure
-    with _turn:
+    with interrupts_later(), _turn:
         if _failure is not None:
             raise _failure
         if _context is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
@@ -15,6 +15,39 @@ from simkit.pose import Vector
 _AHEAD: Final = 3.0  # [m]; what a camera looks at lies about there
 _REACH: Final = 15.0  # [m]; shadows around a camera, where the scene is larger
 _DIRECTIONAL = int(mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
+_MOVED: Final = ("light_pos", "light_dir", "light_active")  # what a light's handle writes
+
+Lights = Sequence[Vector]
+"""How the lights of a model stood and shone at one time."""
+
+
+def lights_of(model: Any) -> Lights:
+    """How the lights of a model stand and shine now."""
+    return [getattr(model, field).copy() for field in _MOVED]
+
+
+@contextmanager
+def lit(model: Any, data: Any, lights: Lights) -> Iterator[None]:
+    """While it lasts, the lights of a model, and of data computed of it, are as they were."""
+    now = lights_of(model)
+    is_same = all(np.array_equal(*pair) for pair in zip(lights, now, strict=True))
+    if not is_same:
+        _place(model, data, lights)
+    try:
+        yield
+    finally:
+        if not is_same:
+            _place(model, data, now)
+
+
+def _place(model: Any, data: Any, lights: Lights) -> None:
+    for field, values in zip(_MOVED, lights, strict=True):
+        getattr(model, field)[:] = values
+    options = model.opt
+    flags = options.enableflags
+    options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # else those of the world stay
+    mujoco.mj_camlight(model, data)
+    options.enableflags = flags
 
 
 @contextmanager
@@ -74,6 +107,24 @@ def place_suns(scene: Any, context: Any, model: Any, position: Vector, forward: 
         direction = np.asarray(light.dir, dtype=np.float64)
         place = middle if is_whole else _in_whole_pixels(middle, direction, 2.0 * reach / context.shadowSize)
         light.pos = place - back * direction
+
+
+def fit_shadow_maps(context: Any) -> None:
+    """Lets the engine read a shadow map where it has drawn it: within a border of one pixel, which it forgets.
+
+    Without it, what is read lies up to a pixel away from the surface that asks, at the map's border. That is more than
+    the engine allows for: sunlit ground throws dots of shadow on itself.
+    """
+    from OpenGL import GL
+
+    pixel = 1.0 / context.shadowSize
+    inside = 1.0 - 2.0 * pixel
+    columns = (inside, 0.0, 0.0, 0.0, 0.0, inside, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, pixel, pixel, 0.0, 1.0)
+    GL.glActiveTexture(GL.GL_TEXTURE1)  # which the engine uses for shadows alone
+    GL.glMatrixMode(GL.GL_TEXTURE)
+    GL.glLoadMatrixf(np.array(columns, dtype=np.float32))
+    GL.glMatrixMode(GL.GL_MODELVIEW)
+    GL.glActiveTexture(GL.GL_TEXTURE0)
 
 
 def _in_whole_pixels(place: Vector, direction: Vector, pixel: float) -> Vector:

@@ -20,7 +20,7 @@ from simkit.sensors.rendering.backdrop import Backdrop, begin_fog
 from simkit.sensors.rendering.composition import Composer, Composition
 from simkit.sensors.rendering.glass import draw_glass
 from simkit.sensors.rendering.ids import draw_ids
-from simkit.sensors.rendering.lights import place_suns
+from simkit.sensors.rendering.lights import fit_shadow_maps, place_suns
 from simkit.sensors.rendering.sight import glassy_of, invisible, left_out, out_of_sight, without_looks
 from simkit.sensors.rendering.uploads import Uploads
 from simkit.sensors.rendering.view import Colours, Depths, Film, Shot, aim
@@ -128,6 +128,7 @@ class Renderer:
                     return Film(view, None, depths[::-1])
                 if self._appearance.quality.shadow_map:
                     place_suns(scene, context, composition.model, position, rotation[:, 0], view.far)
+                    fit_shadow_maps(context)
                 self._render(scene, context, rectangle, hidden, glassy)
                 is_masked = not glassy and self._can_mask(composition.model)
                 learns = not is_masked and self._backdrop.is_plain and self._shade is None

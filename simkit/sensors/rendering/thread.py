@@ -13,8 +13,10 @@ from collections.abc import Callable
 from typing import Any
 
 from simkit.errors import RenderError
+from simkit.sensors.rendering.interrupts import interrupts_later
 
 _MOST_WAITING = 8  # a picture is two of them: drawing it, and making messages of it
+_PATIENCE = 0.05  # [s] between two looks whether there was an interrupt
 
 
 class Work:
@@ -43,7 +45,10 @@ class Work:
         if not self._done.is_set() and threading.get_ident() != _thread.number:
             if self._owner is not _thread:
                 raise RenderError("this process was forked while the picture was being drawn", "SK-RENDER-011")
-            self._done.wait()
+            while not self._done.is_set():
+                with interrupts_later() as heard:
+                    while not heard and not self._done.wait(_PATIENCE):
+                        pass
 
     def result(self) -> Any:
         """What it gave, once it is done; raises what it raised."""
@@ -84,9 +89,8 @@ class _RenderThread:
         if threading.get_ident() == self.number:
             work.run()  # who draws must not wait for room
             return
-        with self._changed:
-            while len(self._waiting) >= _MOST_WAITING and not self._is_ended:
-                self._changed.wait()
+        self._wait_while(lambda: len(self._waiting) >= _MOST_WAITING and not self._is_ended)
+        with interrupts_later(), self._changed:
             if not self._is_ended:
                 self._waiting.append(work)
                 if self._thread is None:
@@ -98,9 +102,15 @@ class _RenderThread:
     def drain(self) -> None:
         if threading.get_ident() == self.number or self._thread is None:
             return
-        with self._changed:
-            while self._waiting or self._is_busy:
-                self._changed.wait()
+        self._wait_while(lambda: bool(self._waiting) or self._is_busy)
+
+    def _wait_while(self, is_so: Callable[[], bool]) -> None:
+        """Until something is no more; an interrupt is heard meanwhile."""
+        goes_on = True
+        while goes_on:
+            with interrupts_later() as heard, self._changed:
+                while (goes_on := is_so()) and not heard:
+                    self._changed.wait(_PATIENCE)
 
     def end(self) -> None:
         """Does what waits, then stops; later work is done where it is asked for."""

@@ -1,0 +1,105 @@
+"""gz's Sensors system: its colours count for what cameras see."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.plugins.base import Plugin
+from simkit.scene import Scene, SceneModel, ScenePlugin, SceneWorld, Surroundings
+from simkit.scene.model import Colour
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+
+_COLOURS = {"background_color": "background", "ambient_light": "ambient"}
+"""Parameter -> the colour of the scene that it stands for."""
+
+
+class SensorsSystem(Plugin):
+    """Tells cameras the colours of background and ambient light, in place of the scene's; the rest simkit does anyway.
+
+    The colours are taken by `with_sensors_colours`, before anything is built.
+    """
+
+    parent_kind = "any"
+    lets_sleep = True
+    filenames = ("gz-sim-sensors-system",)
+    names = ("gz::sim::systems::Sensors",)
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        given = {child.name for child in params.children}
+        params.mark_all_read()
+        used: list[str] = []
+        beaten: list[str] = []
+        for name, place in _COLOURS.items():
+            colour = _colour(params, name)
+            if colour is not None:
+                is_used = colour == getattr(builder.world.surroundings, place)
+                (used if is_used else beaten).append(f"<{name}>")
+        unused = [f"<{name}>" for name in sorted(given - set(_COLOURS))]
+        message = "plugin 'Sensors' is not needed: simkit does what it stands for by itself"
+        if used:
+            message += f"; used instead of the scene's colours: {', '.join(used)}"
+        if unused:
+            message += f"; not used: {', '.join(unused)}"
+        params.diagnostics.note("SK-PLUGIN-005", message, self.where)
+        for name in beaten:
+            message = f"{name} of plugin 'Sensors' has no effect: the scene's colour comes from elsewhere"
+            hint = "one Sensors plugin, in the world; --set scene.ambient and scene.background come before it"
+            params.diagnostics.warning("SK-PLUGIN-011", message, self.where, hint)
+
+    def load(self, parent: Any, params: Params) -> None:
+        """Nothing to do."""
+
+
+def with_sensors_colours(scene: Scene) -> Scene:
+    """The scene in the colours that its Sensors system names, as gz-sim has it: they override those of `<scene>`.
+
+    The system may stand in the world or, as many robots have it, in a model.
+    """
+    worlds = tuple(_coloured(world, world.plugins, world.models) for world in scene.worlds)
+    if any(new is not old for new, old in zip(worlds, scene.worlds, strict=True)):
+        scene = replace(scene, worlds=worlds)
+    if scene.model is not None:
+        around = scene.around or SceneWorld()
+        coloured = _coloured(around, (), (scene.model,))
+        if coloured is not around:
+            scene = replace(scene, around=coloured)
+    return scene
+
+
+def _coloured(world: SceneWorld, plugins: tuple[ScenePlugin, ...], models: tuple[SceneModel, ...]) -> SceneWorld:
+    found = [*plugins, *(plugin for model in models for nested in model.all_models() for plugin in nested.plugins)]
+    colours: dict[str, Any] = {}
+    for plugin in found:
+        if _is_sensors_system(plugin):
+            for name, place in _COLOURS.items():
+                colour = _colour(plugin.params, name)
+                if colour is not None:
+                    colours.setdefault(place, colour)
+    if not colours:
+        return world
+    around: Surroundings = replace(world.surroundings, **colours)
+    return replace(world, surroundings=around)
+
+
+def _is_sensors_system(plugin: ScenePlugin) -> bool:
+    from simkit.plugins import aliases
+
+    return any(name in (*SensorsSystem.filenames, *SensorsSystem.names) for name in aliases(plugin))
+
+
+def _colour(params: Params, name: str) -> Colour | None:
+    """A colour of three numbers, or four, from 0 to 1; None where it is not given or none."""
+    given = params.child(name)
+    if given is None:
+        return None
+    size = 4 if len(given.value.split()) > 3 else 3
+    numbers = params.vector(name, size, (math.nan,) * size)
+    if math.isnan(numbers[0]):  # it is reported
+        return None
+    red, green, blue, alpha = (min(1.0, max(0.0, number)) for number in (*numbers, 1.0)[:4])
+    return red, green, blue, alpha

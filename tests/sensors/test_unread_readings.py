@@ -1,0 +1,73 @@
+"""Readings that nobody looks at until the model is another one: they are of their own time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from sensor_worlds import box, sensor
+
+import simkit
+from simkit import msgs
+from simkit.pose import Pose
+
+LIDAR = (
+    "<lidar><scan><horizontal><samples>5</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></horizontal></scan>"
+    "<range><min>0.1</min><max>10</max></range></lidar>"
+)
+
+
+def arm() -> str:
+    """A link that is hinged to the world, with sensors, and a wall."""
+    sensors = (
+        sensor("gpu_lidar", LIDAR, name="lidar", rate=10)
+        + sensor("altimeter", "", name="height", rate=10)
+        + sensor("imu", "", name="imu", rate=10)
+        + sensor("logical_camera", "<logical_camera><far>9</far></logical_camera>", name="eye", rate=10)
+    )
+    return f"""<sdf version="1.9"><world name="w">{box("wall", "3 0 1 0 0 0", "1 1 1")}
+      <model name="arm"><pose>0 0 1 0 0 0</pose><link name="l"><inertial><mass>1</mass></inertial>{sensors}</link>
+      <joint name="j" type="revolute"><parent>world</parent><child>l</child><axis><xyz>0 0 1</xyz></axis></joint>
+      </model></world></sdf>"""
+
+
+def is_put_elsewhere(sim: Any) -> None:
+    sim.model("arm").set_pose(Pose((1.0, 0.1, 1.3)))
+
+
+def has_another_limit(sim: Any) -> None:
+    sim.joint("arm::j").lower = 0.5
+
+
+def read(change: Callable[[Any], None], is_read: bool, *, back: bool = False) -> dict[str, bytes]:
+    """The newest reading of each sensor after a change, looked at as it was made or only then."""
+    with simkit.load(arm()) as sim:
+        for one in sim.sensors.values() if is_read else ():
+            for topic in one._topics.values():
+                sim.subscribe(topic)
+        sim.run(0.1)
+        before = sim.snapshot()
+        if back:
+            sim.run(0.1)
+        change(sim)
+        if back:
+            sim.run(0.1)
+            sim.restore(before)
+        return {name: msgs.serialize(one.latest) for name, one in sim.sensors.items()}
+
+
+@pytest.mark.parametrize("back", [False, True])
+@pytest.mark.parametrize("change", [is_put_elsewhere, has_another_limit], ids=lambda change: change.__name__)
+def test_a_reading_that_is_looked_at_later_is_the_same(change: Callable[[Any], None], back: bool) -> None:
+    assert read(change, False, back=back) == read(change, True, back=back)
+
+
+def test_putting_it_elsewhere_shows_in_the_next_reading() -> None:
+    with simkit.load(arm()) as sim:
+        sim.run(0.1)
+        first = sim.sensor("arm::l::lidar").latest.ranges[2]
+        is_put_elsewhere(sim)
+        assert sim.sensor("arm::l::lidar").latest.ranges[2] == first == pytest.approx(2.5)
+        sim.run(0.1)
+        assert sim.sensor("arm::l::lidar").latest.ranges[2] == pytest.approx(1.5)
