@@ -115,6 +115,10 @@ class Population:
         """Binds handles, sensors and topics to a structure."""
         sim, compiled = self._sim, structure.compiled
         sim.bus.settle()
+        staying = set(structure.all_sensors())
+        for sensor in self.structure.all_sensors() if self._attached else ():
+            if sensor in self._attached and sensor not in staying:
+                sensor.leave()
         self.structure = structure
         sim.physics.rebind(compiled.model, compiled.data)
         sim.physics.sleep.restrict(awake_bodies(structure))

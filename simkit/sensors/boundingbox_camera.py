@@ -99,6 +99,10 @@ class BoundingBoxCamera(LabelCamera):
         topic = self._default_topic("boundingbox")
         return {"boundingbox": topic, "image": f"{topic}_image", "camera_info": self._info_topic(topic)}
 
+    def leave(self) -> None:
+        super().leave()
+        self._shapes = None
+
     def saved(self) -> dict[str, str]:
         return {"picture": saved_samples.IMAGE, "boundingbox": saved_samples.BOXES}
 

@@ -71,6 +71,10 @@ class LabelCamera(RenderedSensor):
             self._items, self._items_of = items_of(sim, self.makes_boxes), now
         return self._items, sim.structure
 
+    def leave(self) -> None:
+        super().leave()
+        self._items, self._items_of = None, (None, None)
+
     def seen(self, film: Film) -> Ids:
         """The geom at each pixel of the camera's picture, -1 where there is none."""
         assert film.ids is not None

@@ -24,7 +24,8 @@ from simkit.sensors.camera_options import CameraOptions, read_camera
 from simkit.sensors.distortion import Distorter
 from simkit.sensors.image_noise import ImageNoise
 from simkit.sensors.names import OPTICAL, sibling_topic
-from simkit.sensors.rendered import NoisyPicture, Picture, RenderedSensor
+from simkit.sensors.picture import NoisyPicture, Picture
+from simkit.sensors.rendered import RenderedSensor
 from simkit.sensors.rendering.renderer import renderer_of
 from simkit.sensors.rendering.view import Film, Shot
 

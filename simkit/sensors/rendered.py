@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,7 +18,7 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.runtime.topics import NOTHING
-from simkit.sensors import camera_info, pictures
+from simkit.sensors import camera_info, pictures, trigger
 from simkit.sensors.base import Product, Sample, Sensor
 from simkit.sensors.buffers import Spares
 from simkit.sensors.camera_info import CameraInfoMaker
@@ -27,41 +27,19 @@ from simkit.sensors.camera_options import CameraOptions, read_options
 from simkit.sensors.distortion import Distorter
 from simkit.sensors.image_noise import ImageNoise
 from simkit.sensors.names import OPTICAL, sibling_topic
+from simkit.sensors.picture import NoisyPicture, Picture
 from simkit.sensors.rendering import gl, thread
 from simkit.sensors.rendering.lights import lights_of, lit
 from simkit.sensors.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
 from simkit.sensors.rendering.view import Film, Shot, View
 from simkit.sensors.saved_pictures import SavedPictures
+from simkit.sensors.trigger import Trigger
 from simkit.sensors.visibility import hidden_by
 
 if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
     from simkit.runtime.topics import Later
     from simkit.scene import SceneSensor
-
-TRIGGER_TYPES = ("std_msgs/msg/Bool", "std_msgs/msg/Empty")
-
-
-@dataclass(frozen=True)
-class Picture:
-    """Colours (h, w, 3), or brightness (h, w); depths (h, w) along the optical axis [m], None for a plain camera."""
-
-    colours: npt.NDArray[np.uint8]
-    depths: npt.NDArray[np.float32] | None
-
-
-class NoisyPicture:
-    """Colours with noise, drawn when they are first asked for."""
-
-    def __init__(self, picture: Picture, noise: ImageNoise, index: int) -> None:
-        self._picture, self._noise, self._index = picture, noise, index
-        self._colours: npt.NDArray[np.uint8] | None = None
-
-    @property
-    def colours(self) -> npt.NDArray[np.uint8]:
-        if self._colours is None:
-            self._colours = self._noise.on_colours(self._picture.colours, self._index)
-        return self._colours
 
 
 class RenderedSensor(Sensor):
@@ -85,8 +63,7 @@ class RenderedSensor(Sensor):
         self._failure: RenderError | None = None
         self._lost: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
         self._is_called = False
-        self._waits = self._counts_triggers = False
-        self._pending = 0  # triggers that have come in
+        self._trigger: Trigger | None = None
         self._baseline = 0.0
         self.around: Any = None
 
@@ -166,28 +143,21 @@ class RenderedSensor(Sensor):
         given = self.options.trigger_topic
         return valid_topic(given or (self.scene.topic or self.topic) + "/trigger")
 
-    def trigger_on(self, topic: str, types: Sequence[str] = TRIGGER_TYPES, counts: bool = False) -> None:
-        """Takes pictures only when a message has come in on `topic`: one at the next due time.
+    def trigger_on(self, topic: str, types: Sequence[str] = trigger.TYPES, counts: bool = False) -> None:
+        """Takes pictures only when messages call for them, on this topic too where there is one already.
 
         Args:
             topic: absolute.
             types: of the messages, whatever they say; the first is the listed one.
-            counts: whether messages that come in before a due time give a picture each, at that and the next ones;
-                else they give one.
+            counts: as `Trigger` says.
         """
-        self._waits, self._counts_triggers = True, counts
-        self.sim.bus.listen(topic, types, self._on_trigger)
-
-    def _on_trigger(self, _: Any) -> None:
-        self._pending = self._pending + 1 if self._counts_triggers else 1
+        if self._trigger is None:
+            self._trigger = Trigger()
+        self._trigger.counts = counts
+        self._trigger.listen(self.sim.bus, topic, types)
 
     def accepts(self, tick: int) -> bool:
-        if not self._waits:
-            return True
-        if self._pending == 0:
-            return False
-        self._pending -= 1
-        return True
+        return self._trigger is None or self._trigger.take()
 
     def bind(self, compiled: Any) -> None:
         thread.drain()
@@ -203,6 +173,10 @@ class RenderedSensor(Sensor):
                 self._settle(sample)
         except RenderError:
             self._drop()
+
+    def leave(self) -> None:
+        self.settle()
+        self.around = None
 
     def measure(self, model: Any, data: Any) -> Any:
         self.around = self.look_around()
@@ -286,13 +260,14 @@ class RenderedSensor(Sensor):
         return NoisyPicture(reading, self._noise, index)
 
     def memory(self) -> Any:
-        return self._pending
+        return self._trigger.pending if self._trigger else 0
 
     def remember(self, memory: Any) -> None:
-        self._pending = memory
+        if self._trigger:
+            self._trigger.pending = memory
 
     def restart(self) -> None:
-        self._pending = 0
+        self.remember(0)
 
     def close(self) -> None:
         thread.drain()

@@ -22,7 +22,8 @@ from simkit.sensors.depth_range import DepthRange
 from simkit.sensors.disparity import DisparityNoise, read_disparity_noise
 from simkit.sensors.image_noise import ImageNoise
 from simkit.sensors.names import OPTICAL
-from simkit.sensors.rendered import NoisyPicture, Picture, RenderedSensor
+from simkit.sensors.picture import NoisyPicture, Picture
+from simkit.sensors.rendered import RenderedSensor
 from simkit.sensors.rendering.appearance import Appearance
 from simkit.sensors.rendering.view import Colours, Depths, Film, Shot, View
 

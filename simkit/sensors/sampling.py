@@ -225,6 +225,12 @@ class Sampler(abc.ABC):
         for sample in self._kept():
             self._take(sample)
 
+    def leave(self) -> None:
+        """Its model is taken away: measures what may still be looked at, and lets go of the world that it was in."""
+        self._catch_up()
+        for sample in self._kept():
+            self._settle(sample)
+
     def reset(self) -> None:
         """Back at t = 0."""
         self._catch_up()
@@ -378,7 +384,7 @@ class Sampler(abc.ABC):
                 sample.noisy = self._at(sample, self.perturb, truth, sample.index)
             else:
                 sample.noisy = self.perturb(truth, sample.index)
-            sample.raw = None
+            sample.raw = sample.around = None
 
     def _message(self, sample: Sample, product: str) -> Any:
         message = sample.messages.get(product)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import weakref
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -78,7 +77,7 @@ class ThermalCamera(RenderedSensor):
         resolution = _COARSE if bits == 8 else _FINE
         self.options = extended(self.options, ThermalOptions, bits=bits, resolution=resolution)
         self._heat: Heat | None = None
-        self._heat_of: tuple[Any, Callable[[], Any]] = (None, lambda: None)
+        self._heat_of: tuple[Any, Any] = (None, None)
 
     def describe(self) -> dict[str, Any]:
         """Temperatures in K."""
@@ -100,6 +99,10 @@ class ThermalCamera(RenderedSensor):
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)
         self._heat = None
+
+    def leave(self) -> None:
+        super().leave()
+        self._heat, self._heat_of = None, (None, None)
 
     def _height_of_view(self) -> float:
         """Of the frustum at its far plane [m]; Gazebo divides width by height in whole numbers (Sensors.cc)."""
@@ -128,9 +131,9 @@ class ThermalCamera(RenderedSensor):
         """What is how warm now."""
         sim = self.sim
         state, structure = sim.temperatures.state, sim.structure
-        if self._heat is None or self._heat_of[0] is not state or self._heat_of[1]() is not structure:
+        if self._heat is None or self._heat_of[0] is not state or self._heat_of[1] is not structure:
             self._heat = heat_of(sim, self._air, self._span)
-            self._heat_of = state, weakref.ref(structure)  # a removed camera holds on to no world
+            self._heat_of = state, structure
             table = self._heat.table
             if self._quirks:
                 table[-1] -= self._span / 2  # the sky is black

@@ -10,7 +10,7 @@ from simkit.sensors import pictures
 from simkit.sensors.camera import Camera
 from simkit.sensors.cube import CubePicture
 from simkit.sensors.lens import WideAngleModel, read_wide_angle_model
-from simkit.sensors.rendered import Picture
+from simkit.sensors.picture import Picture
 from simkit.sensors.rendering.view import Film, Shot
 
 if TYPE_CHECKING:

@@ -6,19 +6,8 @@ import math
 from typing import Any
 
 import numpy as np
-import pytest
 
 import simkit
-from simkit.errors import RenderError
-from simkit.sensors.rendering import gl
-
-try:
-    with gl.current():
-        pass
-    _no_renderer = ""
-except RenderError as error:
-    _no_renderer = str(error)
-NEEDS_RENDERER = pytest.mark.skipif(bool(_no_renderer), reason=_no_renderer)
 
 WIDTH, HEIGHT, HFOV = 32, 24, 1.2
 FOCAL = WIDTH / (2 * math.tan(HFOV / 2))

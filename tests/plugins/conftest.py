@@ -1,8 +1,9 @@
-"""Lets the tests here share their small worlds."""
+"""Lets the tests here share their small worlds, and know whether there is a renderer."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+for folder in ("plugins", "sensors"):
+    sys.path.insert(0, str(Path(__file__).parents[1] / folder))

@@ -10,7 +10,6 @@ from camera_worlds import (
     CAMERA,
     FOCAL,
     HEIGHT,
-    NEEDS_RENDERER,
     STEREO,
     WIDTH,
     codes,
@@ -21,6 +20,7 @@ from camera_worlds import (
     wall,
     world,
 )
+from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.sensors import pictures

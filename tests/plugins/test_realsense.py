@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from camera_worlds import CAMERA, IMAGE, NEEDS_RENDERER, WALLS, heard, plugin, points_of, topics_of
+from camera_worlds import CAMERA, IMAGE, WALLS, heard, plugin, points_of, topics_of
+from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.sensors import pictures

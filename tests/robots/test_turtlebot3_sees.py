@@ -7,20 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from renderer import NEEDS_RENDERER
 
 import simkit
-from simkit.errors import RenderError
 from simkit.pose import Pose
 from simkit.sensors.pictures import pixels_of
-from simkit.sensors.rendering import gl
 
-try:
-    with gl.current():
-        pass
-    _no_renderer = ""
-except RenderError as error:
-    _no_renderer = str(error)
-pytestmark = pytest.mark.skipif(bool(_no_renderer), reason=_no_renderer)
+pytestmark = NEEDS_RENDERER
 
 
 def seen(robot: str, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, dict[str, Any], Pose]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import gc
 import json
 import os
 import re
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -67,6 +69,23 @@ def test_another_process_says_the_same_bits() -> None:
     there = json.loads(done.stdout)
     for kind in asked:
         assert [tuple(one) for one in there[kind]] == first_run(kind), kind
+
+
+@kinds
+@pytest.mark.parametrize("is_read", [True, False])
+def test_a_sensor_that_was_removed_holds_on_to_no_world(kind: str, is_read: bool) -> None:
+    with load(kind) as sim:
+        # a reset goes back to the world of the file, so that one stays
+        sim.spawn('<sdf version="1.9"><model name="post"><static>1</static><link name="l"/></model></sdf>')
+        sensor = sensor_of(sim)
+        subscriptions = [sim.subscribe(topic, keep=1) for topic in sensor._topics.values() if is_read]
+        sim.run(0.1)
+        there = weakref.ref(sim.structure)
+        sim.remove("m")
+        sim.step()
+        gc.collect()
+        assert there() is None
+        assert all(subscription.latest is not None for subscription in subscriptions)
 
 
 @kinds

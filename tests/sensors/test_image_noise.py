@@ -8,22 +8,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from renderer import NEEDS_RENDERER
 from sensor_worlds import colours, depths, noise, sensor, world
 
 import simkit
-from simkit.errors import RenderError
 from simkit.runtime.random import RandomStreams
 from simkit.sensors.image_noise import ImageNoise
 from simkit.sensors.noise import NoiseModel
-from simkit.sensors.rendering import gl
 
-try:
-    with gl.current():
-        pass
-    _no_renderer = ""
-except RenderError as error:
-    _no_renderer = str(error)
-drawn = pytest.mark.skipif(bool(_no_renderer), reason=_no_renderer)
+drawn = NEEDS_RENDERER
 
 SIZE = (120, 160)
 FRAMES = 12

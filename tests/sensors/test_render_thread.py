@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from renderer import NEEDS_RENDERER
 from sensor_worlds import box, noise, sensor, world
 
 import simkit
@@ -24,13 +25,7 @@ from simkit.sensors.rendering import gl, thread
 from simkit.sensors.rgbd_camera import RgbdCamera
 from simkit.sinks.recorder import Recorder
 
-try:
-    with gl.current():
-        pass
-    _no_renderer = ""
-except RenderError as error:
-    _no_renderer = str(error)
-pytestmark = pytest.mark.skipif(bool(_no_renderer), reason=_no_renderer)
+pytestmark = NEEDS_RENDERER
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENE = "<scene><ambient>1 1 1 1</ambient><background>0.2 0.4 0.6 1</background></scene>"

@@ -9,23 +9,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from renderer import NEEDS_RENDERER
 from sensor_worlds import box, colours, sensor, world
 
 import simkit
-from simkit.errors import InputError, RenderError
-from simkit.sensors.rendering import gl
+from simkit.errors import InputError
 from simkit.sensors.rendering.culling import Bounds
 from simkit.sensors.rendering.overview import render_view
 from simkit.sensors.rendering.renderer import renderer_of
 from simkit.sensors.rendering.view import Shot, View
 
-try:
-    with gl.current():
-        pass
-    _no_renderer = ""
-except RenderError as error:
-    _no_renderer = str(error)
-pytestmark = pytest.mark.skipif(bool(_no_renderer), reason=_no_renderer)
+pytestmark = NEEDS_RENDERER
 
 BLUE = (51, 102, 153)
 WALL = box("wall", "3.5 0 1 0 0 0", "1 9 9", colour="1 0 0")
