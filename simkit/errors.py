@@ -3,7 +3,10 @@
 SimkitError                 exit 1
 ├── InputError              exit 2   the user's input cannot be used
 │   ├── LoadError                    a file has errors; `.diagnostics` has all of them
-│   └── MessageError                 a message does not fit its topic
+│   ├── MessageError                 a message does not fit its topic
+│   ├── ServiceError                 no such service, or it cannot be offered
+│   ├── ActionError                  no such action, or it cannot be offered
+│   └── ParameterError               no such parameter, or a value it does not take
 ├── SimulationDiverged      exit 3   the physics left the numbers
 ├── PluginError             exit 4   a plugin raised
 ├── RegressionError         exit 5   a regression check failed
@@ -58,6 +61,27 @@ class MessageError(InputError):
 
     def __init__(self, message: str) -> None:
         super().__init__(message, "SK-MSG-001")
+
+
+class ServiceError(InputError):
+    """A service is not there, or is there already."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message, "SK-SERVICE-001")
+
+
+class ActionError(InputError):
+    """An action is not there, is there already, or a goal cannot go where it is told to."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message, "SK-ACTION-001")
+
+
+class ParameterError(InputError):
+    """A live parameter is not there, or does not take a value."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message, "SK-PARAMETER-001")
 
 
 class SimulationDiverged(SimkitError):

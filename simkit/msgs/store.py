@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
+from simkit.msgs.actions import ACTIONS, MESSAGES
 from simkit.msgs.extras import DEFINITIONS
+from simkit.msgs.services import SERVICES
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -34,6 +36,24 @@ def type_store() -> Typestore:
     return store
 
 
+@cache
+def _register_interfaces() -> None:
+    """Adds the messages of services and actions; done when the first of them is asked for."""
+    from rosbags.typesys import get_types_from_msg
+
+    found: dict[str, Any] = {}
+    for name, text in MESSAGES.items():
+        found.update(get_types_from_msg(text, name))
+    for interfaces, parts in ((SERVICES, ("Request", "Response")), (ACTIONS, ("Goal", "Result", "Feedback"))):
+        for name, text in interfaces.items():
+            for part, fields in zip(parts, text.split("---\n"), strict=True):
+                package, kind, short = name.split("/")
+                # the parser takes every name for a message's
+                parsed = get_types_from_msg(fields, f"{package}/msg/{short}_{part}")
+                found.update({key.replace("/msg/", f"/{kind}/"): value for key, value in parsed.items()})
+    type_store().register(found)
+
+
 def full_name(type_name: str) -> str:
     """`sensor_msgs/Imu` and `sensor_msgs/msg/Imu` are the same type.
 
@@ -41,6 +61,8 @@ def full_name(type_name: str) -> str:
         MessageError: no such type is known; names the closest.
     """
     store = type_store()
+    if "/srv/" in type_name or "/action/" in type_name or type_name in MESSAGES:
+        _register_interfaces()
     if type_name in store.fielddefs:
         return type_name
     package, _, rest = type_name.partition("/")

@@ -15,7 +15,7 @@ import abc
 import copy
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
 from simkit.diagnostics import NOWHERE, Where
 from simkit.params import Params
@@ -24,7 +24,11 @@ from simkit.plugins.ros_names import RosNames
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation
+    from simkit.runtime.actions import GoalHandle
+    from simkit.runtime.parameters import Parameter
     from simkit.scene import ScenePlugin
+
+T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
 ParentKind = Literal["world", "model", "visual", "sensor", "any"]
@@ -110,6 +114,77 @@ class Plugin(abc.ABC):
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Any:
         """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
         return self.sim.bus.listen(self.ros.topic(topic), (types,) if isinstance(types, str) else types, callback)
+
+    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Any:
+        """Opens a service (its name expanded and remapped as in ROS), of a type such as `std_srvs/srv/Trigger`.
+
+        Args:
+            service: its name.
+            type_name: its type.
+            handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
+        """
+        with self.sim.bus.owned_by(self):
+            return self.sim.offer(self.ros.topic(service), type_name, handler)
+
+    def act(
+        self,
+        action: str,
+        type_name: str,
+        on_goal: Callable[[GoalHandle], None],
+        on_cancel: Callable[[GoalHandle], bool | None] | None = None,
+    ) -> Any:
+        """Opens an action of a type such as `control_msgs/action/FollowJointTrajectory`.
+
+        Args:
+            action: its name, expanded and remapped as in ROS.
+            type_name: its type.
+            on_goal: called with each goal between two steps. It may `reject` it; else it is being worked on, until
+                a hook ends it with `succeed`, `abort` or `canceled`; `publish_feedback` tells how far it is.
+            on_cancel: called with a goal that is to be cancelled; gives False to go on. Without it, nothing is.
+        """
+        with self.sim.bus.owned_by(self):
+            return self.sim.action_table.act(self.ros.topic(action), type_name, on_goal, on_cancel)
+
+    def declare(
+        self,
+        name: str,
+        default: T,
+        *,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        choices: Sequence[T] = (),
+        description: str = "",
+        element: str | None = None,
+        on_change: Callable[[T], None] | None = None,
+    ) -> Parameter[T]:
+        """A live parameter, which may be changed while the simulation runs; to be called in `load`.
+
+        Args:
+            name: its name, such as `p_gain`.
+            default: its value where the file says nothing; its type is the parameter's: bool, int, float, str, or a
+                tuple of numbers.
+            minimum, maximum: bounds of a number (of each of several).
+            choices: what is allowed, where that is a list.
+            description: what it is, with its unit.
+            element: the element of the file that holds its first value; of the same name unless given.
+            on_change: called with a new value, between two steps.
+
+        Returns:
+            The parameter, whose `value` is always the present one.
+        """
+        from simkit.plugins.live import declare
+
+        return declare(
+            self,
+            name,
+            default,
+            minimum=minimum,
+            maximum=maximum,
+            choices=choices,
+            description=description,
+            element=element or name,
+            on_change=on_change,
+        )
 
     def random(self, channel: str, width: int = 1) -> Any:
         """This plugin's own random stream: `.normal(index)` has `width` numbers that depend on seed, name and index."""

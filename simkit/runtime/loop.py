@@ -35,6 +35,11 @@ class Loop:
         self._idle.set()
         _loops.add(self)
 
+    @property
+    def is_running(self) -> bool:
+        """Whether it is advancing."""
+        return self._running
+
     def reschedule(self) -> None:
         """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
         self._is_outdated = True

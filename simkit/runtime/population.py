@@ -127,7 +127,7 @@ class Population:
         sim.labels.bind(structure)
         sim.temperatures.bind(structure)
         sim.stand_wrenches(are_applied=True)
-        sim.bus.set_active([*structure.all_sensors(), *structure.all_plugins()])
+        sim.set_active([*structure.all_sensors(), *structure.all_plugins()])
         for sensor in structure.all_sensors():
             if sensor in self._attached:
                 sensor.bind(compiled)

@@ -11,6 +11,7 @@ from simkit.errors import InputError
 from simkit.pose import IDENTITY, Pose
 from simkit.runtime.clock import Clock
 from simkit.runtime.entities import Entities, place_light
+from simkit.runtime.interfaces import Interfaces
 from simkit.runtime.joint import Joint
 from simkit.runtime.labels import Labels
 from simkit.runtime.light import Light
@@ -26,14 +27,13 @@ from simkit.runtime.schedule import fill
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.snapshot import Snapshot, bring_back, take
 from simkit.runtime.temperatures import Temperatures
-from simkit.runtime.topics import Callback, Subscription, TopicBus
 from simkit.runtime.visual import Visual
 from simkit.runtime.weld import set_weld
 from simkit.runtime.wrenches import StandingWrenches
 from simkit.scene import SceneLink, SceneWorld
 
 
-class Simulation:
+class Simulation(Interfaces):
     """A loaded world. Made by `simkit.load`; also a context manager.
 
     Everything read shows the state at `time`.
@@ -59,7 +59,7 @@ class Simulation:
         self.world = world
         self.log = logging.getLogger("simkit")
         self.clock = Clock(world.physics.max_step_size)
-        self.bus = TopicBus()
+        self.open_interfaces(self)
         self.streams = RandomStreams(seed)
         self.seed = seed
         self._diagnostics = diagnostics
@@ -100,6 +100,11 @@ class Simulation:
     def timestep(self) -> float:
         """Length of a step [s]."""
         return self.clock.timestep
+
+    @property
+    def is_stepping(self) -> bool:
+        """Whether a step is under way: this is asked by a hook or a callback."""
+        return self._loop.is_running
 
     # ------------------------------------------------------------------ advancing
 
@@ -235,25 +240,6 @@ class Simulation:
     def reports(self) -> Diagnostics:
         """The collection behind `diagnostics`, for parts that have something to report while running."""
         return self._diagnostics
-
-    # ------------------------------------------------------------------ topics
-
-    def publish(self, topic: str, message: Any) -> None:
-        """Sends a message object, or a dict of its fields; inputs get it before the next step.
-
-        Raises:
-            MessageError: unknown topic, or fields that do not fit.
-        """
-        self._check_open()
-        self.bus.publish(topic, message)
-
-    def subscribe(self, topic: str, callback: Callback | None = None, keep: int | None = None) -> Subscription:
-        """Receives a topic, before or after its publisher exists; keeps the last `keep` messages where given."""
-        return self.bus.subscribe(topic, callback, keep)
-
-    def topics(self) -> dict[str, str]:
-        """Topic -> ROS type name."""
-        return self.bus.topics()
 
     # ------------------------------------------------------------------ the engine underneath
 

@@ -59,6 +59,7 @@ def take(sim: Simulation) -> Snapshot:
         sensors=[(s, s.get_state()) for s in structure.all_sensors()],
         plugins=[(p, p.get_state()) for p in structure.all_plugins()],
         handles=[(h, h.get_state()) for h in sim.entities.stateful()]
+        + [(table, table.get_state()) for table in (sim.parameter_table, sim.action_table)]
         + [(m, m._rest) for m in sim.entities.tables["model"].values()],
         inbox=tuple(sim.bus.inbox),
         one_shot=physics.one_shot,

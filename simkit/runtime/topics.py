@@ -372,10 +372,17 @@ class TopicBus:
             raise MessageError(f"{topic!r} takes {' or '.join(dict.fromkeys(types))}, got {msgs.type_name(message)}")
         self._deliver(topic, message)
 
+    def enqueue(self, call: Callable[[], None]) -> None:
+        """Has something done between two steps, in its turn among the queued commands."""
+        self.inbox.append(("", call))
+
     def deliver_inputs(self) -> None:
         """Hands queued commands to their inputs, in the order of arrival."""
         for _ in range(len(self.inbox)):
             topic, message = self.inbox.popleft()
+            if not topic:
+                message()
+                continue
             for listener in self._listeners.get(topic, ()):
                 if listener.active and msgs.type_name(message) in listener.types:
                     listener.callback(message)

@@ -1,0 +1,68 @@
+"""Live parameters of a plugin: the first value is the file's, later ones come while it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from simkit.runtime.parameter_services import offer_parameter_services
+from simkit.runtime.parameters import Parameter
+
+if TYPE_CHECKING:
+    from simkit.plugins.base import Plugin
+
+T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
+
+
+def declare(
+    plugin: Plugin,
+    name: str,
+    default: T,
+    *,
+    minimum: float | None,
+    maximum: float | None,
+    choices: Sequence[T],
+    description: str,
+    element: str,
+    on_change: Callable[[T], None] | None,
+) -> Parameter[T]:
+    """Reads the first value, adds the parameter to the plugin's node, and opens the node's services."""
+    table = plugin.sim.parameter_table
+    own = f"{plugin.ros.namespace}/{plugin.name}"
+    node = table.node_of(plugin, own, "/" + "/".join(filter(None, (*plugin.scoped.split("::"), plugin.name))))
+    value: Any = _first_value(plugin, element, default, minimum, maximum, choices)
+    is_new = node not in table.nodes()
+    parameter = Parameter(
+        node,
+        name,
+        value,
+        minimum=minimum,
+        maximum=maximum,
+        choices=choices,
+        description=description,
+        on_change=on_change,
+        owner=plugin,
+    )
+    if not parameter.is_within(value):
+        plugin.params.error("SK-PARAM-002", f"found <{element}> {value!r}, allowed is {parameter.allowed}")
+    table.add(parameter)
+    if is_new:
+        with plugin.sim.bus.owned_by(plugin):
+            offer_parameter_services(plugin.sim, node)
+    return parameter
+
+
+def _first_value(
+    plugin: Plugin, element: str, default: Any, minimum: float | None, maximum: float | None, choices: Sequence[Any]
+) -> Any:
+    params = plugin.params
+    if isinstance(default, bool):
+        return params.boolean(element, default)
+    if isinstance(default, str):
+        return params.choice(element, list(choices), default) if choices else params.text(element, default)
+    if isinstance(default, tuple):
+        return params.vector(element, len(default), default)
+    if isinstance(default, int):
+        low, high = (None if bound is None else int(bound) for bound in (minimum, maximum))
+        return params.integer(element, default, minimum=low, maximum=high)
+    return params.number(element, default, minimum=minimum, maximum=maximum)

@@ -1,0 +1,136 @@
+"""How one talks to a simulation: topics, services, actions and live parameters, as in ROS 2."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from simkit.runtime.actions import ActionTable, GoalHandle
+from simkit.runtime.parameters import Parameter, ParameterTable
+from simkit.runtime.services import Handler, Service, ServiceTable
+from simkit.runtime.topics import Callback, Subscription, TopicBus
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+
+class Interfaces:
+    """The part of a simulation that others talk to.
+
+    Attributes:
+        bus: the topics.
+        service_table, action_table, parameter_table: the others.
+    """
+
+    def open_interfaces(self, sim: Simulation) -> None:
+        """Makes the tables, all empty."""
+        self.bus = TopicBus()
+        self.service_table = ServiceTable(sim)
+        self.action_table = ActionTable(sim)
+        self.parameter_table = ParameterTable(sim)
+
+    def set_active(self, owners: Sequence[object]) -> None:
+        """Leaves only what these plugins and sensors opened (and what nobody owns) in use."""
+        for table in (self.bus, self.service_table, self.action_table, self.parameter_table):
+            table.set_active(owners)
+
+    def _check_open(self) -> None:
+        """Raises InputError where the simulation is closed."""
+
+    # ------------------------------------------------------------------ topics
+
+    def publish(self, topic: str, message: Any) -> None:
+        """Sends a message object, or a dict of its fields; inputs get it before the next step.
+
+        Raises:
+            MessageError: unknown topic, or fields that do not fit.
+        """
+        self._check_open()
+        self.bus.publish(topic, message)
+
+    def subscribe(self, topic: str, callback: Callback | None = None, keep: int | None = None) -> Subscription:
+        """Receives a topic, before or after its publisher exists; keeps the last `keep` messages where given."""
+        return self.bus.subscribe(topic, callback, keep)
+
+    def topics(self) -> dict[str, str]:
+        """Topic -> ROS type name."""
+        return self.bus.topics()
+
+    # ------------------------------------------------------------------ services
+
+    def call(self, service: str, request: Any = None) -> Any:
+        """The response of a service; what it did is done when this returns.
+
+        Args:
+            service: absolute, or taken as such.
+            request: a message, a dict of its fields, or None for all zero.
+
+        Raises:
+            ServiceError: there is no such service; names the closest.
+            MessageError: the request does not fit.
+            PluginError: the service of a plugin raised.
+        """
+        self._check_open()
+        return self.service_table.call(service, request)
+
+    def offer(self, service: str, type_name: str, handler: Handler) -> Service:
+        """Opens a service of a type such as `std_srvs/srv/Trigger`.
+
+        Args:
+            service: absolute, or taken as such.
+            type_name: its type.
+            handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
+
+        Raises:
+            ServiceError: there is one of that name.
+            MessageError: an unknown type.
+        """
+        return self.service_table.offer(service, type_name, handler)
+
+    def services(self) -> dict[str, str]:
+        """Service -> ROS type name."""
+        return self.service_table.names()
+
+    # ------------------------------------------------------------------ actions
+
+    def send_goal(
+        self,
+        action: str,
+        goal: Any = None,
+        on_feedback: Callable[[Any], None] | None = None,
+        on_done: Callable[[GoalHandle], None] | None = None,
+    ) -> GoalHandle:
+        """Sends a goal; the plugin has it before the next step.
+
+        Args:
+            action: absolute, or taken as such.
+            goal: a message, a dict of its fields, or None for all zero.
+            on_feedback: called with each feedback message.
+            on_done: called with the handle once the goal has ended.
+
+        Raises:
+            ActionError: there is no such action; names the closest.
+            MessageError: the goal does not fit.
+        """
+        self._check_open()
+        return self.action_table.send(action, goal, on_feedback, on_done)
+
+    def actions(self) -> dict[str, str]:
+        """Action -> ROS type name."""
+        return self.action_table.names()
+
+    # ------------------------------------------------------------------ parameters
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Parameter[Any]]]:
+        """Live parameters: node -> name -> parameter."""
+        return self.parameter_table.nodes()
+
+    def set_parameter(self, node: str, name: str, value: Any) -> None:
+        """Changes a live parameter: at once, or from within a hook or a callback before the next step.
+
+        Raises:
+            ParameterError: there is none of that name, or it does not take the value.
+        """
+        self._check_open()
+        self.parameter_table.set(node, name, value)

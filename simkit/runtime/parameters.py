@@ -1,0 +1,186 @@
+"""Live parameters: values of a plugin that may be changed while it runs, typed and bounded, as those of a ROS 2 node.
+
+    sim.parameters["/tb3/gain_tuner"]["p_gain"].value
+    sim.set_parameter("/tb3/gain_tuner", "p_gain", 12.0)
+
+A change takes effect between two steps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import ParameterError
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+Value = bool | int | float | str | tuple[float, ...]
+T = TypeVar("T", bound=Value)
+
+_NAMES = {bool: "a boolean", int: "an integer", float: "a number", str: "text", tuple: "numbers"}
+
+
+class Parameter(Generic[T]):
+    """A value that may be changed while the simulation runs.
+
+    Attributes:
+        node: the node it is a parameter of, such as `/tb3/diff_drive`.
+        name: its name.
+        value: the present value.
+        minimum, maximum: bounds of a number; None where there is none.
+        choices: what is allowed, where that is a list; empty otherwise.
+        description: what it is, with its unit.
+        owner: the plugin.
+    """
+
+    def __init__(
+        self,
+        node: str,
+        name: str,
+        value: T,
+        *,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        choices: Sequence[T] = (),
+        description: str = "",
+        on_change: Callable[[T], None] | None = None,
+        owner: object = None,
+    ) -> None:
+        self.node, self.name, self.value = node, name, value
+        self.minimum, self.maximum, self.choices = minimum, maximum, tuple(choices)
+        self.description, self.owner = description, owner
+        self._on_change = on_change
+
+    @property
+    def allowed(self) -> str:
+        """What it takes, in words."""
+        if self.choices:
+            return "one of " + ", ".join(map(repr, self.choices))
+        words = _NAMES[type(self.value)]
+        if isinstance(self.value, tuple):
+            words = f"{len(self.value)} {words}"
+        if self.minimum is not None and self.maximum is not None:
+            return f"{words} from {self.minimum:g} to {self.maximum:g}"
+        if self.minimum is not None:
+            return f"{words} of at least {self.minimum:g}"
+        return f"{words} of at most {self.maximum:g}" if self.maximum is not None else words
+
+    def checked(self, value: Any) -> T:
+        """The value as it would be stored.
+
+        Raises:
+            ParameterError: it is of another type, or out of bounds; says what is allowed.
+        """
+        found = _converted(value, self.value)
+        if found is None or not self.is_within(found):
+            raise ParameterError(f"{self.node} {self.name}: found {value!r}, allowed is {self.allowed}")
+        return found  # type: ignore[no-any-return]
+
+    def take(self, value: T) -> None:
+        """Stores a checked value and tells the plugin."""
+        self.value = value
+        if self._on_change is not None:
+            self._on_change(value)
+
+    def is_within(self, value: Any) -> bool:
+        """Whether a value of the right type is allowed."""
+        if self.choices and value not in self.choices:
+            return False
+        if isinstance(value, (bool, str)):
+            return True
+        low = -math.inf if self.minimum is None else self.minimum
+        high = math.inf if self.maximum is None else self.maximum
+        return all(math.isfinite(v) and low <= v <= high for v in (value if isinstance(value, tuple) else (value,)))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Parameter[T]:
+        return self
+
+
+class ParameterTable:
+    """The parameters of all plugins, by node."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._parameters: dict[str, dict[str, Parameter[Any]]] = {}
+        self._inactive: set[str] = set()
+
+    def add(self, parameter: Parameter[Any]) -> None:
+        """Adds a parameter to its node."""
+        self._parameters.setdefault(parameter.node, {})[parameter.name] = parameter
+
+    def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
+        """The name of a plugin's node: `wanted`, where no other plugin has it."""
+        there = self._parameters.get(wanted)
+        is_free = not there or wanted in self._inactive or next(iter(there.values())).owner is owner
+        return wanted if is_free else otherwise
+
+    def nodes(self) -> dict[str, dict[str, Parameter[Any]]]:
+        """Node -> name -> parameter, sorted by node."""
+        return {n: dict(self._parameters[n]) for n in sorted(self._parameters) if n not in self._inactive}
+
+    def find(self, node: str, name: str) -> Parameter[Any]:
+        """A parameter.
+
+        Raises:
+            ParameterError: there is none of that name; names the closest.
+        """
+        nodes = self.nodes()
+        if node not in nodes:
+            hint = did_you_mean(node, nodes) or "there is " + (", ".join(nodes) or "none")
+            raise ParameterError(f"no node {node!r} has parameters; {hint}")
+        if name not in nodes[node]:
+            hint = did_you_mean(name, nodes[node]) or "it has " + ", ".join(nodes[node])
+            raise ParameterError(f"{node!r} has no parameter {name!r}; {hint}")
+        return nodes[node][name]
+
+    def set(self, node: str, name: str, value: Any) -> None:
+        """Changes a parameter before the next step; at once where no step is under way.
+
+        Raises:
+            ParameterError: there is none of that name, or it does not take the value.
+        """
+        parameter = self.find(node, name)
+        checked = parameter.checked(value)
+        if self._sim.is_stepping:
+            self._sim.bus.enqueue(lambda: parameter.take(checked))
+        else:
+            parameter.take(checked)
+
+    def set_active(self, owners: Sequence[object]) -> None:
+        """Leaves only the parameters of these plugins in use."""
+        living = {id(owner) for owner in owners}
+        self._inactive = {
+            node for node, found in self._parameters.items() if not any(id(p.owner) in living for p in found.values())
+        }
+
+    def get_state(self) -> tuple[tuple[Parameter[Any], Any], ...]:
+        """Every parameter with its value."""
+        return tuple((p, p.value) for found in self._parameters.values() for p in found.values())
+
+    def set_state(self, state: tuple[tuple[Parameter[Any], Any], ...]) -> None:
+        """Back to values from `get_state`; the plugins are not told, their own state goes back as well."""
+        for parameter, value in state:
+            parameter.value = value
+
+
+def _converted(value: Any, like: Any) -> Any:
+    """A value as the type of `like`; None where it is of another."""
+    if isinstance(like, bool):
+        return value if isinstance(value, bool) else None
+    if isinstance(like, str):
+        return value if isinstance(value, str) else None
+    if isinstance(like, tuple):
+        if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or len(value) != len(like):
+            return None
+        found = tuple(_converted(v, 0.0) for v in value)
+        return None if None in found else found
+    if isinstance(value, bool) or not hasattr(value, "__float__"):
+        return None
+    number = float(value)
+    if isinstance(like, int):
+        return int(number) if number.is_integer() else None
+    return number

@@ -1,0 +1,149 @@
+"""Actions: goals that take time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import simkit
+from simkit.errors import ActionError, MessageError, PluginError
+from simkit.runtime.actions import GoalStatus
+
+EMPTY = '<sdf version="1.9"><world name="w"/></sdf>'
+FIBONACCI = "example_interfaces/action/Fibonacci"
+
+
+class Counter(simkit.WorldPlugin):
+    """One number of the sequence a tenth of a second; a new goal pre-empts."""
+
+    after_step_rate = 10.0
+
+    def load(self, parent: Any, params: simkit.Params) -> None:
+        self.goal: Any = None
+        self.sequence: list[int] = []
+        self.act("fibonacci", FIBONACCI, self.on_goal, self.on_cancel)
+
+    def on_goal(self, goal: Any) -> None:
+        if goal.request.order < 0:
+            goal.reject("a negative order")
+            return
+        if self.goal is not None:
+            self.goal.abort({"sequence": self.sequence}, "pre-empted")
+        self.goal, self.sequence = goal, [0, 1]
+
+    def on_cancel(self, goal: Any) -> bool | None:
+        if goal.request.order == 99:
+            return False
+        goal.canceled({"sequence": self.sequence})
+        self.goal = None
+        return None
+
+    def after_step(self) -> None:
+        if self.goal is None:
+            return
+        self.sequence.append(self.sequence[-1] + self.sequence[-2])
+        self.goal.publish_feedback({"sequence": self.sequence})
+        if len(self.sequence) > self.goal.request.order:
+            self.goal.succeed({"sequence": self.sequence})
+            self.goal = None
+
+
+@pytest.fixture
+def sim() -> Any:
+    with simkit.load(EMPTY, plugins=[Counter()]) as sim:
+        yield sim
+
+
+def test_a_goal_is_worked_on_and_ends_with_its_result(sim: Any) -> None:
+    told: list[list[int]] = []
+    ended: list[Any] = []
+    goal = sim.send_goal("/fibonacci", {"order": 5}, lambda m: told.append(list(m.sequence)), ended.append)
+    assert goal.status is GoalStatus.UNKNOWN
+    sim.step()
+    assert goal.status is GoalStatus.EXECUTING
+    sim.run(1.0)
+    assert goal.status is GoalStatus.SUCCEEDED
+    assert list(goal.result.sequence) == [0, 1, 1, 2, 3, 5]
+    assert told == [[0, 1, 1], [0, 1, 1, 2], [0, 1, 1, 2, 3], [0, 1, 1, 2, 3, 5]]
+    assert ended == [goal]
+    assert sim.actions() == {"/fibonacci": FIBONACCI}
+
+
+def test_a_goal_is_rejected_with_a_reason(sim: Any) -> None:
+    goal = sim.send_goal("/fibonacci", {"order": -1})
+    sim.step()
+    assert (goal.status, goal.reason, goal.result) == (GoalStatus.REJECTED, "a negative order", None)
+
+
+def test_a_goal_is_cancelled_half_way(sim: Any) -> None:
+    goal = sim.send_goal("/fibonacci", {"order": 50})
+    sim.run(0.25)
+    goal.cancel()
+    assert goal.status is GoalStatus.EXECUTING
+    sim.step()
+    assert goal.status is GoalStatus.CANCELED
+    assert list(goal.result.sequence) == [0, 1, 1, 2]
+
+
+def test_a_plugin_may_go_on_though_it_is_asked_to_cancel(sim: Any) -> None:
+    goal = sim.send_goal("/fibonacci", {"order": 99})
+    sim.step()
+    goal.cancel()
+    sim.step()
+    assert goal.status is GoalStatus.EXECUTING
+
+
+def test_a_second_goal_pre_empts_the_first(sim: Any) -> None:
+    first = sim.send_goal("/fibonacci", {"order": 50})
+    sim.run(0.15)
+    second = sim.send_goal("/fibonacci", {"order": 3})
+    sim.run(0.5)
+    assert (first.status, first.reason) == (GoalStatus.ABORTED, "pre-empted")
+    assert second.status is GoalStatus.SUCCEEDED
+
+
+def test_a_restore_brings_back_how_far_the_goals_were(sim: Any) -> None:
+    first = sim.send_goal("/fibonacci", {"order": 5})
+    sim.run(0.15)
+    half = sim.snapshot()
+    sim.run(1.0)
+    late = sim.send_goal("/fibonacci", {"order": 2})
+    sim.run(1.0)
+    sim.restore(half)
+    assert (first.status, first.result) == (GoalStatus.EXECUTING, None)
+    assert late.status is GoalStatus.UNKNOWN
+    sim.run(1.0)
+    assert list(first.result.sequence) == [0, 1, 1, 2, 3, 5]
+
+
+def test_a_goal_in_the_inbox_is_part_of_a_snapshot(sim: Any) -> None:
+    goal = sim.send_goal("/fibonacci", {"order": 3})
+    sent = sim.snapshot()
+    sim.run(1.0)
+    sim.restore(sent)
+    assert goal.status is GoalStatus.UNKNOWN
+    sim.run(1.0)
+    assert goal.status is GoalStatus.SUCCEEDED
+
+
+def test_faults_name_the_action_and_what_is_allowed(sim: Any) -> None:
+    with pytest.raises(ActionError, match="did you mean '/fibonacci'"):
+        sim.send_goal("/fibonaci")
+    with pytest.raises(MessageError, match="did you mean 'order'"):
+        sim.send_goal("/fibonacci", {"oder": 3})
+    goal = sim.send_goal("/fibonacci", {"order": -1})
+    sim.step()
+    with pytest.raises(ActionError, match="has ended already"):
+        goal.succeed()
+
+
+def test_what_a_plugin_raises_on_a_goal_names_it() -> None:
+    class Faulty(simkit.WorldPlugin):
+        def load(self, parent: Any, params: simkit.Params) -> None:
+            self.act("break", FIBONACCI, lambda goal: 1 / 0)
+
+    with simkit.load(EMPTY, plugins=[Faulty()]) as sim:
+        sim.send_goal("/break")
+        with pytest.raises(PluginError, match="'Faulty'.*action /break"):
+            sim.step()

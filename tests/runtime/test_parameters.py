@@ -1,0 +1,133 @@
+"""Live parameters: typed, bounded, changed while the simulation runs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import simkit
+from simkit.errors import LoadError, ParameterError
+
+
+class Tuner(simkit.WorldPlugin):
+    def load(self, parent: Any, params: simkit.Params) -> None:
+        self.gain = self.declare("p_gain", 2.0, minimum=0.0, maximum=100.0, description="gain [N·m/rad]")
+        self.mode = self.declare("mode", "position", choices=("position", "velocity"))
+        self.count = self.declare("count", 3, minimum=1)
+        self.is_on = self.declare("on", False)
+        self.offset = self.declare("offset", (0.0, 0.0, 0.0))
+        self.seen: list[float] = []
+        self.told: list[float] = []
+        self.declare("speed", 1.0, on_change=self.told.append)
+
+    def before_step(self) -> None:
+        self.seen.append(self.gain.value)
+
+
+def _tuner(sim: Any) -> Tuner:
+    return next(plugin for plugin in sim.structure.all_plugins() if isinstance(plugin, Tuner))
+
+
+@pytest.fixture
+def sim() -> Any:
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[Tuner()]) as sim:
+        yield sim
+
+
+def test_a_change_from_outside_is_there_for_the_next_step(sim: Any) -> None:
+    tuner = _tuner(sim)
+    sim.step(2)
+    sim.set_parameter("/Tuner", "p_gain", 5)
+    assert sim.parameters["/Tuner"]["p_gain"].value == 5.0
+    sim.step(2)
+    assert tuner.seen == [2.0, 2.0, 5.0, 5.0]
+
+
+def test_the_plugin_is_told_of_a_change(sim: Any) -> None:
+    sim.set_parameter("/Tuner", "speed", 2.5)
+    assert _tuner(sim).told == [2.5]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        ("p_gain", -1.0, "a number from 0 to 100"),
+        ("p_gain", "much", "a number from 0 to 100"),
+        ("p_gain", float("nan"), "a number from 0 to 100"),
+        ("p_gain", True, "a number from 0 to 100"),
+        ("mode", "speed", "one of 'position', 'velocity'"),
+        ("count", 0, "an integer of at least 1"),
+        ("count", 2.5, "an integer of at least 1"),
+        ("on", 1, "a boolean"),
+        ("offset", (1.0, 2.0), "3 numbers"),
+        ("offset", (1.0, 2.0, "a"), "3 numbers"),
+    ],
+)
+def test_a_value_that_is_not_allowed_changes_nothing_and_says_what_is(
+    sim: Any, name: str, value: Any, allowed: str
+) -> None:
+    before = sim.parameters["/Tuner"][name].value
+    with pytest.raises(ParameterError, match=f"allowed is {allowed}"):
+        sim.set_parameter("/Tuner", name, value)
+    assert sim.parameters["/Tuner"][name].value == before
+
+
+def test_an_unknown_node_or_parameter_is_an_error_that_names_the_closest(sim: Any) -> None:
+    with pytest.raises(ParameterError, match="did you mean '/Tuner'"):
+        sim.set_parameter("/Tunr", "p_gain", 1.0)
+    with pytest.raises(ParameterError, match="did you mean 'p_gain'"):
+        sim.set_parameter("/Tuner", "p_gian", 1.0)
+
+
+def test_a_reset_and_a_restore_bring_the_values_back(sim: Any) -> None:
+    sim.set_parameter("/Tuner", "p_gain", 7.0)
+    sim.step()
+    seven = sim.snapshot()
+    sim.set_parameter("/Tuner", "p_gain", 9.0)
+    sim.restore(seven)
+    assert sim.parameters["/Tuner"]["p_gain"].value == 7.0
+    sim.reset()
+    assert sim.parameters["/Tuner"]["p_gain"].value == 2.0
+
+
+def test_ros_reads_and_changes_them_by_its_own_services(sim: Any) -> None:
+    listed = sim.call("/Tuner/list_parameters").result.names
+    assert listed == ["p_gain", "mode", "count", "on", "offset", "speed"]
+    found = sim.call("/Tuner/get_parameters", {"names": ["p_gain", "mode", "nothing"]}).values
+    assert [(v.type, v.double_value, v.string_value) for v in found] == [(3, 2.0, ""), (4, 0.0, "position"), (0, 0, "")]
+    wanted = [
+        {"name": "p_gain", "value": {"type": 3, "double_value": 4.0}},
+        {"name": "count", "value": {"type": 2, "integer_value": 0}},
+    ]
+    results = sim.call("/Tuner/set_parameters", {"parameters": wanted}).results
+    assert [r.successful for r in results] == [True, False]
+    assert "an integer of at least 1" in results[1].reason
+    assert sim.parameters["/Tuner"]["p_gain"].value == 4.0
+    wanted[0]["value"]["double_value"] = 8.0
+    assert not sim.call("/Tuner/set_parameters_atomically", {"parameters": wanted}).result.successful
+    assert sim.parameters["/Tuner"]["p_gain"].value == 4.0
+    described = sim.call("/Tuner/describe_parameters", {"names": ["p_gain"]}).descriptors[0]
+    assert described.floating_point_range[0].to_value == 100.0
+    assert described.description == "gain [N·m/rad]"
+
+
+def test_the_first_value_is_the_files_own(tmp_path: Any) -> None:
+    (tmp_path / "tuner.py").write_text(
+        "import simkit\n\n\nclass T(simkit.WorldPlugin):\n    filenames = ('libtuner.so',)\n\n"
+        "    def load(self, parent, params):\n"
+        "        self.declare('p_gain', 2.0, minimum=0.0, maximum=100.0)\n        self.declare('count', 3, minimum=1)\n"
+        "        self.declare('gains', (1.0, 2.0), minimum=0.0)\n"
+    )
+
+    def world(content: str) -> str:
+        plugin = f'<plugin name="tuner" filename="libtuner.so">{content}</plugin>'
+        return f'<sdf version="1.9"><world name="w">{plugin}</world></sdf>'
+
+    with simkit.load(world("<p_gain>5</p_gain><count>4</count>"), plugin_paths=[tmp_path]) as sim:
+        values = {n: p.value for n, p in sim.parameters["/tuner"].items()}
+        assert values == {"p_gain": 5.0, "count": 4, "gains": (1.0, 2.0)}
+    bad = "<p_gain>-5</p_gain><count>none</count><gains>1 -2</gains>"
+    with pytest.raises(LoadError) as caught:
+        simkit.load(world(bad), plugin_paths=[tmp_path])
+    assert len([d for d in caught.value.diagnostics if d.code == "SK-PARAM-002"]) == 3
