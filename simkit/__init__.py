@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import Diagnostic
 from simkit.errors import (
     InputError,
     LoadError,
@@ -23,12 +22,13 @@ from simkit.errors import (
     SimkitError,
     SimulationDiverged,
 )
-from simkit.params import Params
-from simkit.pose import Pose
 
 if TYPE_CHECKING:
     from simkit.build import check, describe, load
+    from simkit.diagnostics import Diagnostic
+    from simkit.params import Params
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
+    from simkit.pose import Pose
     from simkit.runtime import Simulation
 
 __version__ = "0.1.0"
@@ -56,12 +56,16 @@ __all__ = [
     "load",
 ]
 
-# loaded when first asked for: the engine alone takes most of what an import may cost
+# loaded when first asked for: the engine alone takes most of what an import may cost, and NumPy most of the rest,
+# which a run of tests that needs no world does not pay either (`simkit.pytest_plugin`)
 _LAZY = {
     "load": "simkit.build",
     "describe": "simkit.build",
     "check": "simkit.build",
     "Simulation": "simkit.runtime",
+    "Diagnostic": "simkit.diagnostics",
+    "Params": "simkit.params",
+    "Pose": "simkit.pose",
     "Plugin": "simkit.plugins.base",
     "WorldPlugin": "simkit.plugins.base",
     "ModelPlugin": "simkit.plugins.base",

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, Where, follows_from
 from simkit.engine import import_engine
-from simkit.errors import SimkitError
+from simkit.errors import InputError, SimkitError
 from simkit.loaders import Resolver, load_scene
-from simkit.parts import parts_of_model, parts_of_world, report_unread
+from simkit.parts import add_made, parts_of_model, parts_of_world, report_unread
 from simkit.pose import Pose
 from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
     from simkit.runtime import Simulation
+    from simkit.runtime.faults import OnError
 
 Source = str | os.PathLike[str]
 # what the engine says of a world that lacks its faulty parts
@@ -53,7 +53,7 @@ def load(
     seed: int = 0,
     resource_paths: Sequence[Source] = (),
     plugin_paths: Sequence[Source] = (),
-    plugins: Sequence[Plugin] = (),
+    plugins: Sequence[Any] = (),
     base: str = "auto",
     xacro_args: Mapping[str, str] | None = None,
     strict: bool = False,
@@ -61,6 +61,7 @@ def load(
     sleep: bool = True,
     package_paths: Mapping[str, Source] | None = None,
     render_thread: bool | None = None,
+    on_error: OnError | None = None,
 ) -> Simulation:
     """Opens a world or a bare model and makes it ready to step.
 
@@ -69,7 +70,9 @@ def load(
         seed: of every random stream.
         resource_paths: extra folders for `model://`, `package://` and relative URIs.
         plugin_paths: folders whose Python plugins a file may name.
-        plugins: plugin instances made in Python; they hang on the world.
+        plugins: plugins made in Python, `MyPlugin(gain=2)`: instances, or pairs of what one is to hang on and it,
+            `("robot::arm", MyPlugin())`. One that is not told hangs on the world, or on the only model (sensor,
+            visual) there is. A class or module with gz's hooks (`pre_update`, …) is one too.
         base: for bare models: "fixed", "floating", or "auto" (floating unless joined to the world).
         xacro_args: arguments for xacro files.
         strict: warnings are errors.
@@ -78,6 +81,9 @@ def load(
         package_paths: folders of ROS packages by name, for `package://` and `$(find ...)`.
         render_thread: whether pictures are drawn on a second thread beside the physics, which gives the same bits;
             by default where the process may use two processor cores or more.
+        on_error: what becomes of a plugin that raises: "stop" ends the run with a PluginError, "disable" goes on
+            without it. Goes over what the file (`<simkit:on_error>`) and the plugin's class say; None leaves it to
+            them, and they to "stop".
 
     Returns:
         The simulation at t = 0.
@@ -86,6 +92,8 @@ def load(
         LoadError: with every problem of the input.
         PluginError: a plugin raised while it was loaded.
     """
+    if on_error not in (None, "stop", "disable"):
+        raise InputError(f"on_error is 'stop' or 'disable', got {on_error!r}")
     import_engine()
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation, Structure
@@ -105,7 +113,8 @@ def load(
     try:
         for model in world.models:
             parts[model.name] = parts_of_model(model, builder, diagnostics, allowed)
-        parts[""] = parts_of_world(world, builder, diagnostics, allowed, plugins)
+        parts[""] = parts_of_world(world, builder, diagnostics, allowed)
+        add_made(parts, plugins, world, builder, diagnostics)
     except Exception:
         # What was left out for its own fault (a joint without a direction) may be asked for here.
         diagnostics.raise_if_errors()
@@ -119,7 +128,8 @@ def load(
     load_model = partial(_model_to_spawn, resolver=resolver)
     make_parts = partial(parts_of_model, plugin_paths=allowed)
     structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
-    simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts)
+    simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
+    simulation.write_sdf = _sdf_of
     simulation.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     try:
         report_unread(parts.values())
@@ -245,7 +255,7 @@ def _look_further(
         builder = SpecBuilder(world, diagnostics)
         builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
         parts = {m.name: parts_of_model(m, builder, diagnostics, plugin_paths) for m in world.models}
-        parts[""] = parts_of_world(world, builder, diagnostics, plugin_paths, ())
+        parts[""] = parts_of_world(world, builder, diagnostics, plugin_paths)
         _load_the_rest(world, builder, parts, diagnostics)
     except Exception:  # noqa: BLE001 - on a file with errors anything may be missing; what was found by then counts
         pass
@@ -285,6 +295,13 @@ def read_scene(
     scene = _scene(source, resolver, diagnostics, xacro_args, base, ())
     diagnostics.raise_if_errors()
     return scene, diagnostics
+
+
+def _sdf_of(world: SceneWorld) -> str:
+    """A world as SDF text, every file named as it was."""
+    from simkit.writers.sdf import sdf_text
+
+    return sdf_text(Scene(worlds=(world,)), Diagnostics())
 
 
 def _nothing(*_: Any, **__: Any) -> Any:

@@ -6,7 +6,7 @@ import difflib
 import functools
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from simkit.errors import LoadError
@@ -16,10 +16,15 @@ Severity = Literal["error", "warning", "note"]
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """A place in an input file; `file` is None for XML given as text."""
+    """A place in an input file; `file` is None for XML given as text.
+
+    Attributes:
+        serial: which element of the file it is, counted from the top: of two on one line the first is still the first.
+    """
 
     file: str | None = None
     line: int | None = None
+    serial: int = field(default=0, compare=False, repr=False)
 
     def __str__(self) -> str:
         return f"{self.file or '<text>'}:{self.line}" if self.line else (self.file or "<text>")

@@ -9,6 +9,7 @@ SimkitError                 exit 1
 │   └── ParameterError               no such parameter, or a value it does not take
 ├── SimulationDiverged      exit 3   the physics left the numbers
 ├── PluginError             exit 4   a plugin raised
+├── SubscriberError         exit 4   a subscriber of a topic raised
 ├── RegressionError         exit 5   a regression check failed
 └── RenderError             exit 1   no renderer, or it failed
 """
@@ -116,6 +117,23 @@ class PluginError(SimkitError):
         super().__init__(f"SK-PLUGIN-004 plugin {plugin!r} ({where}) raised in {hook} at t={time:.6g} s: {reason}")
         self.code = "SK-PLUGIN-004"
         self.plugin, self.hook, self.time, self.where = plugin, hook, time, where
+
+
+class SubscriberError(SimkitError):
+    """A subscriber's callback raised; the original exception is `__cause__`.
+
+    Attributes:
+        topic: that it subscribes to.
+        callback: its name, and where it stands.
+        time: simulated time [s].
+    """
+
+    exit_code: ClassVar[int] = 4
+    code = "SK-TOPIC-002"
+
+    def __init__(self, topic: str, callback: str, time: float, reason: str) -> None:
+        super().__init__(f"{self.code} subscriber {callback} of {topic!r} raised at t={time:.6g} s: {reason}")
+        self.topic, self.callback, self.time = topic, callback, time
 
 
 class RegressionError(SimkitError):

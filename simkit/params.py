@@ -18,6 +18,7 @@ LARGEST = 1e100
 """Of a vector's components, deviations and the like: the square of a larger number is none."""
 _FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
 _TRUE, _FALSE = {"true", "1"}, {"false", "0"}
+_NOT, _READ, _WHOLLY = range(3)  # whether an element was asked for, and with all that is in it
 
 
 class Params:
@@ -60,12 +61,12 @@ class Params:
         # a file has many more elements than anybody asks for something in
         self._asked: set[str] | None = None
         self._attributes_asked: set[str] | None = None
-        self._read = False
+        self._read = _NOT
 
     @classmethod
-    def from_dict(cls, values: dict[str, Any], name: str = "plugin") -> Params:
+    def from_dict(cls, values: dict[str, Any], name: str = "plugin", diagnostics: Diagnostics | None = None) -> Params:
         """A block made in Python: nested dicts are elements, lists are repeated elements."""
-        root = cls(name)
+        root = cls(name, diagnostics=diagnostics)
 
         def fill(node: Params, items: dict[str, Any]) -> None:
             for key, value in items.items():
@@ -75,7 +76,7 @@ class Params:
                         fill(child, one)
                     elif isinstance(one, bool):
                         child.value = str(one).lower()
-                    elif isinstance(one, (tuple, list)):
+                    elif isinstance(one, (tuple, list)) or hasattr(one, "__array__"):
                         child.value = " ".join(str(v) for v in one)
                     else:
                         child.value = str(one)
@@ -97,7 +98,7 @@ class Params:
             self._asked.add(name)
         for c in self.children:
             if c.name == name:
-                c._read = True
+                c._read = c._read or _READ
                 return c
         return None
 
@@ -113,8 +114,13 @@ class Params:
             self._asked.add(name)
         found = [c for c in self.children if c.name == name]
         for c in found:
-            c._read = True
+            c._read = c._read or _READ
         return found
+
+    def each(self, name: str) -> list[Params]:
+        """A block for each child of that name, with that child alone: `[b.number("gain") for b in p.each("gain")]`."""
+        alone = ((c,) for c in self.all(name))
+        return [Params(self.name, children=c, where=c[0].where, diagnostics=self.diagnostics) for c in alone]
 
     def has(self, name: str) -> bool:
         """Whether a child of that name is there (does not count as reading it)."""
@@ -127,7 +133,7 @@ class Params:
     @property
     def was_read(self) -> bool:
         """Whether its parent's reader asked for it."""
-        return self._read
+        return self._read != _NOT
 
     @property
     def asked(self) -> set[str]:
@@ -146,7 +152,7 @@ class Params:
 
     def mark_all_read(self) -> None:
         """Says that this whole block is understood elsewhere."""
-        self._read = True
+        self._read = _WHOLLY
         for c in self.children:
             c.mark_all_read()
 
@@ -293,6 +299,15 @@ class Params:
                 yield c, f"the first <{c.name}> is" if comes_twice else did_you_mean(c.name, self._asked or ())
             else:
                 yield from c.unread()
+
+    def unread_attributes(self) -> Iterator[tuple[Params, str]]:
+        """Each attribute that nobody asked for, of the elements below that were read."""
+        for c in self.children:
+            if ":" in c.name or c._read in (_NOT, _WHOLLY):
+                continue
+            asked = c._attributes_asked or ()
+            yield from ((c, name) for name in c.attributes if ":" not in name and name != "xmlns" and name not in asked)
+            yield from c.unread_attributes()
 
     def report_unread(self, code: str, owner: str) -> None:
         """Warns about each element that nobody read."""

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.errors import SimkitError
 from simkit.params import Params
 from simkit.scene import SceneJoint, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
 
 if TYPE_CHECKING:
     from simkit.plugins.base import ParentKind, Plugin
+    from simkit.plugins.made import Hung
     from simkit.runtime import Parts
 
 
 def parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
-    """Sensors and plugins of a model, in document order: each sensor's plugins first, then models', then visuals'."""
+    """Sensors and plugins of a model, in document order."""
     from simkit.runtime import Parts
     from simkit.sensors.presets.apply import with_preset
 
     parts = Parts()
+    found: list[_Found] = []
+    places = _places(model)
     for named in model.all_sensors():
         faults = diagnostics.error_count
         scene = with_preset(named, diagnostics)
@@ -31,39 +36,97 @@ def parts_of_model(model: SceneModel, builder: Any, diagnostics: Diagnostics, pl
             sensor.build(builder)
         if diagnostics.error_count == faults:
             parts.sensors.append(sensor)
-        for plugin in scene.plugins:
-            parent = _sensor_parent(scene.scoped)
-            _add_plugin(parts, plugin, "sensor", scene, builder, diagnostics, plugin_paths, parent)
+        owner = scene.parent.rpartition("::")[0]
+        found += [_Found(p, "sensor", scene, owner, _sensor_parent(scene.scoped)) for p in scene.plugins]
     for nested in model.all_models():
         owners: list[SceneLink | SceneJoint] = [*nested.links, *nested.joints]
         below = [plugin for owner in owners for plugin in owner.plugins]
         parent = _model_parent(nested.scoped)
-        for plugin in (*below, *nested.plugins):
-            _add_plugin(parts, plugin, "model", nested, builder, diagnostics, plugin_paths, parent)
-    for visual in (v for link in model.all_links() for v in link.visuals if v.plugins):
-        parent = _visual_parent(visual.scoped)
-        for plugin in visual.plugins:
-            _add_plugin(parts, plugin, "visual", visual, builder, diagnostics, plugin_paths, parent)
+        found += [_Found(p, "model", nested, nested.scoped, parent) for p in (*below, *nested.plugins)]
+        for visual in (v for link in nested.links for v in link.visuals if v.plugins):
+            parent = _visual_parent(visual.scoped)
+            found += [_Found(p, "visual", visual, nested.scoped, parent) for p in visual.plugins]
+    for one in sorted(found, key=lambda one: _order(one, places)):
+        _add_plugin(parts, one, _order(one, places), builder, diagnostics, plugin_paths)
     return parts
 
 
-def parts_of_world(
-    world: SceneWorld, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path], made: Sequence[Plugin]
-) -> Parts:
+@dataclass(frozen=True)
+class _Found:
+    """A plugin of the file: where it hangs, the scoped name of its model, and what gives its parent."""
+
+    plugin: ScenePlugin
+    kind: ParentKind
+    scene: Any
+    model: str
+    parent: Callable[[Any], Any]
+
+
+_Place = tuple[tuple[bool, int], ...]
+"""A place in a document that includes others: in the world, in the model, in the model inside it."""
+
+
+def _places(model: SceneModel) -> dict[str, tuple[_Place, str | None]]:
+    """Where each model below one stands, and in which file, by scoped name."""
+    found: dict[str, tuple[_Place, str | None]] = {}
+
+    def enter(one: SceneModel, outer: _Place, file: str | None) -> None:
+        # what an include adds to the model stands in the outer file, and comes after what the model's own file says
+        place = (*outer, (bool(outer) and one.where.file == file, one.where.serial))
+        found[one.scoped] = place, one.where.file
+        for nested in one.models:
+            enter(nested, place, one.where.file)
+
+    enter(model, (), None)
+    return found
+
+
+def _order(one: _Found, places: Mapping[str, tuple[_Place, str | None]]) -> _Place:
+    where = one.plugin.where
+    place, file = places.get(one.model) or next(iter(places.values()))
+    return (*place, (where.file == file, where.serial))
+
+
+def parts_of_world(world: SceneWorld, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
     from simkit.plugins.clock import ClockPublisher
+    from simkit.plugins.gazebo_ros_services import ClassicServices
+    from simkit.plugins.made import Hung
     from simkit.plugins.tf import StaticTransforms
+    from simkit.plugins.world_services import WorldServices
+    from simkit.plugins.world_stats import WorldStats
     from simkit.runtime import Parts
     from simkit.sensors.known import report_homeless
 
     parts = Parts()
     report_homeless(world, diagnostics)
     for plugin in world.plugins:
-        _add_plugin(parts, plugin, "world", world, builder, diagnostics, plugin_paths, lambda sim: sim)
-    for instance in (ClockPublisher(), StaticTransforms(), *made):
-        instance.source = None
-        instance.prepare(world, Params("plugin"), builder)
-        parts.plugins.append((instance, lambda sim: sim))
+        one = _Found(plugin, "world", world, "", lambda sim: sim)
+        _add_plugin(parts, one, ((False, plugin.where.serial),), builder, diagnostics, plugin_paths)
+    first, last = (ClockPublisher(), StaticTransforms()), (WorldStats(), WorldServices(), ClassicServices())
+    for rank, instance in (*((0, one) for one in first), *((2, one) for one in last)):
+        hung = Hung(instance, "", "", world, lambda sim: sim)
+        _add_made(parts, hung, rank, builder, diagnostics)
     return parts
+
+
+def add_made(
+    parts: Mapping[str, Parts], made: Iterable[Any], world: SceneWorld, builder: Any, diagnostics: Diagnostics
+) -> None:
+    """Adds plugins made in Python to the parts of what they hang on."""
+    from simkit.plugins.made import hang
+
+    for hung in hang(made, world, diagnostics):
+        _add_made(parts[hung.top], hung, 1, builder, diagnostics)
+
+
+def _add_made(parts: Parts, hung: Hung, rank: int, builder: Any, diagnostics: Diagnostics) -> None:
+    from simkit.runtime.parts import MADE
+
+    plugin = hung.plugin
+    plugin.hand_over(diagnostics, hung.scoped)
+    plugin._order = (MADE, rank)
+    _prepare(plugin, hung.scene, plugin.params, builder, diagnostics)
+    parts.plugins.append((plugin, hung.parent))
 
 
 def _sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
@@ -90,29 +153,62 @@ def _sensor(scene: SceneSensor, diagnostics: Diagnostics) -> Any | None:
 
 def _add_plugin(
     parts: Parts,
-    plugin: ScenePlugin,
-    parent_kind: ParentKind,
-    scene: Any,
+    one: _Found,
+    place: _Place,
     builder: Any,
     diagnostics: Diagnostics,
     plugin_paths: Sequence[Path],
-    parent: Callable[[Any], Any],
 ) -> None:
     from simkit.plugins import find_plugin
+    from simkit.runtime.parts import WRITTEN
 
-    cls = find_plugin(plugin, plugin_paths, diagnostics, parent_kind)
+    plugin, scene = one.plugin, one.scene
+    cls = find_plugin(plugin, plugin_paths, diagnostics, one.kind)
     if cls is None:
         return
     if cls.drives and getattr(scene, "static", False):
         message = f"plugin {plugin.name!r} drives joints of {scene.scoped!r}, which is static; it is left out"
         diagnostics.warning("SK-PLUGIN-010", message, plugin.where, "nothing moves in a static model")
         return
-    instance = cls()
+    instance = _made(cls, plugin)
     instance.source = plugin
+    instance._order = (WRITTEN, place)
+    instance.plugin_paths = tuple(plugin_paths)
     faults = diagnostics.error_count
-    instance.prepare(scene, plugin.params, builder)
+    _prepare(instance, scene, plugin.params, builder, diagnostics)
     if diagnostics.error_count == faults:  # a faulty one would only say more of the same when it is loaded
-        parts.plugins.append((instance, parent))
+        parts.plugins.append((instance, one.parent))
+
+
+def _made(cls: type[Plugin], plugin: ScenePlugin) -> Plugin:
+    """An instance of a plugin's class."""
+    from simkit.runtime.faults import called
+
+    try:
+        made: Plugin = called(plugin, "__init__", cls)
+    except Exception as error:  # noqa: BLE001 - a plugin may raise anything; it is met when it would be loaded
+        made = cls.__new__(cls)
+        made._failed = "__init__", error
+    return made
+
+
+def _prepare(instance: Plugin, scene: Any, params: Params, builder: Any, diagnostics: Diagnostics) -> None:
+    """Lets a plugin prepare the spec, and notes which servos and motors it adds."""
+    from simkit.runtime.faults import called
+
+    if instance._failed is not None or not instance.has_hook("prepare"):
+        return
+    before = {id(ref) for record in builder.records.values() for ref in record.actuators}
+    try:
+        called(instance, "prepare", instance.prepare, scene, params, builder)
+    except SimkitError:
+        raise
+    except Exception as error:
+        if diagnostics.has_errors:
+            raise  # what was left out for its own fault may be missed here
+        instance._failed = "prepare", error  # met when it would be loaded, there is no simulation yet
+    after = [ref for record in builder.records.values() for ref in record.actuators]
+    instance._actuators = tuple(ref for ref in after if id(ref) not in before)
 
 
 def _sensor_parent(scoped: str) -> Callable[[Any], Any]:
@@ -133,5 +229,4 @@ def report_unread(parts: Iterable[Parts]) -> None:
         for sensor in part.sensors:
             sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
         for plugin, _ in part.plugins:
-            if plugin.source is not None:
-                plugin.params.report_unread("SK-PARAM-003", f"plugin {plugin.name!r}")
+            plugin.report_unread()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import logging
 import pkgutil
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
@@ -43,7 +44,11 @@ def discover(
             if own and issubclass(cls, base) and not inspect.isabstract(cls):
                 classes[cls] = None
     for point in sorted(_installed().select(group=group), key=lambda p: (p.name, p.value)):
-        loaded = point.load()
+        try:
+            loaded = point.load()
+        except Exception as error:  # noqa: BLE001 - one broken package must not keep the others from working
+            logging.getLogger("simkit").warning("entry point %s (%s) of %s: %r", point.name, point.value, group, error)
+            continue
         if inspect.isclass(loaded) and issubclass(loaded, base):
             classes[loaded] = None
     table: dict[str, type[T]] = {}

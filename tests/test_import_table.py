@@ -18,7 +18,10 @@ ROOMS: dict[str, frozenset[str]] = {
     "runtime": frozenset({"compiler", "engine", "scene"}),
     "earth": frozenset({"scene"}),
     "sensors": frozenset({"runtime", "compiler", "scene", "earth"}),
-    "plugins": frozenset({"runtime", "compiler", "scene", "earth"}),
+    "gzpython": frozenset({"runtime", "scene", "earth"}),
+    "plugins": frozenset({"runtime", "compiler", "scene", "earth", "gzpython"}),
+    "authoring": frozenset({"plugins", "gzpython", "sensors", "runtime", "scene"}),
+    "pytest_plugin": frozenset({"runtime"}),
     "parts": frozenset({"plugins", "sensors", "runtime", "scene"}),
     "sinks": frozenset({"runtime", "writers"}),
     "fix_inertia": frozenset({"loaders", "compiler", "scene"}),
@@ -30,7 +33,8 @@ ROOMS: dict[str, frozenset[str]] = {
     "codes": frozenset(),
     "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
     "cli": frozenset(
-        {"build", "codes", "fix_inertia", "description", "bench", "engine", "overrides", "sinks", "vendor", "writers"}
+        {"authoring", "build", "codes", "fix_inertia", "description", "bench", "engine", "overrides", "sinks", "vendor"}
+        | {"writers"}
     ),
 }
 KNOWS_ALL = frozenset({"build"})

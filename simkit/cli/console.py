@@ -132,8 +132,8 @@ def guarded(command: Callable[P, Any]) -> Callable[P, None]:
         except SimkitError as error:
             show_error(error)
             raise typer.Exit(error.exit_code) from None
-        except KeyboardInterrupt:
-            say("interrupted")
+        except KeyboardInterrupt as stopped:
+            say(f"interrupted {stopped}".rstrip())
             raise typer.Exit(INTERRUPTED) from None
         except BrokenPipeError:
             # Whoever read our output has gone; closing standard output again would complain a second time.

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -28,10 +30,14 @@ from simkit.cli.options import (
     source,
 )
 from simkit.errors import RenderError
+from simkit.sinks.blocked import BlockedPlugins
 
 if TYPE_CHECKING:
     from simkit.sinks.recorder import Recorder
     from simkit.sinks.topic_counts import TopicCounter
+
+
+OnError = Literal["stop", "disable"]
 
 
 @dataclass(frozen=True)
@@ -53,8 +59,10 @@ class Request:
     cmd_vel: str | None = None
     script: Path | None = None
     plugin_paths: tuple[Path, ...] = ()
+    on_plugin_error: OnError | None = None
     verbose: bool = False
     quiet: bool = False
+    watch: bool = False
     source: Source = field(default_factory=lambda: source((), (), ()))
 
 
@@ -92,18 +100,33 @@ def run(
     resource_path: ResourcePaths = [],
     package_path: PackagePaths = [],
     plugin_path: PluginPaths = [],
+    watch: Annotated[bool, typer.Option("--watch", help="Reloads a plugin whose file is edited, and goes on.")] = False,
     xacro_arg: XacroArgs = [],
     base: Base = "auto",
+    on_plugin_error: Annotated[
+        str | None,
+        typer.Option(
+            help="What becomes of a plugin that raises: stop ends the run (exit 4), disable goes on without it.",
+            metavar="stop|disable",
+        ),
+    ] = None,
     verbose: Verbose = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     request = Request(
         world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, _finite(rtf), tuple(set_), strict,
-        view, picture, cmd_vel, script, tuple(plugin_path), verbose, quiet,
+        view, picture, cmd_vel, script, tuple(plugin_path), _on_error(on_plugin_error), verbose, quiet, watch,
         source(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
     return execute(request)
+
+
+def _on_error(word: str | None) -> OnError | None:
+    """The word as one of those that are allowed."""
+    if word not in (None, "stop", "disable"):
+        raise typer.BadParameter(f"{word!r} is not stop or disable", param_hint="--on-plugin-error")
+    return word  # type: ignore[return-value]
 
 
 def _finite(number: float | None) -> float | None:
@@ -127,25 +150,27 @@ def execute(request: Request) -> int:
         picture.check_target(request.picture)
     if request.view:
         viewer.check_possible()
-    sim = load(
-        request.world,
-        seed=request.seed,
-        plugin_paths=request.plugin_paths,
-        strict=request.strict,
-        overrides=request.overrides,
-        **request.source,
-    )
-    with sim:
-        check_used(sim.diagnostics)
-        print_diagnostics(sim.diagnostics, verbose=request.verbose)
-        return _Run(request, sim).execute()
+    with BlockedPlugins(say) as blocked:
+        sim = load(
+            request.world,
+            seed=request.seed,
+            plugin_paths=request.plugin_paths,
+            strict=request.strict,
+            overrides=request.overrides,
+            on_error=request.on_plugin_error,
+            **request.source,
+        )
+        with sim:
+            check_used(sim.diagnostics)
+            print_diagnostics(sim.diagnostics, verbose=request.verbose)
+            return _Run(request, sim, blocked).execute()
 
 
 class _Run:
     """One run of a loaded world."""
 
-    def __init__(self, request: Request, sim: Any) -> None:
-        self.request, self.sim = request, sim
+    def __init__(self, request: Request, sim: Any, blocked: BlockedPlugins) -> None:
+        self.request, self.sim, self.blocked = request, sim, blocked
 
     def execute(self) -> int:
         from simkit.sinks.commands import Commands
@@ -160,7 +185,7 @@ class _Run:
             say("running until Ctrl-C (--duration S stops by itself)")
         driven = DrivenPath(sim) if request.picture is not None else None
         with ExitStack() as stack:
-            interrupts = stack.enter_context(Interrupts())
+            interrupts = stack.enter_context(Interrupts(self.blocked.ask))
             recording = None
             if request.record is not None:
                 recording = stack.enter_context(
@@ -178,8 +203,9 @@ class _Run:
             loop = Loop(sim, commands, interrupts, watchers, rtf=rtf, follow=driven is not None)
             if request.view:
                 self._open_viewer(stack, loop, watchers)
+            advance = self._watched(loop, interrupts, watchers) if request.watch else loop.run
             try:
-                loop.run(request.duration)
+                advance(request.duration)
             finally:
                 elapsed = watch.elapsed
                 progress.__exit__(None, None, None)
@@ -207,6 +233,15 @@ class _Run:
         viewer = stack.enter_context(Viewer(self.sim))
         watchers.append(viewer.update)
         loop.keep_going = viewer.is_open
+
+    def _watched(self, loop: Loop, interrupts: Interrupts, watchers: list[Any]) -> Callable[[float | None], Any]:
+        """The same loop, which reloads plugins that are edited."""
+        from simkit.cli.run_watch import Watch
+
+        watch = Watch(self.sim, self.request.plugin_paths, interrupts, waits=self.request.record is None)
+        watchers.append(watch.poll)
+        loop.before_slice = watch.keep
+        return partial(watch.run, loop)
 
     def _summarise(self, counter: TopicCounter, recording: Recorder | None, elapsed: float) -> None:
         """Topics with their true rates, then one line, then the hash of the physics state."""

@@ -39,6 +39,7 @@ _TITLES = {
     "LINT": "Physics lint",
     "NAME": "Names while it runs",
     "MSG": "Messages",
+    "TOPIC": "Topics",
     "RENDER": "Pictures",
     "BAG": "Recordings",
     "WRITE": "Writing files",

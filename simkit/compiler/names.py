@@ -144,6 +144,9 @@ class ActuatorRef:
     kp: float | None = None
     kv: float | None = None
 
+    def __deepcopy__(self, memo: dict[int, object]) -> ActuatorRef:
+        return self
+
 
 @dataclass(frozen=True, slots=True)
 class GeomOwner:

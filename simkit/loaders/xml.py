@@ -96,7 +96,7 @@ class _Reader:
             raise _Refused("SK-XML-002", f"more than {MAX_ELEMENTS} elements")
         if len(self.stack) >= MAX_DEPTH:
             raise _Refused("SK-XML-002", f"elements nested deeper than {MAX_DEPTH}")
-        where = Where(self.file, self.parser.CurrentLineNumber + self.offset)
+        where = Where(self.file, self.parser.CurrentLineNumber + self.offset, self.count)
         element = Params(name.removeprefix(PREFIX), "", attributes, (), where, self.diagnostics)
         if self.stack:
             self.stack[-1][0].children.append(element)

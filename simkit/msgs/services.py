@@ -6,6 +6,8 @@ the messages `<package>/srv/<Name>_Request` and `<package>/srv/<Name>_Response`.
 
 from __future__ import annotations
 
+from simkit.msgs import world
+
 SERVICES: dict[str, str] = {
     "std_srvs/srv/Empty": """
 ---
@@ -53,4 +55,5 @@ string[] names
 ---
 rcl_interfaces/ParameterDescriptor[] descriptors
 """,
+    **world.SERVICES,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -10,9 +11,15 @@ from simkit.errors import MessageError
 from simkit.msgs.actions import ACTIONS, MESSAGES
 from simkit.msgs.extras import DEFINITIONS
 from simkit.msgs.services import SERVICES
+from simkit.msgs.world import MESSAGES as WORLD_MESSAGES
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
+
+
+_MESSAGES = {**MESSAGES, **WORLD_MESSAGES}
+_SERVICE_ENDS, _ACTION_ENDS = ("Request", "Response"), ("Goal", "Result", "Feedback")
+_USED = re.compile(r"^(\w+/\w+)", re.MULTILINE)
 
 
 @cache
@@ -37,21 +44,35 @@ def type_store() -> Typestore:
 
 
 @cache
-def _register_interfaces() -> None:
-    """Adds the messages of services and actions; done when the first of them is asked for."""
+def _register(name: str) -> None:
+    """Adds one of our messages, or those of one service or action, with its parts; done when it is first asked for."""
     from rosbags.typesys import get_types_from_msg
 
+    if name in _MESSAGES:
+        texts = {name: _MESSAGES[name]}
+    else:
+        interfaces, ends = (SERVICES, _SERVICE_ENDS) if "/srv/" in name else (ACTIONS, _ACTION_ENDS)
+        parts = interfaces[name].split("---\n")
+        texts = {f"{name}_{end}": part for end, part in zip(ends, parts, strict=True)}
     found: dict[str, Any] = {}
-    for name, text in MESSAGES.items():
-        found.update(get_types_from_msg(text, name))
-    for interfaces, parts in ((SERVICES, ("Request", "Response")), (ACTIONS, ("Goal", "Result", "Feedback"))):
-        for name, text in interfaces.items():
-            for part, fields in zip(parts, text.split("---\n"), strict=True):
-                package, kind, short = name.split("/")
-                # the parser takes every name for a message's
-                parsed = get_types_from_msg(fields, f"{package}/msg/{short}_{part}")
-                found.update({key.replace("/msg/", f"/{kind}/"): value for key, value in parsed.items()})
+    for full, text in texts.items():
+        package, kind, short = full.split("/")
+        # the parser takes every name for a message's
+        parsed = get_types_from_msg(text, f"{package}/msg/{short}")
+        found.update({key.replace("/msg/", f"/{kind}/"): value for key, value in parsed.items()})
+        for used in _USED.findall(text):
+            if (part := used.replace("/", "/msg/", 1)) in _MESSAGES:
+                _register(part)
     type_store().register(found)
+
+
+def _register_if_ours(type_name: str) -> None:
+    if type_name in _MESSAGES:
+        _register(type_name)
+    elif "/srv/" in type_name or "/action/" in type_name:
+        whole, _, end = type_name.rpartition("_")
+        if end in (*_SERVICE_ENDS, *_ACTION_ENDS) and (whole in SERVICES or whole in ACTIONS):
+            _register(whole)
 
 
 def full_name(type_name: str) -> str:
@@ -61,15 +82,16 @@ def full_name(type_name: str) -> str:
         MessageError: no such type is known; names the closest.
     """
     store = type_store()
-    if "/srv/" in type_name or "/action/" in type_name or type_name in MESSAGES:
-        _register_interfaces()
-    if type_name in store.fielddefs:
-        return type_name
     package, _, rest = type_name.partition("/")
     long = f"{package}/msg/{rest}"
-    if long in store.fielddefs:
-        return long
-    hint = did_you_mean(type_name if "/msg/" in type_name else long, store.fielddefs)
+    for name in (type_name, long):
+        _register_if_ours(name)
+        if name in store.fielddefs:
+            return name
+    ours = [*_MESSAGES, *(f"{s}_{end}" for s in SERVICES for end in _SERVICE_ENDS)]
+    ours += [f"{a}_{end}" for a in ACTIONS for end in _ACTION_ENDS]
+    is_long = any(f"/{kind}/" in type_name for kind in ("msg", "srv", "action"))
+    hint = did_you_mean(type_name if is_long else long, [*store.fielddefs, *ours])
     raise MessageError(f"no message type {type_name!r} is known; {hint}".rstrip("; "))
 
 

@@ -116,11 +116,17 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
         diagnostics.warning("SK-PLUGIN-002", message, plugin.where, "write it in Python: docs/writing_a_plugin.md")
         return
     spelled = {normalise(f): f for cls in dict.fromkeys(plugin_kinds().values()) for f in (*cls.filenames, *cls.names)}
-    near = next(filter(None, (closest(name, spelled) for name in names)), None)
+    cores = {_core(name): written for name, written in spelled.items()}
+    near = next(filter(None, (closest(_core(name), cores) for name in names)), None)
     if near:
-        hint = f"did you mean {spelled[near]!r}?"
+        hint = f"did you mean {cores[near]!r}?"
     else:
         nearest = closest(names[0] if names else "", spelled, least=0.0)
         hint = f"no name is near; the closest known one is {spelled[nearest]!r}" if nearest else ""
     message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is left out"
     diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)
+
+
+def _core(name: str) -> str:
+    """What of a normalised name is not the same in all of its family, and so says how near two are."""
+    return re.sub(r"^(gazebo_ros_|gz-sim-|gz::sim::systems::)|-system$", "", name) or name

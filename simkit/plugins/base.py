@@ -15,9 +15,10 @@ import abc
 import copy
 import logging
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
-from simkit.diagnostics import NOWHERE, Where
+from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.params import Params
 from simkit.plugins.ros_names import RosNames
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation
     from simkit.runtime.actions import GoalHandle
+    from simkit.runtime.faults import OnError
     from simkit.runtime.parameters import Parameter
     from simkit.scene import ScenePlugin
 
@@ -32,6 +34,7 @@ T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
 ParentKind = Literal["world", "model", "visual", "sensor", "any"]
+ON_ERROR = ("stop", "disable")
 
 
 class Plugin(abc.ABC):
@@ -46,6 +49,8 @@ class Plugin(abc.ABC):
         parent_kind: what it may hang on; the base classes set it. Several kinds where the file may choose.
         lets_sleep: whether a model that it hangs on may sleep while it rests: nobody could tell by this plugin.
         before_step_rate, after_step_rate: [Hz]; set in the class, or on the instance in `load`.
+        on_error: "stop": what it raises stops the run; "disable": the run goes on without it. `<simkit:on_error>` in
+            the file goes over it, and what `simkit.load` is told over both. None is "stop".
         sim: the simulation.
         name: the plugin's name in the file.
         scoped: the entity it hangs on (empty for the world).
@@ -63,7 +68,12 @@ class Plugin(abc.ABC):
 
     before_step_rate: float | None = None
     after_step_rate: float | None = None
+    on_error: OnError | None = None
 
+    _failed: tuple[str, Exception] | None = None  # what it raised before there was a simulation, and where
+    _actuators: tuple[Any, ...] = ()  # servos and motors that its `prepare` added
+    _order: tuple[Any, ...] = ()  # where it stands among all plugins
+    plugin_paths: tuple[Path, ...] = ()  # folders whose Python the user allows
     _source: ScenePlugin | None = None
     sim: Simulation
     name: str = ""
@@ -72,6 +82,15 @@ class Plugin(abc.ABC):
     where: Where = NOWHERE
     ros: RosNames
     log: logging.Logger
+
+    def __init__(self, **values: Any) -> None:
+        """A plugin made in Python.
+
+        Args:
+            values: its parameters, as a file would give them: `MyPlugin(gain=2.0, topic="out")`. Dicts are blocks,
+                lists repeated elements, tuples the numbers of one.
+        """
+        self._values = values
 
     # ------------------------------------------------------------------ what a user writes
 
@@ -109,11 +128,30 @@ class Plugin(abc.ABC):
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Any:
         """A publisher on `topic` (expanded and remapped as in ROS), of a type such as `nav_msgs/msg/Odometry`."""
-        return self.sim.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
+        with self.sim.bus.owned_by(self):
+            return self.sim.bus.advertise(self.ros.topic(topic), type_name, latched=latched)
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Any:
         """Calls `callback(message)` between two steps for each message on `topic`; the first type is the listed one."""
-        return self.sim.bus.listen(self.ros.topic(topic), (types,) if isinstance(types, str) else types, callback)
+        name = self.ros.topic(topic)
+        guarded = self.sim.faults.guard(self, f"its callback for {name!r}", callback)
+        with self.sim.bus.owned_by(self):
+            return self.sim.bus.listen(name, (types,) if isinstance(types, str) else types, guarded)
+
+    def subscribe(self, topic: str, callback: Callable[[Any], None] | None = None, keep: int | None = None) -> Any:
+        """Receives what others publish on `topic` (expanded and remapped as in ROS), at the moment they do.
+
+        To be used for readings; what comes in as a command is for `listen`, which takes it between two steps.
+
+        Args:
+            topic: its name.
+            callback: called with each message.
+            keep: how many of the newest messages `.messages` has.
+        """
+        name = self.ros.topic(topic)
+        guarded = callback and self.sim.faults.guard(self, f"its callback for {name!r}", callback)
+        with self.sim.bus.owned_by(self):
+            return self.sim.subscribe(name, guarded, keep)
 
     def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Any:
         """Opens a service (its name expanded and remapped as in ROS), of a type such as `std_srvs/srv/Trigger`.
@@ -206,13 +244,37 @@ class Plugin(abc.ABC):
     @source.setter
     def source(self, plugin: ScenePlugin | None) -> None:
         """Gives the instance its name, place and parameters; done before `prepare`."""
+        if plugin is not None and not hasattr(plugin, "params"):
+            raise AttributeError("`source` is the plugin as the file has it; give an attribute of yours another name")
         self._source = plugin
-        self.name = plugin.name if plugin else (self.name or type(self).__name__)
-        self.scoped = plugin.scoped if plugin else ""
-        self.params = plugin.params if plugin else Params("plugin")
-        self.where = plugin.where if plugin else NOWHERE
+        if plugin is None:
+            self.hand_over(Diagnostics())
+            return
+        self._describe(plugin.name, plugin.scoped, plugin.params, plugin.where)
+
+    def hand_over(self, diagnostics: Diagnostics, scoped: str = "") -> None:
+        """Gives an instance made in Python its name, place and parameters; done before `prepare`.
+
+        Args:
+            diagnostics: where problems of its parameters go.
+            scoped: what it hangs on; empty for the world.
+        """
+        self._source = None
+        params = Params.from_dict(vars(self).get("_values", {}), "plugin", diagnostics)
+        self._describe(self.name or type(self).__name__, scoped, params, NOWHERE)
+
+    def _describe(self, name: str, scoped: str, params: Params, where: Where) -> None:
+        self.name, self.scoped, self.params, self.where = name, scoped, params, where
         self.ros = RosNames.from_params(self.params, self.name)
+        if self.params.has("on_error"):
+            self.on_error = "disable" if self.params.choice("on_error", ON_ERROR) == "disable" else "stop"
         self.log = logging.getLogger(f"simkit.plugins.{self.name}")
+
+    def report_unread(self) -> None:
+        """Warns about what the file says and the plugin did not read; done after `load`."""
+        from simkit.plugins.reads import report_unread
+
+        report_unread(self)
 
     def _setup(self, sim: Simulation, source: ScenePlugin | None = None) -> None:
         """Ties the instance to its simulation; done before `load`."""
@@ -268,7 +330,10 @@ class Plugin(abc.ABC):
         return self
 
 
-_OWNED = frozenset(("sim", "name", "scoped", "params", "where", "ros", "log", "_source", "_uncopied"))
+_OWNED = frozenset(
+    ("sim", "name", "scoped", "params", "where", "ros", "log", "_source", "_uncopied", "_values")  # noqa: RUF005
+    + ("_actuators", "_failed", "_order", "plugin_paths")
+)
 
 
 class WorldPlugin(Plugin):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_states import JOINT_STATE, joint_state, readings
-from simkit.plugins.lookups import find_axis_joint, numbers
+from simkit.plugins.lookups import numbers
 from simkit.plugins.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
@@ -35,6 +35,7 @@ from simkit.plugins.odometry_noise import (
     displaced,
     read_odometry_noise,
 )
+from simkit.plugins.wheels import find_wheels
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
@@ -107,9 +108,14 @@ def read_options(params: Params) -> Options:
 
 
 def _read_ros_1(params: Params) -> Options:
+    left, right = params.text("leftJoint", "left_joint"), params.text("rightJoint", "right_joint")
+    if params.boolean("legacyMode", False):
+        # for files of before 2016, whose wheels were named the other way round
+        left, right = right, left
+    params.child("rosDebugLevel")  # of the plugin's log
     pair = Pair(
-        left=params.text("leftJoint", "left_joint"),
-        right=params.text("rightJoint", "right_joint"),
+        left=left,
+        right=right,
         separation=params.number("wheelSeparation", 0.34, minimum=1e-6),
         radius=params.number("wheelDiameter", 0.15, minimum=1e-6) / 2,
     )
@@ -124,7 +130,7 @@ def _read_ros_1(params: Params) -> Options:
         odometry_frame=params.text("odometryFrame", "odom"),
         base_frame=params.text("robotBaseFrame", "base_footprint"),
         from_encoders=params.choice("odometrySource", ("world", "encoder", "1", "0"), "world") in {"encoder", "0"},
-        publish_odom=True,
+        publish_odom=publish_tf,  # Gazebo's element of that name is of both
         publish_odom_tf=params.boolean("publishOdomTF", True) and publish_tf,
         publish_wheel_tf=params.boolean("publishWheelTF", False),
         publish_wheel_joint_state=params.boolean("publishWheelJointState", False),
@@ -169,20 +175,23 @@ class GazeboRosDiffDrive(ModelPlugin):
 
     filenames = ("libgazebo_ros_diff_drive.so",)
     drives = True
+    is_level = False  # whether the odometry leaves out the height
+
+    def read(self, params: Params) -> Options:
+        """The parameters, in the spelling that they are in."""
+        return read_options(params)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self.options = read_options(params)
+        self.options = options = self.read(params)
+        sides = {"left wheel": [p.left for p in options.pairs], "right wheel": [p.right for p in options.pairs]}
+        wheels = find_wheels(scene, sides, params)
         self._joints: list[tuple[str, str, str]] = []  # scoped names: joint, parent link, child link
         self._servos: list[Any] = []
         self._canonical = scene.canonical_link
-        for pair in self.options.pairs:
-            for name in (pair.left, pair.right):
-                joint = find_axis_joint(scene, name, params)
-                if joint is None:
-                    continue
-                self._joints.append((joint.scoped, joint.parent_link, joint.child_link))
-                torque = self.options.max_torque
-                self._servos.append(builder.add_velocity_servo(joint.scoped, max_effort=torque, owner=self.name))
+        for joint in (joint for pair in zip(*wheels.values(), strict=False) for joint in pair):
+            self._joints.append((joint.scoped, joint.parent_link, joint.child_link))
+            servo = builder.add_velocity_servo(joint.scoped, max_effort=options.max_torque, owner=self.name)
+            self._servos.append(servo)
 
     def load(self, parent: Any, params: Params) -> None:
         options = self.options
@@ -252,7 +261,8 @@ class GazeboRosDiffDrive(ModelPlugin):
             pose, twist = self._measured()
             if odom:
                 frames = options.odometry_frame, options.base_frame
-                odom.publish_later(partial(odometry_message, now, *frames, pose, twist, *self._covariances()))
+                shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if self.is_level else pose
+                odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *self._covariances()))
             if tf:
                 tf.publish_later(partial(transforms, now, *self._transforms(pose)))
         if self._states is not None and self._states.wanted:

@@ -36,13 +36,43 @@ class GazeboRosRaySensor(SensorPlugin):
 
 
 class GazeboRosLaser(SensorPlugin):
-    """ROS 1: a LaserScan on `<topicName>`, in `<frameName>`."""
+    """ROS 1: a LaserScan on `<topicName>` (`/world`), in the link's frame or `<frameName>`."""
 
     filenames = ("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
 
     def load(self, parent: Any, params: Params) -> None:
-        topic = self.ros.topic(params.text("topicName", "scan"))
-        _connect(self, parent, {"scan": topic}, 0.0, RADIATION["infrared"])
+        _connect(self, parent, {"scan": _named_topic(self)}, 0.0, RADIATION["infrared"])
+
+
+class GazeboRosBlockLaser(SensorPlugin):
+    """ROS 1: a PointCloud with a point for every ray on `<topicName>` (`/world`), in the link's frame or `<frameName>`.
+
+    A ray without a reading ends at the sensor's maximum range. `<gaussianNoise>` is a standard deviation on x, y and z
+    [m] of those with one, and on every intensity, besides the sensor's own noise. `<hokuyoMinIntensity>` and
+    `<updateRate>` change nothing, as in Gazebo.
+    """
+
+    filenames = ("libgazebo_ros_block_laser.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        noise = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
+        for name in ("hokuyoMinIntensity", "updateRate"):
+            params.number(name, 0.0)
+            if params.has(name):
+                message = f"plugin {self.name!r}: <{name}> changes nothing, as in Gazebo"
+                hint = "the sensor's <update_rate> counts" if name == "updateRate" else ""
+                params.diagnostics.note("SK-PLUGIN-061", message, params.block(name).where, hint)
+        if _connect(self, parent, {"block": _named_topic(self)}, 0.0, RADIATION["infrared"]) and noise > 0:
+            parent.add_point_noise(noise)
+
+
+def _named_topic(plugin: SensorPlugin) -> str:
+    """`<topicName>`, which in Gazebo is `/world` where it is not given."""
+    topic = plugin.params.text("topicName", "")
+    if not topic:
+        message = f"plugin {plugin.name!r} has no <topicName>: it publishes on '/world', as in Gazebo"
+        plugin.params.diagnostics.note("SK-PLUGIN-062", message, plugin.where, "<topicName>scan</topicName>")
+    return plugin.ros.topic(topic or "/world")
 
 
 class GazeboRosVelodyneLaser(SensorPlugin):

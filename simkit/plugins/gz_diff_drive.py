@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,19 +11,20 @@ from typing import TYPE_CHECKING, Any
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import find_axis_joint
+from simkit.plugins.diff_drive_fleet import DriveFleet, fleet_of
 from simkit.plugins.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
     TRANSFORMS,
-    DeadReckoning,
     TrueMotion,
+    WheelOdometry,
     command_of,
     odometry_message,
-    rolling_twist,
     transforms,
+    wheel_angles,
 )
 from simkit.plugins.odometry_noise import ErringOdometry, read_odometry_noise
+from simkit.plugins.wheels import find_wheels
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -37,19 +39,8 @@ class SpeedLimiter:
     acceleration: tuple[float, float] = (-math.inf, math.inf)
     jerk: tuple[float, float] = (-math.inf, math.inf)
 
-    @classmethod
-    def from_params(cls, params: Params, direction: str) -> SpeedLimiter:
-        """`<max_linear_velocity>` and the like; `<max_velocity>` stands for both directions where they are absent."""
-
-        def bounds(quantity: str) -> tuple[float, float]:
-            low, high = (_bound(params, side, direction, quantity) for side in ("min", "max"))
-            if low > high:
-                message = f"found min {low:g} above max {high:g} for {direction} {quantity}, allowed is min ≤ max"
-                params.error("SK-PARAM-002", message)
-                return (-math.inf, math.inf)
-            return low, high
-
-        return cls(bounds("velocity"), bounds("acceleration"), bounds("jerk"))
+    def __deepcopy__(self, memo: dict[int, object]) -> SpeedLimiter:
+        return self
 
     def limit(self, target: float, last: float, before_last: float, step: float) -> float:
         """The speed to command now, bounded in jerk, then acceleration, then speed (gz-math's SpeedLimiter).
@@ -69,10 +60,24 @@ class SpeedLimiter:
         return _clamp(reached, self.velocity)
 
 
-def _bound(params: Params, side: str, direction: str, quantity: str) -> float:
-    endless = -math.inf if side == "min" else math.inf
-    general = params.number(f"{side}_{quantity}", endless, finite=False)
-    return params.number(f"{side}_{direction}_{quantity}", general, finite=False)
+def speed_limits(params: Params) -> tuple[SpeedLimiter, SpeedLimiter]:
+    """Of the linear and the angular speed: `<max_linear_velocity>` and the like; for both directions `<max_velocity>`.
+
+    A lower bound is not positive and an upper one not negative, so that a drive can stand still.
+    """
+
+    def read(side: str, quantity: str) -> list[float]:
+        endless, least, most = (-math.inf, None, 0.0) if side == "min" else (math.inf, 0.0, None)
+
+        def bound(name: str, default: float) -> float:
+            return params.number(name, default, minimum=least, maximum=most, finite=False)
+
+        general = bound(f"{side}_{quantity}", endless)
+        return [bound(f"{side}_{direction}_{quantity}", general) for direction in ("linear", "angular")]
+
+    pairs = [list(zip(read("min", q), read("max", q), strict=True)) for q in ("velocity", "acceleration", "jerk")]
+    linear, angular = (SpeedLimiter(*bounds) for bounds in zip(*pairs, strict=True))
+    return linear, angular
 
 
 def _clamp(value: float, bounds: tuple[float, float]) -> float:
@@ -82,9 +87,10 @@ def _clamp(value: float, bounds: tuple[float, float]) -> float:
 class DiffDrive(ModelPlugin):
     """Drives the wheels from `/model/<model>/cmd_vel`; odometry by the wheels' turns on `/model/<model>/odometry`.
 
-    Odometry starts at zero, in the point between the wheels; its twist is that of the first pair of wheels now.
-    With `<publish_ground_truth>` (simkit's own) the true pose goes out on `/model/<model>/ground_truth/odom`, and with
-    `<odometry_noise>` (simkit's own) the odometry errs and tells its covariance.
+    Odometry is that of the first pair of wheels. It starts at zero, in the point between them; its twist is the mean
+    over the last ten steps. With `<publish_ground_truth>` (simkit's own) the true pose goes out on
+    `/model/<model>/ground_truth/odom`, and with `<odometry_noise>` (simkit's own) the odometry errs and tells its
+    covariance.
     """
 
     filenames = ("gz-sim-diff-drive-system",)
@@ -94,42 +100,39 @@ class DiffDrive(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._separation = params.number("wheel_separation", 1.0, minimum=1e-6)
         self._radius = params.number("wheel_radius", 0.2, minimum=1e-6)
-        self._limits = (SpeedLimiter.from_params(params, "linear"), SpeedLimiter.from_params(params, "angular"))
+        self._limits = speed_limits(params)
         self._canonical = scene.canonical_link
-        sides = []
-        self._servos: list[list[Any]] = []
-        for name in ("left_joint", "right_joint"):
-            elements = params.all(name)
-            if not elements:
+        # gz publishes at every step where the frequency is zero
+        self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
+        named = [params.all("left_joint"), params.all("right_joint")]
+        for name, found in zip(("left_joint", "right_joint"), named, strict=True):
+            if not found:
                 params.text(name, required=True)
-            found = [find_axis_joint(scene, element.value, params) for element in elements]
-            joints = [joint for joint in found if joint is not None]
-            sides.append([joint.scoped for joint in joints])
-            self._servos.append(
-                [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]
-            )
-        self._sides = sides
+        left, right = ([element.value for element in elements] for elements in named)
+        wheels = find_wheels(scene, {"left wheel": left, "right wheel": right}, params)
+        self._sides = [[joint.scoped for joint in joints] for joints in wheels.values()]
+        self._servos = [
+            [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]
+            for joints in wheels.values()
+        ]
 
     def load(self, parent: Any, params: Params) -> None:
         model = parent.name
         link = self._canonical.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{model}/odom")
         self._child = params.text("child_frame_id", f"{model}/{link}")
-        # gz publishes at every step where the frequency is not positive
-        self.after_step_rate = max(0.0, params.number("odom_publish_frequency", 50.0))
-        self._pair = tuple(self.sim.joint(names[0]) for names in self._sides)
+        self._pair = (self.sim.joint(self._sides[0][0]), self.sim.joint(self._sides[1][0]))
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._target = (0.0, 0.0)
         self._last, self._before_last = (0.0, 0.0), (0.0, 0.0)
         self._settled = True
         self._enabled = True
-        self._reckoning = DeadReckoning()
-        self._angles = self._read_angles()
+        self._odometry = WheelOdometry(self._radius, self._separation, self.period)
         noise = read_odometry_noise(params)
         self._erring: ErringOdometry | None = None
         if noise is not None:
             stream = self.random("odometry_noise", 2)
-            self._erring = ErringOdometry(noise, self._radius, self._separation, stream, self._angles)
+            self._erring = ErringOdometry(noise, self._radius, self._separation, stream, wheel_angles(*self._pair))
         self._last_ns = self.sim.time_ns
         self.listen(valid_topic(params.text("topic", f"/model/{model}/cmd_vel")), COMMAND_TYPES, self._on_command)
         self.listen(valid_topic(f"/model/{model}/enable"), "std_msgs/msg/Bool", self._on_enable)
@@ -153,9 +156,22 @@ class DiffDrive(ModelPlugin):
             self._target, self._settled = (0.0, 0.0), False
 
     def before_step(self) -> None:
-        """Takes the limited speeds one step towards the command."""
-        if self._settled:
-            return
+        """Notes the wheels' angles, and takes the limited speeds one step towards the command."""
+        self._odometry.note(wheel_angles(*self._pair))
+        if not self._settled:
+            self._command()
+
+    @classmethod
+    def before_step_together(cls, drives: Sequence[DiffDrive]) -> Callable[[Iterable[DiffDrive]], None]:
+        """Of many."""
+        return DriveFleet(drives).before_step
+
+    @classmethod
+    def after_step_together(cls, drives: Sequence[DiffDrive]) -> Callable[[Iterable[DiffDrive]], None]:
+        """Of many."""
+        return fleet_of(drives).after_step
+
+    def _command(self) -> None:
         step = self.period
         linear, angular = (
             limiter.limit(target, last, before, step)
@@ -174,29 +190,19 @@ class DiffDrive(ModelPlugin):
 
     def after_step(self) -> None:
         """Odometry and its transform."""
-        now = self.sim.time_ns
-        self._advance()
-        erring = self._erring
-        pose = (erring.reckoning if erring is not None else self._reckoning).pose
+        now, erring, odometry = self.sim.time_ns, self._erring, self._odometry
+        angles = wheel_angles(*self._pair)
+        odometry.reckon(angles)
+        pose = odometry.reckoning.pose
+        told: tuple[Any, ...] = (odometry.twist,)
+        if erring is not None:
+            elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
+            erring.advance(*angles, elapsed)
+            covariances = erring.messages_covariance() if erring.noise.wheel_variance else ()
+            pose, told = erring.reckoning.pose, (erring.twist, *covariances)
         if self._odom.wanted:
-            told: tuple[Any, ...] = (rolling_twist(self._pair, self._radius, self._separation),)
-            if erring is not None:
-                told = (erring.twist, *(erring.messages_covariance() if erring.noise.wheel_variance else ()))
             self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, *told))
         if self._tf.wanted:
             self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))
         if self._truth is not None and self._truth.wanted:
             self._truth.publish(odometry_message(now, "world", self._child, *self._true.state()))
-
-    def _advance(self) -> None:
-        angles = self._read_angles()
-        if self._erring is not None:
-            elapsed, self._last_ns = (self.sim.time_ns - self._last_ns) * 1e-9, self.sim.time_ns
-            self._erring.advance(*angles, elapsed)
-        left, right = ((new - old) * self._radius for new, old in zip(angles, self._angles, strict=True))
-        self._angles = angles
-        self._reckoning.advance(left, right, self._separation)
-
-    def _read_angles(self) -> tuple[float, float]:
-        left, right = self._pair
-        return float(left.position), float(right.position)

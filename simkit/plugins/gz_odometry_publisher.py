@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -12,14 +12,20 @@ import numpy as np
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.odometry import ODOMETRY, TRANSFORMS, BodyTwist, TrueMotion, odometry_message, transforms
+from simkit.plugins.odometry import (
+    MEAN_STEPS,
+    ODOMETRY,
+    TRANSFORMS,
+    BodyTwist,
+    TrueMotion,
+    odometry_message,
+    transforms,
+)
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
-
-_STEPS: Final = 10  # of the mean of the twist
 
 
 class OdometryPublisher(ModelPlugin):
@@ -40,8 +46,8 @@ class OdometryPublisher(ModelPlugin):
         if self._dimensions not in (2, 3):
             element = params.child("dimensions") or params
             element.error("SK-PARAM-002", f"found <dimensions>{self._dimensions}</dimensions>, allowed is 2 or 3")
-        # gz publishes at every step where the frequency is not positive
-        self.after_step_rate = max(0.0, params.number("odom_publish_frequency", 50.0))
+        # gz publishes at every step where the frequency is zero
+        self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
         turn = quat_from_rpy(*params.vector3("rpy_offset", (0.0, 0.0, 0.0)))
         self._offset = Pose(params.vector3("xyz_offset", (0.0, 0.0, 0.0)), turn)
         self._noise = params.number("gaussian_noise", 0.0, minimum=0.0)
@@ -51,7 +57,7 @@ class OdometryPublisher(ModelPlugin):
         self._frame = params.text("odom_frame", f"{parent.name}/odom")
         self._base = params.text("robot_base_frame", f"{parent.name}/base_footprint")
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
-        self._trail: deque[tuple[float, ...]] = deque(maxlen=_STEPS)
+        self._trail: deque[tuple[float, ...]] = deque(maxlen=MEAN_STEPS)
         self._stream = self.random("gaussian_noise", 6) if self._noise > 0 else None
         self._index = 0
         covariance = params.text("odom_covariance_topic", f"{own}/odometry_with_covariance")

@@ -83,9 +83,15 @@ class JointStatePublisher(_JointStates):
     names = ("gz::sim::systems::JointStatePublisher",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        names = [c.value for c in params.all("joint_name")]
-        found: list[SceneJoint | None] = [find_joint(scene, name, params) for name in names]
-        self._joints = [joint.scoped for joint in (found if names else scene.joints) if joint is not None]
+        named = params.all("joint_name")
+        found: list[SceneJoint | None] = [find_joint(scene, element.value, params) for element in named]
+        joints = [joint.scoped for joint in (found if named else scene.joints) if joint is not None]
+        self._joints = list(dict.fromkeys(joints))
+        for scoped in self._joints if len(self._joints) < len(joints) else ():
+            again = [element for element, joint in zip(named, found, strict=True) if joint and joint.scoped == scoped]
+            for element in again[1:]:
+                message = f"joint {element.value!r} is named twice; it is told once"
+                params.diagnostics.warning("SK-PLUGIN-063", message, element.where)
         self._given = params.text("topic", "")
         self._path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
         self.after_step_rate = params.number("update_rate", 0.0, minimum=0)

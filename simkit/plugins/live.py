@@ -29,7 +29,12 @@ def declare(
     """Reads the first value, adds the parameter to the plugin's node, and opens the node's services."""
     table = plugin.sim.parameter_table
     own = f"{plugin.ros.namespace}/{plugin.name}"
-    node = table.node_of(plugin, own, "/" + "/".join(filter(None, (*plugin.scoped.split("::"), plugin.name))))
+    otherwise = "/" + "/".join(filter(None, (*plugin.scoped.split("::"), plugin.name)))
+    # a model has several of one class under one name: then the plugin itself says what tells them apart
+    otherwise = getattr(plugin, "node", otherwise)
+    node = table.node_of(plugin, otherwise if "::" in plugin.name else own, otherwise)
+    if on_change is not None:
+        on_change = plugin.sim.faults.guard(plugin, f"its callback for parameter {name!r}", on_change)
     value: Any = _first_value(plugin, element, default, minimum, maximum, choices)
     is_new = node not in table.nodes()
     parameter = Parameter(

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
-    """A joint of the model by its name (scoped below the model, or plain), or None after an error."""
+    """A joint of the model by its name (scoped from the world or the model down, or plain), or None after an error."""
     joints = scene.all_joints()
     found = _below(scene.scoped, name, {j.scoped: j for j in joints})
     if found is None:
@@ -25,7 +25,7 @@ def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | Non
 
 
 def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
-    """A link of the model by its name (scoped below the model, or plain), or None after an error."""
+    """A link of the model by its name (scoped from the world or the model down, or plain), or None after an error."""
     links = scene.all_links()
     found = _below(scene.scoped, name, {link.scoped: link for link in links})
     if found is None:
@@ -47,7 +47,7 @@ def _below(scope: str, name: str, table: dict[str, T]) -> T | None:
     if f"{scope}::{name}" in table:
         return table[f"{scope}::{name}"]
     nested = [value for scoped, value in table.items() if scoped.endswith("::" + name)]
-    return nested[0] if nested else None
+    return nested[0] if nested else table.get(name)
 
 
 def _unknown(what: str, name: str, scene: SceneModel, names: Iterable[str], params: Params) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,8 @@ ODOMETRY = "nav_msgs/msg/Odometry"
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
 COMMAND_TYPES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 UNKNOWN = 1e12  # variance of what a planar base does not measure, as Gazebo writes it
+MEAN_STEPS = 10  # of the mean of a twist, as Gazebo's
+LONGEST = 1000  # steps that angles are kept of
 
 
 @dataclass(slots=True)
@@ -66,6 +69,96 @@ def rolling_twist(wheels: Sequence[Joint], radius: float, separation: float) -> 
     return BodyTwist(((left + right) / 2, 0.0, 0.0), (0.0, 0.0, (right - left) / separation))
 
 
+class WheelOdometry:
+    """Odometry of two wheels from their angles at the end of every step, as gz-math's `DiffDriveOdometry` has it.
+
+    At a step angles are only noted; what they say is worked out when it is asked for. The way is a chain of arcs of at
+    most ten steps each, the twist the mean over the last ten steps (or as many as there were).
+
+    Args:
+        radius, separation: of the wheels [m].
+        step: from one noting to the next [s].
+
+    Attributes:
+        reckoning: where the point between the wheels was at the last `reckon`; it begins at zero.
+        twist: over the last ten steps before that, in the body's axes.
+        noter: notes for it what is still to be noted, where somebody does that for many (see `DriveFleet`).
+    """
+
+    noter: Callable[[], None] | None = None
+
+    def __init__(self, radius: float, separation: float, step: float) -> None:
+        self._radius, self._separation, self._step = radius, separation, step
+        self.reckoning, self.twist = DeadReckoning(), BodyTwist()
+        self._at: tuple[float, float] | None = None  # angles that the way is reckoned up to
+        self._noted: list[tuple[float, float]] = []  # angles of the left and the right wheel [rad], one a step
+        self._recent: list[tuple[float, float]] = []  # the last ten that the way is reckoned of
+
+    def note(self, angles: tuple[float, float]) -> None:
+        """Before every step: angles of the left and the right wheel [rad]."""
+        self.catch_up()
+        self._note(angles)
+
+    def _note(self, angles: tuple[float, float]) -> None:
+        if len(self._noted) >= LONGEST:
+            self._roll(angles)
+        self._noted.append(angles)
+
+    def reckon(self, angles: tuple[float, float]) -> None:
+        """After a step: brings `reckoning` and `twist` up to it."""
+        self._roll(angles)
+        (left, right), count = self._recent[0], len(self._recent)
+        left, right = ((new - old) * self._radius for new, old in zip(angles, (left, right), strict=True))
+        elapsed = count * self._step
+        ahead, turn = (left + right) / 2 / elapsed, (right - left) / self._separation / elapsed
+        self.twist = BodyTwist((ahead, 0.0, 0.0), (0.0, 0.0, turn))
+
+    def _roll(self, angles: tuple[float, float]) -> None:
+        """Along all that was noted, and on to these angles."""
+        self.catch_up()
+        noted = self._noted
+        last = self._at if self._at is not None else (noted or [angles])[0]
+        for point in (*noted[MEAN_STEPS::MEAN_STEPS], angles):
+            left, right = ((new - old) * self._radius for new, old in zip(point, last, strict=True))
+            self.reckoning.advance(left, right, self._separation)
+            last = point
+        self._at = angles
+        self._recent = [*self._recent, *noted][-MEAN_STEPS:] or [angles]
+        self._noted = []
+
+    def catch_up(self) -> None:
+        """Has noted what others have seen for it."""
+        if self.noter is not None:
+            self.noter()
+
+    def note_all(self, angles: Sequence[tuple[float, float]]) -> None:
+        """Those of several steps."""
+        if len(self._noted) + len(angles) <= LONGEST:
+            self._noted += angles
+            return
+        for one in angles:
+            self._note(one)
+
+    def take(self, at: tuple[float, float], recent: Sequence[tuple[float, float]], twist: tuple[float, float]) -> None:
+        """What others have reckoned for it: up to which angles, those of the steps before, speed ahead and turning."""
+        self._at, self._recent = at, list(recent)
+        self.twist = BodyTwist((twist[0], 0.0, 0.0), (0.0, 0.0, twist[1]))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> WheelOdometry:
+        """A state of its own, for a snapshot."""
+        self.catch_up()
+        made = WheelOdometry(self._radius, self._separation, self._step)
+        made.reckoning, made.twist, made._at = copy.copy(self.reckoning), self.twist, self._at
+        made._noted, made._recent = list(self._noted), list(self._recent)
+        return made
+
+
+def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
+    """Of two joints with one axis [rad]: cheaper than their positions, for every step."""
+    qpos = left._sim.physics.data.qpos
+    return qpos.item(left._one_qpos), qpos.item(right._one_qpos)
+
+
 def command_of(message: Any) -> tuple[float, float] | None:
     """Forward speed [m/s] and turning rate [rad/s] of a Twist or TwistStamped; None unless both are finite."""
     twist = getattr(message, "twist", message)
@@ -88,6 +181,9 @@ class TrueMotion:
         # from the link's origin to the model's, in the model's axes: fixed for ever
         there = model.scene.pose_world.inverse().transform(canonical.scene.pose_world.position)
         self._arm = (-there).tolist()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> TrueMotion:
+        return self
 
     def place(self) -> tuple[float, ...]:
         """World pose of the model's frame as x, y, z, qw, qx, qy, qz: cheap enough for every step."""

@@ -3,9 +3,35 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
 
-from simkit.params import Params
+if TYPE_CHECKING:
+    from simkit.plugins.base import Plugin
+
+FIELDS: Final[Mapping[str, str]] = {
+    "p_gain": "p",
+    "i_gain": "i",
+    "d_gain": "d",
+    "i_max": "i_max",
+    "i_min": "i_min",
+    "cmd_max": "command_max",
+    "cmd_min": "command_min",
+    "cmd_offset": "offset",
+}
+"""Element of gz's joint systems -> attribute of `Pid`."""
+
+_MEANINGS: Final[Mapping[str, str]] = {
+    "p_gain": "proportional gain: effort [N·m or N] per error",
+    "i_gain": "integral gain: effort [N·m or N] per error and second",
+    "d_gain": "derivative gain: effort [N·m or N] per error's rate",
+    "i_max": "upper bound of the integral's part of the effort [N·m or N]; no bound where it is below i_min",
+    "i_min": "lower bound of the integral's part of the effort [N·m or N]",
+    "cmd_max": "upper bound of the effort [N·m or N]; no bound where it is below cmd_min",
+    "cmd_min": "lower bound of the effort [N·m or N]",
+    "cmd_offset": "added to the effort [N·m or N]",
+}
 
 
 @dataclass(slots=True)
@@ -17,6 +43,8 @@ class Pid:
         command_max, command_min: of the output; none where the first is below the second.
         integral: that part now.
         last: the error before; 0 at the start, so that the first call has a derivative.
+        command: the last output.
+        swings: how the error has swung about zero.
     """
 
     p: float
@@ -29,19 +57,21 @@ class Pid:
     offset: float = 0.0
     integral: float = 0.0
     last: float = 0.0
+    command: float = 0.0
+    swings: Swings = field(default_factory=lambda: Swings())
 
     @classmethod
-    def from_params(cls, params: Params, p: float, i: float, d: float) -> Pid:
-        """`<p_gain>` and the like, with the system's defaults."""
+    def of(cls, numbers: Mapping[str, float]) -> Pid:
+        """Of the numbers by the names of their elements: `p_gain` and so on."""
         return cls(
-            p=params.number("p_gain", p),
-            i=params.number("i_gain", i),
-            d=params.number("d_gain", d),
-            i_max=params.number("i_max", 1.0),
-            i_min=params.number("i_min", -1.0),
-            command_max=params.number("cmd_max", 1000.0),
-            command_min=params.number("cmd_min", -1000.0),
-            offset=params.number("cmd_offset", 0.0),
+            p=numbers["p_gain"],
+            i=numbers["i_gain"],
+            d=numbers["d_gain"],
+            i_max=numbers["i_max"],
+            i_min=numbers["i_min"],
+            command_max=numbers["cmd_max"],
+            command_min=numbers["cmd_min"],
+            offset=numbers["cmd_offset"],
         )
 
     def update(self, error: float, step: float) -> float:
@@ -51,9 +81,93 @@ class Pid:
         self.integral = _within(self.integral + self.i * step * error, self.i_min, self.i_max)
         slope = (error - self.last) / step
         self.last = error
-        return _within(
-            self.offset - self.p * error - self.integral - self.d * slope, self.command_min, self.command_max
+        wanted = self.offset - self.p * error - self.integral - self.d * slope
+        self.command = _within(wanted, self.command_min, self.command_max)
+        self.swings.see(error, self.command != wanted)
+        return self.command
+
+    def restart(self) -> None:
+        """Forgets what was: as before the first call."""
+        self.integral = self.last = self.command = 0.0
+        self.swings = Swings()
+
+
+@dataclass(slots=True)
+class Swings:
+    """Tells a loop that runs away from one that settles, by the peaks between two zeros of its error.
+
+    Each of `GROWING` peaks in a row higher by `GROWTH` than the last one on the same side, or `SATURATED` in a row at
+    the bounds of the output without getting smaller: such a loop is unstable, and only its bounds hold it. Peaks below
+    `SMALL` [rad, m, rad/s or m/s] are noise.
+
+    Attributes:
+        last: the error before.
+        peak: the highest error since the last zero.
+        before, earlier: those of the two swings before.
+        is_saturated: whether the output was at a bound since the last zero.
+        grown: peaks in a row that grew.
+        held: peaks in a row at the bounds that did not get smaller.
+    """
+
+    GROWING = 12
+    SATURATED = 12
+    GROWTH = 1.04
+    SHRINKING = 0.98
+    SMALL = 1e-3
+
+    last: float = 0.0
+    peak: float = 0.0
+    before: float = 0.0
+    earlier: float = 0.0
+    is_saturated: bool = False
+    grown: int = 0
+    held: int = 0
+
+    def see(self, error: float, is_saturated: bool) -> None:
+        """Takes note of an error, and of whether the output was at a bound."""
+        if error * self.last < 0.0:
+            has_grown = self.peak > self.GROWTH * self.earlier > 0.0 and self.peak > self.SMALL
+            is_held = self.is_saturated and self.peak >= self.SHRINKING * self.earlier
+            self.grown = self.grown + 1 if has_grown else 0
+            self.held = self.held + 1 if is_held else 0
+            self.earlier, self.before, self.peak, self.is_saturated = self.before, self.peak, 0.0, False
+        if error != 0.0:
+            self.last = error
+        self.peak = max(self.peak, abs(error))
+        self.is_saturated = self.is_saturated or is_saturated
+
+    @property
+    def runs_away(self) -> bool:
+        """Whether the loop is unstable."""
+        return self.grown >= self.GROWING or self.held >= self.SATURATED
+
+
+def declare_pid(
+    plugin: Plugin, first: Pid, find: Callable[[], Pid], prefix: str = "", elements: Mapping[str, str] | None = None
+) -> Pid:
+    """Makes the numbers of a controller live parameters of its plugin: `p_gain`, `i_gain`, …, `cmd_offset`.
+
+    Args:
+        plugin: whose parameters they are.
+        first: the controller with its default or first numbers; given back with those of the file.
+        find: gives the controller as it is at the moment of a change (a restored one is another object).
+        prefix: before each name.
+        elements: parameter -> element that holds its first value; of the same name unless given.
+    """
+    for name, attribute in FIELDS.items():
+
+        def take(value: float, attribute: str = attribute) -> None:
+            setattr(find(), attribute, value)
+
+        parameter = plugin.declare(
+            prefix + name,
+            float(getattr(first, attribute)),
+            description=_MEANINGS[name],
+            element=(elements or {}).get(name, prefix + name),
+            on_change=take,
         )
+        setattr(first, attribute, parameter.value)
+    return first
 
 
 def _within(value: float, low: float, high: float) -> float:

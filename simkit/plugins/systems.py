@@ -1,4 +1,4 @@
-"""gz systems that a world lists so that the server does what simkit does by itself."""
+"""Plugins that a file lists so that Gazebo does what simkit does by itself."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ _SYSTEMS = {
     "cpu-lidar": "CpuLidar",
     "dvl": "DopplerVelocityLogSystem",
 }
+_OF_SENSORS = ("Ray", "GpuRay", "Camera", "DepthCamera", "MultiCamera", "Contact", "ImuSensor", "Sonar")
+"""Plugins of Gazebo Classic that listen to their sensor and do nothing, or print: what others are derived from."""
 
 
 class BuiltInSystem(Plugin):
@@ -36,16 +38,24 @@ class BuiltInSystem(Plugin):
     parent_kind = "any"
     filenames = (
         *(f"gz-sim-{name}-system" for name in _SYSTEMS),
+        *(f"lib{name}Plugin.so" for name in _OF_SENSORS),
         "libgazebo_ros_init.so",
         "libgazebo_ros_factory.so",
+        "libgazebo_ros_force_system.so",
+        "libgazebo_ros_api_plugin.so",
+        "libgazebo_ros_paths_plugin.so",
     )
     names = tuple(f"gz::sim::systems::{name}" for name in _SYSTEMS.values())
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        unused = ", ".join(sorted({f"<{child.name}>" for child in params.children}))
         params.mark_all_read()
-        label = self.name.rsplit("::", 1)[-1]
-        message = f"plugin {label!r} is not needed: simkit does what it stands for by itself; its settings are not used"
-        params.diagnostics.note("SK-PLUGIN-005", message, self.where)
+        label = self.name.rsplit("::", 1)[-1] if "::" in self.name else self._library()
+        message = f"plugin {label!r} is not needed: simkit does what it stands for by itself"
+        params.diagnostics.note("SK-PLUGIN-005", message + (f"; not used: {unused}" if unused else ""), self.where)
+
+    def _library(self) -> str:
+        return self.source.filename if self.source is not None else self.name
 
     def load(self, parent: Any, params: Params) -> None:
         """Nothing to do."""

@@ -8,12 +8,14 @@ import inspect
 import re
 import sys
 from collections.abc import Sequence
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from typing import Any
 
 from simkit.diagnostics import Diagnostics
 from simkit.plugins import GROUP, aliases, normalise
 from simkit.plugins.base import Plugin
+from simkit.plugins.duck import allowed, as_class, has_hooks
 from simkit.scene import ScenePlugin
 
 _CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
@@ -33,7 +35,7 @@ def _by_class_name(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diag
     assert match is not None
     for point in entry_points(group=GROUP):
         if point.value.replace(" ", "") == plugin.filename:
-            return _checked(point.load(), plugin, diagnostics)
+            return _by_entry_point(point, plugin, diagnostics)
     relative = Path(*match["module"].split("."))
     for folder in paths:
         for file in (folder / relative.with_suffix(".py"), folder / relative / "__init__.py"):
@@ -55,7 +57,10 @@ def _by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostic
             classes = _classes_of(module)
             wanted = [c for c in classes if c.__name__ == plugin.name] or classes
             if len(wanted) == 1:
-                return wanted[0]
+                return as_class(wanted[0])
+            whole = None if any(issubclass(c, Plugin) for c in classes) else as_class(module)
+            if whole is not None:
+                return whole
             listed = ", ".join(c.__name__ for c in classes) or "none with a load method"
             message = f"{plugin.filename!r} must have one plugin class, or one called {plugin.name!r}; it has: {listed}"
             diagnostics.error("SK-PLUGIN-008", message, plugin.where)
@@ -66,17 +71,30 @@ def _by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostic
 
 
 def _by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
-    """Looks for `filenames`/`names` of the classes in modules that lie directly in the allowed folders."""
+    """Looks among the names of entry points, then for the classes' own in modules directly in the allowed folders."""
     wanted = set(aliases(plugin))
+    for point in entry_points(group=GROUP):
+        if normalise(point.name) in wanted:
+            return _by_entry_point(point, plugin, diagnostics)
     for folder in paths:
         for file in sorted(folder.glob("*.py")):
             if not _inside(file, folder) or not wanted & _texts_in(file):
                 continue  # only what claims the name is run
             module = _import_file(file.stem, file, plugin, diagnostics)
             for cls in _classes_of(module) if module else ():
-                if wanted & set(map(normalise, (*cls.filenames, *cls.names))):
-                    return cls
+                if wanted & set(map(normalise, (*getattr(cls, "filenames", ()), *getattr(cls, "names", ())))):
+                    return as_class(cls)
     return None
+
+
+def _by_entry_point(point: EntryPoint, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
+    try:
+        found = point.load()
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - an installed package may raise anything
+        message = f"plugin {plugin.filename!r}: loading entry point {point.name!r} ({point.value}) failed"
+        diagnostics.error("SK-PLUGIN-008", f"{message}: {type(error).__name__}: {error}", plugin.where)
+        return None
+    return _checked(found, plugin, diagnostics)
 
 
 def _texts_in(file: Path) -> set[str]:
@@ -112,17 +130,20 @@ def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagno
     return module
 
 
-def _classes_of(module: object) -> list[type[Plugin]]:
-    own = (c for _, c in inspect.getmembers(module, inspect.isclass) if issubclass(c, Plugin))
-    return [c for c in own if c.__module__ == getattr(module, "__name__", "") and not inspect.isabstract(c)]
+def _classes_of(module: object) -> list[type[Any]]:
+    """The classes of a module that can be plugins; those with hooks of gz only where none derives from `Plugin`."""
+    own = [c for _, c in inspect.getmembers(module, inspect.isclass) if c.__module__ == getattr(module, "__name__", "")]
+    derived = [c for c in own if issubclass(c, Plugin) and not inspect.isabstract(c)]
+    if derived or callable(getattr(module, "get_system", None)):
+        return derived
+    return [c for c in own if has_hooks(c)]
 
 
 def _checked(found: object, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
-    if inspect.isclass(found) and issubclass(found, Plugin) and not inspect.isabstract(found):
-        return found
-    message = f"{plugin.filename!r} is no class derived from simkit's Plugin with a load method"
-    diagnostics.error("SK-PLUGIN-008", message, plugin.where)
-    return None
+    cls = as_class(found)
+    if cls is None:
+        diagnostics.error("SK-PLUGIN-008", f"{plugin.filename!r} is not {allowed()}", plugin.where)
+    return cls
 
 
 def _allow_hint(paths: Sequence[Path]) -> str:

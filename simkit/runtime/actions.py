@@ -146,6 +146,8 @@ class Action:
 
     def offer(self, goal: GoalHandle) -> None:
         """Hands a goal to the plugin, which works on it unless it rejects it at once."""
+        if goal.is_done:
+            return  # its plugin raised before it got the goal
         if not self.active:
             goal._end(GoalStatus.REJECTED, None, "the action is gone")
             return
@@ -163,13 +165,16 @@ class Action:
             goal.status = before
 
     def _guarded(self, call: Callable[[GoalHandle], Any], goal: GoalHandle) -> Any:
+        owner, hook = self.owner, f"action {self.name}"
+        if hasattr(owner, "on_error"):
+            return self.sim.faults.guard(owner, hook, call)(goal)
         try:
             return call(goal)
         except SimkitError:
             raise
         except Exception as error:
-            name, where = getattr(self.owner, "name", "") or self.name, str(getattr(self.owner, "where", ""))
-            raise PluginError(name, f"action {self.name}", self.sim.time, where, repr(error)) from error
+            name, where = getattr(owner, "name", "") or self.name, str(getattr(owner, "where", ""))
+            raise PluginError(name, hook, self.sim.time, where, repr(error)) from error
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Action:
         return self
@@ -252,6 +257,16 @@ class ActionTable:
         living = {id(owner) for owner in owners}
         for action in (a for opened in self._actions.values() for a in opened):
             action.active = action.owner is None or id(action.owner) in living
+
+    def forget(self, owners: Sequence[object]) -> None:
+        """Takes every action of these owners away for good."""
+        gone = {id(owner) for owner in owners}
+        self._actions = {n: [a for a in opened if id(a.owner) not in gone] for n, opened in self._actions.items()}
+
+    def abandon(self, owner: object, reason: str) -> None:
+        """Ends every goal of a plugin that is left out."""
+        for goal in [g for g in self._goals if g._action.owner is owner and not g.is_done]:
+            goal.abort(reason=reason)
 
     def get_state(self) -> tuple[int, tuple[tuple[GoalHandle, tuple[Any, ...]], ...]]:
         """How far each goal is."""

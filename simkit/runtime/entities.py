@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -27,6 +27,7 @@ _PREFIX = {
     "jnt": mujoco.mjtObj.mjOBJ_JOINT,
     "light": mujoco.mjtObj.mjOBJ_LIGHT,
     "eq": mujoco.mjtObj.mjOBJ_EQUALITY,
+    "actuator": mujoco.mjtObj.mjOBJ_ACTUATOR,
 }
 
 
@@ -72,6 +73,11 @@ class Entities:
             for light in lights.values():
                 light._there = True
             tables["light"].update(lights)
+
+    def forget(self, living: Iterable[SceneModel]) -> None:
+        """Lets go of the handles of models that nothing brings back any more."""
+        there = {id(scene) for scene in living}
+        self._made = {key: made for key, made in self._made.items() if key in there}
 
     def _handles(self, scene: SceneModel) -> tuple[Model, dict[str, Light]]:
         if id(scene) not in self._made:
@@ -133,11 +139,32 @@ def place_light(model: Any, light: Light, offset: Pose, touch: Any) -> None:
 def carry_fields(old: Any, new: Any, fields: Mapping[str, Any]) -> list[str]:
     """Copies changed model fields to a recompiled model, element by element by name; returns their names."""
     for field in fields:
-        kind = _PREFIX[field.split("_")[0]]
         source, target = getattr(old, field), getattr(new, field)
+        if field.startswith("dof_"):  # without names of their own
+            _carry_dofs(old, new, source, target)
+            continue
+        kind = _PREFIX[field.split("_")[0]]
         for i in range(len(source)):
             name = mujoco.mj_id2name(old, kind, i)
             j = mujoco.mj_name2id(new, kind, name) if name else -1
             if j >= 0:
                 target[j] = source[i]
     return list(fields)
+
+
+def leave_as_compiled(model: Any, originals: Mapping[str, Any]) -> None:
+    """Puts changed fields of a model that is left back: who returns to it brings along what was changed by then."""
+    for field, original in originals.items():
+        getattr(model, field)[:] = original
+
+
+def _carry_dofs(old: Any, new: Any, source: Any, target: Any) -> None:
+    """The same of a field by degrees of freedom, which have the names of their joints."""
+    widths = {int(mujoco.mjtJoint.mjJNT_FREE): 6, int(mujoco.mjtJoint.mjJNT_BALL): 3}
+    for i in range(old.njnt):
+        name = mujoco.mj_id2name(old, mujoco.mjtObj.mjOBJ_JOINT, i)
+        j = mujoco.mj_name2id(new, mujoco.mjtObj.mjOBJ_JOINT, name) if name else -1
+        if j >= 0:
+            width = widths.get(int(old.jnt_type[i]), 1)
+            a, b = int(old.jnt_dofadr[i]), int(new.jnt_dofadr[j])
+            target[b : b + width] = source[a : a + width]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from simkit.runtime.actions import ActionTable, GoalHandle
 from simkit.runtime.parameters import Parameter, ParameterTable
 from simkit.runtime.services import Handler, Service, ServiceTable
-from simkit.runtime.topics import Callback, Subscription, TopicBus
+from simkit.runtime.topics import Callback, OnError, Subscription, TopicBus
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -24,7 +24,7 @@ class Interfaces:
 
     def open_interfaces(self, sim: Simulation) -> None:
         """Makes the tables, all empty."""
-        self.bus = TopicBus()
+        self.bus = TopicBus(sim.reports, lambda: sim.time)
         self.service_table = ServiceTable(sim)
         self.action_table = ActionTable(sim)
         self.parameter_table = ParameterTable(sim)
@@ -33,6 +33,11 @@ class Interfaces:
         """Leaves only what these plugins and sensors opened (and what nobody owns) in use."""
         for table in (self.bus, self.service_table, self.action_table, self.parameter_table):
             table.set_active(owners)
+
+    def forget(self, owners: Sequence[object]) -> None:
+        """Takes away for good what these plugins and sensors opened."""
+        for table in (self.bus, self.service_table, self.action_table, self.parameter_table):
+            table.forget(owners)
 
     def _check_open(self) -> None:
         """Raises InputError where the simulation is closed."""
@@ -48,9 +53,19 @@ class Interfaces:
         self._check_open()
         self.bus.publish(topic, message)
 
-    def subscribe(self, topic: str, callback: Callback | None = None, keep: int | None = None) -> Subscription:
-        """Receives a topic, before or after its publisher exists; keeps the last `keep` messages where given."""
-        return self.bus.subscribe(topic, callback, keep)
+    def subscribe(
+        self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: OnError = "stop"
+    ) -> Subscription:
+        """Receives a topic, before or after its publisher exists.
+
+        Args:
+            topic: absolute, or taken as such.
+            callback: called with each message.
+            keep: how many messages are kept, the newest; a million where nothing is said.
+            on_error: what becomes of a callback that raises: "stop" stops the run with a SubscriberError, "drop" closes
+                the subscription with a warning, and the run goes on.
+        """
+        return self.bus.subscribe(topic, callback, keep, on_error)
 
     def topics(self) -> dict[str, str]:
         """Topic -> ROS type name."""

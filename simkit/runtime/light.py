@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from simkit.pose import Pose, Vector
 from simkit.runtime.handles import Handle
+from simkit.runtime.light_drawing import redraw
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -49,6 +50,7 @@ class Light(Handle):
     """A light of the world or on a link.
 
     Attributes:
+        scene: what it is like: as the file has it, or as it was changed since.
         motion: what makes it stand where it stands; another object whenever that changes.
     """
 
@@ -100,9 +102,27 @@ class Light(Handle):
         self.motion = LightMotion(self.state, course)
         self._sim.place_light(self)
 
-    def get_state(self) -> LightMotion:
-        return self.motion
+    def change(self, scene: SceneLight) -> None:
+        """Makes it shine as another description says: colours, fading, cone, direction, shadows; its place stays."""
+        self._check()
+        for sensor in self._sim.structure.all_sensors():
+            sensor.take_held()  # what waits to be looked at was lit by the old one
+        self.scene = scene
+        redraw(self._sim, self)
+        self._sim.place_light(self)
 
-    def set_state(self, state: LightMotion) -> None:
-        self.motion = state
+    def switch(self, on: bool) -> None:
+        """Lets it shine or not; where a course says so (a sun's), that has no say any more."""
+        self._check()
+        self.motion = LightMotion(replace(self.state, on=on))
+        self._sim.place_light(self)
+
+    def get_state(self) -> tuple[LightMotion, SceneLight]:
+        return self.motion, self.scene
+
+    def set_state(self, state: tuple[LightMotion, SceneLight]) -> None:
+        is_another = state[1] is not self.scene
+        self.motion, self.scene = state
+        if is_another:
+            redraw(self._sim, self)
         self._sim.place_light(self)

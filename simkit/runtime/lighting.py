@@ -51,8 +51,13 @@ class Lamp:
     """
 
     def __init__(self, light: Light, by_position: bool = False) -> None:
-        self.light, self.scene = light, light.scene
+        self.light = light
         self.is_parallel = light.scene.type == "directional" and not by_position
+
+    @property
+    def scene(self) -> SceneLight:
+        """What the light is like now."""
+        return self.light.scene
 
     def bind(self, names: Any) -> None:
         """Finds what carries it in a compiled model's name map."""

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
-from simkit.pose import IDENTITY, Pose, Vector
+from simkit.errors import InputError
+from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
 from simkit.runtime.handles import Handle
-from simkit.runtime.physics import CONTROL, STALE
+from simkit.runtime.joint_motion import settle_loops
+from simkit.runtime.physics import CONTROL, STALE, VELOCITY
 from simkit.runtime.visual import Visual
 
 if TYPE_CHECKING:
@@ -87,6 +89,51 @@ class Link(Handle):
         return float(self.scene.inertial.mass)
 
     # ------------------------------------------------------------------ commands
+
+    @property
+    def is_free(self) -> bool:
+        """Whether nothing holds it: it moves freely, with what hangs on its joints."""
+        return int(self._binding.root_joint_qpos) >= 0
+
+    def set_pose(self, pose: Pose) -> None:
+        """Moves a link that nothing holds, with all that hangs on its joints; velocities stay.
+
+        Raises:
+            InputError: joints or the world hold it; its model can be moved, or the joints set.
+        """
+        self._check()
+        if not self.is_free:
+            raise self._held(f"move the model {self.scoped.rpartition('::')[0]!r}")
+        data, start = self._sim.mj_data, int(self._binding.root_joint_qpos)
+        old = Pose(data.qpos[start : start + 3], data.qpos[start + 3 : start + 7])
+        moved = pose @ self.pose.inverse() @ old
+        data.qpos[start : start + 3], data.qpos[start + 3 : start + 7] = moved.position, moved.quaternion
+        settle_loops(self._sim)
+        self._sim.physics.changed_body(STALE, self._body)
+
+    def set_velocity(
+        self, linear: Sequence[float] | Vector, angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
+    ) -> None:
+        """Gives a link that nothing holds a twist about its origin, world frame [m/s, rad/s].
+
+        Raises:
+            InputError: joints or the world hold it.
+        """
+        self._check()
+        if not self.is_free:
+            raise self._held("set the velocity of its joints")
+        data, binding = self._sim.mj_data, self._binding
+        start, dof = int(binding.root_joint_qpos), int(binding.root_joint_dof)
+        angular = np.asarray(angular, float)
+        arm = data.qpos[start : start + 3] - self.pose.position
+        data.qvel[dof : dof + 3] = np.asarray(linear, float) + np.cross(angular, arm)
+        data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(data.qpos[start + 3 : start + 7]), angular)
+        settle_loops(self._sim)
+        self._sim.physics.changed_body(VELOCITY, self._body)
+
+    def _held(self, instead: str) -> InputError:
+        message = f"SK-SERVICE-003 link {self.scoped!r} is held by joints or the world; {instead}"
+        return InputError(message, "SK-SERVICE-003")
 
     def apply_wrench(self, force: Sequence[float] | Vector, torque: Sequence[float] | Vector = (0.0, 0.0, 0.0)) -> None:
         """Force [N] and torque [N·m], world frame, at the centre of mass, for the next step; several add up."""

@@ -8,7 +8,7 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
-from simkit.errors import PluginError, SimkitError
+from simkit.errors import InputError
 from simkit.runtime.physics import Physics
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.topics import TopicBus
@@ -30,7 +30,8 @@ class Loop:
     def __init__(self, physics: Physics, bus: TopicBus, fill: Fill) -> None:
         self.scheduler = Scheduler(physics.clock)
         self._physics, self._bus, self._fill = physics, bus, fill
-        self._running = self._is_outdated = False
+        self._running = self._is_outdated = self._is_served = self._halts = False
+        self._promises: list[Callable[[], None]] = []
         self._idle = threading.Event()
         self._idle.set()
         _loops.add(self)
@@ -46,21 +47,46 @@ class Loop:
         if not self._running:
             self._refill()
 
-    def advance(self, target: int) -> None:
+    def promise(self, call: Callable[[], None]) -> None:
+        """Has something done at the end of the step under way, once all that is due at its tick has been done."""
+        self._promises.append(call)
+        self._is_outdated = True
+
+    def break_promises(self) -> None:
+        """Says that the step under way will not end: the state is set to another one."""
+        self._promises.clear()
+
+    def halt(self) -> None:
+        """Ends the run with the step under way, where it is one that heeds this."""
+        self._halts = self._is_served
+
+    def advance(self, target: int, *, is_served: bool = False) -> None:
         """Runs up to the tick `target`.
 
+        Args:
+            target: where to.
+            is_served: whether `halt` ends the run earlier.
+
         Raises:
+            InputError: it is advancing already.
             SystemExit: the program has ended, and this is a thread that nobody waits for.
         """
-        self._running = True
+        if self._running:
+            message = "a step is under way: a hook or callback cannot step the simulation, nor a second thread"
+            raise InputError(message, "SK-CORE-003")
+        self._running, self._is_served, self._halts = True, is_served, False
         self._idle.clear()
         try:
             self._run(target)
         finally:
-            self._running = False
+            self._running = self._is_served = self._halts = False
+            self._promises.clear()
             self._idle.set()
 
     def _refill(self) -> None:
+        promises, self._promises = self._promises, []
+        for call in promises:
+            call()
         self._is_outdated = False
         self.scheduler.clear()
         self._fill(self.scheduler)
@@ -69,7 +95,7 @@ class Loop:
     def _run(self, target: int) -> None:
         physics, bus = self._physics, self._bus
         before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
-        while physics.tick < target:
+        while physics.tick < target and not self._halts:
             _stop_at_the_end()
             tick = physics.tick
             stop = min(target, before.next, sense.next, after.next)
@@ -82,7 +108,7 @@ class Loop:
             if before.every or before.next <= tick:
                 for task in before.due(tick):
                     task(tick)
-            physics.advance(1 if has_every else max(1, stop - tick))
+            physics.advance(1 if has_every or self._halts else max(1, stop - tick))
             tick = physics.tick
             # nothing is measured or published of a state with bad numbers
             physics.check()
@@ -105,7 +131,7 @@ class Loop:
         physics, bus = self._physics, self._bus
         before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]
         tick = physics.tick
-        while tick < stop and not self._is_outdated:
+        while tick < stop and not self._is_outdated and not self._halts:
             _stop_at_the_end()
             if bus.inbox:
                 bus.deliver_inputs()
@@ -145,15 +171,9 @@ atexit.register(end_others)
 
 
 def guarded(sim: Any, plugin: Any, hook: str) -> Callable[..., None]:
-    """A plugin's hook as a task; whatever it raises becomes a PluginError with name, place and time."""
-    method = getattr(plugin, hook)
+    """A plugin's hook as a task; whatever it raises becomes a PluginError with name, place and time.
 
-    def task(_: int = 0) -> None:
-        try:
-            method()
-        except SimkitError:
-            raise
-        except Exception as error:
-            raise PluginError(plugin.name, hook, sim.time, str(plugin.where), repr(error)) from error
-
-    return task
+    Of a plugin that may be left out (`on_error="disable"`) the run goes on without it: see `simkit.runtime.faults`.
+    """
+    found: Callable[..., None] = sim.faults.task(plugin, hook)
+    return found

@@ -157,6 +157,16 @@ class ParameterTable:
             node for node, found in self._parameters.items() if not any(id(p.owner) in living for p in found.values())
         }
 
+    def forget(self, owners: Sequence[object]) -> None:
+        """Takes every parameter of these plugins away for good."""
+        gone = {id(owner) for owner in owners}
+        for node, found in list(self._parameters.items()):
+            kept = {name: p for name, p in found.items() if id(p.owner) not in gone}
+            if kept:
+                self._parameters[node] = kept
+            else:
+                del self._parameters[node]
+
     def get_state(self) -> tuple[tuple[Parameter[Any], Any], ...]:
         """Every parameter with its value."""
         return tuple((p, p.value) for found in self._parameters.values() for p in found.values())

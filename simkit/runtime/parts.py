@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -43,7 +43,17 @@ class Structure:
         return [s for p in self.parts.values() for s in p.sensors]
 
     def all_plugins(self) -> list[Any]:
-        return [plugin for p in self.parts.values() for plugin, _ in p.plugins]
+        """Every plugin, in the order in which they are loaded and called."""
+        return [plugin for plugin, _ in in_order(self.parts.values())]
+
+
+WRITTEN, MADE, SPAWNED = range(3)
+"""Plugins of the file come first, in document order; then those made in Python; then those of spawned models."""
+
+
+def in_order(parts: Iterable[Parts]) -> list[tuple[Any, Callable[[Any], Any]]]:
+    """Plugins, each with what gives its parent, in the order in which they are loaded and called."""
+    return sorted((pair for part in parts for pair in part.plugins), key=lambda pair: pair[0]._order)
 
 
 def awake_bodies(structure: Structure) -> set[int]:

@@ -64,12 +64,16 @@ class HeldState:
 
 
 class Physics:
-    """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date."""
+    """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date.
+
+    Attributes:
+        edition: another number after everything that was written, which steps do not count as.
+    """
 
     def __init__(self, model: Any, data: Any, clock: Clock, may_sleep: bool = True) -> None:
         mujoco.set_mju_user_warning(_hear_engine)
         self.clock, self._may_sleep = clock, may_sleep
-        self.tick = 0
+        self.tick = self.edition = 0
         self._take_chunk(256)
         self.rebind(model, data)
 
@@ -78,6 +82,7 @@ class Physics:
         self.model, self.data = model, data
         self.sleep = Sleep(model, data, self._may_sleep)
         self.stage = STALE
+        self.edition += 1
         self.one_shot = False
         self.last_applied = np.zeros(model.nv)
         self.last_pushed = np.zeros((model.nbody, 6))
@@ -98,6 +103,7 @@ class Physics:
     def changed(self, stage: int) -> None:
         """Says that controls or forces (CONTROL), velocities (VELOCITY) or positions (STALE) were written."""
         self.stage = max(self.stage, stage)
+        self.edition += 1
         self._held = None
         self._accelerations_tick = -1
         self.sleep.rests = False

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+import weakref
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics
-from simkit.errors import InputError, PluginError, SimkitError
+from simkit.errors import InputError, LoadError, SimkitError
 from simkit.pose import Pose
-from simkit.runtime.entities import carry_fields
+from simkit.runtime import fitting
+from simkit.runtime.clashes import report_clashes
+from simkit.runtime.entities import carry_fields, leave_as_compiled
+from simkit.runtime.faults import called
+from simkit.runtime.loop import guarded
 from simkit.runtime.overlap import soften
-from simkit.runtime.parts import Parts, Structure, awake_bodies
-from simkit.scene import SceneModel
+from simkit.runtime.parts import SPAWNED, Parts, Structure, awake_bodies, in_order
+from simkit.runtime.snapshot import Snapshot, take
+from simkit.scene import SceneJoint, SceneModel
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -30,37 +37,81 @@ class Population:
 
     Attributes:
         structure: what is there now; never changed, only replaced.
-        loaded_plugins: every plugin ever loaded; a restore may bring back one of a removed model.
+        loaded_plugins: every plugin that is there, or that a snapshot or a reset may bring back.
     """
 
     def __init__(self, sim: Simulation, load_model: ModelLoader, make_parts: PartsMaker) -> None:
         self._sim, self._load_model, self._make_parts = sim, load_model, make_parts
         self._attached: set[Any] = set()
+        self._spawned = 0
+        self._structures: list[weakref.ref[Structure]] = []
         self.loaded_plugins: list[Any] = []
         self.structure: Structure
 
     def spawn(self, source: Any, name: str | None, pose: Pose | None) -> str:
         """Adds a model; returns its name. Where it fails, all is as before."""
         sim, old = self._sim, self.structure
-        scene, found = self._load_model(source, name=name, pose=pose, taken=set(old.models))
-        before = sim.snapshot()
+        if isinstance(source, SceneModel):  # a copy of what is there
+            scene, found = source, Diagnostics()
+        else:
+            scene, found = self._load_model(source, name=name, pose=pose, taken=set(old.models))
+        before = take(sim)
         builder = old.builder.copy()
         builder.add_model(scene)
-        parts = self._make_parts(scene, builder, found)
-        found.raise_if_errors()
+        parts = self._made(scene, builder, found)
         compiled = builder.recompile(old.compiled, sim.mj_data)
         models, all_parts = {**old.models, scene.name: scene}, {**old.parts, scene.name: parts}
         self.switch(Structure(builder, compiled, models, old.movable, all_parts))
-        try:
-            self.start([parts], found)
-        except SimkitError:
-            sim.restore(before)
-            raise
+        self._start_or_restore(parts, found, before)
         # a new schedule asks every sensor when it is due, so they have been started
         own = {link.scoped for link in scene.all_links()}
         soften(sim, {g for n, link in compiled.names.links.items() if n in own for g in link.geoms})
-        sim.reports.extend(found)
         return scene.name
+
+    def read(self, source: Any) -> SceneModel:
+        """A model as its own file has it, without spawning it. Raises LoadError."""
+        return self._load_model(source, name=None, pose=None, taken=set())[0]
+
+    def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> str:
+        """Fits a sensor to a link or a joint; returns its scoped name. Where it fails, all is as before."""
+        sim, old = self._sim, self.structure
+        _, owner = fitting.find_owner(old, name)
+        text = fitting.as_model(fitting.as_text(sensor), isinstance(owner, SceneJoint))
+        read, found = self._load_model(text, name=None, pose=None, taken=set())
+        top, shell, scoped = fitting.fitted(old, name, read)
+        before = take(sim)
+        builder = old.builder.copy()
+        parts = self._made(shell, builder, found)
+        if not parts.sensors:
+            raise LoadError(tuple(found))
+        compiled = builder.recompile(old.compiled, sim.mj_data)
+        there = old.parts[top]
+        joined = Parts([*there.sensors, *parts.sensors], [*there.plugins, *parts.plugins])
+        self.switch(Structure(builder, compiled, old.models, old.movable, {**old.parts, top: joined}))
+        self._start_or_restore(parts, found, before)
+        return scoped
+
+    def _made(self, scene: SceneModel, builder: Any, found: Diagnostics) -> Parts:
+        """The parts of what comes while it runs; they are called after all that is there already."""
+        parts = self._make_parts(scene, builder, found)
+        self._spawned += 1
+        for plugin, _ in parts.plugins:
+            plugin._order = (SPAWNED, self._spawned, *plugin._order)
+        found.raise_if_errors()
+        return parts
+
+    def _start_or_restore(self, parts: Parts, found: Diagnostics, before: Snapshot) -> None:
+        """Starts what was added; where that fails, all is as before."""
+        try:
+            self.start([parts], found)
+        except SimkitError:
+            self._sim.restore(before)
+            raise
+        for sensor in parts.sensors:
+            sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
+        for plugin, _ in parts.plugins:
+            plugin.report_unread()
+        self._sim.reports.extend(found)
 
     def remove(self, name: str) -> None:
         """Takes a top-level model away."""
@@ -73,6 +124,29 @@ class Population:
         models = {k: v for k, v in old.models.items() if k != name}
         parts = {k: v for k, v in old.parts.items() if k != name}
         self.switch(Structure(builder, compiled, models, old.movable - {name}, parts))
+
+    def forget(self) -> None:
+        """Closes the plugins that nothing brings back any more: they are in no structure that is or that is kept.
+
+        Raises:
+            PluginError: one of them raised; the others are closed all the same.
+        """
+        present = self.structure.all_sensors()
+        if len(self.loaded_plugins) == len(self.structure.all_plugins()) and len(self._attached) == len(present):
+            return  # all are there: nothing was taken away
+        self._structures = [kept for kept in self._structures if kept() is not None]
+        structures = [structure for kept in self._structures if (structure := kept()) is not None]
+        there = {id(p) for structure in structures for p in structure.all_plugins()}
+        gone = [plugin for plugin in self.loaded_plugins if id(plugin) not in there]
+        self.loaded_plugins = [plugin for plugin in self.loaded_plugins if id(plugin) in there]
+        sensors = {s for structure in structures for s in structure.all_sensors()}
+        owners = [*gone, *(self._attached - sensors)]
+        self._attached &= sensors
+        first = self._close(gone)
+        self._sim.forget(owners)
+        self._sim.entities.forget([scene for structure in structures for scene in structure.models.values()])
+        if first is not None:
+            raise first
 
     def make_movable(self, name: str) -> bool:
         """Makes the links of a static model bodies that follow their set pose; False where they are already."""
@@ -109,11 +183,16 @@ class Population:
             sim.originals[field] = getattr(new, field).copy()
         carry_fields(old_model, new, fields)
         new.opt.gravity[:] = old_model.opt.gravity
+        for sensor in self.structure.all_sensors():
+            sensor.take_held()
         self.adopt(structure)
+        leave_as_compiled(old_model, fields)
 
     def adopt(self, structure: Structure) -> None:
         """Binds handles, sensors and topics to a structure."""
         sim, compiled = self._sim, structure.compiled
+        if not any(kept() is structure for kept in self._structures):
+            self._structures.append(weakref.ref(structure))
         sim.bus.settle()
         staying = set(structure.all_sensors())
         for sensor in self.structure.all_sensors() if self._attached else ():
@@ -127,7 +206,7 @@ class Population:
         sim.labels.bind(structure)
         sim.temperatures.bind(structure)
         sim.stand_wrenches(are_applied=True)
-        sim.set_active([*structure.all_sensors(), *structure.all_plugins()])
+        sim.set_active(sim.faults.living(structure))
         for sensor in structure.all_sensors():
             if sensor in self._attached:
                 sensor.bind(compiled)
@@ -135,25 +214,60 @@ class Population:
     def start(self, parts: list[Parts], diagnostics: Diagnostics) -> None:
         """Attaches new sensors, then loads new plugins, in document order; raises LoadError where they found errors."""
         sim = self._sim
+        sim.bus.refuses_clashes = False
         for part in parts:
             for sensor in part.sensors:
                 with sim.bus.owned_by(sensor):
                     sensor.attach(sim)
                 self._attached.add(sensor)
                 sensor.bind(self.structure.compiled)
-        for part in parts:
-            for plugin, parent_of in part.plugins:
-                with sim.bus.owned_by(plugin):
-                    self._load_plugin(plugin, parent_of(sim))
+        for plugin, parent_of in in_order(parts):
+            with sim.bus.owned_by(plugin):
+                self._load_plugin(plugin, parent_of(sim))
+        new = [*(s for part in parts for s in part.sensors), *(plugin for part in parts for plugin, _ in part.plugins)]
+        report_clashes(sim.bus, diagnostics, new)
+        sim.bus.refuses_clashes = True
         diagnostics.raise_if_errors()
 
     def _load_plugin(self, plugin: Any, parent: Any) -> None:
+        sim = self._sim
+        self.loaded_plugins.append(plugin)
         try:
-            plugin._setup(self._sim, plugin.source)
-            plugin.load(parent, plugin.params)
+            plugin._setup(sim, plugin.source)
+            if plugin._failed is not None:  # before there was a simulation
+                hook, error = plugin._failed
+                sim.faults.meet(plugin, hook, error)
+                return
+            called(plugin, "load", plugin.load, parent, plugin.params)
         except SimkitError:
             raise
-        except Exception as error:
-            raise PluginError(plugin.name, "load", self._sim.time, str(plugin.where), repr(error)) from error
+        except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+            sim.faults.meet(plugin, "load", error)
+            return
+        _check_rates(plugin)
         plugin._remember_loaded()
-        self.loaded_plugins.append(plugin)
+
+    def close_plugins(self) -> SimkitError | None:
+        """Closes every plugin, once; gives the first error that one of them raised."""
+        first = self._close(self.loaded_plugins)
+        self.loaded_plugins.clear()
+        return first
+
+    def _close(self, plugins: Iterable[Any]) -> SimkitError | None:
+        first = None
+        for plugin in plugins:
+            try:
+                guarded(self._sim, plugin, "close")()
+            except SimkitError as error:
+                first = first or error
+        return first
+
+
+def _check_rates(plugin: Any) -> None:
+    """Reports a hook's rate that is none."""
+    for name in ("before_step_rate", "after_step_rate"):
+        rate = getattr(plugin, name)
+        if rate is not None and not (isinstance(rate, (int, float)) and 0 <= rate < math.inf):
+            message = f"plugin {plugin.name!r}: {name} is {rate!r}, allowed is a number of at least 0 [Hz], or None"
+            plugin.params.error("SK-PLUGIN-023", message, "0 and None are every step")
+            setattr(plugin, name, None)

@@ -49,6 +49,13 @@ class Stream:
         values: Values = self._normals[row]
         return values
 
+    def normals(self, index: int, most: int) -> Values:
+        """The same of up to `most` samples from `index` on: those that are drawn together, shape (count, width)."""
+        self.normal(index)
+        row = index % self._rows
+        values: Values = self._normals[row : row + most]
+        return values
+
     def uniform(self, index: int) -> Values:
         """Numbers of a sample, evenly spread within ±1, shape (width,); a view that must not be written to."""
         block, row = divmod(index, self._rows)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from simkit.runtime import overlap, sleep
+import numpy as np
+
+from simkit.runtime import overlap, sleep, together
 from simkit.runtime.joint import Joint
-from simkit.runtime.loop import guarded
-from simkit.runtime.scheduler import Scheduler
+from simkit.runtime.scheduler import Scheduler, Task
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -40,26 +41,49 @@ def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -
         elif _coasts_over_limit(joint):
             coasting.append(joint)
 
-    def hold_limits(tick: int) -> None:
-        for joint in coasting:
-            joint.clamp_velocity(tick)
-
     if coasting:
-        scheduler.every(_LIMIT_GRID, hold_limits, "sense")
+        scheduler.every(_LIMIT_GRID, _holder(sim, coasting), "sense")
     _report_shared_topics(sim)
+    _team_up(sim)
     for sensor in sim.structure.all_sensors():
         scheduler.on(sensor.timetable(), sensor.sample, "sense")
-    for plugin in sim.structure.all_plugins():
-        if plugin.has_hook("before_step"):
-            scheduler.every(plugin.before_step_rate, guarded(sim, plugin, "before_step"), "before")
-        if plugin.has_hook("after_step"):
-            scheduler.every(plugin.after_step_rate, guarded(sim, plugin, "after_step"), "after")
+    plugins = [plugin for plugin in sim.structure.all_plugins() if not sim.faults.is_disabled(plugin)]
+    for rate, task in together.tasks(sim, plugins, "before_step"):
+        scheduler.every(rate, task, "before")
+    for plugin in plugins:
+        if getattr(plugin, "is_gz_system", False):  # every system's update comes after every system's pre_update
+            scheduler.every(None, sim.faults.task(plugin, "update_step"), "before")
+    for rate, task in together.tasks(sim, plugins, "after_step"):
+        scheduler.every(rate, task, "after")
+    sim.on_demand.fill(scheduler)
+
+
+def _holder(sim: Simulation, joints: Sequence[Joint]) -> Task:
+    """Holds the velocity limits of joints, as one task: which are beyond them is found in one go."""
+    dofs = np.array([dof for joint in joints for dof in joint._plain_dofs], dtype=np.intp)
+    owners = [joint for joint in joints for _ in joint._plain_dofs]
+    # of several axes the least; the joint itself looks closer. Whoever sets one makes a new schedule
+    limits = np.array([joint._velocity_limit.min() for joint in owners])
+
+    def hold(tick: int) -> None:
+        for place in np.flatnonzero(np.abs(sim.physics.data.qvel.take(dofs)) > limits).tolist():
+            owners[place].clamp_velocity(tick)
+
+    return hold
+
+
+def _team_up(sim: Simulation) -> None:
+    """Has sensors of one kind work together."""
+    kinds: dict[type, list[Any]] = {}
+    for sensor in sim.structure.all_sensors():
+        kinds.setdefault(type(sensor), []).append(sensor)
+    for kind, sensors in kinds.items():
+        kind.team_up(sensors)  # type: ignore[attr-defined]
 
 
 def _report_shared_topics(sim: Simulation) -> None:
-    """Tells of a topic on which two messages are published: whoever reads it gets both in turn."""
+    """Tells of a topic on which sensors publish two messages: whoever reads it gets both in turn."""
     first: dict[str, tuple[str, str]] = {}
-    of_sensors: dict[str, set[str]] = {}
     for sensor in sim.structure.all_sensors():
         types = [(topic, sensor._products[product].type_name) for product, topic in sensor._topics.items()]
         told: set[str] = set()
@@ -67,20 +91,11 @@ def _report_shared_topics(sim: Simulation) -> None:
         for topic, kind in sorted(types, key=lambda pair: (pair[1] == _INFO, pair)):
             if topic not in first:
                 first[topic] = sensor.scoped, kind
-                of_sensors[topic] = {kind}
                 continue
-            of_sensors[topic].add(kind)
             other, other_kind = first[topic]
             if kind != _INFO or kind != other_kind or other not in told:
                 _report_shared(sim, sensor, topic, other, {other_kind, kind})
             told.add(other)
-    for topic, kinds in of_sensors.items():
-        others = {end.type_name for end in sim.bus._publishers.get(topic, ()) if end.active} - kinds
-        if others:
-            sensor = sim.sensor(first[topic][0])
-            message = f"sensor {sensor.scoped!r} publishes {' and '.join(sorted(kinds))} on {topic!r}, where a plugin"
-            says = f"{message} publishes {' and '.join(sorted(others))}, and ROS gives a reader one type only"
-            sim.reports.warning("SK-SENSOR-128", says, sensor.scene.where, "give it a <topic> of its own")
 
 
 def _report_shared(sim: Simulation, sensor: Any, topic: str, other: str, kinds: set[str]) -> None:

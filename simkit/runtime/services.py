@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError, PluginError, ServiceError, SimkitError
+from simkit.msgs.services import SERVICES
+from simkit.runtime.faults import called
 from simkit.runtime.topics import absolute
 
 if TYPE_CHECKING:
@@ -31,13 +33,14 @@ class Service:
         handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
         owner: whose it is: a plugin, a sensor or None; it is there as long as its owner is.
         active: whether its owner is in the world.
+        yields: whether another one of its name may take its place.
     """
 
-    __slots__ = ("active", "handler", "name", "owner", "type_name")
+    __slots__ = ("active", "handler", "name", "owner", "type_name", "yields")
 
     def __init__(self, name: str, type_name: str, handler: Handler, owner: object) -> None:
         self.name, self.type_name, self.handler, self.owner = name, type_name, handler, owner
-        self.active = True
+        self.active, self.yields = True, False
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Service:
         return self
@@ -58,13 +61,21 @@ class ServiceTable:
             MessageError: an unknown type.
         """
         name = absolute(name)
-        msgs.full_name(f"{type_name}_Request")
+        if type_name not in SERVICES:  # what is in there is read when somebody calls
+            msgs.full_name(f"{type_name}_Request")
         standing = self._find(name)
-        if standing is not None:
+        if standing is not None and not standing.yields:
             raise ServiceError(f"there is a service {name!r} already, {_of(standing)}")
         service = Service(name, type_name, handler, self._sim.bus._owner)
-        self._services.setdefault(name, []).append(service)
+        self._services.setdefault(name, []).insert(0, service)
         return service
+
+    def offer_by_default(self, name: str, type_name: str, handler: Handler) -> None:
+        """Opens a service that is there as long as nobody else offers one of its name."""
+        name = absolute(name)
+        service = Service(name, type_name, handler, self._sim.bus._owner)
+        service.yields = True
+        self._services.setdefault(name, []).append(service)
 
     def close(self, service: Service) -> None:
         """Takes a service away for good."""
@@ -106,18 +117,26 @@ class ServiceTable:
         for service in (s for offered in self._services.values() for s in offered):
             service.active = service.owner is None or id(service.owner) in living
 
+    def forget(self, owners: Sequence[object]) -> None:
+        """Takes every service of these owners away for good."""
+        gone = {id(owner) for owner in owners}
+        for service in [s for offered in self._services.values() for s in offered if id(s.owner) in gone]:
+            self.close(service)
+
     def _answer(self, service: Service, request: Any) -> Any:
+        owner, hook = service.owner, f"service {service.name}"
         try:
-            found = service.handler(request)
+            found = called(owner, hook, service.handler, request)
             return found if not _is_plain(found) else msgs.make(f"{service.type_name}_Response", **(found or {}))
         except SimkitError:
             raise
         except Exception as error:
-            owner = service.owner
             if owner is None:
                 raise
             name, where = getattr(owner, "name", "") or service.name, str(getattr(owner, "where", ""))
-            hook = f"service {service.name}"
+            if hasattr(owner, "on_error"):
+                self._sim.faults.meet(owner, hook, error)
+                raise ServiceError(f"service {service.name!r} raised, and plugin {name!r} is left out") from error
             raise PluginError(name, hook, self._sim.time, where, repr(error)) from error
 
     def _find(self, name: str) -> Service | None:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from simkit.diagnostics import Diagnostic, Diagnostics
-from simkit.errors import InputError
-from simkit.pose import IDENTITY, Pose
+from simkit.errors import InputError, SimulationDiverged
+from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.clock import Clock
+from simkit.runtime.divergence import name_drivers
 from simkit.runtime.entities import Entities, place_light
+from simkit.runtime.faults import Faults, OnError
 from simkit.runtime.interfaces import Interfaces
 from simkit.runtime.joint import Joint
 from simkit.runtime.labels import Labels
@@ -25,15 +29,16 @@ from simkit.runtime.population import ModelLoader, PartsMaker, Population
 from simkit.runtime.random import RandomStreams
 from simkit.runtime.schedule import fill
 from simkit.runtime.scheduler import Scheduler
-from simkit.runtime.snapshot import Snapshot, bring_back, take
+from simkit.runtime.snapshot import Snapshot, bring_back, promise, take
 from simkit.runtime.temperatures import Temperatures
 from simkit.runtime.visual import Visual
 from simkit.runtime.weld import set_weld
+from simkit.runtime.world_control import WorldControl
 from simkit.runtime.wrenches import StandingWrenches
 from simkit.scene import SceneLink, SceneWorld
 
 
-class Simulation(Interfaces):
+class Simulation(Interfaces, WorldControl):
     """A loaded world. Made by `simkit.load`; also a context manager.
 
     Everything read shows the state at `time`.
@@ -41,6 +46,7 @@ class Simulation(Interfaces):
     Attributes:
         labels: what segmentation and bounding box cameras call things, by scoped name of a model or a visual.
         temperatures: what thermal cameras see, by scoped name of a model, a link or a visual.
+        faults: what becomes of plugins that raise, and which of them are left out.
         render_thread: whether pictures of cameras are drawn beside the physics where nobody waits for them; to be
             changed at any time, for it changes no message.
     """
@@ -55,18 +61,21 @@ class Simulation(Interfaces):
         seed: int,
         load_model: ModelLoader,
         make_parts: PartsMaker,
+        on_error: OnError | None = None,
     ) -> None:
         self.world = world
         self.log = logging.getLogger("simkit")
         self.clock = Clock(world.physics.max_step_size)
+        self._diagnostics = diagnostics
         self.open_interfaces(self)
+        self.faults = Faults(self, on_error)
         self.streams = RandomStreams(seed)
         self.seed = seed
-        self._diagnostics = diagnostics
         self.originals: dict[str, Any] = {}
         self._exact_limits: list[Joint] = []
         self._standing = StandingWrenches(self)
         self._closed = False
+        self.open_world(self)
         self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
         self._loop = Loop(self.physics, self.bus, self._fill)
         self.entities = Entities(self, world)
@@ -133,9 +142,13 @@ class Simulation(Interfaces):
                 return True
         return False
 
-    def _advance(self, target: int) -> None:
+    def _advance(self, target: int, *, is_served: bool = False) -> None:
         self._check_open()
-        self._loop.advance(target)
+        try:
+            self._loop.advance(target, is_served=is_served)
+        except SimulationDiverged as error:
+            name_drivers(self, error)
+            raise
 
     # ------------------------------------------------------------------ state
 
@@ -144,35 +157,48 @@ class Simulation(Interfaces):
         self._check_open()
         if seed is not None:
             self.seed = seed
+        self._loop.break_promises()
         self.bus.settle()
         self.streams.reseed(self.seed)
         bring_back(self, self._loaded)
         self.reschedule()
+        self._forget()
         for sensor in self.structure.all_sensors():
             sensor.reset()
         for plugin in self.structure.all_plugins():
             guarded(self, plugin, "reset")()
 
     def snapshot(self) -> Snapshot:
-        """The whole state; a run restored to it repeats bit for bit."""
+        """The whole state; a run restored to it repeats bit for bit.
+
+        Asked for by a hook or a callback it is that of the end of the step under way, and complete from then on.
+        """
         self._check_open()
-        return take(self)
+        if not self.is_stepping:
+            return take(self)
+        snapshot, keep = promise(self)
+        self._loop.promise(keep)
+        return snapshot
 
     def restore(self, snapshot: Snapshot) -> None:
         """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone.
 
         Raises:
-            ValueError: the snapshot is of another simulation.
+            ValueError: the snapshot is of another simulation, or was asked for within a step that has not ended.
         """
         self._check_open()
         if snapshot.owner is not self:
             raise ValueError("the snapshot is of another simulation; each goes back to its own only")
+        if not snapshot.is_complete:
+            raise ValueError("the snapshot was asked for within a step that has not ended; restore it after that step")
+        self._loop.break_promises()
         if snapshot.seed != self.seed:
             self.bus.settle()
             self.seed = snapshot.seed
             self.streams.reseed(self.seed)
         bring_back(self, snapshot)
         self.reschedule()
+        self._forget()
 
     def adopt(self, structure: Structure) -> None:
         """Goes on with a structure that was before, with all its state still to be put back."""
@@ -223,6 +249,14 @@ class Simulation(Interfaces):
         found: Light = self.entities.find("light", name)
         return found
 
+    @property
+    def plugins(self) -> dict[str, Any]:
+        """Plugins by scoped name, `robot::drive`; those of the world by their own. Of equal names the first."""
+        found: dict[str, Any] = {}
+        for plugin in self.structure.all_plugins():
+            found.setdefault(f"{plugin.scoped}::{plugin.name}" if plugin.scoped else plugin.name, plugin)
+        return found
+
     def has_sensor(self, name: str) -> bool:
         """Whether a sensor of that name is simulated."""
         return name in self.entities.tables["sensor"]
@@ -240,6 +274,23 @@ class Simulation(Interfaces):
     def reports(self) -> Diagnostics:
         """The collection behind `diagnostics`, for parts that have something to report while running."""
         return self._diagnostics
+
+    # ------------------------------------------------------------------ the world's own
+
+    @property
+    def gravity(self) -> Vector:
+        """Acceleration that everything feels [m/s²], world frame, shape (3,); settable at any time."""
+        return np.array(self.mj_model.opt.gravity)
+
+    @gravity.setter
+    def gravity(self, value: Sequence[float] | Vector) -> None:
+        numbers = np.asarray(value, dtype=float)
+        if numbers.shape != (3,) or not np.isfinite(numbers).all():
+            raise ValueError(f"gravity takes 3 finite numbers, got {value}")
+        for sensor in self.structure.all_sensors():
+            sensor.take_held()  # what was held was measured under the old one
+        self.physics.changed_model()
+        self.mj_model.opt.gravity[:] = numbers
 
     # ------------------------------------------------------------------ the engine underneath
 
@@ -334,6 +385,38 @@ class Simulation(Interfaces):
         self.model(name)  # an unknown name is a KeyError that tells the closest
         self._population.remove(name)
         self.reschedule()
+        self._forget()
+
+    def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> Any:
+        """Fits a sensor to a link or a joint while time goes on; nobody else's bits change.
+
+        Snapshots, resets and removals cover it: it goes with its model, and a reset or a restore to an earlier time
+        takes it away.
+
+        Args:
+            name: scoped name of the link or joint.
+            sensor: a `<sensor>` element as XML text, or a dict of it: `{"name": "imu", "type": "imu",
+                "update_rate": 100, "imu": {…}}`.
+
+        Returns:
+            The sensor.
+
+        Raises:
+            LoadError: the sensor has errors.
+            KeyError: there is no such link or joint; names the closest.
+            InputError: it has a sensor of that name.
+        """
+        self._check_open()
+        scoped = self._population.add_sensor(name, sensor)
+        self.reschedule()
+        return self.sensor(scoped)
+
+    def _forget(self) -> None:
+        """Closes what nothing brings back any more; within a step once that is done, for it may be at work."""
+        if self.is_stepping:
+            self._loop.promise(self._population.forget)
+        else:
+            self._population.forget()
 
     def make_movable(self, name: str) -> None:
         """Lets a static top-level model be moved: its links become bodies that follow their set pose."""
@@ -395,11 +478,12 @@ class Simulation(Interfaces):
         """Closes plugins and sensors; further calls do nothing."""
         if self._closed:
             return
-        for plugin in self._population.loaded_plugins:
-            guarded(self, plugin, "close")()
+        first = self._population.close_plugins()
         for sensor in self.structure.all_sensors():
             sensor.close()
         self._closed = True
+        if first is not None:
+            raise first
 
     def _check_open(self) -> None:
         if self._closed:

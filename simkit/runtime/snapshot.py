@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import mujoco
 
+from simkit.runtime.entities import leave_as_compiled
 from simkit.runtime.model import Model
 from simkit.runtime.parts import Structure
 from simkit.runtime.physics import STALE
@@ -19,6 +21,9 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Snapshot:
     """What `restore` brings back; made by `Simulation.snapshot`.
+
+    One that a hook or a callback asks for is of the end of the step under way: what else is due at its tick belongs to
+    it, or a run restored to it would not repeat. Until then it has only its owner.
 
     Attributes:
         tick: where the run stood.
@@ -41,8 +46,23 @@ class Snapshot:
     seed: int = 0
     owner: Any = None
 
+    @property
+    def is_complete(self) -> bool:
+        """Whether it can be restored: the step that it was asked for in has ended."""
+        return "data" in vars(self)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"a snapshot has no {name!r} before the step in which it was asked for has ended")
+
     def __deepcopy__(self, memo: dict[int, Any]) -> Snapshot:
         return self
+
+
+def promise(sim: Simulation) -> tuple[Snapshot, Callable[[], None]]:
+    """A snapshot that is still to be taken, and what takes it."""
+    promised: Snapshot = object.__new__(Snapshot)
+    vars(promised)["owner"] = sim
+    return promised, lambda: vars(promised).update(vars(take(sim)))
 
 
 def take(sim: Simulation) -> Snapshot:
@@ -59,9 +79,10 @@ def take(sim: Simulation) -> Snapshot:
         sensors=[(s, s.get_state()) for s in structure.all_sensors()],
         plugins=[(p, p.get_state()) for p in structure.all_plugins()],
         handles=[(h, h.get_state()) for h in sim.entities.stateful()]
-        + [(table, table.get_state()) for table in (sim.parameter_table, sim.action_table)]
+        + [(part, part.get_state()) for part in (sim.faults, sim.parameter_table, sim.action_table)]
+        + [(part, part.get_state()) for part in (sim.pausing, sim.site)]
         + [(m, m._rest) for m in sim.entities.tables["model"].values()],
-        inbox=tuple(sim.bus.inbox),
+        inbox=tuple(sim.bus.inbox.values()),
         one_shot=physics.one_shot,
         last_applied=physics.last_applied.copy(),
         sleep=physics.sleep.get_state(),
@@ -74,8 +95,12 @@ def take(sim: Simulation) -> Snapshot:
 def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
     """Puts a simulation into the state of a snapshot; its schedule is the caller's to make anew."""
     if snapshot.structure is not sim.structure:
+        left, originals = sim.mj_model, dict(sim.originals)
+        for sensor in sim.structure.all_sensors() if originals else ():
+            sensor.take_held()
         sim.originals.clear()
         sim.adopt(snapshot.structure)
+        leave_as_compiled(left, originals)
     model, physics = sim.mj_model, sim.physics
     for field, original in sim.originals.items():
         getattr(model, field)[:] = snapshot.fields.get(field, original)
@@ -92,8 +117,7 @@ def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
     physics.last_pushed = snapshot.last_pushed.copy()
     physics.shows_applied = True
     physics.sleep.set_state(snapshot.sleep)
-    sim.bus.inbox.clear()
-    sim.bus.inbox.extend(snapshot.inbox)
+    sim.bus.inbox.refill(snapshot.inbox)
     for handle, state in snapshot.handles:
         if isinstance(handle, Model):
             handle._rest = state

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
-import math
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from simkit import msgs
-from simkit.diagnostics import did_you_mean
-from simkit.errors import MessageError
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.errors import InputError, MessageError, PluginError, SimkitError, SimulationDiverged, SubscriberError
+from simkit.runtime.audience import (
+    MOST_KEPT,
+    NOTHING,
+    Audience,
+    Callback,
+    Later,
+    OnError,
+    Stream,
+    Subscription,
+    callback_name,
+)
+from simkit.runtime.clashes import clash_with
+from simkit.runtime.ends import Listener, Publisher
+from simkit.runtime.inbox import DEPTH, Inbox
 
-Callback = Callable[[Any], None]
+__all__ = ["NOTHING", "Callback", "Later", "Listener", "OnError", "Publisher", "Subscription", "TopicBus", "absolute"]
 
 
 def absolute(topic: str) -> str:
@@ -20,224 +32,35 @@ def absolute(topic: str) -> str:
     return topic if topic.startswith("/") else "/" + topic
 
 
-NOTHING = object()
-"""What is given instead of a message that cannot be made."""
-
-
-class Later:
-    """A message that is made when somebody looks at it.
-
-    Attributes:
-        is_awaited: whether it will be looked at for all that is known: a reader keeps every message, or records it.
-        work: what is being done on another thread that the message waits for; None where there is no such thing.
-    """
-
-    __slots__ = ("_make", "_message", "is_awaited", "work")
-
-    def __init__(self, make: Callable[[], Any], is_awaited: bool = False, work: Any = None) -> None:
-        self.is_awaited, self.work = is_awaited, work
-        self._make: Callable[[], Any] | None = make
-        self._message: Any = None
-
-    @property
-    def is_ready(self) -> bool:
-        """Whether `get` gives the message without waiting for another thread."""
-        return self.work is None or self.work.is_done
-
-    def get(self) -> Any:
-        """The message; NOTHING where it turned out that there is none."""
-        make = self._make
-        if make is not None:
-            # in this order, since two threads may ask at the same time: both are given the same message
-            self._message = make()
-            self._make = self.work = None
-        return self._message
-
-
-class Audience:
-    """Who hears a topic.
-
-    Attributes:
-        readers: the subscriptions.
-        receivers: what takes a message, one for each of them.
-        is_called: whether one of them is called back with each message, and not only keeps it.
-        looks_at_all: whether one of them will look at every message for all that is known.
-        feeds: whether command inputs hear the topic.
-    """
-
-    __slots__ = ("feeds", "is_called", "looks_at_all", "readers", "receivers")
-
-    def __init__(self) -> None:
-        self.readers: list[Subscription] = []
-        self.receivers: tuple[Callback, ...] = ()
-        self.is_called = self.looks_at_all = self.feeds = False
-
-    def count(self) -> None:
-        """After a change of the readers."""
-        self.receivers = tuple(reader.receive for reader in self.readers)
-        self.is_called = any(reader.is_called for reader in self.readers)
-        self.looks_at_all = any(type(reader) is _Stream or reader.keeps == math.inf for reader in self.readers)
-
-    @property
-    def keeps(self) -> float:
-        """The most messages that one of the readers keeps; infinite where one keeps all."""
-        return max((reader.keeps for reader in self.readers), default=0)
-
-
-class Subscription:
-    """What arrives on a topic.
-
-    Attributes:
-        messages: what arrived since the subscription (the last `keep` where given).
-        receive: takes a message.
-        is_called: whether it has a callback.
-        keeps: the most messages that it keeps.
-    """
-
-    def __init__(self, bus: TopicBus, topic: str, callback: Callback | None, keep: int | None) -> None:
-        self._bus, self.topic, self._callback = bus, topic, callback
-        self._messages: deque[Any] = deque(maxlen=keep)
-        self.is_called, self.keeps = callback is not None, math.inf if keep is None else keep
-        self.receive: Callback = self._messages.append if callback is None else self._keep_and_call
-
-    @property
-    def messages(self) -> list[Any]:
-        self._bus.gather(self.topic)
-        found = [m.get() if type(m) is Later else m for m in self._messages]
-        return [m for m in found if m is not NOTHING]
-
-    @property
-    def latest(self) -> Any | None:
-        """The newest message, or None before the first."""
-        self._bus.gather(self.topic)
-        if not self._messages:
-            return None
-        newest = self._messages[-1]
-        if type(newest) is Later:
-            newest = newest.get()
-        if newest is NOTHING:  # as if it had not been sent
-            self._messages.pop()
-            return self.latest
-        return newest
-
-    def close(self) -> None:
-        """Stops receiving; what was received stays."""
-        self._bus._unsubscribe(self)
-
-    def _keep_and_call(self, message: Any) -> None:
-        assert self._callback is not None
-        self._messages.append(message)
-        self._callback(message)
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Subscription:
-        return self
-
-
-class _Stream(Subscription):
-    """A subscription that only calls back and keeps nothing (a recorder's)."""
-
-    def __init__(self, bus: TopicBus, topic: str, callback: Callback, takes_later: bool) -> None:
-        super().__init__(bus, topic, callback, 0)
-        self.receive = callback
-        self.is_called = not takes_later
-
-
-class Publisher:
-    """One end of a topic; `wanted` says whether somebody reads now.
-
-    Attributes:
-        pending: publishes what its owner has put off, before anybody looks; None where nothing is ever put off.
-    """
-
-    __slots__ = ("_audience", "_bus", "_last", "active", "latched", "owner", "pending", "topic", "type_name")
-
-    def __init__(self, bus: TopicBus, topic: str, type_name: str, latched: bool, owner: object) -> None:
-        self._bus, self.topic, self.type_name, self.latched, self.owner = bus, topic, type_name, latched, owner
-        self._audience = bus._audience(topic)
-        self._last: Any = None
-        self.active = True
-        self.pending: Callable[[], None] | None = None
-
-    @property
-    def wanted(self) -> bool:
-        audience = self._audience
-        return bool(audience.readers) or self.latched or audience.feeds
-
-    @property
-    def is_live(self) -> bool:
-        """Whether somebody does something with each message at once."""
-        audience = self._audience
-        return audience.is_called or audience.feeds or self.latched
-
-    @property
-    def patience(self) -> float:
-        """How many of the newest messages anybody will look at; 0 where nothing may be put off.
-
-        That is where somebody is called back, and where others publish on the same topic.
-        """
-        return 0 if self.is_live or len(self._bus._publishers[self.topic]) > 1 else self._audience.keeps
-
-    def publish(self, message: Any) -> None:
-        """Hands the message to every subscriber, now, and to command inputs before the next step."""
-        if self.latched:
-            self._last = message
-        audience = self._audience
-        for receive in audience.receivers:
-            receive(message)
-        if audience.feeds:
-            self._bus.inbox.append((self.topic, message))
-
-    def publish_later(self, make: Callable[[], Any], work: Any = None) -> Later | None:
-        """Publishes what `make()` gives, made at once only where somebody is called back with it.
-
-        Args:
-            make: gives the message.
-            work: what is being done on another thread that `make` waits for.
-
-        Returns:
-            What was handed out instead of the message; None where it was made.
-        """
-        if self.is_live:
-            self.publish(make())
-            return None
-        later = Later(make, self._audience.looks_at_all, work)
-        for receive in self._audience.receivers:
-            receive(later)
-        return later
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
-        return self
-
-
-class Listener:
-    """A command input: its callback runs between two steps."""
-
-    __slots__ = ("active", "callback", "owner", "topic", "types")
-
-    def __init__(self, topic: str, types: Sequence[str], callback: Callback, owner: object) -> None:
-        self.topic, self.types, self.callback, self.owner = topic, tuple(types), callback, owner
-        self.active = True
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Listener:
-        return self
-
-
 class TopicBus:
     """All topics of a simulation.
 
+    Args:
+        reports: where it tells what happens to messages while running.
+        now: gives the simulated time [s].
+
     Attributes:
         inbox: commands that wait for the next step.
+        refuses_clashes: whether an end of another type than the topic's is refused when it is opened; while plugins are
+            being loaded all are looked at together.
         revision: another number after every change of who reads or publishes what.
+        aside: topics that nobody takes unasked: recorders and counters leave them out unless they are named.
+        unlisted: those of them that are only listed while somebody reads them.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, reports: Diagnostics | None = None, now: Callable[[], float] = lambda: 0.0) -> None:
+        self._reports, self._now = Diagnostics() if reports is None else reports, now
         self._audiences: dict[str, Audience] = {}
         self._publishers: dict[str, list[Publisher]] = {}
         self._listeners: dict[str, list[Listener]] = {}
         self._watchers: list[Callable[[str, str], None]] = []
         self._owner: object = None
-        self.inbox: deque[tuple[str, Any]] = deque()
+        self.inbox = Inbox(self._report_dropped)
+        self.refuses_clashes = False
         self.revision = 0
+        self.aside: set[str] = set()
+        self.unlisted: set[str] = set()
+        self._on_audience: dict[str, Callable[[], None]] = {}
 
     # ------------------------------------------------------------------ ends
 
@@ -262,24 +85,49 @@ class TopicBus:
         self.gather(topic)
         self.revision += 1
         publisher = Publisher(self, topic, type_name, latched, self._owner)
+        self._check_type(topic, publisher)
         self._publishers.setdefault(topic, []).append(publisher)
         self._announce(topic, type_name)
         return publisher
 
-    def listen(self, topic: str, types: Sequence[str], callback: Callback) -> Listener:
-        """Opens a topic for commands; the first of `types` is the one listed."""
+    def listen(self, topic: str, types: Sequence[str], callback: Callback, *, depth: int | None = None) -> Listener:
+        """Opens a topic for commands.
+
+        Args:
+            topic: absolute, or taken as such.
+            types: what is taken; the first is the one listed.
+            callback: called with each message between two steps.
+            depth: how many messages of the topic wait for one step at most, the oldest being dropped of more; the most
+                that any of its listeners asks for.
+        """
         topic = absolute(topic)
+        if depth is not None:
+            self.inbox.depths[topic] = max(1, depth, self.inbox.depths.get(topic, 0))
         self.gather(topic)
         self.revision += 1
         listener = Listener(topic, types, callback, self._owner)
+        self._check_type(topic, listener)
         self._listeners.setdefault(topic, []).append(listener)
         self._audience(topic).feeds = True
         self._announce(topic, types[0])
+        self._tell_audience(topic)
         return listener
 
-    def subscribe(self, topic: str, callback: Callback | None = None, keep: int | None = None) -> Subscription:
-        """Receives a topic, whether its publisher exists yet or not."""
-        return self._add_reader(Subscription(self, absolute(topic), callback, keep))
+    def subscribe(
+        self, topic: str, callback: Callback | None = None, keep: int | None = None, on_error: OnError = "stop"
+    ) -> Subscription:
+        """Receives a topic, whether its publisher exists yet or not.
+
+        Args:
+            topic: absolute, or taken as such.
+            callback: called with each message.
+            keep: how many messages are kept, the newest; a million where nothing is said.
+            on_error: what becomes of a callback that raises: "stop" stops the run with a SubscriberError, "drop" closes
+                the subscription with a warning, and the run goes on.
+        """
+        if on_error not in ("stop", "drop"):
+            raise ValueError(f"on_error is 'stop' or 'drop', got {on_error!r}")
+        return self._add_reader(Subscription(self, absolute(topic), callback, keep, on_error))
 
     def tap(self, topic: str, callback: Callback, *, takes_later: bool = False) -> Subscription:
         """Receives a topic without keeping its messages.
@@ -289,7 +137,7 @@ class TopicBus:
             callback: called with each message.
             takes_later: whether it may be called with a `Later` instead, which it keeps as long as it needs.
         """
-        return self._add_reader(_Stream(self, absolute(topic), callback, takes_later))
+        return self._add_reader(Stream(self, absolute(topic), callback, takes_later))
 
     def close(self, end: Publisher | Listener) -> None:
         """Takes a publisher or a listener away for good."""
@@ -299,6 +147,7 @@ class TopicBus:
         if end in table.get(end.topic, []):
             table[end.topic].remove(end)
         self._audience(end.topic).feeds = bool(self._listeners.get(end.topic))
+        self._tell_audience(end.topic)
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Leaves only the ends of these owners (and those without one) in use."""
@@ -308,10 +157,35 @@ class TopicBus:
             for end in ends:
                 end.active = end.owner is None or id(end.owner) in living
 
+    def forget(self, owners: Sequence[object]) -> None:
+        """Takes every end of these owners away for good."""
+        gone = {id(owner) for owner in owners}
+        tables: tuple[Mapping[str, list[Any]], ...] = (self._publishers, self._listeners)
+        for end in [end for table in tables for ends in table.values() for end in ends if id(end.owner) in gone]:
+            self.close(end)
+
+    def ends(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
+        """Topic, end, its types and what it does ("publishes" or "takes"), of one topic or of all."""
+        for name in dict.fromkeys((*self._publishers, *self._listeners)) if topic is None else (topic,):
+            for publisher in self._publishers.get(name, ()):
+                yield name, publisher, (publisher.type_name,), "publishes"
+            for listener in self._listeners.get(name, ()):
+                yield name, listener, listener.types, "takes"
+
+    def _check_type(self, topic: str, end: Publisher | Listener) -> None:
+        if self.refuses_clashes and end.owner is not None:
+            clash = clash_with(self, topic, end)
+            if clash:
+                raise MessageError(clash)
+
     # ------------------------------------------------------------------ what there is
 
     def topics(self) -> dict[str, str]:
         """Topic -> ROS type name, of what is published and what is listened to, sorted."""
+        return {t: kind for t, kind in self.all_topics().items() if t not in self.unlisted or self.wanted(t)}
+
+    def all_topics(self) -> dict[str, str]:
+        """The same with those that are not listed."""
         found: dict[str, str] = {}
         for topic, publishers in self._publishers.items():
             for p in publishers:
@@ -334,8 +208,16 @@ class TopicBus:
     def on_topic(self, callback: Callable[[str, str], None]) -> None:
         """Calls `callback(topic, type_name)` for every topic there is and will be."""
         self._watchers.append(callback)
-        for topic, type_name in self.topics().items():
+        for topic, type_name in self.all_topics().items():
             callback(topic, type_name)
+
+    def on_audience(self, topic: str, callback: Callable[[], None]) -> None:
+        """Calls back whenever who hears a topic has changed."""
+        self._on_audience[topic] = callback
+
+    def _tell_audience(self, topic: str) -> None:
+        if topic in self._on_audience:
+            self._on_audience[topic]()
 
     # ------------------------------------------------------------------ messages
 
@@ -347,7 +229,13 @@ class TopicBus:
                     publisher.pending()
         for audience in self._audiences.values():
             for reader in audience.readers:
-                reader.messages  # noqa: B018
+                reader.settle()
+
+    def settle_topic(self, topic: str) -> None:
+        """The same of one topic."""
+        self.gather(topic)
+        for reader in self._audience(topic).readers:
+            reader.settle()
 
     def gather(self, topic: str) -> None:
         """Lets the publishers of a topic hand over what they have put off."""
@@ -374,18 +262,75 @@ class TopicBus:
 
     def enqueue(self, call: Callable[[], None]) -> None:
         """Has something done between two steps, in its turn among the queued commands."""
-        self.inbox.append(("", call))
+        self.inbox.put("", call)
 
     def deliver_inputs(self) -> None:
-        """Hands queued commands to their inputs, in the order of arrival."""
-        for _ in range(len(self.inbox)):
-            topic, message = self.inbox.popleft()
-            if not topic:
-                message()
-                continue
-            for listener in self._listeners.get(topic, ()):
-                if listener.active and msgs.type_name(message) in listener.types:
+        """Hands queued commands to their inputs, in the order of arrival.
+
+        Raises:
+            PluginError: a plugin raised; what came after waits for the next step.
+        """
+        inbox = self.inbox
+        entries, generation, done = inbox.drain(), inbox.generation, 0
+        try:
+            for topic, message in entries:
+                done += 1
+                if topic:
+                    self._deliver_input(topic, message)
+                else:
+                    message()
+                if inbox.generation != generation:  # who was called went back to another time
+                    return
+        except BaseException:
+            if inbox.generation == generation:
+                inbox.put_back(entries[done:])
+            raise
+
+    def _deliver_input(self, topic: str, message: Any) -> None:
+        for listener in tuple(self._listeners.get(topic, ())):
+            if listener.active and msgs.type_name(message) in listener.types:
+                try:
                     listener.callback(message)
+                except SimkitError:
+                    raise
+                except Exception as error:
+                    raise self._input_error(listener, error) from error
+
+    # ------------------------------------------------------------------ what goes wrong
+
+    @property
+    def dropped(self) -> dict[str, int]:
+        """Topic -> how many messages to its inputs were dropped, since too many came for one step."""
+        return dict(self.inbox.dropped)
+
+    def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
+        """What becomes of a subscriber that raised, called while that is being handled."""
+        if isinstance(error, (PluginError, SimulationDiverged)):
+            raise error
+        topic, name = subscription.topic, callback_name(subscription.callback)
+        if subscription.on_error == "stop":
+            if isinstance(error, SimkitError) and not isinstance(error, InputError):
+                raise error  # else who publishes would be blamed for it
+            raise SubscriberError(topic, name, self._now(), repr(error)) from error
+        subscription.close()
+        message = f"subscriber {name} of {topic!r} raised at t={self._now():.6g} s and hears no more: {error!r}"
+        self._reports.warning("SK-TOPIC-003", message)
+
+    def report_full(self, topic: str) -> None:
+        """Tells that a subscription which keeps all has had more messages than it can keep."""
+        message = f"a subscription to {topic!r} is full: of more than {MOST_KEPT} messages the newest are there"
+        self._reports.warning("SK-TOPIC-005", message, hint="subscribe with keep=, or close it once it is not needed")
+
+    def _report_dropped(self, topic: str) -> None:
+        depth = self.inbox.depths.get(topic, DEPTH)
+        message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
+        self._reports.warning("SK-TOPIC-004", message, hint="send less often; sim.bus.dropped counts them")
+
+    def _input_error(self, listener: Listener, error: Exception) -> SimkitError:
+        owner, what = listener.owner, f"its callback for {listener.topic!r}"
+        if hasattr(owner, "where"):
+            return PluginError(str(getattr(owner, "name", owner)), what, self._now(), str(owner.where), repr(error))
+        return SubscriberError(listener.topic, callback_name(listener.callback), self._now(), repr(error))
 
     def _listed(self) -> str:
         return "there is " + (", ".join(self.topics()) or "none")
@@ -396,7 +341,7 @@ class TopicBus:
         for receive in audience.receivers:
             receive(message)
         if audience.feeds:
-            self.inbox.append((topic, message))
+            self.inbox.put(topic, message)
 
     def _audience(self, topic: str) -> Audience:
         found = self._audiences.get(topic)
@@ -414,6 +359,7 @@ class TopicBus:
         for publisher in self._publishers.get(topic, ()):
             if publisher.latched and publisher.active and publisher._last is not None:
                 subscription.receive(publisher._last)
+        self._tell_audience(topic)
         return subscription
 
     def _unsubscribe(self, subscription: Subscription) -> None:
@@ -423,6 +369,7 @@ class TopicBus:
             self.revision += 1
             audience.readers.remove(subscription)
             audience.count()
+            self._tell_audience(subscription.topic)
 
     def _announce(self, topic: str, type_name: str) -> None:
         for watcher in self._watchers:

@@ -35,6 +35,15 @@ class Visual(Handle):
         drawn: dict[str, tuple[int, ...]] = self._sim.names.drawn(self.link.scoped)
         return drawn.get(self.scoped, ())
 
+    def set_colour(self, red: float, green: float, blue: float, alpha: float = 1.0) -> None:
+        """Paints it, each part from 0 to 1; what it is made of (gloss, glow, a picture it wears) stays."""
+        parts = [min(1.0, max(0.0, float(part))) for part in (red, green, blue, alpha)]
+        if parts == [0.5, 0.5, 0.5, 1.0]:
+            parts[0] = 0.5001  # exactly MuJoCo's default would be taken for "not given"
+        geoms = list(self.geoms)
+        if geoms:
+            self._sim.touch("geom_rgba")[geoms] = parts
+
     @property
     def pose(self) -> Pose:
         """Pose of the visual's frame in the world."""

@@ -25,7 +25,7 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "imu": frozenset({"orientation"}),
         "magnetometer": frozenset({"date"}),
         "sonar": frozenset({"axis", "noise"}),
-        "plugin": frozenset({"odometry_noise"}),
+        "plugin": frozenset({"interpolation", "odometry_noise", "on_error", "point_times", "pose_type", "shadow_gz"}),
     }
 )
 """Element of SDF -> names in it that are our own. What is inside one of our own, or of a plugin's, needs no prefix."""

@@ -12,7 +12,8 @@ from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
 from simkit.sensors.names import check_topic, entity_topic, given_frame
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
-from simkit.sensors.sampling import Product, Remembered, Sample, Sampler
+from simkit.sensors.sample import Product, Remembered, Sample
+from simkit.sensors.sampling import Sampler
 from simkit.sensors.timing import Flight, SampleTimes, read_timing
 
 if TYPE_CHECKING:
@@ -211,7 +212,8 @@ class Sensor(Sampler):
         self._catch_up()
         for sample in self._kept():
             self._settle(sample)  # what is held belongs to the model before
-        self.sim.bus.settle()  # and so does what waits to be looked at
+        for _, publisher, _ in self._ends:
+            self.sim.bus.settle_topic(publisher.topic)  # and so does what waits to be looked at
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
         self._body = int(link.body)

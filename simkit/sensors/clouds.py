@@ -1,4 +1,4 @@
-"""`PointCloud2` messages from structured arrays."""
+"""`PointCloud2` messages from structured arrays, and the `PointCloud` messages of before."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from simkit import msgs
+from simkit.pose import Vector
 
+OLD_CLOUD = "sensor_msgs/msg/PointCloud"
 DATATYPES = {"u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
 
 
@@ -34,3 +36,16 @@ def point_cloud(header: Any, points: Any, height: int, width: int, is_dense: boo
     data = points.view(np.uint8).reshape(-1) if points.size else np.empty(0, dtype=np.uint8)
     make = msgs.type_of("sensor_msgs/msg/PointCloud2")
     return make(header, height, width, list(_fields(points.dtype)), False, step, step * width, data, is_dense)
+
+
+def old_point_cloud(header: Any, places: Vector, intensities: Vector) -> Any:
+    """A `sensor_msgs/msg/PointCloud`.
+
+    Args:
+        header: of the message.
+        places: [m], shape (n, 3).
+        intensities: shape (n,), its only channel.
+    """
+    point, channel = msgs.type_of("geometry_msgs/msg/Point32"), msgs.type_of("sensor_msgs/msg/ChannelFloat32")
+    points = [point(*place) for place in places.tolist()]
+    return msgs.type_of(OLD_CLOUD)(header, points, [channel("intensity", intensities.astype(np.float32))])

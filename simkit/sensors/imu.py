@@ -129,6 +129,7 @@ class Imu(Sensor):
 
     def measure_against(self, reference: Vector | Four) -> None:
         """Sets the frame, (w, x, y, z) in the world, that the orientation is measured against."""
+        self.crew = None  # until the next schedule
         self.reference = np.array(reference, dtype=np.float64)
         w, x, y, z = self.reference.tolist()
         self._from_reference: Four = (w, -x, -y, -z)
@@ -139,8 +140,26 @@ class Imu(Sensor):
 
     def add_white_noise(self, stddev: float) -> None:
         """Noise on top of the file's, the same number on every rate [rad/s], acceleration [m/s²] and angle [rad]."""
+        self.crew = None
         self._more_noise = self._make_noise((NoiseModel(stddev=stddev),) * 9, "more")
         self._covariances_of = None
+
+    @classmethod
+    def team_up(cls, sensors: Sequence[Any]) -> None:
+        if cls is Imu:
+            from simkit.sensors.imu_crew import form_crews
+
+            form_crews(sensors)
+
+    @property
+    def is_mounted_straight(self) -> bool:
+        """Whether its axes are those of the body that it is on."""
+        return self._mount == _AS_IT_IS
+
+    @property
+    def is_against_world(self) -> bool:
+        """Whether its orientation is measured against the world's axes."""
+        return self._from_reference == _AS_IT_IS
 
     def products(self) -> dict[str, Product]:
         return {"imu": Product(TYPE, self._message_of)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from simkit.compiler.groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
-from simkit.sensors.clouds import point_cloud
+from simkit.sensors.clouds import OLD_CLOUD, old_point_cloud, point_cloud
 from simkit.sensors.lidar_options import LARGEST_RANGE, LidarOptions, read_options
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
 from simkit.sensors.rays import RayFan, fan_directions
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneSensor
 
 SCAN, CLOUD = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
-OLD_CLOUD, RANGE = "sensor_msgs/msg/PointCloud", "sensor_msgs/msg/Range"
+RANGE = "sensor_msgs/msg/Range"
 _BRIGHTEST = 2000.0  # of Gazebo's rendered lidars
 _NAMES, _FORMATS = ["x", "y", "z", "intensity", "ring"], ["<f4", "<f4", "<f4", "<f4", "<u2"]
 _RING_POINT = np.dtype({"names": _NAMES, "formats": _FORMATS, "offsets": [0, 4, 8, 12, 16], "itemsize": 18})
@@ -43,6 +44,7 @@ class LidarReading:
         hits: what was hit, as positions in `geoms`; -1 for nothing.
         geoms: MuJoCo's; the last is -1.
         names: scoped names by geom; the last is empty.
+        scatter: what is added to x, y, z [m] and intensity of each ray in a `block` cloud, shape (layers · samples, 4).
     """
 
     ranges: Vector
@@ -51,6 +53,7 @@ class LidarReading:
     hits: npt.NDArray[np.int32]
     geoms: npt.NDArray[np.int32]
     names: npt.NDArray[np.object_]
+    scatter: Vector | None = None
 
 
 class Lidar(Sensor):
@@ -67,6 +70,7 @@ class Lidar(Sensor):
         field_of_view: of `Range` messages [rad]; None is that of the rays.
         ray_noise: of each ray, besides its own noise.
         range_noise: one draw [m] for all rays of a sample, so of their nearest, besides the noise of each.
+        point_noise: of x, y, z [m] and intensity of each ray in a `block` cloud.
     """
 
     kinds = ("lidar", "ray", "gpu_lidar", "gpu_ray")
@@ -80,6 +84,7 @@ class Lidar(Sensor):
     field_of_view: float | None = None
     ray_noise: UniformNoise | None = None
     range_noise: Noise | None = None
+    point_noise: UniformNoise | None = None
 
     def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
         super().__init__(scene, diagnostics)
@@ -119,12 +124,20 @@ class Lidar(Sensor):
         self.noise = self._make_uniform_noise(self.options.noise, self._fan.count, "ranges")
         self._scan_type = msgs.type_of(SCAN)
 
+    @classmethod
+    def team_up(cls, sensors: Sequence[Any]) -> None:
+        if cls is Lidar:
+            from simkit.sensors.lidar_crew import form_crews
+
+            form_crews(sensors)
+
     def products(self) -> dict[str, Product]:
         return {
             "scan": Product(SCAN, self._scan_message),
             "points": Product(CLOUD, self._organised_cloud),
             "hits": Product(CLOUD, self._cloud_of_hits),
             "old_hits": Product(OLD_CLOUD, self._old_cloud),
+            "block": Product(OLD_CLOUD, self._block_cloud),
             "range": Product(RANGE, self._range_message),
             "velodyne": Product(CLOUD, self._velodyne_cloud),
         }
@@ -181,9 +194,17 @@ class Lidar(Sensor):
         return names
 
     def measure(self, model: Any, data: Any) -> LidarReading:
-        fan = self._fan
         origin, rotation = self._place(data)
-        fan.cast(model, data, origin, rotation, self._start)
+        self._fan.cast(model, data, origin, rotation, self._start)
+        return self.reading_of_cast()
+
+    def measure_now(self) -> LidarReading:
+        """Of the state at this tick."""
+        return self.measure(self.sim.mj_model, self._data_now())
+
+    def reading_of_cast(self) -> LidarReading:
+        """What the rays found when they were last cast."""
+        fan = self._fan
         ranges, infinite = fan.distances, fan.infinite
         if self.sees_visuals and np.minimum.reduce(ranges) < self.options.range_min:
             too_near = ranges < self.options.range_min
@@ -207,7 +228,7 @@ class Lidar(Sensor):
 
     def perturb(self, reading: LidarReading, index: int) -> LidarReading:
         more, shift = self.ray_noise, self.range_noise
-        if self.noise.is_silent and more is None and shift is None:
+        if self.noise.is_silent and more is None and shift is None and self.point_noise is None:
             return reading
         ranges, (low, high) = self.noise.apply(reading.ranges, index), self._limits
         if more is not None:
@@ -217,7 +238,11 @@ class Lidar(Sensor):
         np.maximum(ranges, low, out=ranges)
         np.minimum(ranges, high, out=ranges)
         np.copyto(ranges, reading.ranges, where=reading.infinite)
-        return LidarReading(ranges, reading.intensities, reading.infinite, reading.hits, reading.geoms, reading.names)
+        scatter = None
+        if self.point_noise is not None:
+            scatter = self.point_noise.apply(np.zeros(4 * self._fan.count), index).reshape(-1, 4)
+        r = reading
+        return LidarReading(ranges, r.intensities, r.infinite, r.hits, r.geoms, r.names, scatter)
 
     def add_ray_noise(self, stddev: float) -> None:
         """Sets `ray_noise`, of a standard deviation [m]."""
@@ -226,6 +251,10 @@ class Lidar(Sensor):
     def add_range_noise(self, stddev: float) -> None:
         """Sets `range_noise`, of a standard deviation [m]."""
         self.range_noise = self._make_noise((NoiseModel(stddev=stddev),), "nearest range")
+
+    def add_point_noise(self, stddev: float) -> None:
+        """Sets `point_noise`, of a standard deviation [m, and of intensity]."""
+        self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self._fan.count, "points")
 
     # ------------------------------------------------------------------ messages
 
@@ -292,13 +321,17 @@ class Lidar(Sensor):
     def _old_cloud(self, reading: LidarReading, time_ns: int) -> Any:
         hit = np.flatnonzero(np.isfinite(reading.ranges))
         places = self._directions[hit] * reading.ranges[hit, None]
-        point = msgs.type_of("geometry_msgs/msg/Point32")
-        values = np.maximum(reading.intensities[hit], self.min_intensity).astype(np.float32)
-        return msgs.type_of(OLD_CLOUD)(
-            msgs.header(time_ns, self.frame_id),
-            [point(*place) for place in places.tolist()],
-            [msgs.type_of("sensor_msgs/msg/ChannelFloat32")("intensity", values)],
-        )
+        intensities = np.maximum(reading.intensities[hit], self.min_intensity)
+        return old_point_cloud(msgs.header(time_ns, self.frame_id), places, intensities)
+
+    def _block_cloud(self, reading: LidarReading, time_ns: int) -> Any:
+        """Every ray, layer by layer from the lowest; one without a reading ends at the limit that it passed."""
+        places = self._directions * np.clip(reading.ranges, *self._limits)[:, None]
+        intensities = np.maximum(reading.intensities, self.min_intensity)
+        if reading.scatter is not None:
+            places[~reading.infinite] += reading.scatter[~reading.infinite, :3]
+            intensities = intensities + reading.scatter[:, 3]
+        return old_point_cloud(msgs.header(time_ns, self.frame_id), places, intensities)
 
     def _range_message(self, reading: LidarReading, time_ns: int) -> Any:
         """The nearest of all rays."""

@@ -88,6 +88,11 @@ class Magnetometer(Sensor):
         self.noise = self._make_noise(self.options.axes, "magnetometer")
         self._make_types = (msgs.type_of(TYPE), msgs.type_of("geometry_msgs/msg/Vector3"))
         self._uniform: Vector = np.array(world.magnetic_field)
+        self.relocate()
+
+    def relocate(self) -> None:
+        """Takes the field of where the world lies now."""
+        world = self.sim.world
         self._earth: EarthField | None = None
         self._scale, self._to_world = 1.0, np.eye(3)
         if world.spherical_coordinates is not None:

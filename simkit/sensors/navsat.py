@@ -102,7 +102,7 @@ class NavSat(Sensor):
         level, plumb = options.horizontal_position, options.vertical_position
         flat, climb = options.horizontal_velocity, options.vertical_velocity
         self.noise = self._make_noise((level, level, plumb, flat, flat, climb), "navsat")
-        self._quirks = self.sim.world.gazebo_quirks
+        self._quirks, self._turn = self.sim.world.gazebo_quirks, 0.0
         self._place: PlaceOnPlanet | None = None
         if place is None:
             message = f"sensor {self.scoped!r} gives nothing: the world has no <spherical_coordinates>"
@@ -110,6 +110,14 @@ class NavSat(Sensor):
             self.diagnostics.warning("SK-SENSOR-067", message, self.scene.where, hint)
         else:
             self._stand(place)
+
+    def relocate(self) -> None:
+        """The world lies elsewhere on its planet from now on."""
+        place = self.sim.world.spherical_coordinates
+        if place is None:
+            self._place = None
+        else:
+            self._stand(replace(place, heading=place.heading + self._turn) if self._turn else place)
 
     def _stand(self, place: SphericalCoordinates) -> None:
         self._place = PlaceOnPlanet(place)
@@ -120,8 +128,8 @@ class NavSat(Sensor):
         """With `<gazebo_quirks>` the world's heading is half a turn off, as in Gazebo Classic, and nothing else is."""
         place = self.sim.world.spherical_coordinates
         if self._quirks and place is not None:
-            self._quirks = False
-            self._stand(replace(place, heading=place.heading + math.pi))
+            self._quirks, self._turn = False, math.pi
+            self._stand(replace(place, heading=place.heading + self._turn))
 
     def accepts(self, tick: int) -> bool:
         return self._place is not None

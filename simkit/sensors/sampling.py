@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import abc
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from simkit.sensors.timing import Departures, Flight, SampleTimes
+from simkit.sensors.sample import Product, Remembered, Sample
+from simkit.sensors.timing import Departures, Flight, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
@@ -17,84 +17,6 @@ if TYPE_CHECKING:
 
 
 _MOST_ROWS = 64  # gathered before samples are made of them
-
-
-@dataclass(frozen=True, slots=True)
-class Product:
-    """One kind of message that a sensor can give.
-
-    Attributes:
-        type_name: ROS 2 type.
-        make: `make(reading, time_ns)` gives the message.
-        needs_reading: False where the message says nothing of the world; its reading may then be None.
-    """
-
-    type_name: str
-    make: Callable[[Any, int], Any]
-    needs_reading: bool = True
-
-
-class Sample:
-    """One due time: either measured, or the physics state to measure later.
-
-    Attributes:
-        index: 1 for the first sample.
-        held: the state to measure; None once captured.
-        raw: what was captured of the state; None once finished.
-        truth: the reading without noise; `noisy` with it.
-        messages: made so far, by product.
-        drifts: states of the noise at this sample where they change from sample to sample.
-        untold: products that are not published of it.
-        around: what holds for it besides the physics, where a kind reads more than that.
-        work: what another thread does with it; whoever looks at the sample waits for that first.
-    """
-
-    __slots__ = (
-        "around", "drifts", "held", "index", "messages", "noisy", "raw", "time_ns", "truth", "truth_message", "untold",
-        "work",
-    )  # fmt: skip
-
-    def __init__(self, index: int, time_ns: int) -> None:
-        self.index, self.time_ns = index, time_ns
-        self.held: Any = None
-        self.raw: Any = None
-        self.truth: Any = None
-        self.noisy: Any = None
-        self.messages: dict[str, Any] = {}
-        self.truth_message: Any = None
-        self.drifts: tuple[Any, ...] = ()
-        self.untold: tuple[str, ...] = ()
-        self.around: Any = None
-        self.work: Any = None
-
-
-class Remembered(Protocol):
-    """What goes on from sample to sample beside the physics: noise, and whatever else a kind remembers.
-
-    Attributes:
-        state: what of it depends on the sample; never written to, only replaced, for samples that wait keep theirs.
-    """
-
-    state: Any
-
-    @property
-    def wanders(self) -> bool:
-        """Whether the state changes from sample to sample."""
-
-    def evolve(self, index: int, dt: float) -> None:
-        """Moves on by `dt` [s] to sample `index`; 0 where there is no sample before it."""
-
-    def restart(self) -> None:
-        """Back at t = 0."""
-
-    def set_interval(self, interval: float) -> None:
-        """Says that samples are `interval` [s] apart from now on, if nothing else is known of one."""
-
-    def memory(self) -> Any:
-        """What `remember` takes back."""
-
-    def remember(self, memory: Any) -> None:
-        """Takes back what `memory` gave."""
 
 
 class Sampler(abc.ABC):
@@ -106,6 +28,9 @@ class Sampler(abc.ABC):
     is_deferred: bool = False
     sim: Simulation
     update_rate: float
+    timing: TimingOptions
+    crew: Any = None
+    place_in_crew = 0
     _times: SampleTimes
 
     def __init__(self) -> None:
@@ -119,7 +44,7 @@ class Sampler(abc.ABC):
         self._gathered: list[tuple[int, Any]] = []
         self._revision, self._patience = -1, 0.0
         self._wanted: list[tuple[str, Publisher, bool]] = []
-        self._is_read = self._gathers = False
+        self._is_read = self._gathers = self._is_served = False
         self._index, self._time_ns = 0, -1
         self._flight: Flight | None = None
         self._departures: Departures | None = None
@@ -180,7 +105,30 @@ class Sampler(abc.ABC):
         """Whether what was captured is published as `product`; `latest` and `truth` show it either way."""
         return True
 
+    @classmethod
+    def team_up(cls, sensors: Sequence[Any]) -> None:
+        """Has those of all sensors of this kind work together that can; see `simkit.sensors.crews`."""
+
     # ------------------------------------------------------------------ what the simulation calls
+
+    @property
+    def keeps_to_grid(self) -> bool:
+        """Whether it samples and publishes at every tick of its rate and phase, with noise that does not wander."""
+        is_plain = self._flight is None and self.timing.jitter == 0 and not self._evolves
+        return is_plain and not (self._is_choosy or self._is_reticent)
+
+    @property
+    def is_read_now(self) -> bool:
+        """Whether somebody reads what is measured."""
+        if self._revision != self.sim.bus.revision:
+            self._look_who_reads()
+        return self._is_read
+
+    @property
+    def count(self) -> int:
+        """How many samples it has taken."""
+        self._catch_up()
+        return self._index
 
     def timetable(self) -> Timetable | None:
         """When `sample` is to be called, at the rate of the moment; None is every step."""
@@ -200,14 +148,16 @@ class Sampler(abc.ABC):
         sim = self.sim
         if self._revision != sim.bus.revision:
             self._look_who_reads()
+        if self._is_served and self.crew is not None and self.crew.serve(self, tick):
+            return
         if self._gathers:
-            self._gathered.append((tick, self.capture(sim.mj_model, self._data_now())))
+            self._gathered.append((tick, self._capture_now(tick)))
             if len(self._gathered) >= _MOST_ROWS:
                 self._catch_up()
             return
         sample, wanted = self._begin(tick), self._wanted
         if self._is_read:
-            sample.raw = self.capture(sim.mj_model, self._data_now())
+            sample.raw = self._capture_now(tick)
             if self._is_reticent:
                 self._choose(sample)
         else:
@@ -278,6 +228,15 @@ class Sampler(abc.ABC):
             sample.drifts = tuple([noise.state for noise in self._wandering])
         return sample
 
+    def _capture_now(self, tick: int) -> Any:
+        """What is captured at this tick; a member of a crew has it from there."""
+        crew = self.crew
+        if crew is not None:
+            if crew.is_ready(self, tick):
+                return crew.raw_of(self.place_in_crew)
+            self.crew = None  # until the next schedule
+        return self.capture(self.sim.mj_model, self._data_now())
+
     def _data_now(self) -> Any:
         """The engine's data with what `measure` reads computed."""
         if self.needs_acceleration or self.reads_contacts:
@@ -290,6 +249,7 @@ class Sampler(abc.ABC):
         self._revision = self.sim.bus.revision
         self._wanted = [end for end in self._ends if end[1].wanted]
         self._is_read = any(needs_reading for _, _, needs_reading in self._wanted)
+        self._is_served = bool(self._wanted) and all(publisher.is_live for _, publisher, _ in self._wanted)
         patience = [publisher.patience for _, publisher, _ in self._wanted]
         is_plain = self._flight is None and not (self._is_choosy or self._is_reticent)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)

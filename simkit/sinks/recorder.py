@@ -77,7 +77,8 @@ class Recorder:
         sim: the simulation; recording it makes every recorded sensor measure.
         path: `x.mcap` for one file, else a rosbag2 folder.
         overwrite: whether an existing bag may be replaced.
-        topics: shell patterns of the topics to record; all when empty.
+        topics: shell patterns of the topics to record; when empty, all but those that the bus has aside (`/stats` and
+            what else tells of the whole world).
         skip: shell patterns of topics to leave out.
 
     Raises:
@@ -146,6 +147,8 @@ class Recorder:
         if self._bag is None or topic in self._taps:
             return
         if self._patterns and not any(fnmatch.fnmatchcase(topic, p) for p in self._patterns):
+            return
+        if not self._patterns and topic in self._sim.bus.aside:
             return
         if any(fnmatch.fnmatchcase(topic, p) for p in self._skip):
             return

@@ -40,7 +40,7 @@ class TopicCount:
 
 
 class TopicCounter:
-    """Counts the messages of every topic.
+    """Counts the messages of every topic but those that the bus has aside and nobody else reads.
 
     Args:
         sim: the simulation.
@@ -73,9 +73,10 @@ class TopicCounter:
         self._taps.clear()
 
     def _add(self, topic: str, type_name: str) -> None:
-        if topic in self._rows:
+        is_read = self._is_read is not None and self._is_read(topic)
+        if topic in self._rows or (topic in self._sim.bus.aside and not is_read):
             return
-        is_counted = type_name not in self._skip or (self._is_read is not None and self._is_read(topic))
+        is_counted = type_name not in self._skip or is_read
         row = self._rows[topic] = TopicCount(topic, type_name, is_counted, self._sim.time_ns)
         if not row.counted:
             return

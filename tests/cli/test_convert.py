@@ -329,9 +329,13 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks><sce
 <sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
 </sensor></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
 <sensor name="e" type="custom" gz:type="encoder"><encoder><resolution>0.001</resolution></encoder></sensor></joint>
-<plugin filename="user" name="user"><latency>1</latency><sensor><phase>0</phase></sensor></plugin>
+<plugin filename="user" name="user"><latency>1</latency><sensor><phase>0</phase></sensor>
+<on_error>disable</on_error></plugin>
 <plugin filename="libgazebo_ros_diff_drive.so" name="d"><left_joint>j</left_joint><right_joint>j</right_joint>
-<odometry_noise><wheel_variance>1e-4</wheel_variance></odometry_noise></plugin></model></world></sdf>"""
+<odometry_noise><wheel_variance>1e-4</wheel_variance></odometry_noise></plugin>
+<plugin filename="gz-sim-joint-trajectory-controller-system" name="t"><interpolation>cubic</interpolation></plugin>
+<plugin filename="libgazebo_ros_joint_pose_trajectory.so" name="p"><point_times>from_start</point_times></plugin>
+</model></world></sdf>"""
 
 
 def test_elements_of_our_own_come_out_with_their_prefix_and_mean_the_same(here: Path) -> None:

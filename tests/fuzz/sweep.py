@@ -103,6 +103,16 @@ PLUGINS = {
       <i_min>-1</i_min><cmd_max>1</cmd_max><cmd_min>-1</cmd_min><cmd_offset>0</cmd_offset>""",
     "gz-sim-joint-controller-system ": """<joint_name>a</joint_name><use_actuator_msg>1</use_actuator_msg>
       <actuator_number>0</actuator_number>""",
+    "gz-sim-joint-position-controller-system": """<joint_name>a</joint_name><joint_index>0</joint_index>
+      <initial_position>1</initial_position><p_gain>1</p_gain><i_gain>1</i_gain><d_gain>1</d_gain><i_max>1</i_max>
+      <i_min>-1</i_min><cmd_max>1</cmd_max><cmd_min>-1</cmd_min><cmd_offset>0</cmd_offset>""",
+    "gz-sim-joint-position-controller-system ": """<joint_name>a</joint_name><initial_position>1</initial_position>
+      <use_velocity_commands>1</use_velocity_commands><cmd_max>1</cmd_max>""",
+    "gz-sim-joint-trajectory-controller-system": """<joint_name>a</joint_name><initial_position>1</initial_position>
+      <position_p_gain>1</position_p_gain><position_i_gain>1</position_i_gain><position_d_gain>1</position_d_gain>
+      <position_i_max>1</position_i_max><position_i_min>-1</position_i_min><velocity_cmd_max>1</velocity_cmd_max>
+      <velocity_cmd_min>-1</velocity_cmd_min><velocity_cmd_offset>0</velocity_cmd_offset>""",
+    "libgazebo_ros_joint_pose_trajectory.so": "<update_rate>100</update_rate>",
     "gz-sim-odometry-publisher-system": """<odom_publish_frequency>50</odom_publish_frequency>
       <xyz_offset>0 0 0</xyz_offset><rpy_offset>0 0 0</rpy_offset><dimensions>3</dimensions>
       <gaussian_noise>0.1</gaussian_noise>""",

@@ -47,7 +47,8 @@ def plugin(library: str, content: str = "") -> str:
 
 
 def topics_of(sim: Any) -> dict[str, str]:
-    return {t: kind.rsplit("/", 1)[-1] for t, kind in sim.topics().items() if t not in ("/clock", "/tf_static")}
+    others = {"/clock", "/tf_static", *sim.bus.aside}
+    return {t: kind.rsplit("/", 1)[-1] for t, kind in sim.topics().items() if t not in others}
 
 
 def heard(text: str, *topics: str, duration: float = 0.015) -> list[Any]:

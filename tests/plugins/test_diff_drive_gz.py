@@ -44,6 +44,60 @@ def test_odometry_comes_at_fifty_hertz_from_the_first_twenty_milliseconds_on() -
     np.testing.assert_array_equal(stamps(odometry.messages), np.arange(1, 11) * 20_000_000)
 
 
+def test_a_frequency_of_zero_is_every_step_and_a_negative_one_an_error() -> None:
+    with opened(odom_publish_frequency=0) as sim:
+        odometry = sim.subscribe("/model/rover/odometry")
+        sim.run(0.05)
+    np.testing.assert_array_equal(stamps(odometry.messages), np.arange(1, 51) * 1_000_000)
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002.*odom_publish_frequency"):
+        opened(odom_publish_frequency=-1)
+
+
+def test_the_twist_is_the_mean_over_the_last_ten_steps() -> None:
+    """Under 1 m/s² the wheels' speed 4.5 steps ago."""
+    with opened(max_acceleration=1, min_acceleration=-1) as sim:
+        odometry = sim.subscribe("/model/rover/odometry")
+        sim.run(0.2)
+        sim.publish("/model/rover/cmd_vel", {"linear": {"x": 2.0}, "angular": {"z": 0.5}})
+        rims = []
+        for _ in range(400):
+            sim.step()
+            rims.append([0.1 * float(sim.joint(f"rover::{side}_wheel").velocity) for side in ("left", "right")])
+    left, right = np.mean(rims[-10:], axis=0)
+    twist = odometry.latest.twist.twist
+    assert twist.linear.x == pytest.approx((left + right) / 2, abs=1e-9)
+    assert twist.angular.z == pytest.approx((right - left) / 0.4, abs=1e-9)
+
+
+def test_odometry_told_once_a_second_has_gone_round_every_bend() -> None:
+    """Straight on for 0.5 s, then a turn: not one arc."""
+    ends = []
+    for frequency in (1, 50):
+        with opened(odom_publish_frequency=frequency) as sim:
+            odometry = sim.subscribe("/model/rover/odometry")
+            sim.publish("/model/rover/cmd_vel", {"linear": {"x": 0.4}})
+            sim.run(0.5)
+            sim.publish("/model/rover/cmd_vel", {"angular": {"z": 1.5}})
+            sim.run(0.5)
+            ends.append(xyz(odometry.latest.pose.pose.position))
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-4)
+    assert ends[0][0] == pytest.approx(0.2, abs=0.01)
+
+
+@pytest.mark.parametrize("quantity", ["velocity", "acceleration", "jerk"])
+def test_each_limit_bounds_both_directions_or_one(quantity: str) -> None:
+    """The wheels' speeds are those of the limited command, forwards and round, backwards too."""
+    bounds = {f"max_{quantity}": 0.4, f"min_{quantity}": -0.4, f"max_angular_{quantity}": 0.8}
+    with opened(**bounds, **{f"min_angular_{quantity}": -0.8}) as sim:
+        sim.publish("/model/rover/cmd_vel", {"linear": {"x": -9.0}, "angular": {"z": -9.0}})
+        sim.run(1.0)
+        left, right = (0.1 * float(sim.joint(f"rover::{side}_wheel").velocity) for side in ("left", "right"))
+    # after 1 s: the speed itself, a·t, or j·t²/2
+    reached = {"velocity": 1.0, "acceleration": 1.0, "jerk": 0.5}[quantity]
+    assert (left + right) / 2 == pytest.approx(-0.4 * reached, abs=0.01)
+    assert (right - left) / 0.4 == pytest.approx(-0.8 * reached, abs=0.02)
+
+
 def test_limits_on_speed_and_acceleration_hold() -> None:
     """0.4 m/s at 1 m/s² for 2 s is 0.72 m."""
     with opened(max_linear_acceleration=1, max_linear_velocity=0.4) as sim:

@@ -12,8 +12,8 @@ import pytest
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.gazebo_ros_diff_drive import GazeboRosDiffDrive, read_options
-from simkit.plugins.gz_diff_drive import SpeedLimiter
-from simkit.plugins.odometry import DeadReckoning, command_of, planar_covariance
+from simkit.plugins.gz_diff_drive import SpeedLimiter, speed_limits
+from simkit.plugins.odometry import DeadReckoning, WheelOdometry, command_of, planar_covariance
 
 WHEELS = {"left_joint": "l", "right_joint": "r"}
 
@@ -36,6 +36,15 @@ def test_what_a_ros_1_file_leaves_out_is_gazebos_default() -> None:
     (pair,) = found.pairs
     assert (pair.left, pair.right, pair.separation, pair.radius) == ("a", "b", 0.34, 0.075)
     assert found.publish_odom and found.publish_odom_tf and not found.from_encoders
+
+
+def test_ros_1_without_transforms_has_no_odometry_and_older_files_name_the_wheels_the_other_way_round() -> None:
+    found = read_options(Params.from_dict({"leftJoint": "a", "rightJoint": "b", "publishTf": False}))
+    assert not (found.publish_odom or found.publish_odom_tf)
+    params = Params.from_dict({"leftJoint": "a", "rightJoint": "b", "legacyMode": True, "rosDebugLevel": "na"})
+    (pair,) = read_options(params).pairs
+    assert (pair.left, pair.right) == ("b", "a")
+    assert not list(params.unread())
 
 
 def test_ros_1_names_topics_and_source() -> None:
@@ -162,14 +171,18 @@ def test_jerk_bounds_how_fast_acceleration_grows() -> None:
 
 def test_direction_bounds_win_over_general_ones() -> None:
     params = Params.from_dict({"max_velocity": 1.0, "max_angular_velocity": 3.0, "min_velocity": -1.0})
-    assert SpeedLimiter.from_params(params, "linear").velocity == (-1.0, 1.0)
-    assert SpeedLimiter.from_params(params, "angular").velocity == (-1.0, 3.0)
+    linear, angular = speed_limits(params)
+    assert (linear.velocity, angular.velocity) == ((-1.0, 1.0), (-1.0, 3.0))
+    assert linear.acceleration == angular.jerk == (-math.inf, math.inf)
 
 
 def test_bounds_the_wrong_way_round_are_an_error() -> None:
-    params = Params.from_dict({"max_velocity": -1.0, "min_velocity": 1.0})
-    SpeedLimiter.from_params(params, "linear")
-    assert [d.code for d in params.diagnostics] == ["SK-PARAM-002"]
+    params = Params.from_dict({"max_acceleration": -1.0, "min_angular_velocity": 1.0, "max_jerk": 0.0})
+    speed_limits(params)
+    assert [(d.code, d.message.split(",")[0]) for d in params.diagnostics] == [
+        ("SK-PARAM-002", "found <min_angular_velocity>1.0</min_angular_velocity>"),
+        ("SK-PARAM-002", "found <max_acceleration>-1.0</max_acceleration>"),
+    ]
 
 
 # ------------------------------------------------------------------ dead reckoning
@@ -190,6 +203,49 @@ def test_a_long_way_in_small_strides_ends_where_the_arc_does() -> None:
     radius = 1.00005e-5 * 10_000 / turn
     assert base.x == pytest.approx(radius * math.sin(turn), rel=1e-9)
     assert base.y == pytest.approx(radius * (1 - math.cos(turn)), rel=1e-6)
+
+
+def rolled(speeds: Any, odometry: WheelOdometry, every: int = 20, step: float = 0.001) -> list[tuple[float, ...]]:
+    """x, y, yaw, speed and turning rate every so many steps, with rim speeds (left, right) at each step [m/s]."""
+    turned = np.cumsum(np.asarray(speeds) * step / 0.1, axis=0)
+    angles = np.vstack((np.zeros(2), turned)) + np.array((0.3, -0.2))
+    told = []
+    for k in range(1, len(angles)):
+        odometry.note((float(angles[k - 1][0]), float(angles[k - 1][1])))
+        if k % every == 0:
+            odometry.reckon((float(angles[k][0]), float(angles[k][1])))
+            base, twist = odometry.reckoning, odometry.twist
+            told.append((base.x, base.y, base.yaw, twist.linear[0], twist.angular[2]))
+    return told
+
+
+def test_wheel_odometry_of_a_constant_curve_is_the_arc() -> None:
+    """Rims at 0.3 and 0.5 m/s, 0.4 m apart: 0.4 m/s and 0.5 rad/s, a circle of radius 0.8 m."""
+    for every in (1, 7, 20, 1500):
+        told = rolled([(0.3, 0.5)] * 3000, WheelOdometry(0.1, 0.4, 0.001), every)[-1]
+        turn = 0.5 * (3000 // every * every) * 0.001
+        expected = (0.8 * math.sin(turn), 0.8 * (1 - math.cos(turn)), turn, 0.4, 0.5)
+        assert told == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_twist_of_wheel_odometry_is_the_mean_over_ten_steps() -> None:
+    """While the speed grows by 1 mm/s a step it is 4.5 steps late, and at first the mean over the steps there were."""
+    ramp = 0.001 * np.arange(1, 101)
+    told = rolled(np.stack((ramp, ramp), axis=1), WheelOdometry(0.1, 0.4, 0.001), every=1)
+    speeds = [row[3] for row in told]
+    expected = [ramp[max(0, k - 9) : k + 1].mean() for k in range(100)]
+    np.testing.assert_allclose(speeds, expected, atol=1e-12)
+    told = rolled(np.stack((-ramp, ramp), axis=1), WheelOdometry(0.1, 0.4, 0.001), every=20)
+    np.testing.assert_allclose([row[4] for row in told], 2 * ramp[19::20] / 0.4 - 4.5 * 0.001 / 0.2, atol=1e-12)
+
+
+def test_wheel_odometry_that_is_told_seldom_goes_the_same_way() -> None:
+    """First straight, then on the spot, then straight: not the one arc that the wheels' turns from end to end say."""
+    legs = [(0.5, 0.5)] * 1000 + [(-0.2, 0.2)] * 1000 + [(0.5, 0.5)] * 1000
+    seldom = rolled(legs, WheelOdometry(0.1, 0.4, 0.001), every=3000)[-1]
+    often = rolled(legs, WheelOdometry(0.1, 0.4, 0.001), every=1)[-1]
+    np.testing.assert_allclose(seldom, often, atol=1e-9)
+    assert seldom[:3] == pytest.approx((0.5 + 0.5 * math.cos(1.0), 0.5 * math.sin(1.0), 1.0), abs=1e-9)
 
 
 def test_both_kinds_of_command_are_understood() -> None:

@@ -73,3 +73,48 @@ def test_a_ball_joint_gives_three_numbered_entries() -> None:
         (message,) = received(sim, "/world/lab/model/rover/joint_state", 0.001)
     assert list(message.name)[-3:] == ["hip[0]", "hip[1]", "hip[2]"]
     assert len(message.position) == len(message.velocity) == len(message.effort) == len(message.name)
+
+
+def test_gz_tells_a_joint_once_that_is_named_twice() -> None:
+    twice = "<joint_name>left_wheel</joint_name><joint_name>right_wheel</joint_name><joint_name>left_wheel</joint_name>"
+    with opened(GZ, twice) as sim:
+        (message,) = received(sim, "/world/lab/model/rover/joint_state", 0.001)
+        assert list(message.name) == ["left_wheel", "right_wheel"]
+        (told,) = [d for d in sim.diagnostics if d.severity != "note"]
+        assert (told.code, told.severity) == ("SK-PLUGIN-063", "warning")
+
+
+def test_gz_on_a_nested_model_has_both_names_in_its_topic() -> None:
+    """Of the outer model only its own joints are told, as in gz."""
+    nested = (
+        f"<model name='arm'>{GZ.format('')}<link name='upper'/><link name='lower'/><joint name='elbow' type='revolute'>"
+        "<parent>upper</parent><child>lower</child><axis><xyz>0 0 1</xyz></axis></joint></model>"
+        "<joint name='mount' type='fixed'><parent>base</parent><child>arm::upper</child></joint>"
+    )
+    with simkit.load(world(GROUND, rover(GZ.format("") + nested))) as sim:
+        (inner,) = received(sim, "/world/lab/model/rover/model/arm/joint_state", 0.001)
+        (outer,) = received(sim, "/world/lab/model/rover/joint_state", 0.001)
+    assert list(inner.name) == ["elbow"]
+    assert list(outer.name) == ["left_wheel", "right_wheel", "front_weld", "rear_weld", "mount"]
+
+
+def test_classic_on_ros_1_lists_its_joints_with_commas() -> None:
+    inner = (
+        "<jointName>left_wheel, right_wheel</jointName><updateRate>10</updateRate><robotNamespace>/tb</robotNamespace>"
+    )
+    with opened(CLASSIC, inner) as sim:
+        messages = received(sim, "/tb/joint_states", 1.0)
+        assert not [d for d in sim.diagnostics if d.severity != "note"]
+    assert len(messages) == 10
+    assert list(messages[0].name) == ["left_wheel", "right_wheel"]
+
+
+def test_classic_publishes_a_hundred_times_a_second_unless_told() -> None:
+    with opened(CLASSIC, "<joint_name>left_wheel</joint_name>") as sim:
+        assert len(received(sim, "/joint_states", 0.5)) == 50
+
+
+@pytest.mark.parametrize("kind", [CLASSIC, GZ])
+def test_a_negative_rate_is_an_error(kind: str) -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002.*-5"):
+        opened(kind, "<joint_name>left_wheel</joint_name><update_rate>-5</update_rate>")

@@ -59,6 +59,22 @@ def test_with_a_rate_they_run_at_the_first_step_at_or_after_each_period() -> Non
     assert diary.times("before")[-2:] == [0.067, 0.1]
 
 
+def test_a_rate_that_a_hook_changes_holds_once_that_is_said_and_comes_back() -> None:
+    class Slower(Diary):
+        def after_step(self) -> None:
+            super().after_step()
+            if self.sim.tick == 3:
+                self.after_step_rate = 100
+                self.sim.reschedule()
+
+    slower = Slower()
+    with opened(slower) as sim:
+        for _ in range(2):
+            sim.run(0.03)
+            assert slower.times("after") == [0.001, 0.002, 0.003, 0.01, 0.02, 0.03]
+            sim.reset()
+
+
 def test_reset_brings_back_the_attributes_of_load_and_then_calls_the_hook() -> None:
     diary = Diary()
     with opened(diary) as sim:
@@ -124,6 +140,17 @@ def test_a_hook_that_raises_stops_the_run_with_its_name_and_time() -> None:
     assert (caught.value.plugin, caught.value.hook) == ("Faulty", "after_step")
     assert caught.value.time == pytest.approx(0.005)
     assert isinstance(caught.value.__cause__, ZeroDivisionError)
+
+
+def test_a_hook_cannot_step_the_simulation_that_it_is_called_by() -> None:
+    class Hasty(Diary):
+        def after_step(self) -> None:
+            self.sim.step()
+
+    with opened(Hasty()) as sim:
+        with pytest.raises(simkit.PluginError, match="a step is under way"):
+            sim.run(1.0)
+        assert sim.tick == 1
 
 
 def test_a_parameter_nobody_reads_is_a_warning_with_the_closest_that_was_asked_for() -> None:

@@ -80,6 +80,16 @@ def _cast(model: Any, data: Any, rays: Rays, groups: npt.NDArray[np.uint8], excl
     return distances, geoms, infinite
 
 
+def reaches_plane(rays: Rays, point: Sequence[float], normal: Sequence[float]) -> bool:
+    """Whether a ray may come down on a plane through a point within the reach; never wrongly False."""
+    (x, y, z), (ax, ay, az), (nx, ny, nz) = rays.origin.tolist(), rays.axis.tolist(), normal
+    height = nx * (x - point[0]) + ny * (y - point[1]) + nz * (z - point[2])
+    steepest = max(abs(rays.lowest), abs(rays.highest))
+    tilt = math.acos(min(1.0, abs(nx * ax + ny * ay + nz * az))) + steepest
+    fall = rays.reach * math.sin(tilt) if tilt < math.pi / 2 else rays.reach
+    return bool(0.0 <= height <= fall * (1 + 1e-9) + 1e-9)
+
+
 def limit_of(reach: float) -> Any:
     """The bits of the longest finite distance that counts, for comparing many at once."""
     return np.array(min(reach, float(np.finfo(np.float64).max))).view(np.uint64)
@@ -148,7 +158,7 @@ class ReducedModel:
         self._places = data.xipos[1:], data.xpos[1:], data.ximat[1:], data.xmat[1:]
         flat = np.flatnonzero(standing & (types == 0))
         normals, points = self._alone[1].geom_xmat[flat, 2::3], self._alone[1].geom_xpos[flat]
-        self._planes = [(*normal, float(point @ normal)) for normal, point in zip(normals, points, strict=True)]
+        self._planes = list(zip(points.tolist(), normals.tolist(), strict=True))
 
     def sight(self, carrier: int, body: int, offset: Pose | None, lowest: float, highest: float) -> Ids:
         """Which of the movers a fan may meet.
@@ -209,16 +219,7 @@ class ReducedModel:
 
     def _reaches_plane(self, rays: Rays) -> bool:
         """Whether a ray may come down on one of the planes that stand still; never wrongly False."""
-        x, y, z = rays.origin.tolist()
-        ax, ay, az = rays.axis.tolist()
-        steepest = max(abs(rays.lowest), abs(rays.highest))
-        for nx, ny, nz, offset in self._planes:
-            height = nx * x + ny * y + nz * z - offset
-            tilt = math.acos(min(1.0, abs(nx * ax + ny * ay + nz * az))) + steepest
-            fall = rays.reach * math.sin(tilt) if tilt < math.pi / 2 else rays.reach
-            if 0.0 <= height <= fall * (1 + 1e-9) + 1e-9:
-                return True
-        return False
+        return any(reaches_plane(rays, point, normal) for point, normal in self._planes)
 
 
 def _compiled(model: Any, geoms: Ids, carriers: Ids) -> tuple[Any, Any]:

@@ -21,9 +21,9 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
-from simkit.sensors.rays.engine import Rays, limit_of
-from simkit.sensors.rays.shapes import Fan, Shapes, cast_on_plane, cast_on_shapes, turned
-from simkit.sensors.rays.sight import may_meet
+from simkit.sensors.rays.engine import Rays, limit_of, reaches_plane
+from simkit.sensors.rays.shapes import Fan, Shapes, cast_on_plane, cast_on_shapes, in_frame, turned
+from simkit.sensors.rays.sight import Nearby, may_meet
 from simkit.sensors.rays.targets import MOST_MOVING, Ids, RayTargets
 from simkit.sensors.rays.triangles import Movers, TriangleBody
 
@@ -69,6 +69,7 @@ class RayFan:
         self.infinite = np.full(self.count, True)
         self.ids = np.array((-1,), dtype=np.int32)
         self._sight: Ids | None = None
+        self._nearby: Nearby | None = None
         self._standing: list[TriangleBody] | None = None
         self._movers = Movers([])
         self._rotated = np.empty((self.count, 3))
@@ -112,7 +113,7 @@ class RayFan:
         if self._carrier < 0 and not self._targets.needs_engine:
             self._targets = self._find_targets(model, names, (*hidden, *self._own))
             self._carrier = 0
-        self._offset, self._sight, self._standing = offset, None, None
+        self._offset, self._sight, self._standing, self._nearby = offset, None, None, None
         targets = self._targets
         # only the reduced model has numbers of its own
         self.ids = np.append(np.arange(model.ngeom), -1).astype(np.int32)
@@ -140,9 +141,7 @@ class RayFan:
             rotation: of the sensor's frame, shape (3, 3).
             start: how far from there the rays begin [m].
         """
-        turned(self.directions, rotation.T, out=self._rotated)
-        rays = Rays(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self._bounds)
-        targets = self._targets
+        rays, targets = self._rays(origin, rotation, start), self._targets
         if targets.needs_engine:
             self.distances, self.hits, self.infinite = targets.whole.cast(data, rays, self.body, self._own)
             return
@@ -160,7 +159,16 @@ class RayFan:
                 self._clear()
             self._cast_on_triangles(targets.triangles_for_engine, data, rays)
         else:
-            self._cast_by_numpy(targets, data, rays, rotation)
+            self._clear()
+            self._cast_on_others(targets, data, rays)
+            self._cast_on_shapes(targets, data, rays, rotation)
+        self._end()
+
+    def _rays(self, origin: Vector, rotation: Vector, start: float) -> Rays:
+        turned(self.directions, rotation.T, out=self._rotated)
+        return Rays(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self._bounds)
+
+    def _end(self) -> None:
         self.infinite = self.distances > min(self.reach, _LARGEST)
         np.copyto(self.distances, np.inf, where=self.infinite)
 
@@ -168,11 +176,10 @@ class RayFan:
         self.hits = np.full(self.count, -1, dtype=np.int32)
         self.distances = np.full(self.count, np.inf)
 
-    def _cast_by_numpy(self, targets: RayTargets, data: Any, rays: Rays, rotation: Vector) -> None:
-        self._clear()
+    def _cast_on_others(self, targets: RayTargets, data: Any, rays: Rays) -> None:
+        """On all but shapes, in NumPy and by Embree."""
         self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
         self._cast_on_planes(targets, data, rays)
-        self._cast_on_shapes(targets, data, rays, rotation)
 
     def _cast_on_planes(self, targets: RayTargets, data: Any, rays: Rays) -> None:
         best = self.distances
@@ -181,6 +188,8 @@ class RayFan:
                 continue
             geom = int(targets.geoms[i])
             turn, size = data.geom_xmat[geom].reshape(3, 3), targets.model.geom_size[geom]
+            if not reaches_plane(rays, data.geom_xpos[geom].tolist(), turn[:, 2].tolist()):
+                continue
             found = cast_on_plane(rays.origin, rays.directions, data.geom_xpos[geom], turn, size, rays.start)
             if found is not None:
                 nearer = found < best
@@ -188,22 +197,20 @@ class RayFan:
                 self.hits[nearer] = geom
 
     def _cast_on_shapes(self, targets: RayTargets, data: Any, rays: Rays, rotation: Vector) -> None:
-        which = targets.shapes
-        if self._carrier:
-            which = which[targets.carriers[which] != self._carrier]
+        model, which = targets.model, targets.shapes
+        if self._nearby is None:
+            if self._carrier:
+                which = which[targets.carriers[which] != self._carrier]
+            self._nearby = Nearby(model, which, targets.geoms[which])
+        which = self._nearby.met(data, rays)
         if not len(which):
             return
         assert self._fan is not None
         geoms = targets.geoms[which]
-        model = targets.model
-        shapes = Shapes(
-            targets.types[which],
-            model.geom_size[geoms],
-            turned(data.geom_xpos[geoms] - rays.origin, rotation),
-            np.einsum("ji,njk->nik", rotation, data.geom_xmat[geoms].reshape(-1, 3, 3)),
-            model.geom_rbound[geoms],
-            geoms.astype(np.int32),
-        )
+        turns = data.geom_xmat.take(geoms, 0).reshape(-1, 3, 3)
+        placed = in_frame(data.geom_xpos.take(geoms, 0), turns, rays.origin, rotation)
+        kinds, sizes, radii = targets.types.take(which), model.geom_size.take(geoms, 0), model.geom_rbound.take(geoms)
+        shapes = Shapes(kinds, sizes, *placed, radii, geoms.astype(np.int32))
         cast_on_shapes(self._fan, shapes, rays.reach, rays.start, self.distances, self.hits)
 
     def _cast_on_triangles(self, bodies: list[TriangleBody], data: Any, rays: Rays) -> None:

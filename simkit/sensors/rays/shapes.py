@@ -229,8 +229,31 @@ class Shapes:
         )
 
 
+def in_frame(places: Vector, turns: Vector, origin: Vector, rotation: Vector) -> tuple[Vector, Vector]:
+    """Positions (m, 3) and rotation matrices (m, 3, 3) in the world, in a frame or in one frame each.
+
+    Number by number, so that the bits do not depend on how many there are.
+
+    Args:
+        places, turns: in the world.
+        origin, rotation: of the frame, shapes (3,) and (3, 3), or (m, 3) and (m, 3, 3).
+    """
+    x, y, z = np.moveaxis(places - origin, -1, 0)[..., None]
+    first, second, third = np.moveaxis(rotation, -2, 0)
+    positions: Vector = x * first + y * second + z * third
+    a, b, c = np.moveaxis(turns, -2, 0)[..., None, :]
+    turned_by: Vector = first[..., None] * a + second[..., None] * b + third[..., None] * c
+    return positions, turned_by
+
+
 def cast_on_shapes(
-    fan: Fan, shapes: Shapes, reach: float, start: float, best: Vector, hits: npt.NDArray[np.int32]
+    fan: Fan,
+    shapes: Shapes,
+    reach: float,
+    start: float,
+    best: Vector,
+    hits: npt.NDArray[np.int32],
+    firsts: Ids | None = None,
 ) -> None:
     """Shortens `best` and sets `hits` where a shape is hit first.
 
@@ -241,15 +264,20 @@ def cast_on_shapes(
         start: where the rays begin [m].
         best: shortest distances so far [m], shape (n,).
         hits: the geoms at those distances, shape (n,).
+        firsts: where the rays that may meet a shape begin in `best`, shape (m,), for the same fan from many places.
     """
+    if firsts is None:
+        firsts = np.zeros(len(shapes.geoms), dtype=np.intp)
     distance = np.sqrt(np.einsum("ij,ij->i", shapes.positions, shapes.positions))
     near = (distance - shapes.radii <= reach) & (distance + shapes.radii >= start)
     for kind in np.unique(shapes.kinds[near]).tolist():
-        some = shapes.only(np.flatnonzero(near & (shapes.kinds == kind)))
+        chosen = np.flatnonzero(near & (shapes.kinds == kind))
+        some, begin = shapes.only(chosen), firsts.take(chosen)
         origins, sizes = -np.einsum("gi,gij->jg", some.positions, some.turns), some.sizes.T
         function = _INTERVALS[kind]
         for of, rays in fan.pairs(some.positions, some.radii):
             ways = fan.columns.take(rays, 1)
+            rays = rays + begin.take(of)
             if len(of) == 1:
                 ways = some.turns[of[0]].T @ ways
             else:

@@ -59,6 +59,43 @@ def half_sizes(model: Any, geoms: npt.NDArray[np.intp]) -> Vector:
     return halves
 
 
+class Nearby:
+    """Shapes, and which of them a fan may meet where they are now.
+
+    Args:
+        model: compiled.
+        which: numbers of the shapes, shape (m,).
+        geoms: theirs, shape (m,).
+    """
+
+    def __init__(self, model: Any, which: npt.NDArray[np.intp], geoms: npt.NDArray[np.intp]) -> None:
+        self._which, self._geoms = which, geoms
+        self._radii, self._halves = model.geom_rbound[geoms], half_sizes(model, geoms)
+
+    def met(self, data: Any, rays: Any) -> npt.NDArray[np.intp]:
+        """Numbers of those within reach and between the ends of the fan; never one too few."""
+        places = data.geom_xpos.take(self._geoms, 0)
+        places -= rays.origin
+        square = np.einsum("ij,ij->i", places, places)
+        reach = (self._radii + rays.reach) * (1 + 1e-9) + _MARGIN
+        near = np.flatnonzero(square <= reach * reach)
+        if not near.size:
+            return near
+        height, radii = places.take(near, 0) @ rays.axis, self._radii.take(near)
+        if rays.lowest == rays.highest == 0.0:
+            close = np.abs(height) <= radii + _MARGIN
+            near, height = near[close], height[close]
+            turns = data.geom_xmat.take(self._geoms.take(near), 0).reshape(-1, 3, 3)
+            extent = np.abs(rays.axis @ turns)
+            extent *= self._halves.take(near, 0)
+            near = near[np.abs(height) <= extent.sum(axis=1) + _MARGIN]
+        else:
+            side = np.sqrt(np.maximum(square.take(near) - height * height, 0.0))
+            near = near[within_cones(height, side, radii, rays.lowest, rays.highest)]
+        found: npt.NDArray[np.intp] = self._which.take(near)
+        return found
+
+
 def may_meet(
     model: Any, body: int, offset: Pose, geoms: npt.NDArray[np.intp], lowest: float, highest: float
 ) -> npt.NDArray[np.bool_]:

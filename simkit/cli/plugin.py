@@ -1,0 +1,268 @@
+"""`simkit plugin`: which plugins there are, what one does with its file, and the beginning of a new one."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli.console import guarded, out, print_diagnostics, say
+from simkit.cli.options import Force, Json, PackagePaths, PluginPaths, ResourcePaths, XacroArgs, source
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.authoring.catalogue import Entry
+    from simkit.authoring.facts import Facts, Parameter, Service, Topic
+
+plugin = typer.Typer(
+    help="Lists plugins, says what one reads and publishes, and begins new ones.", no_args_is_help=True
+)
+
+
+@plugin.callback()
+def _group() -> None:
+    """Lists plugins, says what one reads and publishes, and begins new ones."""
+
+
+@plugin.command("list")
+@guarded
+def list_plugins(
+    words: Annotated[
+        list[str] | None, typer.Argument(help="Only names that contain one of these.", show_default=False)
+    ] = None,
+    plugin_path: PluginPaths = [],
+    json_: Json = False,
+) -> int:
+    """Lists every name that a world may give a plugin, with what it hangs on."""
+    from simkit.authoring.catalogue import known_plugins
+    from simkit.diagnostics import Diagnostics
+
+    wanted = [word.casefold() for word in words or ()]
+    problems = Diagnostics()
+    entries = known_plugins(plugin_path, problems)
+    print_diagnostics(problems, verbose=True)
+    if json_:
+        shown = [_as_dict(e) for e in entries if _matching(e, wanted) or not wanted]
+        out().file.write(json.dumps(shown, indent=2) + "\n")
+        return 0
+    rows = [
+        (name, " or ".join(e.parents), e) for e in entries for name in (_matching(e, wanted) if wanted else e.names)
+    ]
+    if not rows:
+        say(f"no name contains {' or '.join(words or ())}; simkit plugin list names them all")
+        return 0
+    width = max(len(name) for name, _, _ in rows)
+    places = max(len(parents) for _, parents, _ in rows)
+    for name, parents, entry in rows:
+        out().print(f"{name:<{width}}  {parents:<{places}}  {entry.cls.__name__}: {_first_sentence(entry.summary)}")
+    return 0
+
+
+def _matching(entry: Entry, wanted: list[str]) -> list[str]:
+    if any(word in entry.cls.__name__.casefold() for word in wanted):
+        return list(entry.names)
+    return [name for name in entry.names if any(word in name.casefold() for word in wanted)]
+
+
+@plugin.command("info")
+@guarded
+def show_info(
+    name: Annotated[
+        str, typer.Argument(help="A name in any spelling, a class, MODULE:CLASS or FILE.py.", show_default=False)
+    ],
+    plugin_path: PluginPaths = [],
+    json_: Json = False,
+) -> int:
+    """Says which parameters a plugin reads, and which topics and services it opens."""
+    from simkit.authoring.catalogue import common_facts, facts_of, find_entry
+
+    entry = find_entry(name, plugin_path)
+    facts = facts_of(entry.cls)
+    if json_:
+        found = {**_as_dict(entry), **_facts_as_dict(facts), "common": _facts_as_dict(common_facts())["parameters"]}
+        out().file.write(json.dumps(found, indent=2) + "\n")
+        return 0
+    first, *others = entry.names or (entry.cls.__name__,)
+    out().print(f"{first}: {entry.cls.__name__}, on a {' or a '.join(entry.parents)}".replace("on a any", "anywhere"))
+    if entry.summary:
+        out().print(f"  {entry.summary}")
+    out().print(f"  from {entry.source or entry.origin}")
+    if others:
+        out().print(f"  also written {', '.join(others)}")
+    _print_table("parameters", [_parameter_row(p) for p in facts.parameters])
+    _print_table("publishes", [_topic_row(t) for t in facts.topics if t.published])
+    _print_table("listens to", [_topic_row(t) for t in facts.topics if not t.published])
+    _print_table("services", [_service_row(s) for s in facts.services if not s.is_action])
+    _print_table("actions", [_service_row(s) for s in facts.services if s.is_action])
+    return 0
+
+
+@plugin.command("new")
+@guarded
+def new_plugin(
+    name: Annotated[
+        str | None, typer.Argument(help="wheel_brake, WheelBrake or libwheel_brake.so.", show_default=False)
+    ] = None,
+    from_: Annotated[
+        str | None,
+        typer.Option("--from", help="One for each library of a world that nothing stands for.", metavar="WORLD"),
+    ] = None,
+    on: Annotated[str, typer.Option(help="What it hangs on: world, model, visual or sensor.")] = "model",
+    folder: Annotated[Path, typer.Option(help="Where the files go.", metavar="DIR")] = Path(),
+    force: Force = False,
+    resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
+    plugin_path: PluginPaths = [],
+    xacro_arg: XacroArgs = [],
+) -> int:
+    """Writes a plugin with typed parameters, and a test that passes."""
+    from simkit.authoring.files import write
+    from simkit.authoring.new import from_scene, named
+
+    if (name is None) == (from_ is None):
+        raise InputError("SK-PLUGIN-072 give either a NAME or --from WORLD", "SK-PLUGIN-072")
+    if from_ is None:
+        assert name is not None
+        wanted = [named(name, on)]
+    else:
+        from simkit.build import read_scene
+
+        options: Any = source(resource_path, package_path, xacro_arg)
+        scene, _ = read_scene(from_, missing_meshes=True, **options)
+        wanted = from_scene(scene, plugin_path)
+        if not wanted:
+            say("every plugin of this file is known; nothing to write")
+            return 0
+    for path in write(wanted, folder, overwrite=force):
+        out().print(str(path))
+    say(f"run the tests: python -m pytest {folder}; a world finds the plugins with --plugin-path {folder}")
+    return 0
+
+
+# ---------------------------------------------------------------------- as text
+
+
+def _first_sentence(text: str) -> str:
+    head, dot, _ = text.partition(". ")
+    return head + "." if dot else text
+
+
+def _print_table(title: str, rows: list[tuple[str, ...]]) -> None:
+    if not rows:
+        return
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    out().print(f"\n{title}")
+    for row in rows:
+        out().print("  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
+def _parameter_row(p: Parameter) -> tuple[str, ...]:
+    kind = f"{p.size} numbers" if p.kind == "vector" and p.size else {"vector": "numbers"}.get(p.kind, p.kind)
+    notes = [_range(p), "one of " + ", ".join(map(repr, p.choices)) if p.choices else ""]
+    notes += ["any number of them" if p.repeated else "", "live" if p.live else "", p.says]
+    depth = "  " * (len(p.path) - 1)
+    return depth + p.path[-1], kind or "(taken)", _default(p), p.unit, "; ".join(filter(None, notes))
+
+
+def _range(p: Parameter) -> str:
+    if p.minimum is not None and p.maximum is not None:
+        return f"{p.minimum:g} to {p.maximum:g}"
+    if p.minimum is not None:
+        return f"at least {p.minimum:g}"
+    return f"at most {p.maximum:g}" if p.maximum is not None else ""
+
+
+def _default(p: Parameter) -> str:
+    if p.required:
+        return "required"
+    if isinstance(p.default, bool):
+        shown = str(p.default).lower()
+    elif isinstance(p.default, tuple):
+        shown = " ".join(_number(v) for v in p.default)
+    elif isinstance(p.default, (int, float)):
+        shown = _number(p.default)
+    else:
+        shown = str(p.default or "")
+    if p.instead:
+        shown = f"<{'>, else <'.join(p.instead)}>" + (f", else {shown}" if shown else "")
+    return shown
+
+
+def _number(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _topic_row(t: Topic) -> tuple[str, ...]:
+    notes = ["latched" if t.latched else "", "named by " + _in_brackets(t.elements) if t.elements else ""]
+    return t.name, " or ".join(t.types), "; ".join(filter(None, notes))
+
+
+def _service_row(s: Service) -> tuple[str, ...]:
+    return s.name, s.type, "named by " + _in_brackets(s.elements) if s.elements else ""
+
+
+def _in_brackets(names: tuple[str, ...]) -> str:
+    return ", ".join(f"<{name}>" for name in names)
+
+
+# ---------------------------------------------------------------------- as JSON
+
+
+def _as_dict(entry: Entry) -> dict[str, Any]:
+    return {
+        "class": entry.cls.__name__,
+        "names": list(entry.names),
+        "parents": list(entry.parents),
+        "origin": entry.origin,
+        "source": entry.source,
+        "summary": entry.summary,
+    }
+
+
+def _facts_as_dict(facts: Facts) -> dict[str, Any]:
+    return {
+        "parameters": [
+            {
+                "name": p.name,
+                "type": p.kind,
+                "default": _plain(p.default),
+                "instead": list(p.instead),
+                "required": p.required,
+                "unit": p.unit,
+                "minimum": _plain(p.minimum),
+                "maximum": _plain(p.maximum),
+                "choices": list(p.choices),
+                "size": p.size,
+                "repeated": p.repeated,
+                "live": p.live,
+                "description": p.says,
+            }
+            for p in facts.parameters
+        ],
+        "topics": [
+            {
+                "name": t.name,
+                "types": list(t.types),
+                "direction": "out" if t.published else "in",
+                "latched": t.latched,
+                "named_by": list(t.elements),
+            }
+            for t in facts.topics
+        ],
+        "services": [_service_as_dict(s) for s in facts.services if not s.is_action],
+        "actions": [_service_as_dict(s) for s in facts.services if s.is_action],
+    }
+
+
+def _service_as_dict(service: Service) -> dict[str, Any]:
+    return {"name": service.name, "type": service.type, "named_by": list(service.elements)}
+
+
+def _plain(value: Any) -> Any:
+    """A value that JSON can hold; what is infinite as text."""
+    if isinstance(value, tuple):
+        return [_plain(v) for v in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

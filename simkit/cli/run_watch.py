@@ -1,0 +1,82 @@
+"""`simkit run --watch`: a plugin whose file was changed is reloaded, and the run goes on from where it is."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from simkit.cli.console import say, show_error
+from simkit.errors import PluginError
+
+if TYPE_CHECKING:
+    from simkit.cli.interrupts import Interrupts
+    from simkit.cli.loop import Loop
+
+_LOOK = 0.1  # [s] of wall time between two looks at the files while the run waits
+
+
+class Watch:
+    """Polls between the slices of a run, and takes it up again after a plugin has raised and was mended.
+
+    Args:
+        sim: the simulation.
+        plugin_paths: folders whose plugins are watched.
+        interrupts: end the waiting.
+        waits: whether the run waits for an edit when a plugin raises. A recording that goes on would have the time
+            since the last slice twice, so with one it does not.
+    """
+
+    def __init__(self, sim: Any, plugin_paths: Sequence[Path], interrupts: Interrupts, *, waits: bool) -> None:
+        from simkit.authoring.reload import Reloader
+
+        self._sim, self._interrupts, self._waits = sim, interrupts, waits
+        self._reloader = Reloader(sim, plugin_paths, say)
+        self._checkpoint: Any = None
+        files = self._reloader.files
+        if files:
+            say(f"watching {', '.join(path.name for path in files)}")
+        else:
+            say("--watch: no plugin of this world comes from a file of yours (--plugin-path DIR allows some)")
+
+    def poll(self) -> None:
+        """Reloads what was changed."""
+        self._reloader.poll()
+
+    def keep(self) -> None:
+        """Remembers the state before a slice."""
+        if self._waits:
+            self._checkpoint = self._sim.snapshot()
+
+    def run(self, loop: Loop, duration: float | None) -> None:
+        """Advances `duration` [s], for ever where None; a plugin that raises is waited for.
+
+        Raises:
+            PluginError: a plugin raised, and it is not to be waited for.
+            typer.Exit: it was interrupted while it waited.
+        """
+        sim = self._sim
+        end = None if duration is None else sim.tick + round(duration / sim.timestep)
+        while True:
+            left = None if end is None else (end - sim.tick) * sim.timestep
+            try:
+                loop.run(left)
+                return
+            except PluginError as error:
+                if not self._waits or self._checkpoint is None or not self._reloader.files:
+                    raise
+                show_error(error)
+                sim.restore(self._checkpoint)
+                say(f"waiting at {sim.time:.6g} s for the plugin to be mended; Ctrl-C ends the run")
+                if not self._is_mended():
+                    raise typer.Exit(error.exit_code) from None
+
+    def _is_mended(self) -> bool:
+        while not self._reloader.poll():
+            if self._interrupts.exit_code:
+                return False
+            time.sleep(_LOOK)
+        return True

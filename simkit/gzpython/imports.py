@@ -1,0 +1,211 @@
+"""Which modules of Gazebo's Python are known under which names, and how an import finds them.
+
+Every version and both spellings mean one implementation: `gz.sim8`, `gz.sim`, `ignition.gazebo6` are
+`simkit.gzpython.sim`. They can be imported only while somebody asked for it (`enter` and `leave`, or `install`), and
+what is really installed under such a name goes first unless it is to be shadowed.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import re
+import sys
+import types
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from typing import Any, Final
+
+_FAMILIES: Final = {
+    "sim": "sim",
+    "gazebo": "sim",
+    "math": "math",
+    "common": "common",
+    "transport": "transport",
+    "msgs": "msgs",
+    "sdformat": "sdformat",
+}
+"""Module of Gazebo, without its version -> ours."""
+
+_NOT_HERE: Final = ("gui", "rendering", "sensors", "physics", "launch", "plugin", "utils", "fuel_tools", "common_av")
+_NAME: Final = re.compile(
+    r"^(?:(?P<root>gz|ignition)(?:\.(?P<module>[a-z_]+?)\d*)?|(?P<sdf>sdformat)\d*)(?:\.(?P<rest>.+))?$"
+)
+_OURS: Final = "__simkit_shim__"
+
+
+def target_of(name: str) -> str | None:
+    """The module of ours behind a name of Gazebo's: empty for a bare `gz` or `ignition`; None for other names."""
+    match = _NAME.match(name)
+    if match is None:
+        return None
+    if match["root"] and not match["module"]:
+        return ""
+    family = _FAMILIES.get(match["sdf"] or match["module"])
+    if family is None:
+        return None
+    target = f"simkit.gzpython.{family}"
+    if not match["rest"]:
+        return target
+    if family == "msgs":
+        return f"{target}.{match['rest']}"
+    inner = f"{target}.{match['rest']}"
+    return inner if match["rest"] in ("components",) else None
+
+
+class ShimFinder(MetaPathFinder):
+    """Finds Gazebo's modules in this package."""
+
+    def find_spec(self, name: str, path: Sequence[str] | None, target: Any = None) -> ModuleSpec | None:
+        found = target_of(name)
+        if found is None:
+            self._refuse(name)
+            return None
+        return ModuleSpec(name, _ShimLoader(found), is_package=True)
+
+    @staticmethod
+    def _refuse(name: str) -> None:
+        """Says of a module of Gazebo that simkit has none, where Python would only say that it is not there."""
+        root, _, rest = name.partition(".")
+        if root in ("gz", "ignition") and rest.rstrip("0123456789") in _NOT_HERE:
+            families = sorted(set(_FAMILIES) - {"gazebo"})
+            message = f"simkit has no {name}; of Gazebo's Python it has {', '.join(families)}"
+            raise ModuleNotFoundError(message, name=name)
+
+
+class _ShimLoader(Loader):
+    """Fills a module under Gazebo's name with what ours offers; once made it is the same for good."""
+
+    def __init__(self, target: str) -> None:
+        self._target = target
+
+    def create_module(self, spec: ModuleSpec) -> types.ModuleType | None:
+        return _kept.get(spec.name)
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        own = vars(module)
+        _live.append(module.__name__)
+        if _OURS not in own:
+            own[_OURS] = self._target
+            self._fill(own)
+        _kept[module.__name__] = module
+
+    def _fill(self, own: dict[str, Any]) -> None:
+        if not self._target:
+            return
+        if self._target.startswith("simkit.gzpython.msgs."):
+            from simkit.gzpython import msgs
+
+            own.update(msgs.contents_of(self._target.removeprefix("simkit.gzpython.msgs.")))
+            return
+        real = importlib.import_module(self._target)
+        own.update({name: value for name, value in vars(real).items() if not name.startswith("__")})
+        own.update({name: vars(real)[name] for name in ("__doc__", "__all__", "__getattr__") if name in vars(real)})
+
+
+_finder: Final = ShimFinder()
+_kept: dict[str, types.ModuleType] = {}
+"""Modules of ours under Gazebo's names, whether they can be imported now or not."""
+
+_live: list[str] = []
+"""Names of ours among the modules that Python knows now."""
+
+_depth = 0
+
+
+def is_shim(module: Any) -> bool:
+    """Whether a module is one of ours under Gazebo's name."""
+    return _OURS in getattr(module, "__dict__", {})
+
+
+def enter(shadow: bool = False) -> None:
+    """Lets Gazebo's modules be imported from now on; to be matched by `leave`.
+
+    Args:
+        shadow: ours go before installed ones.
+    """
+    global _depth
+    _depth += 1
+    if _depth == 1:
+        sys.meta_path.append(_finder)
+    if shadow and sys.meta_path[0] is not _finder:
+        sys.meta_path.remove(_finder)
+        sys.meta_path.insert(0, _finder)
+
+
+def leave() -> None:
+    """Takes Gazebo's names away again, once as often as `enter`; what was imported stays with whoever has it."""
+    global _depth
+    _depth -= 1
+    if _depth:
+        return
+    sys.meta_path.remove(_finder)
+    if _live:
+        for name in _live:
+            sys.modules.pop(name, None)
+        _live.clear()
+
+
+@contextmanager
+def importable(shadow: bool = False) -> Iterator[None]:
+    """Gazebo's modules can be imported within; looks anew for what is really installed."""
+    if not _depth and not shadow:
+        _forget_where_real()
+    enter(shadow)
+    try:
+        yield
+    finally:
+        leave()
+
+
+def _forget_where_real() -> None:
+    """Lets go of our modules where the real ones have been installed, or found, since."""
+    for root in {name.partition(".")[0] for name in _kept}:
+        if _place_of(root):
+            for name in [n for n in _kept if n.partition(".")[0] == root]:
+                del _kept[name]
+
+
+def installed() -> dict[str, str]:
+    """What is really installed under Gazebo's names and would be imported: name -> where it lies."""
+    found = {}
+    for name in ("gz.sim", *(f"gz.sim{v}" for v in range(7, 12)), "gz.math", *(f"gz.math{v}" for v in range(6, 11))):
+        place = _place_of(name)
+        if place:
+            found[name] = place
+    for name in ("ignition.gazebo", "ignition.math", "sdformat", *(f"sdformat{v}" for v in range(12, 18))):
+        place = _place_of(name)
+        if place:
+            found[name] = place
+    return found
+
+
+def _place_of(name: str) -> str:
+    """Where a module lies; empty where there is none, or only ours."""
+    module = sys.modules.get(name)
+    if module is not None:
+        return "" if is_shim(module) else str(getattr(module, "__file__", None) or "a package")
+    others = [finder for finder in sys.meta_path if finder is not _finder]
+    parent, _, _ = name.rpartition(".")
+    path = None
+    if parent:
+        outer = sys.modules.get(parent)
+        if outer is not None and is_shim(outer):
+            return ""
+        spec = _found(others, parent, None)
+        if spec is None or spec.submodule_search_locations is None:
+            return ""
+        path = list(spec.submodule_search_locations)
+    spec = _found(others, name, path)
+    return str(spec.origin or "a package") if spec is not None else ""
+
+
+def _found(finders: Sequence[Any], name: str, path: Sequence[str] | None) -> ModuleSpec | None:
+    for finder in finders:
+        find = getattr(finder, "find_spec", None)
+        spec: ModuleSpec | None = find(name, path, None) if find is not None else None
+        if spec is not None:
+            return spec
+    return None

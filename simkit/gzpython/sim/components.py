@@ -1,0 +1,283 @@
+"""Components of gz-sim: of those that simkit has a twin of, by name; any number of others made by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from enum import IntEnum
+from typing import Any, Final
+
+from simkit.gzpython.sim.convert import pose_of, vector_of
+from simkit.gzpython.sim.ecm import EntityComponentManager
+from simkit.gzpython.sim.entities import Record
+from simkit.gzpython.sim.joint import Joint as _Joint
+from simkit.gzpython.sim.link import Link as _Link
+from simkit.gzpython.sim.model import Model as _Model
+from simkit.gzpython.sim.things import Sensor as _Sensor
+from simkit.gzpython.sim.world import World as _World
+from simkit.gzpython.sim.world import world_pose
+
+
+class ComponentState(IntEnum):
+    """How a component changed; nothing is sent of components here."""
+
+    NoChange = 0
+    PeriodicChange = 1
+    OneTimeChange = 2
+
+
+class ComponentProxy:
+    """Stands for a kind of component.
+
+    Attributes:
+        name: as in gz-sim.
+        type_id: a number of its own, the same in every run.
+    """
+
+    __slots__ = ("name", "type_id")
+
+    def __init__(self, name: str) -> None:
+        self.name, self.type_id = name, _hash64(f"gz_sim_components.{name}")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ComponentProxy) and other.name == self.name
+
+    def __hash__(self) -> int:
+        return hash(self.name)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> ComponentProxy:
+        return self
+
+    def __repr__(self) -> str:
+        return f"<gz.sim.components.{self.name}>"
+
+
+def _hash64(text: str) -> int:
+    """FNV-1a with 64 bits."""
+    found = 0xCBF29CE484222325
+    for byte in text.encode():
+        found = ((found ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
+    return found
+
+
+def register_custom_component(name: str) -> ComponentProxy:
+    """A kind of component of one's own; its data may be anything that can be copied."""
+    return ComponentProxy(name)
+
+
+_TAGS: Final = ("World", "Model", "Link", "Joint", "Visual", "Collision", "Sensor", "Light", "Actor")
+_Reader = Callable[[EntityComponentManager, Record], Any]
+
+
+def _of(kind: str, read: _Reader) -> _Reader:
+    return lambda ecm, record: read(ecm, record) if record.kind == kind else None
+
+
+def _if(kinds: tuple[str, ...], read: _Reader) -> _Reader:
+    return lambda ecm, record: read(ecm, record) if record.kind in kinds else None
+
+
+def _local_pose(ecm: EntityComponentManager, record: Record) -> Any:
+    """In the frame of the entity it is in."""
+    if record.kind == "joint":
+        return _Joint(record.entity).pose(ecm)
+    own = world_pose(record.entity, ecm)
+    return own if record.parent <= 1 else world_pose(record.parent, ecm).inverse() * own
+
+
+def _in_link_axes(read: Callable[[_Link, EntityComponentManager], Any]) -> _Reader:
+    def turned(ecm: EntityComponentManager, record: Record) -> Any:
+        value, pose = read(_Link(record.entity), ecm), _Link(record.entity).world_pose(ecm)
+        return pose.rot().rotate_vector_reverse(value) if value is not None and pose is not None else None
+
+    return turned
+
+
+def _inertial(ecm: EntityComponentManager, record: Record) -> Any:
+    from simkit.gzpython.math.inertia import Inertiald
+
+    link, pose = _Link(record.entity).world_inertial(ecm), _Link(record.entity).world_pose(ecm)
+    if link is None or pose is None:
+        return None
+    return Inertiald(link.mass_matrix(), pose.inverse() * link.pose())
+
+
+_READERS: Final[dict[str, _Reader]] = {
+    "Name": lambda _, record: record.name,
+    "ParentEntity": lambda _, record: record.parent or None,
+    "Pose": _if(("model", "link", "joint", "visual", "collision", "sensor", "light", "actor"), _local_pose),
+    "WorldPose": _if(("model", "link", "sensor"), lambda ecm, record: world_pose(record.entity, ecm)),
+    "Static": _of("model", lambda _, record: record.scene.static),
+    "SelfCollide": _of("model", lambda _, record: record.scene.self_collide),
+    "SourceFilePath": _of("model", lambda ecm, record: _Model(record.entity).source_file_path(ecm)),
+    "ModelCanonicalLink": _of("model", lambda ecm, record: _Model(record.entity).canonical_link(ecm)),
+    "WindMode": _of("link", lambda _, record: record.scene.enable_wind),
+    "Inertial": _of("link", _inertial),
+    "WorldLinearVelocity": _of("link", lambda ecm, record: _Link(record.entity).world_linear_velocity(ecm)),
+    "WorldAngularVelocity": _of("link", lambda ecm, record: _Link(record.entity).world_angular_velocity(ecm)),
+    "WorldLinearAcceleration": _of("link", lambda ecm, record: _Link(record.entity).world_linear_acceleration(ecm)),
+    "WorldAngularAcceleration": _of("link", lambda ecm, record: _Link(record.entity).world_angular_acceleration(ecm)),
+    "LinearVelocity": _of("link", _in_link_axes(_Link.world_linear_velocity)),
+    "AngularVelocity": _of("link", _in_link_axes(_Link.world_angular_velocity)),
+    "LinearAcceleration": _of("link", _in_link_axes(_Link.world_linear_acceleration)),
+    "AngularAcceleration": _of("link", _in_link_axes(_Link.world_angular_acceleration)),
+    "JointType": _of("joint", lambda ecm, record: _Joint(record.entity).type(ecm)),
+    "JointAxis": _of("joint", lambda ecm, record: next(iter(_Joint(record.entity).axis(ecm) or ()), None)),
+    "JointPosition": _of("joint", lambda ecm, record: _Joint(record.entity).position(ecm)),
+    "JointVelocity": _of("joint", lambda ecm, record: _Joint(record.entity).velocity(ecm)),
+    "JointTransmittedWrench": _of("joint", lambda ecm, record: _Joint(record.entity).transmitted_wrench(ecm)),
+    "ParentLinkName": _of("joint", lambda ecm, record: _Joint(record.entity).parent_link_name(ecm)),
+    "ChildLinkName": _of("joint", lambda ecm, record: _Joint(record.entity).child_link_name(ecm)),
+    "ThreadPitch": _of("joint", lambda _, record: record.scene.thread_pitch),
+    "SensorTopic": _of("sensor", lambda ecm, record: _Sensor(record.entity).topic(ecm)),
+    "Gravity": _of("world", lambda ecm, record: _World(record.entity).gravity(ecm)),
+    "MagneticField": _of("world", lambda ecm, record: _World(record.entity).magnetic_field(ecm)),
+    "Atmosphere": _of("world", lambda ecm, record: _World(record.entity).atmosphere(ecm)),
+    "SphericalCoordinates": _of("world", lambda ecm, record: _World(record.entity).spherical_coordinates(ecm)),
+}
+_TAG_READERS: Final[dict[str, _Reader]] = {
+    **{name: _of(name.lower(), lambda *_: True) for name in _TAGS},
+    "CanonicalLink": _of("link", lambda ecm, record: _Link(record.entity).is_canonical(ecm) or None),
+}
+
+_ENABLED: Final = {
+    **dict.fromkeys(("WorldLinearVelocity", "WorldAngularVelocity", "LinearVelocity", "AngularVelocity"), "velocity"),
+    **dict.fromkeys(
+        ("WorldLinearAcceleration", "WorldAngularAcceleration", "LinearAcceleration", "AngularAcceleration"),
+        "acceleration",
+    ),
+    "JointPosition": "position",
+    "JointVelocity": "velocity",
+    "JointTransmittedWrench": "wrench",
+}
+"""Component -> reading that its making turns on."""
+
+_Writer = Callable[[EntityComponentManager, int, Any], None]
+
+
+def _numbers(data: Any) -> tuple[float, ...]:
+    return tuple(float(v) for v in data)
+
+
+def _pose_command(ecm: EntityComponentManager, entity: int, data: Any) -> None:
+    _Model(entity).set_world_pose_cmd(ecm, data)
+
+
+_COMMANDS: Final[dict[str, tuple[tuple[str, ...], _Writer]]] = {
+    "JointForceCmd": (("joint",), lambda ecm, e, data: ecm.commands.force.update({e: _numbers(data)})),
+    "JointVelocityCmd": (("joint",), lambda ecm, e, data: ecm.commands.velocity.update({e: _numbers(data)})),
+    "JointPositionReset": (("joint",), lambda ecm, e, data: ecm.commands.position_reset.update({e: _numbers(data)})),
+    "JointVelocityReset": (("joint",), lambda ecm, e, data: ecm.commands.velocity_reset.update({e: _numbers(data)})),
+    "WorldPoseCmd": (("model",), _pose_command),
+    "LinearVelocityCmd": (("model", "link"), lambda ecm, e, data: ecm.commands.linear.update({e: vector_of(data)})),
+    "AngularVelocityCmd": (("model", "link"), lambda ecm, e, data: ecm.commands.angular.update({e: vector_of(data)})),
+}
+_WAITING: Final[dict[str, str]] = {
+    "JointForceCmd": "force",
+    "JointVelocityCmd": "velocity",
+    "JointPositionReset": "position_reset",
+    "JointVelocityReset": "velocity_reset",
+    "WorldPoseCmd": "pose",
+    "LinearVelocityCmd": "linear",
+    "AngularVelocityCmd": "angular",
+}
+NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
+"""Components of gz-sim that are known here."""
+
+
+def _checked(kind: Any) -> ComponentProxy:
+    if not isinstance(kind, ComponentProxy):
+        raise TypeError(f"a component such as components.Pose is needed, got {kind!r}")
+    return kind
+
+
+def read(ecm: EntityComponentManager, entity: int, kind: Any) -> Any:
+    """The data of a component; of a tag the tag itself; None where the entity has none."""
+    proxy = _checked(kind)
+    kept = ecm.custom.get(proxy.name, {})
+    if entity in kept:
+        return kept[entity]
+    record = ecm.record(entity)
+    if record is None or not record.kind:
+        return None
+    if proxy.name in _TAG_READERS:
+        return proxy if _TAG_READERS[proxy.name](ecm, record) else None
+    if proxy.name in _WAITING:
+        return getattr(ecm.commands, _WAITING[proxy.name]).get(entity)
+    reader = _READERS.get(proxy.name)
+    return reader(ecm, record) if reader is not None else None
+
+
+def write(ecm: EntityComponentManager, entity: int, kind: Any, *data: Any) -> None:
+    """Gives a component, or a command where it is one.
+
+    Raises:
+        KeyError: no such entity.
+        TypeError: data for a tag, none for another, or some that do not fit.
+        NotImplementedError: something that the simulation says and nobody else.
+    """
+    proxy = _checked(kind)
+    record = ecm.record(entity)
+    if record is None:
+        raise KeyError(f"there is no entity {entity}")
+    is_tag = proxy.name in _TAG_READERS
+    if is_tag and data:
+        raise TypeError(f"{proxy.name} is a tag and has no data")
+    if not record.kind or proxy.name not in NAMES:
+        if not is_tag and (not data or data[0] is None):
+            raise TypeError(f"{proxy.name} needs data")
+        ecm.custom.setdefault(proxy.name, {})[entity] = proxy if is_tag else data[0]
+    elif proxy.name in _COMMANDS:
+        kinds, command = _COMMANDS[proxy.name]
+        if record.kind not in kinds:
+            raise TypeError(f"{proxy.name} is for a {' or a '.join(kinds)}, entity {entity} is a {record.kind}")
+        if not data or data[0] is None:
+            raise TypeError(f"{proxy.name} needs data")
+        command(ecm, entity, data[0])
+    elif proxy.name in _ENABLED:
+        ecm.enable(entity, _ENABLED[proxy.name], True)
+    elif proxy.name == "Pose" and record.kind == "light":
+        ecm.handle(entity, "light").set_pose(pose_of(data[0]))
+    else:
+        what = f"{proxy.name} of {record.kind} {record.name!r}"
+        raise NotImplementedError(f"{what} is what the simulation says; use a command such as WorldPoseCmd")
+
+
+def remove(ecm: EntityComponentManager, entity: int, kind: Any) -> bool:
+    """Takes away a component that was given; whether it was there."""
+    proxy = _checked(kind)
+    if proxy.name in _WAITING and getattr(ecm.commands, _WAITING[proxy.name]).pop(entity, None) is not None:
+        return True
+    if proxy.name in _ENABLED and ecm.checks.pop((entity, _ENABLED[proxy.name]), None) is not None:
+        return True
+    return ecm.custom.get(proxy.name, {}).pop(entity, None) is not None
+
+
+class ComponentCursor:
+    """An entity on the way through those that have some components.
+
+    Attributes:
+        entity: its number.
+        components: the data, in the order the kinds were asked for.
+    """
+
+    entity = 0
+    components: list[Any]
+
+
+def each(ecm: EntityComponentManager, kinds: list[Any]) -> Iterator[ComponentCursor]:
+    """Every entity that has them all, by number; the same cursor each time."""
+    proxies, cursor = [_checked(kind) for kind in kinds], ComponentCursor()
+    for record in list(ecm.sync()):
+        found = [read(ecm, record.entity, proxy) for proxy in proxies]
+        if all(value is not None for value in found):
+            cursor.entity, cursor.components = record.entity, found
+            yield cursor
+
+
+def __getattr__(name: str) -> Any:
+    if name in NAMES:
+        return ComponentProxy(name)
+    if name[:1].isupper():
+        message = f"simkit's gz.sim.components has no {name}; register_custom_component makes one to keep data in"
+        raise AttributeError(message)
+    raise AttributeError(f"module 'gz.sim.components' has no attribute {name!r}")

@@ -1,0 +1,219 @@
+"""The entity component manager: what systems of gz-sim see of a simulation."""
+
+from __future__ import annotations
+
+import copy
+import difflib
+import weakref
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.gzpython.sim.commands import Commands
+from simkit.gzpython.sim.entities import EntityTable, Record
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_INSTEAD: Final = {
+    "request_remove_entity": "simkit's own sim.remove(name)",
+    "clone": "simkit's own sim.spawn(source, name)",
+    "entity_by_components": "Model.link_by_name, World.model_by_name and their like, or each",
+    "children_by_components": "Model.links, Link.collisions and their like, or each",
+    "entities_by_components": "World.models, Model.links and their like, or each",
+    "component_types": "entity_has_component_type",
+    "state": "simkit's own sim.snapshot()",
+    "set_state": "simkit's own sim.restore(snapshot)",
+    "changed_state": "simkit's own sim.snapshot()",
+    "descendants": "Model.links, Model.models and their like",
+    "pin_entity": "nothing: entities are never taken away by levels",
+    "each_new": "each",
+    "each_removed": "each",
+}
+
+
+class EntityComponentManager:
+    """Entities by number, and what they have.
+
+    Of a simulation it is a view: components of gz-sim that simkit has a twin of are read from the simulation and
+    commands among them go to it. Made by itself it holds only what is put into it.
+    """
+
+    def __init__(self) -> None:
+        self._sim: weakref.ref[Simulation] | None = None
+        self._structure: Any = None
+        self.table = EntityTable()
+        self.commands = Commands()
+        self.checks: dict[tuple[int, str], int] = {}
+        self.values: dict[tuple[int, str], Any] = {}
+        self.custom: dict[str, dict[int, Any]] = {}
+
+    # ------------------------------------------------------------------ the simulation behind it
+
+    @property
+    def simulation(self) -> Simulation:
+        """The simulation it shows.
+
+        Raises:
+            RuntimeError: it shows none.
+        """
+        sim = self._sim() if self._sim is not None else None
+        if sim is None:
+            raise RuntimeError("this EntityComponentManager shows no simulation; hooks are given one that does")
+        return sim
+
+    @property
+    def is_live(self) -> bool:
+        """Whether it shows a simulation."""
+        return self._sim is not None
+
+    def sync(self) -> EntityTable:
+        """The entities there are now."""
+        if self._sim is not None:
+            sim = self.simulation
+            if sim.structure is not self._structure:
+                self._structure = sim.structure
+                self.table.rebuild(sim.world, list(sim.structure.models.values()))
+        return self.table
+
+    def record(self, entity: int, kind: str = "") -> Record | None:
+        """An entity, where it is there and of a kind."""
+        found = self.sync().records.get(entity)
+        return found if found is not None and (not kind or found.kind == kind) else None
+
+    def handle(self, entity: int, kind: str) -> Any:
+        """simkit's handle of a model, link, joint, light or sensor; None where the entity is none, or not simulated."""
+        record = self.record(entity, kind)
+        if record is None:
+            return None
+        if record.handle is None:
+            record.handle = self.simulation.entities.tables[kind].get(record.scene.scoped)
+        return record.handle
+
+    # ------------------------------------------------------------------ readings that must be asked for
+
+    def enable(self, entity: int, what: str, enable: bool) -> None:
+        """Turns a reading on or off; as in gz-sim it is 0 until a step has passed."""
+        if not enable:
+            self.checks.pop((entity, what), None)
+        else:
+            self.checks.setdefault((entity, what), self.simulation.tick)
+
+    def is_enabled(self, entity: int, what: str) -> bool | None:
+        """None where a reading was not asked for; False until a step has passed since."""
+        since = self.checks.get((entity, what))
+        return None if since is None else self.simulation.tick != since
+
+    # ------------------------------------------------------------------ state
+
+    def get_state(self) -> dict[str, Any]:
+        """What a snapshot has to keep."""
+        made = [r.entity for r in self.table.records.values() if not r.kind]
+        return {
+            "next": self.table.next,
+            "numbers": dict(self.table.numbers),
+            "made": made,
+            "commands": self.commands.copy(),
+            "checks": dict(self.checks),
+            "values": copy.deepcopy(self.values),
+            "custom": copy.deepcopy(self.custom),
+        }
+
+    def set_state(self, state: dict[str, Any]) -> None:
+        """Back to a state from `get_state`."""
+        self.table.next, self.table.numbers = state["next"], dict(state["numbers"])
+        self.table.records = {entity: Record(entity, "", "", None, 0) for entity in state["made"]}
+        self.commands, self.checks = state["commands"].copy(), dict(state["checks"])
+        self.values, self.custom = copy.deepcopy(state["values"]), copy.deepcopy(state["custom"])
+        self._structure = None
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> EntityComponentManager:
+        return self
+
+    # ------------------------------------------------------------------ what gz-sim's binding offers
+
+    def create_entity(self) -> int:
+        """A new entity that nothing of the simulation knows."""
+        self.sync()
+        return self.table.make().entity
+
+    def has_entity(self, entity: int) -> bool:
+        return self.record(entity) is not None
+
+    def entity_count(self) -> int:
+        return len(self.sync().records)
+
+    def parent_entity(self, entity: int) -> int:
+        """0 of the world and of what has no parent."""
+        record = self.record(entity)
+        return record.parent if record is not None else 0
+
+    def set_parent_entity(self, child: int, parent: int) -> bool:
+        """Hangs an entity made by hand below another one.
+
+        Raises:
+            NotImplementedError: the child is of the world's file.
+        """
+        record = self.record(child)
+        if record is None or (parent and self.record(parent) is None):
+            return False
+        if record.kind:
+            raise NotImplementedError(f"{record.kind} {record.name!r} is of the file; its parent stays what it is")
+        record.parent = parent
+        return True
+
+    def component(self, entity: int, kind: Any) -> Any:
+        """The data of a component; None where the entity has none."""
+        from simkit.gzpython.sim import components
+
+        return components.read(self, entity, kind)
+
+    def create_component(self, entity: int, kind: Any, *data: Any) -> None:
+        """Gives an entity a component, or other data to the one it has."""
+        from simkit.gzpython.sim import components
+
+        components.write(self, entity, kind, *data)
+
+    def set_component_data(self, entity: int, kind: Any, data: Any, compare: bool = True) -> bool:
+        """Other data for a component; False where it had the same and `compare`."""
+        if compare and self.component(entity, kind) == data:
+            return False
+        self.create_component(entity, kind, data)
+        return True
+
+    def entity_has_component_type(self, entity: int, kind: Any) -> bool:
+        return self.component(entity, kind) is not None
+
+    def remove_component(self, entity: int, kind: Any) -> bool:
+        """Takes a component away that was given from here; whether it was there."""
+        from simkit.gzpython.sim import components
+
+        return components.remove(self, entity, kind)
+
+    def set_changed(self, entity: int, kind: Any, state: Any = None) -> None:
+        """Nothing is sent of components, so nothing is to be marked."""
+
+    def each(self, kinds: Any) -> Iterator[Any]:
+        """Entities that have every one of some components: `.entity`, `.components`; one object moves along."""
+        from simkit.gzpython.sim import components
+
+        return components.each(self, list(kinds))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        offered = [n for n in dir(type(self)) if not n.startswith("_")]
+        near = difflib.get_close_matches(name, offered, 1)
+        instead = _INSTEAD.get(name) or (near[0] if near else "the methods of Model, Link, Joint, World, …")
+        raise AttributeError(f"simkit's EntityComponentManager has no {name}(); use {instead}")
+
+
+_of_simulations: weakref.WeakKeyDictionary[Any, EntityComponentManager] = weakref.WeakKeyDictionary()
+
+
+def manager_of(sim: Simulation) -> EntityComponentManager:
+    """The one manager of a simulation."""
+    found = _of_simulations.get(sim)
+    if found is None:
+        found = _of_simulations[sim] = EntityComponentManager()
+        found._sim = weakref.ref(sim)
+    return found

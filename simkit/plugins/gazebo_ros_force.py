@@ -1,0 +1,81 @@
+"""Pushing a link in Gazebo Classic: `libgazebo_ros_force.so`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.joint_commands import Once
+from simkit.plugins.lookups import find_link
+from simkit.pose import Vector, quat_rotate
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+WRENCH: Final = "geometry_msgs/msg/Wrench"
+_NEVER: Final = 1e-9  # [Hz]
+
+
+class GazeboRosForce(ModelPlugin):
+    """Pushes a link at its centre of mass with the wrench of the last message, at every step.
+
+    ROS 2: `<link_name>`, `<force_frame>` world (where nothing is said) or link, on `gazebo_ros_force`. ROS 1:
+    `<bodyName>` and `<topicName>`, always in the world's axes.
+    """
+
+    filenames = ("libgazebo_ros_force.so",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        is_ros_1 = params.has("bodyName") or params.has("topicName")
+        name = params.text("bodyName" if is_ros_1 else "link_name", required=True)
+        link = find_link(scene, name, params) if name else None
+        self._scoped = link.scoped if link else ""
+        self._topic = params.text("topicName", required=True) if is_ros_1 else "gazebo_ros_force"
+        self._turns = params.choice("force_frame", ("world", "link"), "world") == "link"
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        self._wrench = np.zeros(6)
+        # what turns with the link is set anew at every step
+        self.before_step_rate = None if self._turns else _NEVER
+        if self._scoped:
+            self.listen(self._topic, WRENCH, self._on_wrench)
+
+    def _on_wrench(self, message: Any) -> None:
+        f, t = message.force, message.torque
+        wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z), float)
+        if not np.isfinite(wrench).all():
+            self.once.left_out("finite", "a wrench with a number that is not finite is left out")
+            return
+        self._wrench = wrench
+        if not self._turns:
+            self._stand()
+
+    def _stand(self, *, are_applied: bool = False) -> None:
+        self.sim.set_standing_wrenches(self._owner, self._standing(), are_applied=are_applied)
+
+    def _standing(self) -> dict[str, Vector]:
+        return {self._scoped: self._wrench} if self._wrench.any() else {}
+
+    @property
+    def _owner(self) -> str:
+        return f"{self.scoped}/{self.name}/{self.where}"
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Back to a state from `get_state`."""
+        super().set_state(state)
+        if not self._turns:
+            self._stand(are_applied=True)
+
+    def before_step(self) -> None:
+        if not self._turns or not self._wrench.any():
+            return
+        link = self.sim.link(self._scoped)
+        turn = link.pose.quaternion
+        link.apply_wrench(quat_rotate(turn, self._wrench[:3]), quat_rotate(turn, self._wrench[3:]))

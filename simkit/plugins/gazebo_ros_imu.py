@@ -1,0 +1,91 @@
+"""The IMU of Gazebo Classic on ROS 1 that hangs on a model: `libgazebo_ros_imu.so`."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.params import LARGEST, Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_link
+from simkit.pose import Vector, quat_from_rpy, quat_multiply
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+TYPE = "sensor_msgs/msg/Imu"
+_DEFAULT = "/default_imu"  # of topic and service both
+
+
+class GazeboRosImu(ModelPlugin):
+    """Publishes what an IMU at the origin of the link `<bodyName>` feels, on `<topicName>` (`/default_imu`).
+
+    Rates and accelerations are in the link's axes, the orientation is the link's in the world, turned by `<rpyOffset>`
+    about the world's axes; `<frameName>` (the link's name) is only said. Gravity's reaction is in the acceleration, as
+    `sensor_msgs/Imu` wants it; Gazebo's plugin leaves it out, and turns both vectors the wrong way round, and so does
+    this one in a world with `<gazebo_quirks>`. `<gaussianNoise>` is a standard deviation on each of the six numbers
+    [rad/s, m/s²], its square is on the diagonals of the covariances. `<updateRate>` [Hz]; 0 is every step. The service
+    `<serviceName>` (`/default_imu`) calibrates: there is nothing to do.
+    """
+
+    filenames = ("libgazebo_ros_imu.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        body = params.text("bodyName", required=True)
+        link = find_link(scene, body, params) if body else None
+        self._body = link.scoped if link is not None else ""
+        self._topic = params.text("topicName", _DEFAULT)
+        self._service = params.text("serviceName", _DEFAULT)
+        self._frame = params.text("frameName", "").strip("/") or self._body.rsplit("::", 1)[-1]
+        self._deviation = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
+        self._turn = quat_from_rpy(*params.vector3("rpyOffset", (0.0, 0.0, 0.0)))
+        self.after_step_rate = params.number("updateRate", 0.0, minimum=0)
+        params.child("alwaysOn")
+        if any(params.vector3("xyzOffset", (0.0, 0.0, 0.0))):
+            message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"
+            params.diagnostics.note("SK-SENSOR-072", message, params.block("xyzOffset").where)
+        self._is_gazebos = builder.world.gazebo_quirks
+        if not self._is_gazebos:
+            message = f"plugin {self.name!r}: gravity's reaction is in the acceleration; Gazebo's plugin leaves it out"
+            hint = "<simkit:gazebo_quirks>true</simkit:gazebo_quirks> in the world has it as Gazebo"
+            params.diagnostics.note("SK-PLUGIN-060", message, self.where, hint)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._link = self.sim.link(self._body)
+        self._out = self.advertise(self._topic, TYPE) if self._topic else None
+        if self._service and self.ros.topic(self._service) not in self.sim.services():
+            self.offer(self._service, "std_srvs/srv/Empty", lambda _request: None)
+        self._stream = self.random("gaussianNoise", 6) if self._deviation > 0 else None
+        self._index = 0
+        covariance = np.diag([self._deviation**2] * 3).reshape(9)
+        covariance.flags.writeable = False
+        self._covariance = covariance
+
+    def after_step(self) -> None:
+        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        if self._out is None or not self._out.wanted:
+            return
+        link, pose = self._link, self._link.pose
+        rate, acceleration = link.angular_velocity, link.linear_acceleration
+        attitude = quat_multiply(self._turn, pose.quaternion)
+        axes = pose.matrix
+        if self._is_gazebos:
+            axes = type(pose)(pose.position, attitude).matrix.T
+        else:
+            acceleration = acceleration - self.sim.mj_model.opt.gravity
+        motion = np.concatenate((rate @ axes, acceleration @ axes))
+        self._out.publish_later(partial(self._message, self.sim.time_ns, attitude, motion, self._index))
+
+    def _message(self, time_ns: int, attitude: Vector, motion: Vector, index: int) -> Any:
+        if self._stream is not None:
+            motion = motion + self._deviation * self._stream.normal(index)
+        vector, quaternion = (msgs.type_of(f"geometry_msgs/msg/{name}") for name in ("Vector3", "Quaternion"))
+        w, x, y, z = attitude.tolist()
+        rate, acceleration = vector(*motion[:3].tolist()), vector(*motion[3:].tolist())
+        spread = self._covariance
+        header = msgs.header(time_ns, self._frame)
+        return msgs.type_of(TYPE)(header, quaternion(x, y, z, w), spread, rate, spread, acceleration, spread)

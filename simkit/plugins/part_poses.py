@@ -1,0 +1,189 @@
+"""Where parts of a model are, each in its own frame: what is taken at a tick is small, poses are made of it later."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit.pose import Pose, Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime import Link, Model, Simulation
+
+Seven = tuple[float, float, float, float, float, float, float]
+"""A pose as plain numbers, x, y, z [m] and a unit quaternion w, x, y, z: sooner multiplied than a `Pose`."""
+
+Placed = tuple[str, str, Seven]
+"""Frame, child frame, and where the child is in the frame."""
+
+_HERE: Seven = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One entity whose pose is told.
+
+    Attributes:
+        frame: scoped name of what it is in; the world's name for a top-level model.
+        child: its own scoped name.
+        place: where it always is in that frame; None where it may move.
+        handle: the link or model that it is, where it may move.
+        within: the model that it is in; None in the world.
+        moves: whether gz tells it on the topic of moving things where there is another for those at rest.
+    """
+
+    frame: str
+    child: str
+    place: Pose | None = None
+    handle: Link | Model | None = None
+    within: Model | None = None
+    moves: bool = False
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Part:
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A part in the compiled model.
+
+    Attributes:
+        place: where it is in its frame, where that never changes.
+        row, offset: its body among those taken, and its frame in that body's.
+        base, back: the body of what it is in (-1 for the world), and that body's frame in its own.
+    """
+
+    part: Part
+    place: Seven | None = None
+    row: int = -1
+    offset: Seven = _HERE
+    base: int = -1
+    back: Seven = _HERE
+
+
+class PartPoses:
+    """The poses of some parts, for one compiled model.
+
+    Args:
+        sim: the simulation.
+        parts: what is told, in this order.
+    """
+
+    def __init__(self, sim: Simulation, parts: Sequence[Part]) -> None:
+        self._sim = sim
+        self._rows: dict[int, int] = {}
+        self._found = [self._find(part) for part in parts]
+        self._bodies = np.array(list(self._rows), dtype=np.intp)
+
+    def take(self) -> Taken:
+        """What the poses of this tick are made of."""
+        data = self._sim.fresh_data()
+        return Taken(self, data.xpos[self._bodies], data.xquat[self._bodies])
+
+    def place(self, positions: Vector, quaternions: Vector) -> Iterator[Placed]:
+        """The poses when the bodies are here: [m] and (w, x, y, z) in the world, shapes (n, 3) and (n, 4)."""
+        world: list[Seven] = [
+            (x, y, z, w, i, j, k)
+            for (x, y, z), (w, i, j, k) in zip(positions.tolist(), quaternions.tolist(), strict=True)
+        ]
+        back: dict[int, Seven] = {}
+        for found in self._found:
+            pose, base = found.place, found.base
+            if pose is None:
+                pose = _product(world[found.row], found.offset)
+                if base >= 0:
+                    if base not in back:
+                        back[base] = _product(found.back, _inverse(world[base]))
+                    pose = _product(back[base], pose)
+            yield found.part.frame, found.part.child, pose
+
+    def __deepcopy__(self, memo: dict[int, object]) -> PartPoses:
+        return self
+
+    # ------------------------------------------------------------------ inside
+
+    def _find(self, part: Part) -> _Found:
+        if part.place is not None:
+            return _Found(part, _numbers(part.place))
+        assert part.handle is not None
+        body, offset = self._spot(part.handle)
+        if part.within is None:
+            place = _numbers(offset)
+            return _Found(part, place) if body == 0 else _Found(part, None, self._row(body), place)
+        base, its_offset = self._spot(part.within)
+        if body == base:
+            return _Found(part, _numbers(its_offset.inverse() @ offset))
+        weld = self._sim.mj_model.body_weldid
+        if weld[body] == weld[base] != 0:  # no joint between them: they are as they were loaded for ever
+            place = _numbers(part.within.scene.pose_world.inverse() @ part.handle.scene.pose_world)
+            return _Found(part, place)
+        back = _numbers(its_offset.inverse())
+        return _Found(part, None, self._row(body), _numbers(offset), self._row(base), back)
+
+    def _spot(self, handle: Any) -> tuple[int, Pose]:
+        """The body that carries a link or a model, and its frame in that of the body."""
+        names, scene = self._sim.names, handle.scene
+        if handle.scoped in names.links:
+            binding = names.link(handle.scoped)
+            return int(binding.body), binding.offset
+        if not scene.canonical_link:
+            return 0, handle.pose
+        binding = names.link(scene.canonical_link)
+        return int(binding.body), binding.offset @ (binding.scene.pose_world.inverse() @ scene.pose_world)
+
+    def _row(self, body: int) -> int:
+        return self._rows.setdefault(body, len(self._rows))
+
+
+class Taken:
+    """Where the bodies were at a tick, of which the poses are made once somebody looks at them."""
+
+    __slots__ = ("_placed", "_poses", "_positions", "_quaternions")
+
+    def __init__(self, poses: PartPoses, positions: Vector, quaternions: Vector) -> None:
+        self._poses, self._positions, self._quaternions = poses, positions, quaternions
+        self._placed: list[Placed] | None = None
+
+    @property
+    def placed(self) -> list[Placed]:
+        """The poses, in the order of the parts."""
+        placed = self._placed
+        if placed is None:
+            placed = self._placed = list(self._poses.place(self._positions, self._quaternions))
+        return placed
+
+
+def what_joints_move(joints: Sequence[Any]) -> frozenset[str]:
+    """Scoped names of the links at either end of a joint that is not fixed."""
+    return frozenset(end for joint in joints if joint.type != "fixed" for end in (joint.parent_link, joint.child_link))
+
+
+def _numbers(pose: Pose) -> Seven:
+    x, y, z = pose.position.tolist()
+    w, i, j, k = pose.quaternion.tolist()
+    return x, y, z, w, i, j, k
+
+
+def _product(a: Seven, b: Seven) -> Seven:
+    """Where something is in the outer frame that is at `b` in the frame at `a`."""
+    ax, ay, az, aw, ai, aj, ak = a
+    x, y, z, w, i, j, k = b
+    tx, ty, tz = 2 * (aj * z - ak * y), 2 * (ak * x - ai * z), 2 * (ai * y - aj * x)
+    return (
+        ax + x + aw * tx + aj * tz - ak * ty,
+        ay + y + aw * ty + ak * tx - ai * tz,
+        az + z + aw * tz + ai * ty - aj * tx,
+        aw * w - ai * i - aj * j - ak * k,
+        aw * i + ai * w + aj * k - ak * j,
+        aw * j - ai * k + aj * w + ak * i,
+        aw * k + ai * j - aj * i + ak * w,
+    )
+
+
+def _inverse(pose: Seven) -> Seven:
+    x, y, z, w, i, j, k = pose
+    x, y, z, *_ = _product((0.0, 0.0, 0.0, w, -i, -j, -k), (x, y, z, 1.0, 0.0, 0.0, 0.0))
+    return -x, -y, -z, w, -i, -j, -k

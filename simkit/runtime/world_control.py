@@ -1,0 +1,134 @@
+"""What is done to a world as a whole, beside running it: pausing, copying models, putting them back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
+
+from simkit.errors import InputError
+from simkit.pose import Pose
+from simkit.runtime.collisions import enable_collisions
+from simkit.runtime.loop import guarded
+from simkit.runtime.on_demand import OnDemand
+from simkit.runtime.pausing import Pausing
+from simkit.runtime.renaming import renamed, world_now
+from simkit.runtime.resets import reset_models
+from simkit.runtime.site import Site
+
+if TYPE_CHECKING:
+    from simkit.runtime.model import Model
+    from simkit.runtime.simulation import Simulation
+    from simkit.scene import SceneWorld
+
+
+class WorldControl:
+    """The part of a simulation behind the services of its world.
+
+    Attributes:
+        pausing: whether the world stands still, and where it is to stop.
+        on_demand: work that is scheduled only while somebody wants it.
+        site: where on its planet the world lies.
+        write_sdf: writes a world as SDF text; given from outside, for this room knows no format.
+    """
+
+    write_sdf: Callable[[SceneWorld], str] | None = None
+
+    def open_world(self, sim: Simulation) -> None:
+        """Makes the parts, for a world that runs on."""
+        self.pausing, self.on_demand, self.site = Pausing(sim), OnDemand(sim), Site(sim)
+
+    @property
+    def _whole(self) -> Simulation:
+        return cast("Simulation", self)
+
+    # ------------------------------------------------------------------ running
+
+    @property
+    def paused(self) -> bool:
+        """Whether the world stands still, as its services, `simkit run` and gz understand it; settable.
+
+        A script that calls `step` or `run` says itself how far to go, and gets there all the same.
+        """
+        return self.pausing.is_paused
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        if not paused:
+            self.pausing.resume()
+        elif not self.pausing.is_paused:
+            self.pausing.pause()
+
+    def serve(self, target: int) -> None:
+        """Advances up to a tick, or until `halt`: what `pausing` makes the steps of a world that is kept running with.
+
+        Raises:
+            SimulationDiverged, PluginError: as `step`.
+        """
+        self._whole._advance(target, is_served=True)
+
+    def halt(self) -> None:
+        """Ends the present stretch of a world that is kept running with the step under way; `step` and `run` go on."""
+        self._whole._loop.halt()
+
+    def reseed(self, seed: int) -> None:
+        """Draws everything random from another seed from now on."""
+        sim = self._whole
+        sim.bus.settle()
+        sim.seed = seed
+        sim.streams.reseed(seed)
+
+    # ------------------------------------------------------------------ models
+
+    def clone(self, name: str, new_name: str, pose: Pose | None = None) -> Model:
+        """Adds a copy of a top-level model as its file has it, where the model is now or at a pose in the world.
+
+        Raises:
+            KeyError: there is no such model; names the closest.
+            InputError: there is a model of the new name, or the model is of a kind that cannot be copied.
+        """
+        sim = self._whole
+        scene = sim.model(name).scene
+        if new_name in sim.models:
+            raise InputError(f"SK-LOAD-011 there is a model {new_name!r} already", "SK-LOAD-011")
+        return sim.spawn(renamed(scene, new_name, sim.model(name).pose if pose is None else pose))
+
+    def name_in_file(self, source: Any) -> str:
+        """The name that a model to be spawned has in its own file. Raises LoadError."""
+        return self._whole._population.read(source).name
+
+    def pose_in_file(self, source: Any) -> Pose:
+        """The pose in the world that a model to be spawned has in its own file. Raises LoadError."""
+        return self._whole._population.read(source).pose_world
+
+    def to_sdf(self) -> str:
+        """The world as SDF text: the models that are there now where they are now, with gravity and lights of now.
+
+        Joints are at zero in it, for SDF has no word for their positions.
+
+        Raises:
+            InputError: nothing that writes SDF came with the simulation.
+        """
+        sim = self._whole
+        if self.write_sdf is None:
+            raise InputError("nothing that writes SDF came with this simulation")
+        models = [(handle.scene, handle.pose) for handle in sim.models.values()]
+        lights = [(light.scene, light.pose) for light in sim.lights.values() if not light.scene.link]
+        x, y, z = sim.gravity.tolist()
+        return self.write_sdf(replace(world_now(sim.world, models, lights), gravity=(x, y, z)))
+
+    def enable_collisions(self, links: Iterable[str], enabled: bool, only: str = "") -> None:
+        """Lets the collisions of links (scoped names) make contacts, or not; of one collision where `only` names it."""
+        enable_collisions(self._whole, links, enabled, only)
+
+    def reset_models(self) -> None:
+        """Puts the models that are there back to where and how they started; time goes on.
+
+        Plugins start anew too, as they do in Gazebo Classic; sensors go on.
+        """
+        sim = self._whole
+        sim._check_open()
+        reset_models(sim, sim._loaded)
+        sim.reschedule()
+        for plugin in sim.structure.all_plugins():
+            guarded(sim, plugin, "reset")()

@@ -1,0 +1,50 @@
+"""`simkit run` stands still while its world is paused, and goes on when something lets it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import simkit
+from simkit.cli.loop import Loop
+from simkit.sinks.commands import Commands
+
+BALL = '<sdf version="1.9"><world name="w"><model name="ball"><link name="l"/></model></world></sdf>'
+
+
+class Quiet:
+    """Nobody has pressed Ctrl-C."""
+
+    exit_code = 0
+
+
+def control(sim: simkit.Simulation, **fields: Any) -> None:
+    assert sim.call("/world/w/control", {"world_control": fields}).success
+
+
+def test_it_waits_for_a_service_and_then_comes_to_its_end(capfd: pytest.CaptureFixture[str]) -> None:
+    ticks: list[int] = []
+    with simkit.load(BALL) as sim:
+
+        def watch() -> None:
+            ticks.append(sim.tick)
+            if len(ticks) == 3:
+                control(sim, multi_step=5, pause=True)
+            if len(ticks) == 5:
+                control(sim, pause=False)
+
+        sim.paused = True
+        assert Loop(sim, Commands(sim, []), Quiet(), [watch]).run(0.05)  # type: ignore[arg-type]
+        assert ticks[:3] == [0, 0, 0]
+        assert ticks[3:5] == [5, 5]
+        assert ticks[-1] == sim.tick == 50
+        assert not sim.pausing.is_served
+    assert capfd.readouterr().err.count("paused at t=0 s until a service lets it go on") == 1
+
+
+def test_a_pace_that_a_service_asks_for_is_kept_unless_the_user_asked_for_one() -> None:
+    with simkit.load(BALL) as sim:
+        sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})  # of 1 ms: ten times real time
+        assert Loop(sim, Commands(sim, []), Quiet(), [])._pace() == 10.0  # type: ignore[arg-type]
+        assert Loop(sim, Commands(sim, []), Quiet(), [], rtf=2.0)._pace() == 2.0  # type: ignore[arg-type]

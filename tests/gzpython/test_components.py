@@ -1,0 +1,150 @@
+"""Components by name, of a simulation and of a manager made by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import simkit
+from simkit.gzpython.math import Pose3d, Vector3d
+from simkit.gzpython.sim import EntityComponentManager, components
+from simkit.plugins.gz_system import GzSystem
+
+WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="body"><pose>1 2 3 0 0 0</pose>
+  <link name="link"><pose>0 0 1 0 0 0</pose></link></model></world></sdf>"""
+
+
+def run(hook: Any, steps: int = 1) -> Any:
+    class System:
+        def pre_update(self, info: Any, ecm: EntityComponentManager) -> None:
+            hook(info, ecm)
+
+    with simkit.load(WORLD, plugins=[GzSystem(System())]) as sim:
+        sim.step(steps)
+        return sim.link("body::link").linear_velocity, sim.model("body").pose.position
+
+
+# ---------------------------------------------------------------------- by hand
+
+
+def test_a_component_has_a_name_and_a_number_and_can_be_a_key() -> None:
+    assert components.Model.name == "Model" and repr(components.Model) == "<gz.sim.components.Model>"
+    assert components.Model == components.Model != components.Link and components.Model.type_id != 0
+    assert {components.Model: 1}[components.Model] == 1
+    with pytest.raises(AttributeError, match="no NoSuchThing; register_custom_component"):
+        components.NoSuchThing  # noqa: B018
+
+
+def test_tags_and_data_come_and_go() -> None:
+    ecm = EntityComponentManager()
+    e = ecm.create_entity()
+    assert ecm.component(e, components.Model) is None
+    ecm.create_component(e, components.Model)
+    ecm.create_component(e, components.Pose, Pose3d(1, 2, 3, 0, 0, 0))
+    assert ecm.entity_has_component_type(e, components.Model)
+    ecm.component(e, components.Pose).set_x(42)
+    assert ecm.component(e, components.Pose).x() == 42
+    assert ecm.remove_component(e, components.Model) and not ecm.remove_component(e, components.Model)
+
+
+def test_equal_data_is_not_set_again_unless_told_to() -> None:
+    ecm = EntityComponentManager()
+    e = ecm.create_entity()
+    ecm.create_component(e, components.Name, "a")
+    assert not ecm.set_component_data(e, components.Name, "a")
+    assert ecm.set_component_data(e, components.Name, "a", False) and ecm.set_component_data(e, components.Name, "b")
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    ecm = EntityComponentManager()
+    e = ecm.create_entity()
+    with pytest.raises(TypeError, match="is a tag"):
+        ecm.create_component(e, components.Model, "data")
+    with pytest.raises(TypeError, match="needs data"):
+        ecm.create_component(e, components.Pose)
+    with pytest.raises(KeyError, match="no entity 99"):
+        ecm.create_component(99, components.Model)
+    with pytest.raises(TypeError, match=r"components\.Pose is needed"):
+        ecm.component(e, "Pose")
+
+
+def test_components_of_ones_own_are_found_by_each() -> None:
+    ecm = EntityComponentManager()
+    mine = components.register_custom_component("Mine")
+    first, _, third = ecm.create_entity(), ecm.create_entity(), ecm.create_entity()
+    ecm.create_component(first, mine, {"value": 1})
+    ecm.create_component(third, mine, {"value": 3})
+    seen = {}
+    for item in ecm.each([mine]):
+        seen[item.entity] = item.components[0]["value"]
+        item.components[0]["value"] *= 10
+    assert seen == {first: 1, third: 3} and ecm.component(third, mine) == {"value": 30}
+
+
+def test_entities_made_by_hand_have_parents() -> None:
+    ecm = EntityComponentManager()
+    parent, child = ecm.create_entity(), ecm.create_entity()
+    assert ecm.parent_entity(child) == 0 and ecm.set_parent_entity(child, parent)
+    assert ecm.parent_entity(child) == parent and not ecm.has_entity(99) and ecm.entity_count() == 2
+
+
+def test_a_method_that_is_not_there_says_what_to_use() -> None:
+    with pytest.raises(AttributeError, match=r"no request_remove_entity\(\); use simkit's own sim\.remove\(name\)"):
+        EntityComponentManager().request_remove_entity  # noqa: B018
+    with pytest.raises(AttributeError, match=r"no create_entitty\(\); use create_entity"):
+        EntityComponentManager().create_entitty  # noqa: B018
+    with pytest.raises(RuntimeError, match="shows no simulation"):
+        EntityComponentManager().simulation  # noqa: B018
+
+
+# ---------------------------------------------------------------------- of a simulation
+
+
+def test_what_is_in_the_world_has_gz_sims_components() -> None:
+    found: dict[str, Any] = {}
+
+    def look(info: Any, ecm: EntityComponentManager) -> None:
+        (model,) = [item.entity for item in ecm.each([components.Model])]
+        (link,) = [item.entity for item in ecm.each([components.Link, components.Name])]
+        found["names"] = [ecm.component(e, components.Name) for e in (1, model, link)]
+        found["parents"] = [ecm.parent_entity(e) for e in (1, model, link)] == [0, 1, model]
+        found["pose"] = ecm.component(link, components.Pose), ecm.component(link, components.WorldPose)
+        found["canonical"] = ecm.entity_has_component_type(link, components.CanonicalLink)
+        found["gravity"] = ecm.component(1, components.Gravity)
+        found["static"] = ecm.component(model, components.Static)
+
+    run(look)
+    assert found["names"] == ["w", "body", "link"] and found["parents"] and found["canonical"]
+    assert found["pose"] == (Pose3d(0, 0, 1, 0, 0, 0), Pose3d(1, 2, 4, 0, 0, 0))
+    assert found["gravity"] == Vector3d() and found["static"] is False
+
+
+def test_commands_are_components_too() -> None:
+    def push(info: Any, ecm: EntityComponentManager) -> None:
+        ecm.create_component(5, components.LinearVelocityCmd, Vector3d(1, 0, 0))
+        if info.iterations == 1:
+            ecm.create_component(4, components.WorldPoseCmd, Pose3d(0, 0, 9, 0, 0, 0))
+
+    velocity, position = run(push, 3)
+    assert velocity == pytest.approx([1, 0, 0]) and position == pytest.approx([0.003, 0, 9])
+
+
+def test_making_a_velocity_component_turns_the_reading_on() -> None:
+    told: list[Any] = []
+
+    def look(info: Any, ecm: EntityComponentManager) -> None:
+        told.append(ecm.component(5, components.WorldLinearVelocity))
+        ecm.create_component(5, components.WorldLinearVelocity, Vector3d())
+        ecm.create_component(5, components.LinearVelocityCmd, Vector3d(2, 0, 0))
+
+    run(look, 2)
+    assert told == [None, Vector3d(2, 0, 0)]
+
+
+def test_what_the_simulation_says_cannot_be_overwritten() -> None:
+    def write(info: Any, ecm: EntityComponentManager) -> None:
+        ecm.create_component(4, components.Name, "other")
+
+    with pytest.raises(simkit.PluginError, match="Name of model 'body' is what the simulation says"):
+        run(write)

@@ -1,0 +1,184 @@
+"""How Gazebo's module names are found, and when they are not."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from simkit import gzpython
+from simkit.gzpython import imports
+
+
+@pytest.mark.parametrize(
+    ("name", "ours"),
+    [
+        ("gz", ""),
+        ("ignition", ""),
+        ("gz.sim", "simkit.gzpython.sim"),
+        ("gz.sim10", "simkit.gzpython.sim"),
+        ("ignition.gazebo6", "simkit.gzpython.sim"),
+        ("gz.math7", "simkit.gzpython.math"),
+        ("ignition.math6", "simkit.gzpython.math"),
+        ("gz.common5", "simkit.gzpython.common"),
+        ("gz.transport13", "simkit.gzpython.transport"),
+        ("gz.msgs10.twist_pb2", "simkit.gzpython.msgs.twist_pb2"),
+        ("gz.sim8.components", "simkit.gzpython.sim.components"),
+        ("sdformat14", "simkit.gzpython.sdformat"),
+        ("sdformat", "simkit.gzpython.sdformat"),
+        ("gz.rendering8", None),
+        ("gzip", None),
+        ("gz.math7.helpers", None),
+        ("sdformats", None),
+    ],
+)
+def test_every_version_is_one_module_of_ours(name: str, ours: str | None) -> None:
+    assert imports.target_of(name) == ours
+
+
+def test_the_names_are_there_within_and_gone_after() -> None:
+    with gzpython.importable():
+        eight, ten = importlib.import_module("gz.sim8"), importlib.import_module("gz.sim10")
+        assert eight.Link is ten.Link
+        assert importlib.import_module("gz.sim8.components").Name == eight.components.Name
+    with pytest.raises(ModuleNotFoundError):
+        importlib.import_module("gz.sim8")
+
+
+def test_installing_lasts_until_it_is_taken_back() -> None:
+    assert gzpython.install() == {}
+    try:
+        assert importlib.import_module("gz.math7").Vector3d(1, 2, 3).length() > 3
+    finally:
+        gzpython.uninstall()
+    assert "gz.math7" not in sys.modules
+
+
+def test_a_name_that_is_not_there_says_what_is() -> None:
+    with gzpython.importable():
+        with pytest.raises(ImportError, match="no Gui: simkit has no user interface"):
+            from gz.sim8 import Gui  # type: ignore[import-not-found]  # noqa: F401
+        with pytest.raises(ModuleNotFoundError, match=r"simkit has no gz\.msgs\.marker_pb2; it has actuators_pb2"):
+            importlib.import_module("gz.msgs10.marker_pb2")
+        with pytest.raises(ImportError, match="no Root; simkit.describe"):
+            from sdformat14 import Root  # type: ignore[import-not-found]  # noqa: F401
+
+
+REAL = "NAME = 'the real one'\n\nclass Vector3d: ...\n"
+
+
+@pytest.fixture
+def real_gz(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A `gz` package with a `math7` of its own, installed for all that Python knows."""
+    (tmp_path / "gz").mkdir()
+    (tmp_path / "gz" / "math7.py").write_text(REAL, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    yield tmp_path  # type: ignore[misc]
+    for name in [n for n in sys.modules if n == "gz" or n.startswith("gz.")]:
+        del sys.modules[name]
+    imports._kept.clear()
+
+
+def test_what_is_really_installed_goes_first_and_is_told(real_gz: Path) -> None:
+    assert gzpython.installed() == {"gz.math7": str(real_gz / "gz" / "math7.py")}
+    with gzpython.importable():
+        assert importlib.import_module("gz.math7").NAME == "the real one"
+        assert imports.is_shim(importlib.import_module("gz.sim8"))  # the rest of the package is ours
+
+
+def test_asked_to_ours_goes_before_an_installed_one(real_gz: Path) -> None:
+    with gzpython.importable(shadow=True):
+        assert imports.is_shim(importlib.import_module("gz.math7"))
+
+
+def test_a_world_says_which_installed_module_its_system_got(real_gz: Path, tmp_path: Path) -> None:
+    import simkit
+
+    (tmp_path / "systems").mkdir()
+    text = "from gz.math7 import Vector3d\n\nclass System:\n    def update(self, info, ecm): ...\n"
+    text += "\ndef get_system():\n    return System()\n"
+    (tmp_path / "systems" / "user.py").write_text(text, encoding="utf-8")
+    world = """<sdf version="1.9"><world name="w">
+      <plugin filename="gz-sim-python-system-loader-system" name="gz::sim::systems::PythonSystemLoader">
+        <module_name>user</module_name>{}</plugin></world></sdf>"""
+    with simkit.load(world.format(""), plugin_paths=[tmp_path / "systems"]) as sim:
+        (found,) = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-083"]
+        assert "gz.math7 is installed" in found.message and "shadow_gz" in found.hint
+
+
+def test_a_system_with_an_installed_gz_sim_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import simkit
+
+    (tmp_path / "real" / "gz").mkdir(parents=True)
+    (tmp_path / "real" / "gz" / "sim8.py").write_text("class Model: ...\n", encoding="utf-8")
+    (tmp_path / "systems").mkdir()
+    text = "from gz.sim8 import Model\n\ndef get_system(): ...\n"
+    (tmp_path / "systems" / "user_of_sim.py").write_text(text, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path / "real")
+    world = """<sdf version="1.9"><world name="w">
+      <plugin filename="gz-sim-python-system-loader-system" name="gz::sim::systems::PythonSystemLoader">
+        <module_name>user_of_sim</module_name></plugin></world></sdf>"""
+    try:
+        with pytest.raises(simkit.LoadError, match=r"SK-PLUGIN-083.*knows nothing of a simulation of simkit's"):
+            simkit.load(world, plugin_paths=[tmp_path / "systems"])
+    finally:
+        for name in [n for n in sys.modules if n == "gz" or n.startswith("gz.")]:
+            del sys.modules[name]
+
+
+FALLING = "<sdf version='1.6'><world name='w'><model name='falling'><link name='l'/></model></world></sdf>"
+
+
+def test_a_script_of_gz_sim_runs_after_one_line(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        """
+import simkit.gzpython
+
+simkit.gzpython.install()
+import time
+
+from gz.common import set_verbosity
+from gz.sim8 import TestFixture, World, world_entity
+from gz.math7 import Vector3d
+from sdformat14 import Element
+
+set_verbosity(1)
+fixture = TestFixture(WORLD)
+counts = {"pre": 0, "post": 0}
+
+
+def before(info, ecm):
+    counts["pre"] += 1
+    if counts["pre"] == 1:
+        world = World(world_entity(ecm))
+        print("gravity", world.gravity(ecm), "falling", world.model_by_name(ecm, "falling"))
+
+
+def after(info, ecm):
+    counts["post"] += 1
+    if info.sim_time.seconds == 1:
+        print("after a second", info.sim_time)
+
+
+fixture.on_post_update(after)
+fixture.on_pre_update(before)
+fixture.finalize()
+server = fixture.server()
+server.run(False, 1000, False)
+while server.is_running():
+    time.sleep(0.1)
+print(counts)
+""".replace("WORLD", repr(FALLING)),
+        encoding="utf-8",
+    )
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stderr == ""
+    assert done.stdout.splitlines() == [
+        "gravity 0 0 -9.8 falling 4",
+        "after a second 0:00:01",
+        "{'pre': 1000, 'post': 1000}",
+    ]

@@ -1,0 +1,324 @@
+"""A plugin that raises: the run stops with its name, or goes on without it as if it were not there any more."""
+
+from __future__ import annotations
+
+import io
+import math
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from plugin_worlds import GROUND, rover, world
+
+import simkit
+from simkit import Params, WorldPlugin
+from simkit.runtime import Simulation
+
+BALL = """<model name="ball"><pose>0 0 1 0 0 0</pose><link name="l"><inertial><mass>2</mass></inertial>
+<collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link></model>"""
+FLOATING = f"<gravity>0 0 0</gravity>{BALL}"
+
+
+class Pusher(WorldPlugin):
+    """Pushes the ball with 2 N until it raises at `last` [s]; publishes, offers and acts meanwhile."""
+
+    def __init__(self, last: float = 0.5, on_error: Any = "disable") -> None:
+        self.last, self.on_error = last, on_error
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self.ball = parent.link("ball::l")
+        self.pushes = self.advertise("pushes", "std_msgs/msg/Float64")
+        self.listen("more", "std_msgs/msg/Float64", self.take)
+        self.offer("again", "std_srvs/srv/Trigger", self.answer)
+        self.act("go", "example_interfaces/action/Fibonacci", lambda goal: None)
+        self.gain = self.declare("gain", 1.0)
+
+    def take(self, message: Any) -> None:
+        if message.data < 0:
+            raise ValueError("less than nothing")
+
+    def answer(self, _request: Any) -> Any:
+        raise KeyError("no answer")
+
+    def before_step(self) -> None:
+        if self.sim.time > self.last - 1e-9:
+            raise RuntimeError("out of breath")
+        self.ball.apply_wrench((2.0, 0.0, 0.0))
+        self.pushes.publish(simkit.msgs.make("std_msgs/msg/Float64", data=1.0))
+
+
+def velocity(sim: Simulation) -> float:
+    return float(sim.link("ball::l").linear_velocity[0])
+
+
+def bits(sim: Simulation) -> bytes:
+    return bytes(sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes())
+
+
+def warnings(sim: Simulation) -> list[str]:
+    return [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-020"]
+
+
+def test_a_plugin_that_is_left_out_pushes_no_more_and_the_run_goes_on() -> None:
+    with simkit.load(world(FLOATING), plugins=[Pusher()]) as sim:
+        sim.run(2.0)
+        assert sim.time == pytest.approx(2.0)
+        assert velocity(sim) == pytest.approx(2.0 / 2.0 * 0.5, rel=1e-9)  # F t / m
+
+
+def test_the_warning_names_plugin_hook_time_and_the_last_line_of_the_traceback() -> None:
+    with simkit.load(world(FLOATING), plugins=[Pusher(0.25)]) as sim:
+        sim.run(1.0)
+        found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-020"]
+    assert len(found) == 1
+    assert found[0].message == (
+        "plugin 'Pusher' raised in before_step at t=0.25 s and is left out from then on: RuntimeError: out of breath"
+    )
+    assert "test_plugin_api_faults.py" in found[0].hint and found[0].hint.endswith("in before_step")
+
+
+def test_its_topics_services_actions_and_parameters_are_gone() -> None:
+    with simkit.load(world(FLOATING), plugins=[Pusher(0.1)]) as sim:
+        assert "/pushes" in sim.topics() and "/again" in sim.services() and "/go" in sim.actions()
+        assert any("gain" in names for names in sim.parameters.values())
+        goal = sim.send_goal("/go", {"order": 3})
+        sim.step()
+        assert goal.is_active
+        sim.run(0.3)
+        assert goal.status.name == "ABORTED" and "out of breath" in goal.reason
+        assert not {"/pushes", "/more"} & set(sim.topics())
+        assert "/again" not in sim.services() and "/go" not in sim.actions()
+        assert not any("gain" in names for names in sim.parameters.values())
+
+
+def test_the_bits_are_those_of_a_run_in_which_it_is_silent_from_then_on() -> None:
+    class Silent(Pusher):
+        def before_step(self) -> None:
+            if self.sim.time < self.last - 1e-9:
+                super().before_step()
+
+    ends = []
+    for plugin in (Pusher(0.123), Silent(0.123)):
+        with simkit.load(world(GROUND, BALL, rover()), plugins=[plugin]) as sim:
+            sim.run(1.0)
+            ends.append(bits(sim))
+    assert ends[0] == ends[1]
+
+
+def test_without_it_the_run_stops_there() -> None:
+    with simkit.load(world(FLOATING), plugins=[Pusher(0.1, None)]) as sim:
+        with pytest.raises(simkit.PluginError, match="out of breath") as caught:
+            sim.run(1.0)
+        assert caught.value.exit_code == 4
+        assert caught.value.time == pytest.approx(0.1)
+
+
+def test_reset_and_restore_bring_it_back() -> None:
+    with simkit.load(world(FLOATING), plugins=[Pusher(0.1)]) as sim:
+        sim.run(0.05)
+        before = sim.snapshot()
+        sim.run(0.2)
+        after, speed = sim.snapshot(), velocity(sim)
+        for reset in (False, True):
+            if reset:
+                sim.reset()
+            else:
+                sim.restore(before)
+            assert "/pushes" in sim.topics()
+            sim.run(0.25 - sim.time)
+            assert velocity(sim) == pytest.approx(speed) and "/pushes" not in sim.topics()
+        sim.reset()
+        sim.restore(after)
+        assert "/pushes" not in sim.topics()
+        sim.run(0.1)
+        assert velocity(sim) == pytest.approx(speed)
+
+
+@pytest.mark.parametrize("what", ["topic", "service", "parameter"])
+def test_callbacks_are_met_as_hooks_are(what: str) -> None:
+    class Touchy(Pusher):
+        def load(self, parent: Simulation, params: Params) -> None:
+            super().load(parent, params)
+            self.limit = self.declare("limit", 1.0, on_change=self.changed)
+
+        def changed(self, value: float) -> None:
+            raise OSError("not now")
+
+    with simkit.load(world(FLOATING), plugins=[Touchy(9.0)]) as sim:
+        sim.step()
+        if what == "topic":
+            sim.publish("/more", {"data": -1.0})
+        elif what == "service":
+            with pytest.raises(simkit.SimkitError, match="left out"):
+                sim.call("/again")
+        else:
+            sim.set_parameter(next(iter(sim.parameters)), "limit", 2.0)
+        sim.run(0.1)
+        said = {"topic": "less than nothing", "service": "no answer", "parameter": "not now"}[what]
+        assert len(warnings(sim)) == 1 and said in warnings(sim)[0]
+        assert velocity(sim) < 0.01
+
+
+def test_the_argument_goes_over_the_file_and_the_file_over_the_class(tmp_path: Path) -> None:
+    source = (
+        "from simkit import ModelPlugin\n"
+        "class Weak(ModelPlugin):\n"
+        "    on_error = 'stop'\n"
+        "    def load(self, parent, params):\n"
+        "        pass\n"
+        "    def after_step(self):\n"
+        "        raise ValueError('weak')\n"
+    )
+    (tmp_path / "weak.py").write_text(source)
+    plugin = "<plugin name='weak' filename='weak.py'>{}</plugin>"
+
+    def left_out(body: str, **options: Any) -> bool:
+        with simkit.load(world(GROUND, rover(plugin.format(body))), plugin_paths=[tmp_path], **options) as sim:
+            assert not [d for d in sim.diagnostics if d.code == "SK-PARAM-003"]
+            try:
+                sim.step()
+            except simkit.PluginError:
+                return False
+            return len(warnings(sim)) == 1
+
+    says = "<simkit:on_error>{}</simkit:on_error>".format
+    assert not left_out("")
+    assert left_out(says("disable"))
+    assert left_out("<on_error>disable</on_error>")
+    assert left_out("", on_error="disable")
+    assert left_out(says("stop"), on_error="disable")
+    assert not left_out(says("disable"), on_error="stop")
+
+
+def test_another_word_is_an_error_with_what_is_allowed(tmp_path: Path) -> None:
+    plugin = (
+        "<plugin name='d' filename='libgazebo_ros_diff_drive.so'><simkit:on_error>ignore</simkit:on_error></plugin>"
+    )
+    with pytest.raises(simkit.LoadError, match="allowed is one of stop, disable"):
+        simkit.load(world(GROUND, rover(plugin)))
+    with pytest.raises(simkit.SimkitError, match="'stop' or 'disable'"):
+        simkit.load(world(GROUND), on_error="ignore")  # type: ignore[arg-type]
+
+
+def test_one_that_raises_in_load_is_left_out_too_and_the_others_load() -> None:
+    class Broken(WorldPlugin):
+        on_error = "disable"
+
+        def load(self, parent: Simulation, params: Params) -> None:
+            self.advertise("broken", "std_msgs/msg/Float64")
+            raise LookupError("nothing here")
+
+    with simkit.load(world(FLOATING), plugins=[Broken(), Pusher(9.0)]) as sim:
+        sim.run(0.1)
+        assert "/broken" not in sim.topics() and "/pushes" in sim.topics()
+        assert "in load at t=0 s" in warnings(sim)[0]
+        sim.reset()
+        assert "/broken" not in sim.topics()
+
+
+def test_a_servo_of_a_plugin_that_is_left_out_lets_go_of_its_joint() -> None:
+    class Motor(WorldPlugin):
+        on_error = "disable"
+
+        def prepare(self, scene: Any, params: Params, builder: Any) -> None:
+            self.servo = builder.add_velocity_servo("arm::j", max_effort=50.0, owner=self.name)
+
+        def load(self, parent: Simulation, params: Params) -> None:
+            self.sim.set_control(self.servo, 2.0)
+
+        def after_step(self) -> None:
+            if self.sim.time > 0.5:
+                raise RuntimeError("burnt")
+
+    arm = """<gravity>0 0 0</gravity><model name="arm"><link name="base"/><joint name="w" type="fixed">
+<parent>world</parent><child>base</child></joint><link name="rod"><inertial><mass>1</mass></inertial></link>
+<joint name="j" type="revolute"><parent>base</parent><child>rod</child><axis><xyz>0 0 1</xyz>
+<dynamics><damping>0.5</damping></dynamics></axis></joint></model>"""
+    with simkit.load(world(arm), plugins=[Motor()]) as sim:
+        sim.run(0.4)
+        before = sim.snapshot()
+        assert sim.joint("arm::j").velocity == pytest.approx(2.0, rel=0.1)
+        sim.run(2.0)
+        coasting = 2.0 * math.exp(-0.5 * 1.9)  # damping 0.5 on an inertia of 1
+        assert sim.joint("arm::j").velocity == pytest.approx(coasting, rel=0.01)
+        sim.spawn(f"<sdf version='1.9'>{BALL}</sdf>")
+        sim.run(1.0)
+        assert sim.joint("arm::j").velocity == pytest.approx(coasting * math.exp(-0.5), rel=0.01)
+        sim.restore(before)
+        sim.run(0.09)
+        assert sim.joint("arm::j").velocity == pytest.approx(2.0, rel=0.1)
+
+
+def test_closing_closes_every_plugin_and_then_tells_what_one_raised() -> None:
+    closed: list[str] = []
+
+    class Stubborn(WorldPlugin):
+        def load(self, parent: Simulation, params: Params) -> None:
+            pass
+
+        def close(self) -> None:
+            closed.append("stubborn")
+            raise OSError("stuck")
+
+    class Meek(Stubborn):
+        def close(self) -> None:
+            closed.append("meek")
+
+    sim = simkit.load(world(GROUND), plugins=[Stubborn(), Meek()])
+    with pytest.raises(simkit.PluginError, match="raised in close"):
+        sim.close()
+    assert closed == ["stubborn", "meek"]
+    sim.close()
+    assert closed == ["stubborn", "meek"]
+
+
+def test_what_the_user_gave_wrongly_in_a_hook_is_the_plugins_fault() -> None:
+    class Wrong(WorldPlugin):
+        def load(self, parent: Simulation, params: Params) -> None:
+            pass
+
+        def after_step(self) -> None:
+            self.sim.publish("/nobody", {"data": 1.0})
+
+    with simkit.load(world(GROUND), plugins=[Wrong()]) as sim, pytest.raises(simkit.PluginError) as caught:
+        sim.step()
+    assert isinstance(caught.value.__cause__, simkit.MessageError)
+
+
+class Holder(WorldPlugin):
+    """Holds what cannot be copied."""
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self.counted = 0
+        self.file = Path(__file__).open()  # noqa: SIM115 - to be held
+        self.thread = threading.Thread(target=int)
+        self.numbers = self.count()
+        self.nested = {"deep": [io.TextIOWrapper(io.BytesIO())]}
+
+    def count(self) -> Iterator[int]:
+        yield from range(1000)
+
+    def after_step(self) -> None:
+        self.counted += 1
+
+    def close(self) -> None:
+        self.file.close()
+
+
+def test_open_files_threads_and_generators_are_each_reported_by_attribute_and_left_alone() -> None:
+    holder = Holder()
+    with simkit.load(world(GROUND), plugins=[holder]) as sim:
+        sim.step(2)
+        snapshot, file = sim.snapshot(), holder.file
+        sim.step(3)
+        sim.restore(snapshot)
+        assert holder.counted == 2 and holder.file is file and not file.closed
+        found = [d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-006"]
+    assert [next(n for n in ("file", "thread", "numbers", "nested") if f"{n!r}" in m) for m in found] == [
+        "file",
+        "thread",
+        "numbers",
+        "nested",
+    ]

@@ -1,0 +1,308 @@
+"""Robots of one kind work together: the same bits, the same order and the same snapshots as each for itself."""
+
+import numpy as np
+import pytest
+
+import simkit
+from simkit import msgs
+from simkit.errors import PluginError, SubscriberError
+from simkit.runtime import together
+from simkit.sensors import crews
+
+COUNT = 5
+
+ROBOT = """
+<model name="robot_{i}">
+  <pose>{x} {y} 0.1 0 0 {yaw}</pose>
+  <link name="base">
+    <inertial><mass>2</mass><inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.02</izz></inertia></inertial>
+    <collision name="hull"><geometry><box><size>0.2 0.2 0.1</size></box></geometry></collision>
+    <collision name="ball"><pose>-0.08 0 -0.08 0 0 0</pose><geometry><sphere><radius>0.02</radius></sphere></geometry>
+      <surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction></surface></collision>
+    <sensor name="imu" type="imu"><pose>0.02 0 0.03 0 0 {turn}</pose><topic>imu_{i}</topic>
+      <update_rate>200</update_rate>{imu}</sensor>
+    <sensor name="lidar" type="lidar"><pose>0 0 0 0 0 0</pose><topic>scan_{i}</topic><update_rate>20</update_rate>
+      <lidar><scan><horizontal><samples>40</samples><min_angle>-3.1</min_angle><max_angle>3.1</max_angle></horizontal>
+      {layers}</scan><range><min>0.15</min><max>4</max></range>{ray_noise}</lidar></sensor>
+  </link>
+  {wheels}
+  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+    <left_joint>left</left_joint><right_joint>right</right_joint><wheel_separation>0.24</wheel_separation>
+    <wheel_radius>{radius}</wheel_radius><max_linear_acceleration>1</max_linear_acceleration>
+    <min_linear_acceleration>-1</min_linear_acceleration><topic>cmd_{i}</topic><odom_topic>odom_{i}</odom_topic>
+    <tf_topic>tf</tf_topic>{drive}
+  </plugin>
+  {more}
+</model>
+"""
+WHEEL = """
+<link name="{side}_wheel"><pose>0.03 {y} -0.05 -1.5708 0 0</pose>
+  <inertial><mass>0.1</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>
+  <collision name="tread"><geometry><cylinder><radius>0.05</radius><length>0.02</length></cylinder></geometry>
+  </collision></link>
+<joint name="{side}" type="revolute"><parent>base</parent><child>{side}_wheel</child><axis><xyz>0 0 1</xyz></axis>
+</joint>
+"""
+NOISE = '<noise type="gaussian"><mean>0.001</mean><stddev>0.01</stddev></noise>'
+NOISY_IMU = f"<imu><angular_velocity><x>{NOISE}</x><y>{NOISE}</y></angular_velocity></imu>"
+LAYERS = "<vertical><samples>3</samples><min_angle>-0.1</min_angle><max_angle>0.1</max_angle></vertical>"
+HEAD = """
+<sdf version="1.9"><world name="w"><physics type="ignored"><max_step_size>0.001</max_step_size></physics>
+<model name="ground"><static>true</static><link name="l"><collision name="c"><geometry><plane/></geometry></collision>
+</link></model>
+"""
+
+
+def robot(i, **parts):
+    """Robots on a ring, close enough to see each other."""
+    given = {"imu": NOISY_IMU, "ray_noise": NOISE, "layers": "", "drive": "", "more": "", "turn": 0.0, "radius": 0.05}
+    angle = 2 * np.pi * i / COUNT
+    place = {"x": 1.5 * np.cos(angle), "y": 1.5 * np.sin(angle), "yaw": 0.3 * (i + 1)}
+    wheels = WHEEL.format(side="left", y=0.12) + WHEEL.format(side="right", y=-0.12)
+    return ROBOT.format(i=i, wheels=wheels, **{**place, **given, **parts})
+
+
+def world(count=COUNT, **parts):
+    return HEAD + "".join(robot(i, **parts) for i in range(count)) + "</world></sdf>"
+
+
+def commanded(sim):
+    for topic in sim.topics():
+        if topic.startswith("/cmd_"):
+            sim.publish(topic, {"linear": {"x": 0.2}, "angular": {"z": 0.1 * int(topic[-1])}})
+
+
+def heard(sim, log, **how):
+    """Logs every message of every robot in the order in which they come."""
+    for topic in sorted(sim.topics()):
+        if topic.startswith(("/imu_", "/scan_", "/odom_", "/tf")) and not topic.endswith("points"):
+            sim.subscribe(topic, lambda m, topic=topic: log.append((topic, msgs.serialize(m))), **how)
+
+
+def run(source, duration=0.12, change=lambda sim: None):
+    log = []
+    with simkit.load(source, seed=3) as sim:
+        heard(sim, log)
+        commanded(sim)
+        change(sim)
+        sim.run(duration)
+        truths = [msgs.serialize(s.truth) for s in sim.sensors.values()]
+        state = np.concatenate((sim.mj_data.qpos, sim.mj_data.qvel)).tobytes()
+    return log, truths, state
+
+
+@pytest.fixture
+def apart(monkeypatch):
+    """Gives a function that does something with everybody working alone."""
+
+    def alone(call, *args, **kwargs):
+        with monkeypatch.context() as patch:
+            patch.setattr(crews, "LEAST", 10_000)
+            patch.setattr(together, "LEAST", 10_000)
+            return call(*args, **kwargs)
+
+    return alone
+
+
+@pytest.fixture
+def by_numpy(monkeypatch):
+    """Lidars cast in NumPy, as they do among more than 64 moving bodies."""
+    from simkit.sensors.rays import fan
+
+    monkeypatch.setattr(fan, "MOST_MOVING", 0)
+
+
+def crew_sizes(sim):
+    return [len(s.crew.members) if s.crew is not None else 0 for s in sim.sensors.values()]
+
+
+# ---------------------------------------------------------------------- the same bits
+
+KINDS = {
+    "noisy": {},
+    "silent": {"imu": "<imu/>", "ray_noise": ""},
+    "turned": {"turn": 0.4},
+    "against_the_start": {"imu": "<imu><orientation_reference_frame><localization>ENU</localization>"
+                                 "</orientation_reference_frame></imu>"},
+    "layers": {"layers": LAYERS},
+    "fast_odometry": {"drive": "<odom_publish_frequency>0</odom_publish_frequency>"},
+    "slow_odometry": {"drive": "<odom_publish_frequency>17</odom_publish_frequency>"},
+    "noisy_odometry": {"drive": "<odometry_noise><wheel_radius_error>0.01</wheel_radius_error></odometry_noise>"},
+    "truth": {"drive": "<publish_ground_truth>true</publish_ground_truth>"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_together_and_alone_give_the_same_messages_in_the_same_order(kind, apart, by_numpy):
+    source = world(**KINDS[kind])
+    with simkit.load(source) as sim:
+        assert crew_sizes(sim) == [COUNT] * (2 * COUNT)
+    assert run(source) == apart(run, source)
+
+
+def test_robots_that_differ_work_with_their_like_and_give_the_same(apart, by_numpy):
+    parts = [
+        robot(i, radius=0.05 + 0.001 * (i % 3), turn=0.2 * (i % 2), imu="<imu/>" if i % 3 else NOISY_IMU)
+        for i in range(COUNT)
+    ]
+    source = HEAD + "".join(parts) + "</world></sdf>"
+    assert run(source) == apart(run, source)
+
+
+def test_imus_whose_bias_wanders_work_alone(apart):
+    drift = NOISE.replace("</noise>", "<dynamic_bias_stddev>0.1</dynamic_bias_stddev>"
+                          "<dynamic_bias_correlation_time>1</dynamic_bias_correlation_time></noise>")  # fmt: skip
+    source = world(imu=f"<imu><angular_velocity><x>{drift}</x></angular_velocity></imu>")
+    with simkit.load(source) as sim:
+        assert all(s.crew is None for s in sim.sensors.values() if s.kind == "imu")
+    assert run(source) == apart(run, source)
+
+
+def test_one_robot_sees_and_feels_the_same_whoever_is_read_besides(by_numpy):
+    def only(sim_log, sim):
+        sim.subscribe("/imu_2", lambda m: sim_log.append(msgs.serialize(m)))
+        sim.subscribe("/scan_2", lambda m: sim_log.append(msgs.serialize(m)))
+
+    logs = []
+    for others in (False, True):
+        log = []
+        with simkit.load(world(), seed=3) as sim:
+            commanded(sim)
+            if others:
+                heard(sim, [])
+            only(log, sim)
+            sim.run(0.12)
+        logs.append(log)
+    assert logs[0] == logs[1]
+
+
+# ---------------------------------------------------------------------- whatever happens in between
+
+
+def test_a_subscriber_that_moves_a_robot_is_seen_by_those_that_come_after_it(apart, by_numpy):
+    def change(sim):
+        def push(message):
+            if abs(sim.time - 0.05) < 1e-9:
+                model = sim.model("robot_4")
+                model.set_pose(simkit.Pose((3.0, 0.0, 0.3)))
+                model.set_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+
+        sim.subscribe("/imu_1", push)
+
+    source = world()
+    assert run(source, change=change) == apart(run, source, change=change)
+    assert run(source, change=change) != run(source)
+
+
+def test_changes_of_rate_spawns_and_removals_on_the_way_change_nothing(apart, by_numpy):
+    def change(sim):
+        sim.run(0.0503)
+        sim.sensor("robot_1::base::imu").set_rate(100)
+        sim.run(0.033)
+        sim.spawn(f'<sdf version="1.9">{robot(7)}</sdf>')
+        sim.run(0.05)
+        sim.remove("robot_2")
+
+    source = world()
+    assert run(source, change=change) == apart(run, source, change=change)
+
+
+def test_a_restored_run_repeats_and_a_reset_one_begins_anew(by_numpy):
+    log = []
+    with simkit.load(world(), seed=3) as sim:
+        heard(sim, log)
+        commanded(sim)
+        sim.run(0.1037)
+        snapshot, before = sim.snapshot(), len(log)
+        sim.run(0.1)
+        first = log[before:]
+        sim.restore(snapshot)
+        del log[:]
+        sim.run(0.1)
+        assert log == first
+        del log[:]
+        sim.reset()
+        commanded(sim)
+        sim.run(0.2037)
+        assert log[-len(first) :] == first
+
+
+def test_a_snapshot_taken_together_is_that_taken_alone(apart):
+    def state():
+        with simkit.load(world(), seed=3) as sim:
+            commanded(sim)
+            sim.run(0.1037)
+            sim.snapshot()
+            sim.run(0.05)
+            drives = [p for p in sim.structure.all_plugins() if type(p).__name__ == "DiffDrive"]
+            states = [p.get_state()["_odometry"] for p in drives]
+            return [(s.reckoning, s.twist, s._at, s._noted, s._recent) for s in states]
+
+    assert state() == apart(state)
+
+
+def test_a_reset_from_within_a_callback_ends_the_tick_for_all():
+    with simkit.load(world()) as sim:
+        seen = []
+
+        def back(message):
+            seen.append(sim.tick)
+            if len(seen) == 3:
+                sim.reset()
+
+        sim.subscribe("/imu_1", back)
+        later = sim.subscribe("/imu_4", lambda m: None)
+        sim.step(10)
+        stamps = [msgs.stamp_ns(m.header.stamp) // 1_000_000 for m in later.messages]
+        assert seen == [1, 5, 10, 1, 5, 10][: len(seen)]
+        assert stamps[:2] == [1, 5]
+
+
+# ---------------------------------------------------------------------- faults
+
+
+def test_of_many_the_one_that_raises_is_named():
+    with simkit.load(world()) as sim:
+        drives = [p for p in sim.structure.all_plugins() if type(p).__name__ == "DiffDrive"]
+        drives[3]._servos = None  # breaks it
+        commanded(sim)
+        with pytest.raises(PluginError) as found:
+            sim.step(3)
+        assert found.value.where == str(drives[3].where)
+
+
+def test_a_subscriber_that_raises_stops_the_run_from_within_the_fleet_too():
+    with simkit.load(world()) as sim:
+        sim.subscribe("/odom_3", lambda m: 1 / 0)
+        with pytest.raises(SubscriberError, match="'/odom_3'.*division"):
+            sim.run(0.1)
+
+
+def test_a_class_of_ones_own_may_work_together_and_a_class_below_it_does_not():
+    class Counter(simkit.WorldPlugin):
+        calls, runs = 0, 0
+
+        def load(self, parent, params):
+            self.count = 0
+
+        def after_step(self):
+            self.count += 1
+
+        @classmethod
+        def after_step_together(cls, plugins):
+            def all_of_them(rota):
+                Counter.runs += 1
+                for plugin in rota:
+                    plugin.count += 1
+
+            return all_of_them
+
+    class Twice(Counter):
+        def after_step(self):
+            self.count += 2
+
+    plugins = [Counter() for _ in range(5)] + [Twice() for _ in range(5)] + [Counter()]
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=plugins) as sim:
+        sim.step(4)
+    assert [p.count for p in plugins] == [4] * 5 + [8] * 5 + [4]
+    assert Counter.runs == 4

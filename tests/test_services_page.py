@@ -1,0 +1,43 @@
+"""The page of services has exactly what a world offers, and no type that is not known."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import simkit
+from simkit import msgs
+from simkit.msgs.services import SERVICES
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "services.md"
+ROW = re.compile(r"^\| `(/[^`]+)` \| `([\w/]+/srv/\w+)` \| (.+) \|$", re.MULTILINE)
+WORLD = (
+    """<sdf version="1.9"><world name="w"><plugin name="api" filename="libgazebo_ros_api_plugin.so"/></world></sdf>"""
+)
+
+
+def test_the_page_has_every_service_with_its_type_and_no_other() -> None:
+    rows = {name.replace("<world>", "w"): type_name for name, type_name, _ in ROW.findall(PAGE.read_text("utf-8"))}
+    with simkit.load(WORLD) as sim:
+        offered = sim.services()
+    assert rows == {name: kind for name, kind in offered.items() if not name.endswith("/blocking")}
+    blocking = {name.removesuffix("/blocking") for name in offered if name.endswith("/blocking")}
+    assert {f"/world/w/{short}" for short in ("control", "generate_world_sdf", "scene/info")} == {
+        n for n in rows if "/world/" in n
+    } - blocking
+
+
+def test_the_page_has_the_topics_that_a_world_tells_of_itself() -> None:
+    text = PAGE.read_text("utf-8")
+    with simkit.load(WORLD) as sim:
+        topics = {topic: kind for topic, kind in sim.bus.all_topics().items() if topic in sim.bus.aside}
+    for topic, kind in topics.items():
+        assert f"`{topic.replace('/w/', '/<world>/')}`" in text
+        assert kind.rpartition("/")[2] in text
+
+
+def test_every_type_can_be_made_and_written() -> None:
+    for name in SERVICES:
+        for end in ("Request", "Response"):
+            message = msgs.make(f"{name}_{end}")
+            assert msgs.serialize(msgs.deserialize(msgs.serialize(message), f"{name}_{end}")) == msgs.serialize(message)
