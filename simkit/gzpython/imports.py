@@ -68,6 +68,13 @@ class ShimFinder(MetaPathFinder):
     @staticmethod
     def _refuse(name: str) -> None:
         """Says of a module of Gazebo that simkit has none, where Python would only say that it is not there."""
+        parent, _, leaf = name.rpartition(".")
+        known = target_of(parent) if parent else None
+        if known and not leaf.startswith("_"):  # `from gz.sim import leaf`: Python's own words would not say more
+            try:
+                getattr(sys.modules.get(parent) or importlib.import_module(known), leaf)
+            except AttributeError as error:
+                raise ImportError(str(error), name=parent) from None
         root, _, rest = name.partition(".")
         if root in ("gz", "ignition") and rest.rstrip("0123456789") in _NOT_HERE:
             families = sorted(set(_FAMILIES) - {"gazebo"})

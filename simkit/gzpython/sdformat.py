@@ -9,6 +9,7 @@ import enum
 from collections.abc import Callable
 from typing import Any, Final
 
+from simkit.gzpython.absent import absent
 from simkit.gzpython.math.angle import Angle
 from simkit.gzpython.math.look import Color, Temperature
 from simkit.gzpython.math.pose import Pose3d
@@ -321,16 +322,9 @@ class Atmosphere:
         self._pressure = float(value)
 
 
-LEFT_OUT: Final = (
-    "Root", "World", "Model", "Link", "Joint", "Collision", "Visual", "Geometry", "Light", "Sensor", "Scene", "Gui",
-    "Physics", "Plugin", "Material", "Mesh", "Frame", "SemanticPose", "ParserConfig", "Surface", "Noise", "Lidar",
-    "Camera",
-)  # fmt: skip
-"""sdformat's document classes, which only `simkit.describe` has a twin of."""
+_DOCUMENT: Final = "Root World Model Link Joint Collision Visual Geometry GeometryType Light Sensor Plugin Material Mesh"
+_INSTEAD: Final = dict.fromkeys(_DOCUMENT.split(), "simkit.describe(file), which tells what a file means")
 
 
 def __getattr__(name: str) -> Any:
-    if name in LEFT_OUT:
-        message = f"simkit's sdformat has no {name}; simkit.describe(file) tells what a file means"
-        raise ImportError(message, name="sdformat")
-    raise AttributeError(f"module 'sdformat' has no attribute {name!r}")
+    raise absent("sdformat", name, globals(), _INSTEAD)

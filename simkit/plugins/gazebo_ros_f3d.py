@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.gazebo_ros_ft_sensor import GazeboRosFtSensor
-from simkit.plugins.lookups import find_link
+from simkit.plugins.lookups import named_link
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -24,11 +24,7 @@ class GazeboRosF3D(GazeboRosFtSensor):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._topic = params.text("topicName", required=True)
-        self._joint = self._link = ""
-        body = params.text("bodyName", required=True)
-        link = find_link(scene, body, params) if body else None
-        if link is not None:
-            self._link = link.scoped
+        self._joint, self._link = "", named_link(scene, "bodyName", params)
         self._frame = params.text("frameName", "world").strip("/") or "world"
         self._deviation = 0.0
         params.child("alwaysOn")

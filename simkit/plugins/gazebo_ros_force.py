@@ -10,7 +10,7 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_commands import Once
-from simkit.plugins.lookups import find_link
+from simkit.plugins.lookups import named_link
 from simkit.pose import Vector, quat_rotate
 
 if TYPE_CHECKING:
@@ -33,9 +33,7 @@ class GazeboRosForce(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         is_ros_1 = params.has("bodyName") or params.has("topicName")
-        name = params.text("bodyName" if is_ros_1 else "link_name", required=True)
-        link = find_link(scene, name, params) if name else None
-        self._scoped = link.scoped if link else ""
+        self._scoped = named_link(scene, "bodyName" if is_ros_1 else "link_name", params)
         self._topic = params.text("topicName", required=True) if is_ros_1 else "gazebo_ros_force"
         self._turns = params.choice("force_frame", ("world", "link"), "world") == "link"
 
@@ -44,8 +42,7 @@ class GazeboRosForce(ModelPlugin):
         self._wrench = np.zeros(6)
         # what turns with the link is set anew at every step
         self.before_step_rate = None if self._turns else _NEVER
-        if self._scoped:
-            self.listen(self._topic, WRENCH, self._on_wrench)
+        self.listen(self._topic, WRENCH, self._on_wrench)
 
     def _on_wrench(self, message: Any) -> None:
         f, t = message.force, message.torque
@@ -65,7 +62,7 @@ class GazeboRosForce(ModelPlugin):
 
     @property
     def _owner(self) -> str:
-        return f"{self.scoped}/{self.name}/{self.where}"
+        return f"{self.scoped}/{self.name}/{self.where}/{self._order}"
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Back to a state from `get_state`."""

@@ -10,7 +10,7 @@ import numpy as np
 from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import find_link
+from simkit.plugins.lookups import named_link
 from simkit.pose import Vector, quat_from_rpy, quat_multiply
 
 if TYPE_CHECKING:
@@ -35,9 +35,7 @@ class GazeboRosImu(ModelPlugin):
     filenames = ("libgazebo_ros_imu.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        body = params.text("bodyName", required=True)
-        link = find_link(scene, body, params) if body else None
-        self._body = link.scoped if link is not None else ""
+        self._body = named_link(scene, "bodyName", params)
         self._topic = params.text("topicName", _DEFAULT)
         self._service = params.text("serviceName", _DEFAULT)
         self._frame = params.text("frameName", "").strip("/") or self._body.rsplit("::", 1)[-1]

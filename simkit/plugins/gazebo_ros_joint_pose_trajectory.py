@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
 _WORLD: Final = frozenset({"", "world", "map"})
+_NEVER: Final = 1e18  # [ns]
 
 
 class GazeboRosJointPoseTrajectory(ModelPlugin):
@@ -43,7 +44,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
             rate, topic = 0.0, params.text("topicName", "set_joint_trajectory")
         else:
             rate, topic = params.number("update_rate", 100.0, minimum=0.0), "set_joint_trajectory"
-        self._period = round(1e9 / rate) if rate > 0.0 else 0
+        self._period = round(min(1e9 / rate, _NEVER)) if rate > 0.0 else 0
         self._is_chained = params.choice("point_times", ("chained", "from_start"), "chained") == "chained"
         self._points: list[tuple[tuple[float, ...], int]] = []
         self._names: tuple[str, ...] = ()

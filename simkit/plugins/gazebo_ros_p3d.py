@@ -10,7 +10,7 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import find_link
+from simkit.plugins.lookups import named_link
 from simkit.plugins.odometry import ODOMETRY, BodyTwist, odometry_message
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
@@ -40,11 +40,11 @@ class GazeboRosP3D(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         is_ros_1 = not params.has("ros") and any(params.has(name) for name in _ROS_1)
         if is_ros_1:
-            body, frame = params.text("bodyName", required=True), params.text("frameName", "world")
+            body, frame = "bodyName", params.text("frameName", "world")
             self._topic = params.text("topicName", required=True)
             deviation, rate = "gaussianNoise", "updateRate"
         else:
-            body, frame = params.text("body_name", required=True), params.text("frame_name", "world")
+            body, frame = "body_name", params.text("frame_name", "world")
             self._topic = "odom"
             deviation, rate = "gaussian_noise", "update_rate"
         params.child("alwaysOn" if is_ros_1 else "always_on")
@@ -52,8 +52,7 @@ class GazeboRosP3D(ModelPlugin):
         self.after_step_rate = params.number(rate, 0.0, minimum=0)
         self._shift = np.array(_offset(params, "xyz", is_ros_1))
         self._turn = quat_from_rpy(*_offset(params, "rpy", is_ros_1))
-        link = find_link(scene, body, params) if body else None
-        self._body = link.scoped if link is not None else ""
+        self._body = named_link(scene, body, params)
         self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
 
     def _find_reference(self, scene: SceneModel, frame: str, params: Params) -> str:

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from simkit.msgs.topics import valid_topic
-from simkit.params import Params
+from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.odometry import (
     MEAN_STEPS,
@@ -50,7 +50,7 @@ class OdometryPublisher(ModelPlugin):
         self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
         turn = quat_from_rpy(*params.vector3("rpy_offset", (0.0, 0.0, 0.0)))
         self._offset = Pose(params.vector3("xyz_offset", (0.0, 0.0, 0.0)), turn)
-        self._noise = params.number("gaussian_noise", 0.0, minimum=0.0)
+        self._noise = params.number("gaussian_noise", 0.0, minimum=0.0, maximum=LARGEST)
 
     def load(self, parent: Any, params: Params) -> None:
         own = f"/model/{parent.name}"

@@ -44,13 +44,16 @@ class JointAxis:
 
     @property
     def effort_limit(self) -> float:
-        value = self.joint.effort_limit
-        return float(value) if self._is_alone else float(value[self.index])
+        return self._limit(self.joint._effort_limit)
 
     @property
     def velocity_limit(self) -> float:
-        value = self.joint.velocity_limit
-        return float(value) if self._is_alone else float(value[self.index])
+        return self._limit(self.joint._velocity_limit)
+
+    def _limit(self, limits: Any) -> float:
+        # asked for at every step, and much cheaper than by the joint's property
+        value: float = limits.item(self.index if len(limits) > 1 else 0)
+        return value
 
     def push(self, effort: float) -> None:
         """Sets the effort of the next step, in place of what was set before.

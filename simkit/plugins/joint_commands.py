@@ -9,7 +9,7 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_axes import JointAxis, find_joints
-from simkit.plugins.joint_servo import Keys, Layout, VelocityServo
+from simkit.plugins.joint_servo import Layout, VelocityServo
 from simkit.plugins.pid import FIELDS, Pid
 
 if TYPE_CHECKING:
@@ -196,11 +196,13 @@ class JointCommander(ControlledJoints, ModelPlugin):
         if crew is None or crew.structure is not structure:
             members = [p for p in structure.all_plugins() if isinstance(p, JointCommander) and p._by_velocity]
             crew = self._crew_of = _Crew(structure, members)
-        working = [p for p in crew.members if not self.sim.faults.is_disabled(p)]
-        if working and working[-1] is self:
-            pairs = [(axis, p._wish) for p in working if p._wish is not None for axis in p.axes]
+        is_disabled = self.sim.faults.is_disabled
+        if self is next(p for p in reversed(crew.members) if not is_disabled(p)):
+            pairs = [
+                (axis, p._wish) for p in crew.members if p._wish is not None and not is_disabled(p) for axis in p.axes
+            ]
             if pairs:
-                axes, velocities = [axis for axis, _ in pairs], [float(v) for _, v in pairs]
+                axes, velocities = zip(*pairs, strict=True)
                 self._servo.drive(self.sim, axes, velocities, crew.layouts)
 
     def say_gains_are_unused(self, params: Params, unused: Sequence[str], why: str) -> None:
@@ -217,7 +219,7 @@ class _Crew:
 
     def __init__(self, structure: Any, members: list[JointCommander]) -> None:
         self.structure, self.members = structure, members
-        self.layouts: dict[Keys, Layout] = {}
+        self.layouts: dict[tuple[int, ...], Layout] = {}
 
     def __deepcopy__(self, memo: dict[int, Any]) -> _Crew:
         return self

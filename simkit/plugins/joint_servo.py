@@ -2,8 +2,9 @@
 
 gz's engine makes of a velocity command a constraint that is solved together with the contacts. MuJoCo has no such
 constraint, so the efforts are found by asking the engine: Newton's method with the inertia of the free joint first,
-then with what the last answers say of it (Broyden's rank-one update). A wheel that carries a robot uphill needs that:
-its own inertia is a thousandth of what it moves.
+then with what the last answers say of it (Broyden's rank-one update, "good" form, of each kinematic tree). A wheel that
+carries a robot uphill needs that: its own inertia is a thousandth of what it moves. Where the efforts of the last step
+still do, as in steady motion, they cost one forward pass, which the step then goes on from.
 """
 
 from __future__ import annotations
@@ -15,14 +16,19 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
+from simkit.params import LARGEST
 from simkit.plugins.joint_axes import JointAxis
 from simkit.pose import Vector
+from simkit.runtime.physics import CONTROL
 
 Keys = tuple[tuple[str, int], ...]
 """Scoped name and axis of each of some joints."""
 
 _ENOUGH: Final = 3e-6
-"""Of 1 + the commanded velocity [rad/s or m/s]: so near is near enough."""
+"""Of 1 + the commanded velocity [rad/s or m/s]: efforts that miss it by no more stay as they are."""
+
+_CLOSE: Final = 1e-5
+"""Of the same: corrected efforts need no more correction in this step; the next one makes up for what is left."""
 
 _FAR: Final = 0.1
 """Of the same: what the efforts of the last step bring about is not worth going on from."""
@@ -38,15 +44,23 @@ class VelocityServo:
     """Efforts for joints at commanded velocities; what was learnt in the last step makes the next one cheap.
 
     Attributes:
-        efforts: of the last step, by scoped name and axis of the joint.
-        learnt: effort over acceleration (n, n) of the joints of one kinematic tree, by their names.
+        keys: the joints that were driven last.
+        efforts: theirs in the last step (n,).
+        learnt: effort over acceleration of the joints of each kinematic tree (trees, slots, slots).
+        is_learnt: of which trees (trees,).
     """
 
-    efforts: dict[tuple[str, int], float] = field(default_factory=dict)
-    learnt: dict[Keys, Vector] = field(default_factory=dict)
+    keys: Keys = ()
+    efforts: Vector = field(default_factory=lambda: np.zeros(0))
+    learnt: Vector = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    is_learnt: Any = field(default_factory=lambda: np.zeros(0, bool))
 
     def drive(
-        self, sim: Any, axes: Sequence[JointAxis], velocities: Sequence[float], layouts: dict[Keys, Layout]
+        self,
+        sim: Any,
+        axes: Sequence[JointAxis],
+        velocities: Sequence[float],
+        layouts: dict[tuple[int, ...], Layout],
     ) -> None:
         """Sets the efforts of the next step for the wanted velocities [rad/s or m/s], within the joints' limits.
 
@@ -55,137 +69,190 @@ class VelocityServo:
 
         Args:
             sim: the simulation.
-            axes: what is to move.
+            axes: what is to move; of two commands to one joint the later counts.
             velocities: how fast each [rad/s or m/s].
-            layouts: kept by the caller as long as the engine's model is the same.
+            layouts: kept by the caller as long as the engine's model and the axes are the same.
         """
-        keys = tuple((axis.joint.scoped, axis.index) for axis in axes)
-        if len(set(keys)) < len(keys):  # of two commands to one joint the later counts
-            chosen = sorted({key: i for i, key in enumerate(keys)}.values())
-            axes, velocities = [axes[i] for i in chosen], [velocities[i] for i in chosen]
-            keys = tuple(keys[i] for i in chosen)
-        if keys not in layouts:
-            layouts[keys] = Layout.of(sim.mj_model, axes)
-        layout = layouts[keys]
-        bench = _Bench(sim, axes, velocities, layout)
-        best = _between(np.array([self.efforts.get(key, 0.0) for key in keys]), bench.lowest, bench.highest)
+        which = tuple(map(id, axes))
+        layout = layouts.get(which)
+        if layout is None or not layout.fits(sim.mj_model):
+            layout = layouts[which] = Layout.of(sim.mj_model, axes)
+        if self.keys != layout.keys:
+            self._begin(layout)
+        bench = _Bench(sim, layout, velocities)
+        best = _between(self.efforts, bench.lowest, bench.highest)
         missing = bench.missing(best)
         least = bench.badness(missing, best)
-        last = best
-        if least.any():
-            trees = [_Tree(rows, tuple(keys[i] for i in rows)) for rows in layout.groups]
-            free = bench.free_inertia(trees)
-            bench.bound(trees, free, best)
-            least = bench.badness(missing, best)
-            best, missing, least, last = self._from_rest(bench, trees, best, missing, least)
-            vain = 0
-            for _ in range(_ROUNDS):
-                if not least.any() or vain > 1:
-                    break
-                last = self._step(bench, trees, free, best, missing, least)
-                answer = bench.missing(last)
-                badness = bench.badness(answer, last)
-                for tree, own in zip(trees, free, strict=True):
-                    self._learn(tree, own, last - best, (missing - answer) / bench.step)
-                better = [i for tree in trees if badness[tree.rows].max() < least[tree.rows].max() for i in tree.rows]
-                best = best.copy()
-                best[better], missing[better], least[better] = last[better], answer[better], badness[better]
-                vain = 0 if better else vain + 1
+        self.efforts = self._search(bench, best, missing) if least.any() else best
+
+    def _begin(self, layout: Layout) -> None:
+        """Takes up other joints: of those that it knows the efforts of the last step, else none."""
+        efforts = dict(zip(self.keys, self.efforts.tolist(), strict=True))
+        self.keys, self.efforts = layout.keys, np.array([efforts.get(key, 0.0) for key in layout.keys])
+        trees, slots = layout.is_used.shape
+        self.learnt, self.is_learnt = np.zeros((trees, slots, slots)), np.zeros(trees, bool)
+
+    def _search(self, bench: _Bench, best: Vector, missing: Vector) -> Vector:
+        """Better efforts than `best`, which miss the velocities by `missing`; they are applied."""
+        layout, close = bench.layout, _CLOSE * bench.scale
+        free = bench.free_inertia()
+        bench.bound(free, best)
+        least, last = bench.badness(missing, best), best
+        far = layout.any_of_tree(least > _FAR * bench.scale)
+        if far.any():  # begins anew, with no efforts and nothing learnt
+            last = np.where(far[layout.tree], 0.0, best)
+            self.is_learnt &= ~far
+            best, missing, least, _ = _better(layout, (best, missing, least), bench.ask(last))
+        self.learnt = np.where(self.is_learnt[:, None, None], self.learnt, free)
+        vain = 0
+        for round_ in range(_ROUNDS):
+            if not (least > close if round_ else least).any() or vain > 1:
+                break
+            lacks = layout.any_of_tree(least > 0.0)
+            self.is_learnt |= lacks
+            pushed = np.where(lacks[layout.tree], layout.times(self.learnt, missing / bench.step), 0.0)
+            last = _between(best + pushed, bench.lowest, bench.highest)
+            asked = bench.ask(last)
+            self._learn(layout, free, last - best, (missing - asked[1]) / bench.step)
+            best, missing, least, is_better = _better(layout, (best, missing, least), asked)
+            vain = 0 if is_better else vain + 1
         if not np.array_equal(best, last):
             bench.apply(best)
-        self.efforts = dict(zip(keys, best.tolist(), strict=True))
+        return best
 
-    def _from_rest(
-        self, bench: _Bench, trees: list[_Tree], best: Vector, missing: Vector, least: Vector
-    ) -> tuple[Vector, Vector, Vector, Vector]:
-        """Begins anew, with no efforts and nothing learnt, where those of the last step are far from what it takes.
-
-        Returns:
-            The efforts to start from, what they miss, how bad that is, and the efforts that were tried last.
-        """
-        far = [tree for tree in trees if (least[tree.rows] > bench.far[tree.rows]).any()]
-        if not far:
-            return best, missing, least, best
-        rows = [i for tree in far for i in tree.rows]
-        tried = best.copy()
-        tried[rows] = 0.0
-        answer = bench.missing(tried)
-        badness = bench.badness(answer, tried)
-        best, missing, least = best.copy(), missing.copy(), least.copy()
-        for tree in far:
-            self.learnt.pop(tree.keys, None)
-            if badness[tree.rows].max() < least[tree.rows].max():
-                for values, others in ((best, tried), (missing, answer), (least, badness)):
-                    values[tree.rows] = others[tree.rows]
-        return best, missing, least, tried
-
-    def _step(
-        self, bench: _Bench, trees: list[_Tree], free: list[Vector], best: Vector, missing: Vector, least: Vector
-    ) -> Vector:
-        """The next efforts to try: of the trees that lack something, what it takes to make up for it."""
-        tried = best.copy()
-        for tree, own in zip(trees, free, strict=True):
-            if least[tree.rows].any():
-                inertia = self.learnt.setdefault(tree.keys, own)
-                tried[tree.rows] += inertia @ missing[tree.rows] / bench.step
-        return _between(tried, bench.lowest, bench.highest)
-
-    def _learn(self, tree: _Tree, free: Vector, pushed: Vector, gained: Vector) -> None:
+    def _learn(self, layout: Layout, free: Vector, pushed: Vector, gained: Vector) -> None:
         """Broyden's update of what it takes, from what `pushed` more effort `gained` in acceleration."""
-        s, y = pushed[tree.rows], gained[tree.rows]
-        if tree.keys not in self.learnt or not s.any():
-            return
-        known = self.learnt[tree.keys]
-        guess = known @ y
-        scale = float(s @ guess)
+        s, y, known = layout.spread(pushed), layout.spread(gained), self.learnt
+        guess = (known @ y[..., None])[..., 0]
+        scale, size = (s * guess).sum(1), (s * s).sum(1)
         # an answer that says little, or the contrary, is that of another contact: begin anew
-        if not scale > 1e-6 * float(s @ s):
-            self.learnt[tree.keys] = free
-            return
-        self.learnt[tree.keys] = known + np.outer(s - guess, s @ known) / scale
+        is_clear, is_moved = scale > 1e-6 * size, size > 0.0
+        row = (s[:, None, :] @ known)[:, 0]
+        update = (s - guess)[:, :, None] * row[:, None, :] / np.where(is_clear, scale, 1.0)[:, None, None]
+        clear, moved = (is_clear & is_moved)[:, None, None], is_moved[:, None, None]
+        self.learnt = np.where(clear, known + update, np.where(moved, free, known))
 
 
-@dataclass(slots=True)
-class _Tree:
-    """Joints of one kinematic tree: their rows among all, and their names."""
+Asked = tuple[Vector, Vector, Vector]
+"""Efforts, what they miss, and how bad that is."""
 
-    rows: list[int]
-    keys: Keys
+
+def _better(layout: Layout, one: Asked, other: Asked) -> tuple[Vector, Vector, Vector, bool]:
+    """Of each kinematic tree the better efforts of two, and whether the other's are it anywhere."""
+    is_better = layout.most_of_tree(other[2]) < layout.most_of_tree(one[2])
+    rows = is_better[layout.tree]
+    efforts, missing, badness = (np.where(rows, b, a) for a, b in zip(one, other, strict=True))
+    return efforts, missing, badness, bool(is_better.any())
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What stays the same of some joints as long as the engine's model does.
+    """What stays the same of some joints as long as the engine's model does; sorted by their kinematic trees.
 
     Attributes:
-        dofs: of the joints.
-        positions: their places among the engine's coordinates.
-        joints: their numbers among the engine's joints.
-        all: their degrees of freedom, then those that damping acts on in the same trees.
-        trees: of each of these.
-        groups: rows of the joints of each tree.
+        axes, order: of the joints, and their places among those that were given.
+        keys: their names.
+        dofs, joints, positions, bodies: their numbers among the engine's things, each (n,).
+        tree, starts: of each joint, and where each tree begins (trees,).
+        is_used: of the slots for the joints of each tree, those that there is a joint for (trees, slots).
+        damped: which of the engine's degrees of freedom are damped (nv,).
+        is_damped: whether one is that counts here.
+        all: the joints' degrees of freedom, in those slots, then the damped ones of the same tree (trees, all slots).
+        is_any: which slots of these are in use.
+        place: where the joints are in that, flattened.
+        units: unit efforts on all of them, a slot a row (all slots, nv).
         hold: what a joint without an effort limit may give beyond what moves it when nothing is touched.
     """
 
+    axes: tuple[JointAxis, ...]
+    order: Any
+    keys: Keys
     dofs: Any
-    positions: Any
     joints: Any
+    positions: Any
+    bodies: tuple[int, ...]
+    tree: Any
+    starts: Any
+    is_used: Any
+    damped: Any
+    is_damped: bool
     all: Any
-    trees: Any
-    groups: list[list[int]]
+    is_any: Any
+    place: Any
+    units: Vector
     hold: Vector
 
     @classmethod
     def of(cls, model: Any, axes: Sequence[JointAxis]) -> Layout:
-        dofs = np.array([axis.dof for axis in axes])
+        last = {(axis.joint.scoped, axis.index): i for i, axis in enumerate(axes)}
+        numbers = {tree: i for i, tree in enumerate(dict.fromkeys(int(model.dof_treeid[a.dof]) for a in axes))}
+        tree_of = {key: numbers[int(model.dof_treeid[axes[i].dof])] for key, i in last.items()}
+        keys = tuple(sorted(last, key=lambda key: (tree_of[key], last[key])))
+        order = np.array([last[key] for key in keys])
+        chosen = tuple(axes[i] for i in order.tolist())
+        dofs, damped = np.array([axis.dof for axis in chosen]), model.dof_damping > 0.0
+        own: list[list[int]] = [[] for _ in numbers]
+        for key, dof in zip(keys, dofs.tolist(), strict=True):
+            own[tree_of[key]].append(dof)
+        others = [np.flatnonzero(damped & (model.dof_treeid == tree)).tolist() for tree in numbers]
+        both = [[*mine, *(d for d in more if d not in mine)] for mine, more in zip(own, others, strict=True)]
+        table, is_any = _padded(both)
+        slots = np.nonzero(is_any)[1]
+        units = np.zeros((table.shape[1], model.nv))
+        units[slots, table[is_any]] = 1.0
+        is_used = _padded(own)[1]
+        tree, slot = np.nonzero(is_used)
         joints = model.dof_jntid[dofs]
-        trees = model.dof_treeid[dofs]
-        damped = np.flatnonzero((model.dof_damping > 0.0) & np.isin(model.dof_treeid, trees))
-        every = np.concatenate([dofs, np.setdiff1d(damped, dofs)]).astype(int)
-        groups = [np.flatnonzero(trees == tree).tolist() for tree in dict.fromkeys(trees.tolist())]
-        hold = np.array([_HOLD * _weight(model, dof) for dof in dofs.tolist()])
-        places = model.jnt_qposadr[joints]
-        return cls(dofs, places, joints, every, model.dof_treeid[every], groups, hold)
+        return cls(
+            axes=chosen,
+            order=order,
+            keys=keys,
+            dofs=dofs,
+            joints=joints,
+            positions=model.jnt_qposadr[joints],
+            bodies=tuple(dict.fromkeys(model.dof_bodyid[dofs].tolist())),
+            tree=tree,
+            starts=np.searchsorted(tree, np.arange(len(numbers))),
+            is_used=is_used,
+            damped=damped,
+            is_damped=any(others),
+            all=table,
+            is_any=is_any,
+            place=tree * table.shape[1] + slot,
+            units=units,
+            hold=_HOLD * _weights(model, dofs.tolist()),
+        )
+
+    def fits(self, model: Any) -> bool:
+        """Whether the same degrees of freedom are damped as when it was made."""
+        return np.array_equal(model.dof_damping > 0.0, self.damped)
+
+    def spread(self, values: Vector) -> Vector:
+        """Values of the joints in the slots of their trees (trees, slots), zero in the others."""
+        found = np.zeros(self.is_used.shape)
+        found[self.is_used] = values
+        return found
+
+    def times(self, matrices: Vector, values: Vector) -> Vector:
+        """A matrix of each tree (trees, slots, slots) times the values of its joints (n,)."""
+        found: Vector = (matrices @ self.spread(values)[..., None])[..., 0][self.is_used]
+        return found
+
+    def any_of_tree(self, flags: Any) -> Any:
+        """Whether a flag of a tree's joints (n,) is set (trees,)."""
+        return np.logical_or.reduceat(flags, self.starts)
+
+    def most_of_tree(self, values: Vector) -> Vector:
+        """The largest of the values of each tree's joints (trees,)."""
+        found: Vector = np.maximum.reduceat(values, self.starts)
+        return found
+
+
+def _padded(rows: list[list[int]]) -> tuple[Any, Any]:
+    """Rows of different lengths as one table, and which of it is in use; the rest is 0."""
+    width = max(map(len, rows))
+    table = np.array([[*row, *[0] * (width - len(row))] for row in rows])
+    return table, np.arange(width) < np.array([[len(row)] for row in rows])
 
 
 def _between(values: Vector, low: Vector, high: Vector) -> Vector:
@@ -194,17 +261,17 @@ def _between(values: Vector, low: Vector, high: Vector) -> Vector:
 
 
 class _Bench:
-    """What the engine says of efforts in one step."""
+    """What the engine says of efforts in one step; all vectors are of the layout's joints (n,)."""
 
-    def __init__(self, sim: Any, axes: Sequence[JointAxis], velocities: Sequence[float], layout: Layout) -> None:
-        self._sim, self._axes, self._layout = sim, axes, layout
+    def __init__(self, sim: Any, layout: Layout, velocities: Sequence[float]) -> None:
+        self._sim, self.layout = sim, layout
         model, data = sim.mj_model, sim.mj_data
         self.step = float(sim.timestep)
         self._velocity = data.qvel[layout.dofs]
-        self.highest = np.array([axis.effort_limit for axis in axes])
+        self.highest = np.array([axis.effort_limit for axis in layout.axes])
         self.lowest = -self.highest
-        fastest = np.array([axis.velocity_limit for axis in axes])
-        wanted = _between(np.asarray(velocities, float), -fastest, fastest)
+        fastest = np.minimum([axis.velocity_limit for axis in layout.axes], LARGEST)
+        wanted = _between(np.array(velocities, float)[layout.order], -fastest, fastest)
         is_limited = model.jnt_limited[layout.joints].astype(bool)
         if is_limited.any():
             position, ends = data.qpos[layout.positions], model.jnt_range[layout.joints]
@@ -212,18 +279,21 @@ class _Bench:
             down = np.where(is_limited, np.minimum(ends[:, 0] - position, 0.0) / self.step, -np.inf)
             wanted = _between(wanted, down, up)
         self._wanted = wanted
-        scale = 1.0 + np.abs(wanted)
-        self._enough, self.far = _ENOUGH * scale, _FAR * scale
-        # damping is integrated implicitly, in the whole tree
-        self._all, self._trees = layout.all, layout.trees
-        self._damping = model.dof_damping[layout.all] * self.step
-        self._is_damped = bool(self._damping.any())
+        self.scale = 1.0 + np.abs(wanted)
+        # damping is integrated implicitly, in the whole tree; not by Runge-Kutta
+        self._is_damped = layout.is_damped and model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4
         self._mobility: Vector | None = None
-        self._implicit: Vector | None = None
 
     def apply(self, efforts: Vector) -> None:
-        for axis, effort in zip(self._axes, efforts.tolist(), strict=True):
-            axis.push(effort)
+        """Sets efforts; what is no longer a number becomes so large that the physics diverges, and says so."""
+        physics = self._sim.physics
+        physics.data.qfrc_applied[self.layout.dofs] = np.where(np.abs(efforts) <= LARGEST, efforts, LARGEST)
+        physics.one_shot = True
+        if physics.sleep.watches:
+            for body in self.layout.bodies:
+                physics.changed_body(CONTROL, body)
+        else:
+            physics.changed(CONTROL)
 
     def missing(self, efforts: Vector) -> Vector:
         """What the velocities of the next step lack to the wanted ones with these efforts [rad/s or m/s]."""
@@ -232,83 +302,94 @@ class _Bench:
         missing: Vector = self._wanted - self._velocity - self.step * self._gained(data.qacc)
         return missing
 
+    def ask(self, efforts: Vector) -> Asked:
+        """Efforts, what they miss, and how bad that is."""
+        missing = self.missing(efforts)
+        return efforts, missing, self.badness(missing, efforts)
+
     def _gained(self, acceleration: Vector) -> Vector:
         """What the joints gain in velocity per second, where damping is integrated implicitly."""
-        gained = acceleration[self._all]
-        if self._is_damped:
-            if self._implicit is None:
-                self._implicit = np.eye(len(self._all)) + self._mobility_matrix() * self._damping
-            gained = np.linalg.solve(self._implicit, gained)
-        return np.asarray(gained[: len(self._axes)], float)
+        layout = self.layout
+        if not self._is_damped:
+            return acceleration[layout.dofs]
+        gained: Vector = self._damped(acceleration[layout.all][..., None]).ravel()[layout.place]
+        return gained
 
-    def bound(self, trees: Sequence[_Tree], free: Sequence[Vector], efforts: Vector) -> None:
+    def _damped(self, accelerations: Vector) -> Vector:
+        """Accelerations of all that counts (trees, all slots, any), as an implicit integration of damping has them."""
+        layout = self.layout
+        mobility = self._mobilities()
+        damping = self._sim.mj_model.dof_damping[layout.all] * layout.is_any * self.step
+        implicit = np.eye(mobility.shape[1]) + mobility * damping[:, None, :]
+        found: Vector = np.linalg.solve(implicit, accelerations)
+        return found
+
+    def bound(self, free: Vector, efforts: Vector) -> None:
         """Bounds the efforts of joints without a limit of their own, so that they cannot push through what holds them.
 
         They may give what it takes if nothing is touched, and `_HOLD` times the weight of all that hangs together more,
         at the length of what the joint moves.
 
         Args:
-            trees: the joints.
-            free: effort over acceleration of each, contacts aside.
+            free: effort over acceleration of each tree's joints, contacts aside (trees, slots, slots).
             efforts: those that the engine was asked about last.
         """
         is_free = np.isinf(self.highest)
         if not is_free.any():
             return
         lacks = (self._wanted - self._velocity) / self.step - self._gained(self._sim.mj_data.qacc_smooth)
-        alone = efforts.copy()
-        for tree, inertia in zip(trees, free, strict=True):
-            alone[tree.rows] += inertia @ lacks[tree.rows]
-        hold = self._layout.hold
+        alone = efforts + self.layout.times(free, lacks)
+        hold = self.layout.hold
         self.highest = np.where(is_free, alone + hold, self.highest)
         self.lowest = np.where(is_free, alone - hold, self.lowest)
 
     def badness(self, missing: Vector, efforts: Vector) -> Vector:
         """How far each joint is off, 0 where it is near enough or its effort limit allows no more."""
-        is_spent = ((efforts >= self.highest) & (missing > 0.0)) | ((efforts <= self.lowest) & (missing < 0.0))
-        return np.where(is_spent | (np.abs(missing) <= self._enough), 0.0, np.abs(missing))
+        off = np.abs(missing)
+        is_bad = off > _ENOUGH * self.scale
+        if is_bad.any():
+            is_bad &= (efforts < self.highest) | (missing <= 0.0)
+            is_bad &= (efforts > self.lowest) | (missing >= 0.0)
+        return np.where(is_bad, off, 0.0)
 
-    def free_inertia(self, trees: Sequence[_Tree]) -> list[Vector]:
-        """Effort over acceleration of the joints of each tree, contacts aside (n, n)."""
-        mobility = self._mobility_matrix()
+    def free_inertia(self) -> Vector:
+        """Effort over acceleration of the joints of each tree, contacts aside (trees, slots, slots)."""
+        mobility, is_used = self._mobilities(), self.layout.is_used
         if self._is_damped:
-            mobility = np.linalg.solve(np.eye(len(self._all)) + mobility * self._damping, mobility)
-        return [np.asarray(np.linalg.inv(mobility[np.ix_(tree.rows, tree.rows)]), float) for tree in trees]
+            mobility = self._damped(mobility)
+        slots = is_used.shape[1]
+        both = is_used[:, :, None] & is_used[:, None, :]
+        found: Vector = np.linalg.inv(np.where(both, mobility[:, :slots, :slots], np.eye(slots)))
+        return found
 
-    def _mobility_matrix(self) -> Vector:
-        """The inverse inertia at all degrees of freedom that count (k, k)."""
+    def _mobilities(self) -> Vector:
+        """The inverse inertia at all degrees of freedom of each tree that count (trees, all slots, all slots)."""
         if self._mobility is None:
-            model, data = self._sim.mj_model, self._sim.mj_data
-            # trees do not move each other: one column can ask about one degree of freedom of each
-            rank = np.zeros(len(self._all), int)
-            seen: dict[int, int] = {}
-            for i, tree in enumerate(self._trees.tolist()):
-                rank[i] = seen.get(tree, 0)
-                seen[tree] = rank[i] + 1
-            units = np.zeros((int(rank.max()) + 1, model.nv))
-            units[rank, self._all] = 1.0
-            solved = np.zeros_like(units)
-            mujoco.mj_solveM(model, data, solved, units)
-            is_same = self._trees[:, None] == self._trees[None, :]
-            self._mobility = np.where(is_same, solved[rank][:, self._all], 0.0).T
+            layout = self.layout
+            # trees do not move each other: one row can ask about one degree of freedom of each
+            solved = np.empty_like(layout.units)
+            mujoco.mj_solveM(self._sim.mj_model, self._sim.mj_data, solved, layout.units)
+            both = layout.is_any[:, :, None] & layout.is_any[:, None, :]
+            self._mobility = np.where(both, solved[:, layout.all].transpose(1, 2, 0), 0.0)
         return self._mobility
 
 
-def _weight(model: Any, dof: int) -> float:
-    """Of all that hangs together with a joint: [N] for a slider; for a hinge [N·m] at the length of what it moves."""
-    joint, body = int(model.dof_jntid[dof]), int(model.dof_bodyid[dof])
-    weight = float(model.body_subtreemass[model.body_rootid[body]]) * _GRAVITY
-    if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE:
-        return weight
-    return weight * (_reach(model, body) + float(np.linalg.norm(model.jnt_pos[joint])))
+def _weights(model: Any, dofs: Sequence[int]) -> Vector:
+    """Of all that hangs together with each joint: [N] for a slider; for a hinge [N·m] at the length of what it moves."""
+    reach, found = _reaches(model), []
+    for dof in dofs:
+        joint, body = int(model.dof_jntid[dof]), int(model.dof_bodyid[dof])
+        weight = float(model.body_subtreemass[model.body_rootid[body]]) * _GRAVITY
+        is_slider = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE
+        found.append(weight * (1.0 if is_slider else reach[body] + float(np.linalg.norm(model.jnt_pos[joint]))))
+    return np.array(found)
 
 
-def _reach(model: Any, body: int) -> float:
-    """How far from the frame of a body anything of it, or of what hangs on it, can be [m]."""
-    geoms = range(model.body_geomadr[body], model.body_geomadr[body] + model.body_geomnum[body])
-    own = [float(np.linalg.norm(model.geom_pos[g]) + model.geom_rbound[g]) for g in geoms]
-    below = [
-        float(np.linalg.norm(model.body_pos[b])) + _reach(model, int(b))
-        for b in np.flatnonzero(model.body_parentid == body)
-    ]
-    return max([float(np.linalg.norm(model.body_ipos[body])), *own, *below])
+def _reaches(model: Any) -> list[float]:
+    """How far from the frame of each body anything of it, or of what hangs on it, can be [m]."""
+    own = np.linalg.norm(model.body_ipos, axis=1)
+    np.maximum.at(own, model.geom_bodyid, np.linalg.norm(model.geom_pos, axis=1) + model.geom_rbound)
+    reach, shifts, parents = own.tolist(), np.linalg.norm(model.body_pos, axis=1).tolist(), model.body_parentid.tolist()
+    for body in range(model.nbody - 1, 0, -1):  # a body comes after its parent
+        reach[parents[body]] = max(reach[parents[body]], shifts[body] + reach[body])
+    return reach  # type: ignore[no-any-return]

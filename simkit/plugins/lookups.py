@@ -33,6 +33,14 @@ def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
     return found
 
 
+def named_link(scene: SceneModel, element: str, params: Params) -> str:
+    """Scoped name of the link that an element names; empty after an error, also where there is no such element."""
+    params.text(element, required=True)
+    named = params.child(element)
+    link = None if named is None else find_link(scene, named.value, named)
+    return "" if link is None else link.scoped
+
+
 def find_light(sim: Simulation, name: str, params: Params) -> Light | None:
     """A light of the world by its scoped name, or None after an error that lists the lights."""
     lights = sim.lights

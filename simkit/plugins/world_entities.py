@@ -176,7 +176,9 @@ def pose_of(message: Any, what: str = "pose") -> Pose:
         Refused: it has numbers that are none.
     """
     q = [finite(getattr(message.orientation, axis), f"{what}.orientation.{axis}") for axis in "wxyz"]
-    size = math.sqrt(sum(part * part for part in q))
+    most = max(map(abs, q)) or 1.0  # divided by that first: the squares of numbers that are huge or tiny are none
+    q = [part / most for part in q]
+    size = math.hypot(*q)
     quaternion = [part / size for part in q] if size > 0.0 else [1.0, 0.0, 0.0, 0.0]
     return Pose(vector_of(message.position, f"{what}.position"), quaternion)
 

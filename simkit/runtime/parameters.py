@@ -8,6 +8,7 @@ A change takes effect between two steps.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -35,6 +36,7 @@ class Parameter(Generic[T]):
         choices: what is allowed, where that is a list; empty otherwise.
         description: what it is, with its unit.
         owner: the plugin.
+        active: whether that is part of the simulation now; False of one that a restore may bring back.
     """
 
     def __init__(
@@ -54,6 +56,7 @@ class Parameter(Generic[T]):
         self.minimum, self.maximum, self.choices = minimum, maximum, tuple(choices)
         self.description, self.owner = description, owner
         self._on_change = on_change
+        self.active = True
 
     @property
     def allowed(self) -> str:
@@ -105,22 +108,24 @@ class ParameterTable:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
-        self._parameters: dict[str, dict[str, Parameter[Any]]] = {}
-        self._inactive: set[str] = set()
+        # a model that comes under the name of one that is gone, and may come back, has the same node
+        self._parameters: dict[str, dict[tuple[int, str], Parameter[Any]]] = {}
 
     def add(self, parameter: Parameter[Any]) -> None:
         """Adds a parameter to its node."""
-        self._parameters.setdefault(parameter.node, {})[parameter.name] = parameter
+        self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
 
     def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
-        """The name of a plugin's node: `wanted`, where no other plugin has it."""
-        there = self._parameters.get(wanted)
-        is_free = not there or wanted in self._inactive or next(iter(there.values())).owner is owner
-        return wanted if is_free else otherwise
+        """The name of a plugin's node: `wanted`, else `otherwise`, else that with a number: what no other plugin has."""
+        for name in itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2))):
+            if all(p.owner is owner or not p.active for p in self._parameters.get(name, {}).values()):
+                return name
+        raise AssertionError("numbers do not end")
 
     def nodes(self) -> dict[str, dict[str, Parameter[Any]]]:
         """Node -> name -> parameter, sorted by node."""
-        return {n: dict(self._parameters[n]) for n in sorted(self._parameters) if n not in self._inactive}
+        active = ((n, [p for p in self._parameters[n].values() if p.active]) for n in sorted(self._parameters))
+        return {node: {p.name: p for p in found} for node, found in active if found}
 
     def find(self, node: str, name: str) -> Parameter[Any]:
         """A parameter.
@@ -153,15 +158,14 @@ class ParameterTable:
     def set_active(self, owners: Sequence[object]) -> None:
         """Leaves only the parameters of these plugins in use."""
         living = {id(owner) for owner in owners}
-        self._inactive = {
-            node for node, found in self._parameters.items() if not any(id(p.owner) in living for p in found.values())
-        }
+        for parameter in (p for found in self._parameters.values() for p in found.values()):
+            parameter.active = id(parameter.owner) in living
 
     def forget(self, owners: Sequence[object]) -> None:
         """Takes every parameter of these plugins away for good."""
         gone = {id(owner) for owner in owners}
         for node, found in list(self._parameters.items()):
-            kept = {name: p for name, p in found.items() if id(p.owner) not in gone}
+            kept = {key: p for key, p in found.items() if id(p.owner) not in gone}
             if kept:
                 self._parameters[node] = kept
             else:

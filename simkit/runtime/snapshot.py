@@ -127,3 +127,4 @@ def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
         sensor.set_state(state)
     for plugin, state in snapshot.plugins:
         plugin.set_state(state)
+    sim.stand_wrenches(are_applied=True)

@@ -21,7 +21,8 @@ class StandingWrenches:
     def set(self, owner: str, wrenches: Mapping[str, Any], *, are_applied: bool) -> None:
         """All that `owner` pushes from now on, by scoped link name."""
         self._by_owner[owner] = dict(wrenches)
-        self.push(are_applied=are_applied)
+        if not are_applied:  # while a state is restored, what others push is still that of before
+            self.push(are_applied=False)
 
     def push(self, *, are_applied: bool) -> None:
         """Hands the sums to the physics, for the links that are there now."""

@@ -329,13 +329,18 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks><sce
 <sensor name="solar" type="custom" gz:type="solar"><update_rate>50</update_rate><solar><normal>0 0 1</normal></solar>
 </sensor></link><link name="k"/><joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/>
 <sensor name="e" type="custom" gz:type="encoder"><encoder><resolution>0.001</resolution></encoder></sensor></joint>
+<link name="o"/><joint name="i" type="revolute"><parent>l</parent><child>o</child><axis/></joint>
 <plugin filename="user" name="user"><latency>1</latency><sensor><phase>0</phase></sensor>
 <on_error>disable</on_error></plugin>
-<plugin filename="libgazebo_ros_diff_drive.so" name="d"><left_joint>j</left_joint><right_joint>j</right_joint>
+<plugin filename="libgazebo_ros_diff_drive.so" name="d"><left_joint>j</left_joint><right_joint>i</right_joint>
 <odometry_noise><wheel_variance>1e-4</wheel_variance></odometry_noise></plugin>
 <plugin filename="gz-sim-joint-trajectory-controller-system" name="t"><interpolation>cubic</interpolation></plugin>
 <plugin filename="libgazebo_ros_joint_pose_trajectory.so" name="p"><point_times>from_start</point_times></plugin>
-</model></world></sdf>"""
+<plugin filename="gz-sim-pose-publisher-system" name="gz::sim::systems::PosePublisher">
+<pose_type>geometry_msgs/msg/Pose</pose_type></plugin>
+</model>
+<plugin filename="gz-sim-python-system-loader-system" name="gz::sim::systems::PythonSystemLoader">
+<module_name>absent</module_name><shadow_gz>true</shadow_gz></plugin></world></sdf>"""
 
 
 def test_elements_of_our_own_come_out_with_their_prefix_and_mean_the_same(here: Path) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from simkit.gzpython.absent import absent
 from simkit.gzpython.math.angle import Angle
 from simkit.gzpython.math.control import PID, RollingMean
 from simkit.gzpython.math.earth import SphericalCoordinates
@@ -104,46 +105,19 @@ __all__ = [
     "variance",
 ]
 
-LEFT_OUT: Final = {
+_INSTEAD: Final = {
     "Rand": "random.Random(seed), which two runs with one seed draw the same from",
-    "StopWatch": "info.sim_time",
+    "GaussMarkovProcess": "random.Random(seed).gauss",
+    "Stopwatch": "info.sim_time",
     "DiffDriveOdometry": "the topic of the DiffDrive plugin",
     "MecanumDriveOdometry": "the topic of an OdometryPublisher plugin",
-    "Matrix6d": "numpy",
-    "Frustum": "numpy",
-    "Kmeans": "numpy",
-    "Line2d": "numpy",
-    "Line3d": "numpy",
-    "Plane": "numpy",
-    "Planed": "numpy",
-    "OrientedBoxd": "AxisAlignedBox",
-    "Boxd": "AxisAlignedBox",
-    "Sphered": "numpy",
-    "Cylinderd": "numpy",
-    "Capsuled": "numpy",
-    "Ellipsoidd": "numpy",
-    "Triangled": "numpy",
-    "Triangle3d": "numpy",
-    "Spline": "numpy",
+    "SpeedLimiter": "the limits of the DiffDrive and VelocityControl plugins",
     "RotationSpline": "Quaterniond.squad",
-    "Polynomial3d": "numpy",
-    "Intervald": "a pair of numbers",
-    "Region3d": "AxisAlignedBox",
     "SignalStats": "mean and variance",
-    "Vector3Stats": "mean and variance",
-    "Filter": "a few lines of arithmetic",
-    "OnePole": "a few lines of arithmetic",
-    "BiQuad": "a few lines of arithmetic",
-    "MovingWindowFilter": "RollingMean",
-    "GaussMarkovProcess": "random.Random(seed).gauss",
     "SemanticVersion": "packaging.version",
-    "Material": "the density as a number",
-    "Helpers": "the functions of this module and of Python's math",
 }
-"""What gz-math has and this package does not, with what to use."""
+"""What gz-math has, this package has not, and something else does."""
 
 
 def __getattr__(name: str) -> Any:
-    if name in LEFT_OUT:
-        raise ImportError(f"simkit's gz.math has no {name}; use {LEFT_OUT[name]}", name="gz.math")
-    raise AttributeError(f"module 'gz.math' has no attribute {name!r}")
+    raise absent("gz.math", name, __all__, _INSTEAD)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from simkit.gzpython.absent import absent
 from simkit.gzpython.msgs.message import CLASSES, Message, define
 
 _DEFINITIONS: Final = """
@@ -85,4 +86,4 @@ def contents_of(module: str) -> dict[str, Any]:
 def __getattr__(name: str) -> Any:
     if name in CLASSES:
         return CLASSES[name]
-    raise AttributeError(f"module 'gz.msgs' has no attribute {name!r}")
+    raise absent("gz.msgs", name, CLASSES, {})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from simkit.gzpython.absent import absent
 from simkit.gzpython.sim import components
 from simkit.gzpython.sim.components import ComponentState
 from simkit.gzpython.sim.ecm import EntityComponentManager
@@ -39,15 +40,13 @@ __all__ = [
     "world_pose",
 ]
 
-LEFT_OUT: Final = {
-    "Gui": "simkit has no user interface",
-    "InstallationDirectories": "simkit installs nothing outside its package",
-    "Joy": "publish sensor_msgs/msg/Joy",
-    "Primitives": "sim.spawn of an SDF text",
+_INSTEAD: Final = {
+    "Gui": "simkit's own viewers: it has no user interface of Gazebo's",
+    "HelperFixture": "TestFixture, its later name",
+    "Visual": "Link.visuals and simkit's own sim.visuals",
+    "get_install_prefix": "nothing: there is no Gazebo whose folder it could be",
 }
 
 
 def __getattr__(name: str) -> Any:
-    if name in LEFT_OUT:
-        raise ImportError(f"simkit's gz.sim has no {name}: {LEFT_OUT[name]}", name="gz.sim")
-    raise AttributeError(f"module 'gz.sim' has no attribute {name!r}")
+    raise absent("gz.sim", name, __all__, _INSTEAD)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, TypeVar
 
+from simkit.gzpython.absent import absent
 from simkit.gzpython.sim.ecm import EntityComponentManager
 from simkit.gzpython.sim.entities import Record
 from simkit.gzpython.sim.info import K_NULL_ENTITY
@@ -53,6 +54,9 @@ class EntityHandle:
 
     def _reading(self, ecm: EntityComponentManager, what: str) -> bool | None:
         return ecm.is_enabled(self._entity, what)
+
+    def __getattr__(self, name: str) -> Any:
+        raise absent(type(self).__name__, name, dir(type(self)), {})
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and isinstance(other, EntityHandle) and self._entity == other._entity

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from enum import IntEnum
 from typing import Any, Final
 
+from simkit.gzpython.absent import absent
 from simkit.gzpython.sim.convert import pose_of, vector_of
 from simkit.gzpython.sim.ecm import EntityComponentManager
 from simkit.gzpython.sim.entities import Record
@@ -180,6 +181,18 @@ _WAITING: Final[dict[str, str]] = {
     "LinearVelocityCmd": "linear",
     "AngularVelocityCmd": "angular",
 }
+_DESCRIBED: Final = "simkit's own simkit.describe(file)"
+_INSTEAD: Final = {
+    "Geometry": f"{_DESCRIBED}, or Link.compute_axis_aligned_box for its bounds",
+    "Material": _DESCRIBED,
+    "Physics": "info.dt for the step size",
+    "ExternalWorldWrenchCmd": "Link.add_world_wrench",
+    "ContactSensorData": "a subscription to the contact sensor's topic",
+    "DetachableJoint": "the DetachableJoint plugin",
+    "SlipComplianceCmd": "the <surface> of the collision",
+    **dict.fromkeys(("Altimeter", "Imu", "Camera", "GpuLidar", "NavSat", "Magnetometer"), "Sensor and its topic"),
+    **dict.fromkeys(("BatterySoC", "Actuators", "Wind"), "a topic; register_custom_component keeps data of your own"),
+}
 NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
 """Components of gz-sim that are known here."""
 
@@ -277,7 +290,4 @@ def each(ecm: EntityComponentManager, kinds: list[Any]) -> Iterator[ComponentCur
 def __getattr__(name: str) -> Any:
     if name in NAMES:
         return ComponentProxy(name)
-    if name[:1].isupper():
-        message = f"simkit's gz.sim.components has no {name}; register_custom_component makes one to keep data in"
-        raise AttributeError(message)
-    raise AttributeError(f"module 'gz.sim.components' has no attribute {name!r}")
+    raise absent("gz.sim.components", name, NAMES, _INSTEAD)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import weakref
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit.gzpython.absent import absent
 from simkit.gzpython.sim.commands import Commands
 from simkit.gzpython.sim.entities import EntityTable, Record
 
@@ -199,12 +199,7 @@ class EntityComponentManager:
         return components.each(self, list(kinds))
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        offered = [n for n in dir(type(self)) if not n.startswith("_")]
-        near = difflib.get_close_matches(name, offered, 1)
-        instead = _INSTEAD.get(name) or (near[0] if near else "the methods of Model, Link, Joint, World, …")
-        raise AttributeError(f"simkit's EntityComponentManager has no {name}(); use {instead}")
+        raise absent("EntityComponentManager", name, dir(type(self)), _INSTEAD)
 
 
 _of_simulations: weakref.WeakKeyDictionary[Any, EntityComponentManager] = weakref.WeakKeyDictionary()
