@@ -50,13 +50,16 @@ class Loop:
         self.before_slice: Callable[[], None] | None = None
 
     def run(self, duration: float | None) -> bool:
-        """Advances `duration` [s], for ever where None; whether it came to its end without being stopped."""
+        """Advances `duration` [s], for ever where None; whether it came to its end without being stopped.
+
+        What a plugin took back by a reset on the way counts, so that a run comes to an end.
+        """
         sim = self._sim
         start_tick, start_wall = sim.tick, time.perf_counter()
-        end = None if duration is None else start_tick + round(duration / sim.timestep)
+        end = None if duration is None else sim.steps + round(duration / sim.timestep)
         was_paused = False
         with sim.pausing.served():
-            while end is None or sim.tick < end:
+            while end is None or sim.steps < end:
                 if self._interrupts.exit_code or not self.keep_going():
                     return False
                 self._commands.send_due()
@@ -92,7 +95,7 @@ class Loop:
         longest = self._slice if pace is None else max(1, round(_PACED * pace / sim.timestep))
         stop = sim.tick + min(self._slice, longest)
         if end is not None:
-            stop = min(stop, end)
+            stop = min(stop, sim.tick + end - sim.steps)
         ahead = self._commands.next_tick
         if ahead is not None:
             stop = min(stop, max(ahead, sim.tick + 1))

@@ -61,6 +61,20 @@ try:
 except simkit.SimkitError as error:
     print(error.__cause__.code)
 """
+_HASTY = """
+import simkit
+
+
+class Hasty(simkit.WorldPlugin):
+    def load(self, parent, params):
+        self.sim.reset()
+
+
+try:
+    simkit.load("ball.sdf", plugins=[Hasty()])
+except simkit.PluginError as error:
+    print(error.__cause__.code)
+"""
 _TWICE = """
 import simkit
 
@@ -111,6 +125,23 @@ CODES: tuple[Code, ...] = (
         "the rate of a plugin's hook is negative, infinite or no number",
         "a number of at least 0 [Hz]; 0 and None are every step",
         python(_RATE, {"ball.sdf": BALL}),
+    ),
+    Code(
+        "SK-NAME-005",
+        "error",
+        "a model is to be spawned or copied under a name that none can have",
+        "a text that is not empty, without `::`, and not of the form `__name__`",
+        python(
+            'import simkit\n\nwith simkit.load("ball.sdf") as sim:\n    sim.spawn("ball.sdf", name="shelf::ball")\n',
+            {"ball.sdf": BALL},
+        ),
+    ),
+    Code(
+        "SK-CORE-004",
+        "error",
+        "a plugin's `load` asks for a reset, while the world is still being loaded",
+        "do it in a hook",
+        python(_HASTY, {"ball.sdf": BALL}),
     ),
     Code(
         "SK-CORE-003",

@@ -44,6 +44,25 @@ class Mover:
 def get_system():
     return Mover()
 """
+_RATED = """
+from gz.msgs10.double_pb2 import Double
+from gz.transport13 import AdvertiseMessageOptions, Node
+
+
+class Speaker:
+    def configure(self, entity, sdf, ecm, event_mgr):
+        options = AdvertiseMessageOptions()
+        options.msgs_per_sec = 10
+        self.node = Node()
+        self.out = self.node.advertise("/out", Double, options)
+
+    def pre_update(self, info, ecm):
+        self.out.publish(Double(data=1))
+
+
+def get_system():
+    return Speaker()
+"""
 _RUN = """
 import simkit
 
@@ -122,5 +141,12 @@ CODES: tuple[Code, ...] = (
         "a system sets the pose of a nested model, which has no effect, as in Gazebo",
         "set the pose of the outermost model",
         python(_RUN, {"world.sdf": _world("mover"), "mover.py": _NESTED}),
+    ),
+    Code(
+        "SK-PLUGIN-086",
+        "warning",
+        "a system asks gz.transport for so many messages in a second at most, which has no effect: every one arrives",
+        "count steps, or compare `info.sim_time`",
+        python(_RUN, {"world.sdf": _world("speaker"), "speaker.py": _RATED}),
     ),
 )

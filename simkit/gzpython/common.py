@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import logging
-from typing import Final
+from typing import Any, Final
+
+from simkit.gzpython.absent import absent
 
 _LEVELS: Final = (logging.CRITICAL, logging.ERROR, logging.WARNING, logging.INFO, logging.DEBUG)
 _level = 1
@@ -20,3 +22,7 @@ def set_verbosity(level: int) -> None:
 
 def verbosity() -> int:
     return _level
+
+
+def __getattr__(name: str) -> Any:
+    raise absent("gz.common", name, __all__, {})

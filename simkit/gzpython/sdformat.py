@@ -135,7 +135,10 @@ class Element:
     def has_attribute(self, name: str) -> bool:
         return name in self._params.attributes
 
-    def get_attribute(self, name: str) -> Param | None:
+    def get_attribute(self, name: str | int) -> Param | None:
+        """By name or by place."""
+        if isinstance(name, int):
+            name = next(iter(list(self._params.attributes)[name : name + 1]), "")
         if name not in self._params.attributes:
             return None
         return Param(name, self._params.attribute(name))
@@ -170,6 +173,9 @@ class Element:
 
     def __repr__(self) -> str:
         return f"<Element {self._params.name!r}>"
+
+    def __getattr__(self, name: str) -> Any:
+        raise absent("Element", name, dir(type(self)), {"get_element": "use find_element, or add_element"})
 
     # ------------------------------------------------------------------ values by type
 
@@ -322,8 +328,8 @@ class Atmosphere:
         self._pressure = float(value)
 
 
-_DOCUMENT: Final = "Root World Model Link Joint Collision Visual Geometry GeometryType Light Sensor Plugin Material Mesh"
-_INSTEAD: Final = dict.fromkeys(_DOCUMENT.split(), "simkit.describe(file), which tells what a file means")
+_DOCUMENT: Final = "Root World Model Link Joint Collision Visual Geometry GeometryType Light Sensor Plugin Material"
+_INSTEAD: Final = dict.fromkeys(_DOCUMENT.split(), "use simkit.describe(file), which tells what a file means")
 
 
 def __getattr__(name: str) -> Any:

@@ -10,9 +10,11 @@ import weakref
 from collections.abc import Callable
 from typing import Any, Final
 
+from simkit.diagnostics import NOWHERE
 from simkit.errors import MessageError
 from simkit.gzpython import context
-from simkit.gzpython.msgs.message import Message
+from simkit.gzpython.absent import absent
+from simkit.gzpython.msgs.message import CLASSES, Message
 from simkit.gzpython.msgs.ros import from_ros, to_ros, twins_of
 
 __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publisher", "SubscribeOptions"]
@@ -20,6 +22,15 @@ __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publis
 _NO_SIMULATION: Final = (
     "no simulation is there yet that this Node could belong to; use it in a hook, or after the TestFixture is made"
 )
+_INSTEAD: Final = {
+    "advertise_service": "write a simkit plugin and use self.offer",
+    "service_info": "use service_list, or simkit's own sim.services()",
+    "topic_info": "use topic_list, or simkit's own sim.topics()",
+    **dict.fromkeys(("enable_stats", "topic_stats"), "nothing is counted: every message arrives"),
+}
+_SCENE_POSES: Final = ("/pose/info", "/dynamic_pose/info")
+"""Topics whose poses have names without those of what they are in: of gz's scene broadcaster."""
+
 _early: list[Node] = []
 """Nodes that topics were asked of before there was a simulation: a script may make them first."""
 
@@ -32,10 +43,22 @@ def adopt(sim: Any) -> None:
 
 
 class _Options:
-    """Options of gz-transport; none of them means anything within one process."""
+    """Options of gz-transport.
+
+    Attributes:
+        msgs_per_sec: has no effect here, and a warning (SK-PLUGIN-086) says so: every message arrives.
+    """
 
     def __init__(self, *_: Any, **__: Any) -> None:
         self.msgs_per_sec = 0
+
+
+def _warn_of_rate(sim: Any, owner: Any, topic: str, options: Any) -> None:
+    rate = getattr(options, "msgs_per_sec", 0)
+    if rate:
+        message = f"msgs_per_sec = {rate} for {topic!r} has no effect: every message arrives"
+        where = getattr(owner, "where", NOWHERE)
+        sim.reports.warning("SK-PLUGIN-086", message, where, "count steps, or compare info.sim_time")
 
 
 class AdvertiseMessageOptions(_Options):
@@ -53,12 +76,13 @@ class SubscribeOptions(_Options):
 class Publisher:
     """Publishes messages of one class on one topic."""
 
-    def __init__(self, topic: str, kind: type[Message]) -> None:
-        self._topic, self._kind = topic, kind
+    def __init__(self, topic: str, kind: type[Message], options: Any = None) -> None:
+        self._topic, self._kind, self._options = topic, kind, options
         self._end: Any = None  # until there is a simulation
         self._ros = ""
 
     def _open_on(self, sim: Any, owner: Any) -> None:
+        _warn_of_rate(sim, owner, self._topic, self._options)
         known, twins = sim.topics().get(self._topic), twins_of(self._kind)
         self._ros = known if known in (twin.ros for twin in twins) else twins[0].ros
         with sim.bus.owned_by(owner):
@@ -74,7 +98,7 @@ class Publisher:
             got = type(message).__name__
             raise MessageError(f"{self._topic!r} was advertised for gz.msgs.{self._kind.__name__}, got {got}")
         if self._end is None:
-            return False  # nobody could hear it
+            return True  # nobody could hear it
         if self._end.wanted:
             self._end.publish(to_ros(message, self._ros))
         return True
@@ -100,14 +124,19 @@ class _Subscription:
         end: the listener; None until there is a simulation.
     """
 
-    def __init__(self, topic: str, kind: type[Message], callback: Callable[[Any], None]) -> None:
-        self.topic, self._kind, self._callback = topic, kind, callback
+    def __init__(self, topic: str, kind: type[Message], callback: Callable[[Any], None], options: Any = None) -> None:
+        self.topic, self._kind, self._callback, self._options = topic, kind, callback, options
         self.end: Any = None
 
     def _hear(self, message: Any) -> None:
-        self._callback(from_ros(self._kind, message))
+        heard = from_ros(self._kind, message)
+        if self._kind is CLASSES["Pose_V"] and self.topic.endswith(_SCENE_POSES):
+            for pose in heard.pose:
+                pose.name = pose.name.rpartition("::")[2]
+        self._callback(heard)
 
     def _open_on(self, sim: Any, owner: Any) -> None:
+        _warn_of_rate(sim, owner, self.topic, self._options)
         known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
         types = sorted(twins, key=lambda ros: ros != known)  # what is published there is listed first
         called = self._hear if owner is None else _of_owner(sim, owner, self.topic, self._hear)
@@ -165,7 +194,7 @@ class Node:
     def advertise(self, topic: str, kind: type[Message], options: Any = None) -> Publisher:
         """Opens a topic for messages of a class."""
         twins_of(kind)  # said now, not when there is a simulation
-        publisher = Publisher(_absolute(topic), kind)
+        publisher = Publisher(_absolute(topic), kind, options)
         self._advertised.append(publisher._topic)
         self._open(publisher)
         return publisher
@@ -175,7 +204,7 @@ class Node:
         if isinstance(kind, str):  # older bindings had the topic first
             kind, topic = topic, kind
         twins_of(kind)
-        subscription = _Subscription(_absolute(topic), kind, callback)
+        subscription = _Subscription(_absolute(topic), kind, callback, options)
         self._subscriptions.setdefault(subscription.topic, []).append(subscription)
         self._open(subscription)
         return True
@@ -211,13 +240,8 @@ class Node:
     def subscribed_topics(self) -> list[str]:
         return list(self._subscriptions)
 
-    def advertise_service(self, *_: Any) -> bool:
-        """simkit's plugins offer services; a Node does not.
-
-        Raises:
-            NotImplementedError: always.
-        """
-        raise NotImplementedError("simkit's gz.transport offers no services; write a simkit plugin and use self.offer")
+    def __getattr__(self, name: str) -> Any:
+        raise absent("Node", name, dir(type(self)), _INSTEAD)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Node:
         return self
@@ -241,3 +265,7 @@ def _absolute(topic: str) -> str:
     if not topic or any(c.isspace() for c in topic) or "//" in topic or "@" in topic:
         raise MessageError(f"{topic!r} is no topic's name")
     return topic if topic.startswith("/") else f"/{topic}"
+
+
+def __getattr__(name: str) -> Any:
+    raise absent("gz.transport", name, __all__, {})

@@ -34,7 +34,6 @@ T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
 ParentKind = Literal["world", "model", "visual", "sensor", "any"]
-ON_ERROR = ("stop", "disable")
 
 
 class Plugin(abc.ABC):
@@ -267,6 +266,8 @@ class Plugin(abc.ABC):
         self.name, self.scoped, self.params, self.where = name, scoped, params, where
         self.ros = RosNames.from_params(self.params, self.name)
         if self.params.has("on_error"):
+            from simkit.runtime.faults import ON_ERROR
+
             self.on_error = "disable" if self.params.choice("on_error", ON_ERROR) == "disable" else "stop"
         self.log = logging.getLogger(f"simkit.plugins.{self.name}")
 

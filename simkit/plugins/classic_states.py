@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from html import escape
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from simkit import msgs
 from simkit.plugins.world_entities import (
     Refused,
+    added,
     find,
     finite,
     frame_of,
@@ -58,11 +60,12 @@ def spawn(sim: Simulation, xml: str, name: str, namespace: str, pose_message: An
         number = 0
         while name in sim.models:
             name, number = f"{wanted}_{number}", number + 1
-    return sim.spawn(source, name, pose).name
+    return added(sim.spawn, source, name, pose)
 
 
 def in_namespace(xml: str, namespace: str) -> str:
     """The description with `<ros><namespace>` in each of its plugins, as `robot_namespace` has it; ROS 1's as well."""
+    namespace = escape(namespace, quote=False)
     element = f"<namespace>{namespace}</namespace>"
 
     def named(match: re.Match[str]) -> str:

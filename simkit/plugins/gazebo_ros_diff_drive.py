@@ -35,6 +35,8 @@ from simkit.plugins.odometry_noise import (
     displaced,
     read_odometry_noise,
 )
+from simkit.plugins.once import Once
+from simkit.plugins.ros_names import is_ros_1
 from simkit.plugins.wheels import find_wheels
 from simkit.pose import Pose, Vector
 
@@ -80,7 +82,7 @@ class Options:
 
 def read_options(params: Params) -> Options:
     """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
-    if not params.has("ros") and any(params.has(name) for name in _ROS_1):
+    if is_ros_1(params, _ROS_1):
         return _read_ros_1(params)
     command_topic, odometry_topic = "cmd_vel", "odom"
     for name, fixed in (("command_topic", command_topic), ("odometry_topic", odometry_topic)):
@@ -194,6 +196,7 @@ class GazeboRosDiffDrive(ModelPlugin):
             self._servos.append(servo)
 
     def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
         options = self.options
         self.before_step_rate = self.after_step_rate = options.update_rate
         self._wheels = [self.sim.joint(name) for name, _, _ in self._joints]
@@ -219,7 +222,7 @@ class GazeboRosDiffDrive(ModelPlugin):
     def _on_command(self, message: Any) -> None:
         command = command_of(message)
         if command is None:
-            self.log.warning("%s: a command that is not finite is left out", self.name)
+            self.once.not_finite()
         else:
             self._command = command
 

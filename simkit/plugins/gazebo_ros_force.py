@@ -9,8 +9,8 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.joint_commands import Once
 from simkit.plugins.lookups import named_link
+from simkit.plugins.once import Once
 from simkit.pose import Vector, quat_rotate
 
 if TYPE_CHECKING:
@@ -48,21 +48,17 @@ class GazeboRosForce(ModelPlugin):
         f, t = message.force, message.torque
         wrench = np.array((f.x, f.y, f.z, t.x, t.y, t.z), float)
         if not np.isfinite(wrench).all():
-            self.once.left_out("finite", "a wrench with a number that is not finite is left out")
+            self.once.not_finite("a wrench")
             return
         self._wrench = wrench
         if not self._turns:
             self._stand()
 
     def _stand(self, *, are_applied: bool = False) -> None:
-        self.sim.set_standing_wrenches(self._owner, self._standing(), are_applied=are_applied)
+        self.sim.set_standing_wrenches(self, self._standing(), are_applied=are_applied)
 
     def _standing(self) -> dict[str, Vector]:
         return {self._scoped: self._wrench} if self._wrench.any() else {}
-
-    @property
-    def _owner(self) -> str:
-        return f"{self.scoped}/{self.name}/{self.where}/{self._order}"
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Back to a state from `get_state`."""

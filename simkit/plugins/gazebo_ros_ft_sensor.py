@@ -12,6 +12,7 @@ from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_joint, find_link
+from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Vector
 from simkit.runtime.transmission import transmitted_wrench
 
@@ -39,7 +40,7 @@ class GazeboRosFtSensor(ModelPlugin):
     reads_contacts: ClassVar[bool] = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        is_old = not params.has("ros") and any(params.has(n) for n in ("jointName", "topicName", "updateRate"))
+        is_old = is_ros_1(params, ("jointName", "topicName", "updateRate"))
         joint_name, rate, noise = ("joint_name", "update_rate", "gaussian_noise")
         if is_old:
             joint_name, rate, noise = ("jointName", "updateRate", "gaussianNoise")

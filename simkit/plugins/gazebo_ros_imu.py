@@ -11,7 +11,7 @@ from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import named_link
-from simkit.pose import Vector, quat_from_rpy, quat_multiply
+from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -72,7 +72,7 @@ class GazeboRosImu(ModelPlugin):
         attitude = quat_multiply(self._turn, pose.quaternion)
         axes = pose.matrix
         if self._is_gazebos:
-            axes = type(pose)(pose.position, attitude).matrix.T
+            axes = Pose(pose.position, attitude).matrix.T
         else:
             acceleration = acceleration - self.sim.mj_model.opt.gravity
         motion = np.concatenate((rate @ axes, acceleration @ axes))

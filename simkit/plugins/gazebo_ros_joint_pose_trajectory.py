@@ -9,8 +9,8 @@ from simkit.errors import InputError
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_axes import nearest
-from simkit.plugins.joint_commands import Once
 from simkit.plugins.joint_trajectory import nanoseconds
+from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Link, Model

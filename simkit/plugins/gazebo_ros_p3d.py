@@ -12,6 +12,7 @@ from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import named_link
 from simkit.plugins.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
@@ -38,8 +39,8 @@ class GazeboRosP3D(ModelPlugin):
     filenames = ("libgazebo_ros_p3d.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        is_ros_1 = not params.has("ros") and any(params.has(name) for name in _ROS_1)
-        if is_ros_1:
+        is_old = is_ros_1(params, _ROS_1)
+        if is_old:
             body, frame = "bodyName", params.text("frameName", "world")
             self._topic = params.text("topicName", required=True)
             deviation, rate = "gaussianNoise", "updateRate"
@@ -47,11 +48,11 @@ class GazeboRosP3D(ModelPlugin):
             body, frame = "body_name", params.text("frame_name", "world")
             self._topic = "odom"
             deviation, rate = "gaussian_noise", "update_rate"
-        params.child("alwaysOn" if is_ros_1 else "always_on")
+        params.child("alwaysOn" if is_old else "always_on")
         self._deviation = params.number(deviation, 0.0, minimum=0, maximum=LARGEST)
         self.after_step_rate = params.number(rate, 0.0, minimum=0)
-        self._shift = np.array(_offset(params, "xyz", is_ros_1))
-        self._turn = quat_from_rpy(*_offset(params, "rpy", is_ros_1))
+        self._shift = np.array(_offset(params, "xyz", is_old))
+        self._turn = quat_from_rpy(*_offset(params, "rpy", is_old))
         self._body = named_link(scene, body, params)
         self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
 
@@ -104,10 +105,10 @@ class GazeboRosP3D(ModelPlugin):
         return odometry_message(time_ns, self._frame, self._link.name, pose, twist, self._spread)
 
 
-def _offset(params: Params, kind: str, is_ros_1: bool) -> tuple[float, float, float]:
+def _offset(params: Params, kind: str, is_old: bool) -> tuple[float, float, float]:
     """`<xyz_offset>`, or `<xyz_offsets>` as it was called before; `<xyzOffset>` on ROS 1."""
     zero = (0.0, 0.0, 0.0)
-    if is_ros_1:
+    if is_old:
         x, y, z = params.vector3(f"{kind}Offset", zero)
     else:
         x, y, z = params.vector3(f"{kind}_offset", params.vector3(f"{kind}_offsets", zero))

@@ -23,6 +23,8 @@ from simkit.plugins.odometry import (
     planar_covariance,
     transforms,
 )
+from simkit.plugins.once import Once
+from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_from_rpy
 
 if TYPE_CHECKING:
@@ -61,7 +63,7 @@ class Options:
 
 def read_options(params: Params) -> Options:
     """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
-    if not params.has("ros") and any(params.has(name) for name in _ROS_1):
+    if is_ros_1(params, _ROS_1):
         return _read_ros_1(params)
     variances = (
         params.number("covariance_x", 1e-5, minimum=0),
@@ -129,6 +131,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         self._in_canonical = canonical.pose_world.inverse() @ scene.pose_world
 
     def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
         options = self.options
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._told = self._command = (0.0, 0.0, 0.0)
@@ -152,7 +155,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         if all(map(math.isfinite, told)):
             self._told, self._told_ns = told, self.sim.time_ns
         else:
-            self.log.warning("%s: a command that is not finite is left out", self.name)
+            self.once.not_finite()
 
     def before_step(self) -> None:
         """Sets the velocity that holds through the step."""

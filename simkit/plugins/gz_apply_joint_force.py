@@ -9,7 +9,8 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_axes import JointAxis, find_joints
-from simkit.plugins.joint_commands import DOUBLE, Once
+from simkit.plugins.joint_commands import DOUBLE
+from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -48,6 +49,12 @@ class ApplyJointForce(ModelPlugin):
             self._effort = effort
         else:
             self.once.left_out("finite", f"the command {effort} is left out; allowed is a finite number")
+
+    def explain_divergence(self, name: str) -> str:
+        """What this plugin may have to do with the physics leaving the numbers; empty for nothing."""
+        if not self._effort or self._axis is None or not self._axis.is_meant(name):
+            return ""
+        return f"plugin {self.name!r} ({self.where}) pushes joint {self._axis.joint.scoped!r} with {self._effort:g}"
 
     def before_step(self) -> None:
         if self._effort and self._axis is not None:

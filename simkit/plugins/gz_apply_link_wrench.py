@@ -136,7 +136,7 @@ class ApplyLinkWrench(WorldPlugin):
             else:
                 both = np.array((*wrench.force, *wrench.torque))
                 total[link.scoped] = total.get(link.scoped, np.zeros(6)) + both
-        self.sim.set_standing_wrenches(f"{self.scoped}/{self.name}/{self.where}", total, are_applied=are_applied)
+        self.sim.set_standing_wrenches(self, total, are_applied=are_applied)
         pace = None if is_missing else _NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace

@@ -24,6 +24,7 @@ from simkit.plugins.odometry import (
     wheel_angles,
 )
 from simkit.plugins.odometry_noise import ErringOdometry, read_odometry_noise
+from simkit.plugins.once import Once
 from simkit.plugins.wheels import find_wheels
 
 if TYPE_CHECKING:
@@ -117,6 +118,7 @@ class DiffDrive(ModelPlugin):
         ]
 
     def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
         model = parent.name
         link = self._canonical.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{model}/odom")
@@ -146,7 +148,7 @@ class DiffDrive(ModelPlugin):
     def _on_command(self, message: Any) -> None:
         command = command_of(message)
         if command is None:
-            self.log.warning("%s: a command that is not finite is left out", self.name)
+            self.once.not_finite()
         elif self._enabled:
             self._target, self._settled = command, False
 

@@ -11,7 +11,7 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_axes import JointAxis, has_axis, nearest
-from simkit.plugins.joint_commands import ControlledJoints, Once
+from simkit.plugins.joint_commands import ControlledJoints
 from simkit.plugins.joint_trajectory import (
     INTERPOLATIONS,
     Path,
@@ -23,6 +23,7 @@ from simkit.plugins.joint_trajectory import (
     read_points,
 )
 from simkit.plugins.lookups import find_joint, numbers
+from simkit.plugins.once import Once
 from simkit.plugins.pid import FIELDS, Pid, declare_pid
 
 if TYPE_CHECKING:

@@ -18,6 +18,7 @@ from typing import Any, Final
 from simkit.gzpython import context, imports
 from simkit.params import Params
 from simkit.plugins.base import Plugin
+from simkit.plugins.joint_states import JointStatePublisher
 
 HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
 """What a system may have; without one of them it is none."""
@@ -63,6 +64,7 @@ class GzSystem(Plugin):
         from simkit.gzpython.sim.systems import hub_of
 
         self._hub = hub_of(self.sim)
+        self._hub.ecm.published = _published_joints
         before, hook = context.enter(self.sim, self), "get_system"
         try:
             with imports.importable(self.shadow):
@@ -169,6 +171,11 @@ def _variables(system: Any) -> dict[str, Any]:
     if not isinstance(system, types.ModuleType):
         return dict(own)
     return {n: v for n, v in own.items() if not (n.startswith("__") or isinstance(v, _MODULE))}
+
+
+def _published_joints(sim: Any) -> frozenset[str]:
+    plugins = sim.structure.all_plugins()
+    return frozenset(name for p in plugins if isinstance(p, JointStatePublisher) for name in p._joints)
 
 
 def _entity_of(ecm: Any, parent: Any) -> int:

@@ -13,6 +13,7 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.held_motion import HeldMotion, Move, Mover, Triple
 from simkit.plugins.lookups import find_link
 from simkit.plugins.odometry import COMMAND_TYPES
+from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -45,6 +46,7 @@ class VelocityControl(ModelPlugin):
         self._canonical, self._pose = scene.canonical_link, scene.pose_world
 
     def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
         self._target: Motion = self._first
         self._link_targets: dict[str, Motion] = {}
         self._mover = Mover(self.sim)
@@ -84,7 +86,7 @@ class VelocityControl(ModelPlugin):
         linear, angular = ((float(v.x), float(v.y), float(v.z)) for v in (twist.linear, twist.angular))
         if all(map(math.isfinite, (*linear, *angular))):
             return linear, angular
-        self.log.warning("%s: a command that is not finite is left out", self.name)
+        self.once.not_finite()
         return None
 
     def before_step(self) -> None:

@@ -18,6 +18,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.params import LARGEST
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.physics import STALE, VELOCITY
 
@@ -204,7 +205,7 @@ def _screw(linear: Triple, angular: Triple, step: float) -> tuple[Vector, Vector
 
     The exponential of SE(3); a series of it where the quotients would lose digits.
     """
-    v, w = np.array(linear) * step, np.array(angular) * step
+    v, w = (np.clip(motion, -LARGEST, LARGEST) * step for motion in (linear, angular))
     square = float(w @ w)
     if square > 1e-6:
         angle = math.sqrt(square)

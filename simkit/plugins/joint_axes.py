@@ -55,6 +55,10 @@ class JointAxis:
         value: float = limits.item(self.index if len(limits) > 1 else 0)
         return value
 
+    def is_meant(self, name: str) -> bool:
+        """Whether a scoped name is that of the joint, or of the top-level model that it is in."""
+        return name in (self.joint.scoped, self.joint.scoped.split("::")[0])
+
     def push(self, effort: float) -> None:
         """Sets the effort of the next step, in place of what was set before.
 

@@ -10,6 +10,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_axes import JointAxis, find_joints
 from simkit.plugins.joint_servo import Layout, VelocityServo
+from simkit.plugins.once import Once
 from simkit.plugins.pid import FIELDS, Pid
 
 if TYPE_CHECKING:
@@ -20,28 +21,6 @@ if TYPE_CHECKING:
 
 DOUBLE: Final = "std_msgs/msg/Float64"
 ACTUATORS: Final = "actuator_msgs/msg/Actuators"
-
-
-class Once:
-    """Reports of a plugin that are made once each, in spite of resets."""
-
-    def __init__(self, plugin: Any) -> None:
-        self._plugin = plugin
-        self._said: set[str] = set()
-
-    def warn(self, code: str, what: str, message: str, hint: str = "") -> None:
-        """A warning at the plugin's line, once for each `what`."""
-        if what not in self._said:
-            self._said.add(what)
-            plugin = self._plugin
-            plugin.sim.reports.warning(code, f"plugin {plugin.name!r}: {message}", plugin.where, hint)
-
-    def left_out(self, what: str, message: str, hint: str = "") -> None:
-        """Says that a command cannot be used."""
-        self.warn("SK-PLUGIN-041", what, message, hint)
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Once:
-        return self
 
 
 class ControlledJoints:
@@ -71,8 +50,7 @@ class ControlledJoints:
         Args:
             name: scoped name of a joint, or of a top-level model: then it tells of the joint that is pushed hardest.
         """
-        pairs = self.controllers()
-        own = [pair for pair in pairs if name in (pair[0].joint.scoped, pair[0].joint.scoped.split("::")[0])]
+        own = [pair for pair in self.controllers() if pair[0].is_meant(name)]
         if not own:
             return ""
         own.sort(key=lambda pair: -abs(pair[1].command))
@@ -164,6 +142,13 @@ class JointCommander(ControlledJoints, ModelPlugin):
 
     def controllers(self) -> list[tuple[JointAxis, Pid]]:
         return [] if self._pid is None else [(axis, self._pid) for axis in self.axes]
+
+    def explain_divergence(self, name: str) -> str:
+        """As `ControlledJoints` has it, and of a joint that is to move at a velocity, at which."""
+        axis = next((axis for axis in self.axes if axis.is_meant(name)), None)
+        if axis is None or self._wish is None:
+            return super().explain_divergence(name)
+        return f"plugin {self.name!r} ({self.where}) has joint {axis.joint.scoped!r} move at {self._wish:g}"
 
     def before_step(self) -> None:
         self._wish = None

@@ -34,9 +34,12 @@ _FAR: Final = 0.1
 """Of the same: what the efforts of the last step bring about is not worth going on from."""
 
 _HOLD: Final = 10.0
-_GRAVITY: Final = 9.81
+"""Weights of all that hangs together: what a joint without an effort limit gives against what holds it."""
+
+_GRAVITY: Final = 9.81  # [m/s²]; of weights, also where the world has none
 
 _ROUNDS: Final = 6
+"""Corrections in one step at most, each with a forward pass."""
 
 
 @dataclass(slots=True)
@@ -310,9 +313,9 @@ class _Bench:
     def _gained(self, acceleration: Vector) -> Vector:
         """What the joints gain in velocity per second, where damping is integrated implicitly."""
         layout = self.layout
-        if not self._is_damped:
-            return acceleration[layout.dofs]
-        gained: Vector = self._damped(acceleration[layout.all][..., None]).ravel()[layout.place]
+        gained: Vector = acceleration[layout.dofs]
+        if self._is_damped:
+            gained = self._damped(acceleration[layout.all][..., None]).ravel()[layout.place]
         return gained
 
     def _damped(self, accelerations: Vector) -> Vector:
@@ -375,7 +378,7 @@ class _Bench:
 
 
 def _weights(model: Any, dofs: Sequence[int]) -> Vector:
-    """Of all that hangs together with each joint: [N] for a slider; for a hinge [N·m] at the length of what it moves."""
+    """Of all that hangs together with each joint: [N] of a slider; of a hinge [N·m] at the length of what it moves."""
     reach, found = _reaches(model), []
     for dof in dofs:
         joint, body = int(model.dof_jntid[dof]), int(model.dof_bodyid[dof])
@@ -388,6 +391,9 @@ def _weights(model: Any, dofs: Sequence[int]) -> Vector:
 def _reaches(model: Any) -> list[float]:
     """How far from the frame of each body anything of it, or of what hangs on it, can be [m]."""
     own = np.linalg.norm(model.body_ipos, axis=1)
+    # of a body without shape nothing but its inertia says how large it is: by the radius of gyration
+    gyration = np.sqrt(model.body_inertia.max(axis=1) / np.maximum(model.body_mass, mujoco.mjMINVAL))
+    own += np.where(model.body_geomnum == 0, gyration, 0.0)
     np.maximum.at(own, model.geom_bodyid, np.linalg.norm(model.geom_pos, axis=1) + model.geom_rbound)
     reach, shifts, parents = own.tolist(), np.linalg.norm(model.body_pos, axis=1).tolist(), model.body_parentid.tolist()
     for body in range(model.nbody - 1, 0, -1):  # a body comes after its parent

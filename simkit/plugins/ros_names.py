@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 
 _RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
+
+
+def is_ros_1(params: Params, names: Iterable[str]) -> bool:
+    """Whether a plugin's parameters are in ROS 1's spelling: one of its names occurs, and there is no `<ros>` block."""
+    return not params.has("ros") and any(params.has(name) for name in names)
 
 
 class RosNames:

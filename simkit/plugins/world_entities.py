@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import did_you_mean
-from simkit.errors import InputError
+from simkit.errors import InputError, PluginError
 from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
@@ -64,6 +64,18 @@ def heeding(sim: Simulation, name: str, does: Callable[[Any], Any]) -> Callable[
         answer(message)
 
     return handle
+
+
+def added(make: Callable[..., Any], *values: Any) -> str:
+    """The name of the model that `sim.spawn` or `sim.clone` adds.
+
+    Raises:
+        Refused: a plugin of the model raised when it was loaded; the world is as before.
+    """
+    try:
+        return str(make(*values).name)
+    except PluginError as error:
+        raise Refused(str(error)) from error
 
 
 # ---------------------------------------------------------------------- entities

@@ -14,6 +14,7 @@ from simkit.plugins.base import WorldPlugin
 from simkit.plugins.world_entities import (
     KINDS,
     Refused,
+    added,
     answering,
     colour_of,
     entity_id,
@@ -117,14 +118,9 @@ class WorldServices(WorldPlugin):
         self._spawn(request.entity_factory)
 
     def _create_multiple(self, request: Any) -> None:
-        made: list[str] = []
-        try:
+        with self.sim.all_or_none():
             for factory in request.entity_factories:
-                made.append(self._spawn(factory))
-        except Exception:
-            for name in made:
-                self.sim.remove(name)
-            raise
+                self._spawn(factory)
 
     def _spawn(self, factory: Any) -> str:
         sim = self.sim
@@ -137,14 +133,14 @@ class WorldServices(WorldPlugin):
         pose = None if asked == IDENTITY and not factory.relative_to else frame_of(sim, factory.relative_to) @ asked
         if given == ["clone_name"]:
             _, old = find(sim, factory.clone_name, ("model",))
-            return sim.clone(old, self._free_name(factory.name or old, True), pose).name
+            return added(sim.clone, old, self._free_name(factory.name or old, True), pose)
         source = factory.sdf or factory.sdf_filename
         name = factory.name or None
         if factory.allow_renaming:
             name = self._free_name(name or sim.name_in_file(source), True)
         elif name is not None:
             self._free_name(name, False)
-        return sim.spawn(source, name, pose).name
+        return added(sim.spawn, source, name, pose)
 
     def _free_name(self, name: str, may_rename: bool) -> str:
         """The name, or with a number behind it where it is taken, as gz does; raises Refused."""
@@ -209,9 +205,8 @@ class WorldServices(WorldPlugin):
         scene = light.scene
         kind = _LIGHTS[int(asked.type)] if 0 <= int(asked.type) < len(_LIGHTS) else ""
         if int(asked.type) and kind != scene.type:
-            raise Refused(
-                f"light {light.scoped!r} is a {scene.type} light, and cannot become a {kind or 'n unknown'} one"
-            )
+            other = f"a {kind} one" if kind else f"one of type {int(asked.type)}"
+            raise Refused(f"light {light.scoped!r} is a {scene.type} light, and cannot become {other}")
         change: dict[str, Any] = {"cast_shadows": bool(asked.cast_shadows)}
         for part in ("diffuse", "specular"):
             colour = colour_of(getattr(asked, part), part)

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
-from simkit.errors import ActionError, MessageError, PluginError, SimkitError
+from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
+from simkit.runtime.audience import callback_name
 from simkit.runtime.topics import absolute
 
 if TYPE_CHECKING:
@@ -83,13 +84,16 @@ class GoalHandle:
 
     def reject(self, reason: str = "") -> None:
         """Does not take the goal; only while it is being offered."""
+        if self.status in (GoalStatus.EXECUTING, GoalStatus.CANCELING):
+            raise ActionError(f"goal {self.id} of {self._action.name!r} was taken already; abort it")
         self._end(GoalStatus.REJECTED, None, reason)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Tells how far it is, by a message or a dict of its fields."""
+        """Tells how far it is, by a message or a dict of its fields; nobody, once it has ended."""
+        if self.is_done:
+            return
         self.feedback = self._made(feedback, "Feedback")
-        if self._on_feedback is not None:
-            self._on_feedback(self.feedback)
+        self._tell(self._on_feedback, self.feedback, "feedback")
 
     def succeed(self, result: Any = None, reason: str = "") -> None:
         """Ends it well."""
@@ -108,8 +112,19 @@ class GoalHandle:
             raise ActionError(f"goal {self.id} of {self._action.name!r} has ended already ({self.status.name})")
         self.result = None if status is GoalStatus.REJECTED else self._made(result, "Result")
         self.status, self.reason = status, reason
-        if self._on_done is not None:
-            self._on_done(self)
+        self._tell(self._on_done, self, "get_result")
+
+    def _tell(self, callback: Callable[[Any], None] | None, what: Any, part: str) -> None:
+        """Calls the one who sent it back; what they raise is not the plugin's fault."""
+        if callback is None:
+            return
+        try:
+            callback(what)
+        except Exception as error:
+            if isinstance(error, SimkitError) and not isinstance(error, InputError):
+                raise
+            topic, now = f"{self._action.name}/_action/{part}", self._action.sim.time
+            raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
 
     def _made(self, value: Any, part: str) -> Any:
         wanted = f"{self._action.type_name}_{part}"
@@ -267,6 +282,11 @@ class ActionTable:
         """Ends every goal of a plugin that is left out."""
         for goal in [g for g in self._goals if g._action.owner is owner and not g.is_done]:
             goal.abort(reason=reason)
+
+    def abandon_gone(self) -> None:
+        """Ends every goal whose plugin has left the world."""
+        for goal in [g for g in self._goals if not g._action.active and g.is_active]:
+            goal.abort(reason="the action is gone")
 
     def get_state(self) -> tuple[int, tuple[tuple[GoalHandle, tuple[Any, ...]], ...]]:
         """How far each goal is."""

@@ -6,6 +6,7 @@ watches from another thread finds what is being called in the stack (`at_work`),
 
 from __future__ import annotations
 
+import sys
 import traceback
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -112,7 +113,28 @@ class Faults:
             raise error
         if self.policy(plugin) == "stop":
             raise PluginError(plugin.name, hook, self._sim.time, str(plugin.where), repr(error)) from error
+        if isinstance(error, RecursionError) and sum(c.plugin is plugin for c in at_work(sys._getframe())) > 1:
+            raise error  # there is no room left to do anything in; the outermost call of it meets it again
         self.disable(plugin, hook, error)
+
+    def state_of(self, plugin: Any) -> Any:
+        """What a snapshot keeps of a plugin; None of one that raised over it and is left out."""
+        try:
+            return called(plugin, "get_state", plugin.get_state)
+        except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+            if not self.is_disabled(plugin):
+                self.meet(plugin, "get_state", error)
+        return None
+
+    def take_back(self, plugin: Any, state: Any) -> None:
+        """Brings a plugin back to what `state_of` gave."""
+        if state is None:
+            return
+        try:
+            called(plugin, "set_state", plugin.set_state, state)
+        except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+            if not self.is_disabled(plugin):
+                self.meet(plugin, "set_state", error)
 
     # ------------------------------------------------------------------ leaving out
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit.runtime.actions import ActionTable, GoalHandle
+from simkit.runtime.aspect import Aspect
 from simkit.runtime.parameters import Parameter, ParameterTable
 from simkit.runtime.services import Handler, Service, ServiceTable
 from simkit.runtime.topics import Callback, OnError, Subscription, TopicBus
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
 
-class Interfaces:
+class Interfaces(Aspect):
     """The part of a simulation that others talk to.
 
     Attributes:
@@ -39,9 +40,6 @@ class Interfaces:
         for table in (self.bus, self.service_table, self.action_table, self.parameter_table):
             table.forget(owners)
 
-    def _check_open(self) -> None:
-        """Raises InputError where the simulation is closed."""
-
     # ------------------------------------------------------------------ topics
 
     def publish(self, topic: str, message: Any) -> None:
@@ -50,7 +48,7 @@ class Interfaces:
         Raises:
             MessageError: unknown topic, or fields that do not fit.
         """
-        self._check_open()
+        self._whole._check_open()
         self.bus.publish(topic, message)
 
     def subscribe(
@@ -85,7 +83,7 @@ class Interfaces:
             MessageError: the request does not fit.
             PluginError: the service of a plugin raised.
         """
-        self._check_open()
+        self._whole._check_open()
         return self.service_table.call(service, request)
 
     def offer(self, service: str, type_name: str, handler: Handler) -> Service:
@@ -127,7 +125,7 @@ class Interfaces:
             ActionError: there is no such action; names the closest.
             MessageError: the goal does not fit.
         """
-        self._check_open()
+        self._whole._check_open()
         return self.action_table.send(action, goal, on_feedback, on_done)
 
     def actions(self) -> dict[str, str]:
@@ -147,5 +145,5 @@ class Interfaces:
         Raises:
             ParameterError: there is none of that name, or it does not take the value.
         """
-        self._check_open()
+        self._whole._check_open()
         self.parameter_table.set(node, name, value)

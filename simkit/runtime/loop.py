@@ -30,6 +30,7 @@ class Loop:
     def __init__(self, physics: Physics, bus: TopicBus, fill: Fill) -> None:
         self.scheduler = Scheduler(physics.clock)
         self._physics, self._bus, self._fill = physics, bus, fill
+        self.jumped = self._target = 0
         self._running = self._is_outdated = self._is_served = self._halts = False
         self._promises: list[Callable[[], None]] = []
         self._idle = threading.Event()
@@ -61,7 +62,7 @@ class Loop:
         self._halts = self._is_served
 
     def advance(self, target: int, *, is_served: bool = False) -> None:
-        """Runs up to the tick `target`.
+        """Runs up to the tick `target`; where a hook goes back or forth in time on the way, as many steps all the same.
 
         Args:
             target: where to.
@@ -75,13 +76,19 @@ class Loop:
             message = "a step is under way: a hook or callback cannot step the simulation, nor a second thread"
             raise InputError(message, "SK-CORE-003")
         self._running, self._is_served, self._halts = True, is_served, False
+        self._target = target
         self._idle.clear()
         try:
-            self._run(target)
+            self._run()
         finally:
             self._running = self._is_served = self._halts = False
             self._promises.clear()
             self._idle.set()
+
+    def jump(self, ticks: int) -> None:
+        """Told that the run was taken so many ticks further, or back, by a restore or a reset."""
+        self.jumped += ticks
+        self._target += ticks
 
     def _refill(self) -> None:
         promises, self._promises = self._promises, []
@@ -92,13 +99,13 @@ class Loop:
         self._fill(self.scheduler)
         self.scheduler.rewind(self._physics.tick)
 
-    def _run(self, target: int) -> None:
+    def _run(self) -> None:
         physics, bus = self._physics, self._bus
         before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
-        while physics.tick < target and not self._halts:
+        while physics.tick < self._target and not self._halts:
             _stop_at_the_end()
             tick = physics.tick
-            stop = min(target, before.next, sense.next, after.next)
+            stop = min(self._target, before.next, sense.next, after.next)
             has_every = before.every or after.every or sense.every
             if has_every and stop - tick > 1:
                 self._walk(stop - 1)

@@ -13,6 +13,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+import numpy as np
+
 from simkit.diagnostics import did_you_mean
 from simkit.errors import ParameterError
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 Value = bool | int | float | str | tuple[float, ...]
 T = TypeVar("T", bound=Value)
 
+_LARGEST = 2**63  # ROS has integers of 64 bits
 _NAMES = {bool: "a boolean", int: "an integer", float: "a number", str: "text", tuple: "numbers"}
 
 
@@ -116,11 +119,12 @@ class ParameterTable:
         self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
 
     def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
-        """The name of a plugin's node: `wanted`, else `otherwise`, else that with a number: what no other plugin has."""
-        for name in itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2))):
-            if all(p.owner is owner or not p.active for p in self._parameters.get(name, {}).values()):
-                return name
-        raise AssertionError("numbers do not end")
+        """The name of a plugin's node: of `wanted`, `otherwise`, `otherwise_2`, … the first that no other has."""
+        names = itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2)))
+        return next(name for name in names if self._is_free(name, owner))
+
+    def _is_free(self, node: str, owner: object) -> bool:
+        return all(p.owner is owner or not p.active for p in self._parameters.get(node, {}).values())
 
     def nodes(self) -> dict[str, dict[str, Parameter[Any]]]:
         """Node -> name -> parameter, sorted by node."""
@@ -183,18 +187,21 @@ class ParameterTable:
 
 def _converted(value: Any, like: Any) -> Any:
     """A value as the type of `like`; None where it is of another."""
-    if isinstance(like, bool):
-        return value if isinstance(value, bool) else None
-    if isinstance(like, str):
-        return value if isinstance(value, str) else None
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
+    if isinstance(like, (bool, str)):
+        return value if isinstance(value, type(like)) else None
     if isinstance(like, tuple):
-        if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") or len(value) != len(like):
+        if not isinstance(value, (list, tuple)) or len(value) != len(like):
             return None
         found = tuple(_converted(v, 0.0) for v in value)
         return None if None in found else found
-    if isinstance(value, bool) or not hasattr(value, "__float__"):
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
         return None
-    number = float(value)
     if isinstance(like, int):
-        return int(number) if number.is_integer() else None
-    return number
+        is_whole = isinstance(value, int) or value.is_integer()
+        return int(value) if is_whole and abs(value) < _LARGEST else None
+    try:
+        return float(value)
+    except OverflowError:
+        return None

@@ -81,15 +81,17 @@ class Pausing:
             self.is_served = False
 
     def advance(self, count: int) -> None:
-        """Goes on by up to `count` steps, as far as the world is let: what `simkit run` does again and again."""
+        """Goes on by up to `count` steps, as far as the world is let: what `simkit run` does again and again.
+
+        It ends where a hook goes back to another time, which may be the one at which it began.
+        """
         sim = self._sim
-        before, end = sim.tick, sim.tick + count
-        while True:
-            now = sim.tick
+        end, inbox = sim.tick + count, sim.bus.inbox
+        generation = inbox.generation
+        while inbox.generation == generation:
             stop = end if self.until is None else min(end, self.until)
-            if now >= stop or now < before:
+            if sim.tick >= stop:
                 return
-            before = now
             sim.serve(stop)
 
     def _set(self, until: int | None, *, is_stepping: bool) -> None:

@@ -17,7 +17,7 @@ from simkit.runtime.faults import called
 from simkit.runtime.loop import guarded
 from simkit.runtime.overlap import soften
 from simkit.runtime.parts import SPAWNED, Parts, Structure, awake_bodies, in_order
-from simkit.runtime.snapshot import Snapshot, take
+from simkit.runtime.snapshot import Snapshot, bring_back, take
 from simkit.scene import SceneJoint, SceneModel
 
 if TYPE_CHECKING:
@@ -105,13 +105,19 @@ class Population:
         try:
             self.start([parts], found)
         except SimkitError:
-            self._sim.restore(before)
+            self.undo(before)
             raise
         for sensor in parts.sensors:
             sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
         for plugin, _ in parts.plugins:
             plugin.report_unread()
         self._sim.reports.extend(found)
+
+    def undo(self, before: Snapshot) -> None:
+        """Takes back a change that failed, perhaps within a hook: what waits for the next step goes on waiting."""
+        bring_back(self._sim, before, with_inbox=False)
+        self._sim.reschedule()
+        self._sim.forget_gone()
 
     def remove(self, name: str) -> None:
         """Takes a top-level model away."""
@@ -239,13 +245,14 @@ class Population:
                 sim.faults.meet(plugin, hook, error)
                 return
             called(plugin, "load", plugin.load, parent, plugin.params)
-        except SimkitError:
-            raise
         except Exception as error:  # noqa: BLE001 - a plugin may raise anything
             sim.faults.meet(plugin, "load", error)
             return
         _check_rates(plugin)
-        plugin._remember_loaded()
+        try:
+            called(plugin, "get_state", plugin._remember_loaded)
+        except Exception as error:  # noqa: BLE001 - as above
+            sim.faults.meet(plugin, "get_state", error)
 
     def close_plugins(self) -> SimkitError | None:
         """Closes every plugin, once; gives the first error that one of them raised."""

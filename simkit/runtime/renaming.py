@@ -29,6 +29,16 @@ _SCOPED: Final = frozenset(
 _DIRECTIONS: Final = frozenset(("direction_world", "xyz_world"))
 
 
+def check_name(name: Any) -> None:
+    """Raises InputError where no model in a file could have this name."""
+    if not isinstance(name, str) or not name.strip():
+        raise InputError(f"found the name {name!r} for a model, allowed is a text that is not empty", "SK-NAME-005")
+    is_ours = name == "world" or (name.startswith("__") and name.endswith("__"))
+    if is_ours or "::" in name:
+        why = "is reserved" if is_ours else "has '::', which separates names"
+        raise InputError(f"a model cannot have the name {name!r}: it {why}", "SK-NAME-005")
+
+
 def renamed(model: SceneModel, name: str, pose: Pose) -> SceneModel:
     """A top-level model with everything in it under another name and moved along to a pose in the world.
 

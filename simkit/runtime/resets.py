@@ -52,7 +52,7 @@ def reset_models(sim: Simulation, loaded: Snapshot) -> None:
             handle._rest = state
     for plugin, state in loaded.plugins:
         if plugin in sim.structure.all_plugins():
-            plugin.set_state(state)
+            sim.faults.take_back(plugin, state)
 
 
 def _pairs(kind: Any, count: int, old: Any, new: Any) -> list[tuple[int, int]]:

@@ -3,42 +3,36 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
-
-import numpy as np
 
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError, SimulationDiverged
-from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.clock import Clock
+from simkit.runtime.contents import Contents
 from simkit.runtime.divergence import name_drivers
-from simkit.runtime.entities import Entities, place_light
+from simkit.runtime.engine_access import EngineAccess
+from simkit.runtime.entities import Entities
 from simkit.runtime.faults import Faults, OnError
 from simkit.runtime.interfaces import Interfaces
 from simkit.runtime.joint import Joint
 from simkit.runtime.labels import Labels
-from simkit.runtime.light import Light
-from simkit.runtime.link import Link
 from simkit.runtime.loop import Loop, guarded
-from simkit.runtime.model import Model
 from simkit.runtime.overlap import soften
 from simkit.runtime.parts import Structure
-from simkit.runtime.physics import CONTROL, HeldState, Physics
+from simkit.runtime.physics import Physics
 from simkit.runtime.population import ModelLoader, PartsMaker, Population
 from simkit.runtime.random import RandomStreams
 from simkit.runtime.schedule import fill
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.snapshot import Snapshot, bring_back, promise, take
 from simkit.runtime.temperatures import Temperatures
-from simkit.runtime.visual import Visual
-from simkit.runtime.weld import set_weld
 from simkit.runtime.world_control import WorldControl
 from simkit.runtime.wrenches import StandingWrenches
-from simkit.scene import SceneLink, SceneWorld
+from simkit.scene import SceneWorld
 
 
-class Simulation(Interfaces, WorldControl):
+class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
     """A loaded world. Made by `simkit.load`; also a context manager.
 
     Everything read shows the state at `time`.
@@ -96,6 +90,11 @@ class Simulation(Interfaces, WorldControl):
         return self.physics.tick
 
     @property
+    def steps(self) -> int:
+        """Steps made since it was loaded, those among them that a reset or a restore has undone."""
+        return self.physics.tick - self._loop.jumped
+
+    @property
     def time(self) -> float:
         """Simulated time [s]."""
         return self.clock.time(self.physics.tick)
@@ -129,7 +128,10 @@ class Simulation(Interfaces, WorldControl):
         self._advance(self.tick + int(count))
 
     def run(self, duration: float) -> None:
-        """Advances a duration [s] of simulated time, to the nearest whole step."""
+        """Advances a duration [s] of simulated time, to the nearest whole step.
+
+        Where a hook goes back to an earlier time it goes on from there, for what is left of the duration.
+        """
         if not duration >= 0:
             raise ValueError(f"duration must be a number of seconds that is not negative, got {duration}")
         self._advance(self.tick + self.clock.ticks(duration))
@@ -141,6 +143,10 @@ class Simulation(Interfaces, WorldControl):
             if condition(self):
                 return True
         return False
+
+    def jump(self, ticks: int) -> None:
+        """Told by a reset or a restore how much further, or back, it takes the run."""
+        self._loop.jump(ticks)
 
     def _advance(self, target: int, *, is_served: bool = False) -> None:
         self._check_open()
@@ -154,15 +160,16 @@ class Simulation(Interfaces, WorldControl):
 
     def reset(self, seed: int | None = None) -> None:
         """Back to t = 0 and to what was loaded: physics, plugins, sensors, random streams (optionally re-seeded)."""
-        self._check_open()
+        self._check_loaded()
         if seed is not None:
             self.seed = seed
         self._loop.break_promises()
         self.bus.settle()
         self.streams.reseed(self.seed)
         bring_back(self, self._loaded)
+        self.halt()  # a run that is served looks anew at how far it is to go
         self.reschedule()
-        self._forget()
+        self.forget_gone()
         for sensor in self.structure.all_sensors():
             sensor.reset()
         for plugin in self.structure.all_plugins():
@@ -197,73 +204,11 @@ class Simulation(Interfaces, WorldControl):
             self.seed = snapshot.seed
             self.streams.reseed(self.seed)
         bring_back(self, snapshot)
+        self.halt()
         self.reschedule()
-        self._forget()
+        self.forget_gone()
 
-    def adopt(self, structure: Structure) -> None:
-        """Goes on with a structure that was before, with all its state still to be put back."""
-        self._population.adopt(structure)
-
-    # ------------------------------------------------------------------ what is in it
-
-    @property
-    def models(self) -> dict[str, Model]:
-        """Top-level models by name."""
-        return dict(self.entities.models)
-
-    @property
-    def lights(self) -> dict[str, Light]:
-        """Lights by scoped name."""
-        return dict(self.entities.tables["light"])
-
-    @property
-    def sensors(self) -> dict[str, Any]:
-        """Sensors by scoped name."""
-        return dict(self.entities.tables["sensor"])
-
-    def model(self, name: str) -> Model:
-        """A model by scoped name; KeyError names the closest."""
-        found: Model = self.entities.find("model", name)
-        return found
-
-    def link(self, name: str) -> Link:
-        """A link by scoped name; KeyError names the closest."""
-        found: Link = self.entities.find("link", name)
-        return found
-
-    def visual(self, name: str) -> Visual:
-        """A visual by scoped name; KeyError names the closest."""
-        return self.entities.find_visual(name)
-
-    def joint(self, name: str) -> Joint:
-        """A joint by scoped name; KeyError names the closest."""
-        found: Joint = self.entities.find("joint", name)
-        return found
-
-    def sensor(self, name: str) -> Any:
-        """A sensor by scoped name; KeyError names the closest."""
-        return self.entities.find("sensor", name)
-
-    def light(self, name: str) -> Light:
-        """A light by scoped name; KeyError names the closest."""
-        found: Light = self.entities.find("light", name)
-        return found
-
-    @property
-    def plugins(self) -> dict[str, Any]:
-        """Plugins by scoped name, `robot::drive`; those of the world by their own. Of equal names the first."""
-        found: dict[str, Any] = {}
-        for plugin in self.structure.all_plugins():
-            found.setdefault(f"{plugin.scoped}::{plugin.name}" if plugin.scoped else plugin.name, plugin)
-        return found
-
-    def has_sensor(self, name: str) -> bool:
-        """Whether a sensor of that name is simulated."""
-        return name in self.entities.tables["sensor"]
-
-    def scene_link(self, scoped: str) -> SceneLink:
-        """A link as the file has it."""
-        return self.entities.scene_link(scoped)
+    # ------------------------------------------------------------------ what was found
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
@@ -274,177 +219,6 @@ class Simulation(Interfaces, WorldControl):
     def reports(self) -> Diagnostics:
         """The collection behind `diagnostics`, for parts that have something to report while running."""
         return self._diagnostics
-
-    # ------------------------------------------------------------------ the world's own
-
-    @property
-    def gravity(self) -> Vector:
-        """Acceleration that everything feels [m/s²], world frame, shape (3,); settable at any time."""
-        return np.array(self.mj_model.opt.gravity)
-
-    @gravity.setter
-    def gravity(self, value: Sequence[float] | Vector) -> None:
-        numbers = np.asarray(value, dtype=float)
-        if numbers.shape != (3,) or not np.isfinite(numbers).all():
-            raise ValueError(f"gravity takes 3 finite numbers, got {value}")
-        for sensor in self.structure.all_sensors():
-            sensor.take_held()  # what was held was measured under the old one
-        self.physics.changed_model()
-        self.mj_model.opt.gravity[:] = numbers
-
-    # ------------------------------------------------------------------ the engine underneath
-
-    @property
-    def mj_model(self) -> Any:
-        """The `mujoco.MjModel`; a new object after a spawn or a removal."""
-        return self.physics.model
-
-    @property
-    def mj_data(self) -> Any:
-        """The `mujoco.MjData`; a new object after a spawn or a removal."""
-        return self.physics.data
-
-    @property
-    def names(self) -> Any:
-        """The compiler's name map of the present model."""
-        return self.structure.compiled.names
-
-    @property
-    def structure(self) -> Structure:
-        """What is in the world now."""
-        return self._population.structure
-
-    @property
-    def compiled(self) -> Any:
-        """What the compiler made of the present structure."""
-        return self.structure.compiled
-
-    def fresh_data(self) -> Any:
-        """`mj_data` with everything computed for the state at `time`."""
-        return self.physics.fresh()
-
-    def fresh_acceleration(self) -> Any:
-        """The same with body accelerations and interaction forces."""
-        return self.physics.fresh_accelerations()
-
-    def hold_state(self) -> HeldState:
-        """The physics state of this tick, to be measured later."""
-        return self.physics.hold()
-
-    def data_of(self, held: HeldState) -> Any:
-        """An `MjData` of a held state with everything computed."""
-        return self.physics.data_of(held)
-
-    def set_control(self, actuator: Any, value: float) -> None:
-        """Writes the control of an actuator that a plugin added; the next step sees it.
-
-        A velocity is kept within the joint's velocity limit.
-        """
-        if actuator.kind == "velocity":
-            limit = float(self.joint(actuator.joint)._velocity_limit[actuator.axis])
-            value = max(-limit, min(limit, value))
-        self.mj_data.ctrl[self.names.actuator(actuator)] = value
-        self.physics.changed(CONTROL)
-
-    def touch(self, field: str) -> Any:
-        """A model field to be written to; snapshots and restores cover it from now on."""
-        values = getattr(self.mj_model, field)
-        if not field.startswith("light_"):
-            for sensor in self.structure.all_sensors():
-                sensor.take_held()
-            self.physics.changed_model()
-        if field not in self.originals:
-            self.originals[field] = values.copy()
-        return values
-
-    def original(self, field: str) -> Any:
-        """A touched field's values as compiled."""
-        return self.originals[field]
-
-    # ------------------------------------------------------------------ spawn and remove
-
-    def spawn(self, source: Any, name: str | None = None, pose: Pose | None = None) -> Model:
-        """Adds a model while time goes on; everything else keeps its state and its handles.
-
-        Args:
-            source: a file, XML text, or the bare name of a model.
-            name: instead of the file's own.
-            pose: of the model frame in the world, instead of the file's own.
-
-        Raises:
-            LoadError: the source has errors, or the name is taken.
-        """
-        self._check_open()
-        name = self._population.spawn(source, name, pose)
-        self.reschedule()
-        return self.model(name)
-
-    def remove(self, name: str) -> None:
-        """Takes a top-level model away while time goes on."""
-        self._check_open()
-        self.model(name)  # an unknown name is a KeyError that tells the closest
-        self._population.remove(name)
-        self.reschedule()
-        self._forget()
-
-    def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> Any:
-        """Fits a sensor to a link or a joint while time goes on; nobody else's bits change.
-
-        Snapshots, resets and removals cover it: it goes with its model, and a reset or a restore to an earlier time
-        takes it away.
-
-        Args:
-            name: scoped name of the link or joint.
-            sensor: a `<sensor>` element as XML text, or a dict of it: `{"name": "imu", "type": "imu",
-                "update_rate": 100, "imu": {…}}`.
-
-        Returns:
-            The sensor.
-
-        Raises:
-            LoadError: the sensor has errors.
-            KeyError: there is no such link or joint; names the closest.
-            InputError: it has a sensor of that name.
-        """
-        self._check_open()
-        scoped = self._population.add_sensor(name, sensor)
-        self.reschedule()
-        return self.sensor(scoped)
-
-    def _forget(self) -> None:
-        """Closes what nothing brings back any more; within a step once that is done, for it may be at work."""
-        if self.is_stepping:
-            self._loop.promise(self._population.forget)
-        else:
-            self._population.forget()
-
-    def make_movable(self, name: str) -> None:
-        """Lets a static top-level model be moved: its links become bodies that follow their set pose."""
-        if self._population.make_movable(name):
-            self.reschedule()
-
-    def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
-        """Adds a weld between two links while time goes on; `set_weld` closes it. Raises KeyError for unknown links."""
-        self._population.add_weld(name, parent_link, child_link)
-        self.reschedule()
-
-    def set_weld(self, name: str, closed: bool) -> None:
-        """Closes a weld with its links as they stand now, or lets it go. Raises KeyError."""
-        set_weld(self, name, closed)
-
-    def set_standing_wrenches(self, owner: str, wrenches: Mapping[str, Any], *, are_applied: bool = False) -> None:
-        """Wrenches (force [N], torque [N·m], world frame, at the centre of mass) by link that hold until set anew.
-
-        Args:
-            owner: who sets them; what others set holds too.
-            wrenches: by scoped link name; a link that is not there is waited for.
-            are_applied: the state has them already (it was restored).
-        """
-        self._standing.set(owner, wrenches, are_applied=are_applied)
-
-    def stand_wrenches(self, are_applied: bool = False) -> None:
-        """Lets the standing wrenches push the links that are there now."""
-        self._standing.push(are_applied=are_applied)
 
     # ------------------------------------------------------------------ schedule
 
@@ -466,12 +240,6 @@ class Simulation(Interfaces, WorldControl):
             self._exact_limits.append(joint)
         self.reschedule()
 
-    def place_light(self, light: Light) -> None:
-        """Shows a light where its handle says."""
-        carrier = self.names.links.get(light.scene.link)
-        place_light(self.mj_model, light, carrier.offset if carrier else IDENTITY, self.touch)
-        self.physics.changed_lights()
-
     # ------------------------------------------------------------------ the end
 
     def close(self) -> None:
@@ -488,6 +256,11 @@ class Simulation(Interfaces, WorldControl):
     def _check_open(self) -> None:
         if self._closed:
             raise InputError("the simulation is closed", "SK-CORE-002")
+
+    def _check_loaded(self) -> None:
+        self._check_open()
+        if "_loaded" not in vars(self):
+            raise InputError("the world is still being loaded, there is nothing yet to go back to", "SK-CORE-004")
 
     def __enter__(self) -> Simulation:
         return self

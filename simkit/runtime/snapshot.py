@@ -68,6 +68,7 @@ def promise(sim: Simulation) -> tuple[Snapshot, Callable[[], None]]:
 def take(sim: Simulation) -> Snapshot:
     """The state of a simulation as it is now."""
     model, structure, physics = sim.mj_model, sim.structure, sim.physics
+    plugins = [(p, sim.faults.state_of(p)) for p in structure.all_plugins()]  # first: it may leave one out
     data = copy.copy(sim.mj_data)
     fields = {f: getattr(model, f).copy() for f in sim.originals}
     fields["gravity"] = model.opt.gravity.copy()
@@ -77,7 +78,7 @@ def take(sim: Simulation) -> Snapshot:
         data=data,
         fields=fields,
         sensors=[(s, s.get_state()) for s in structure.all_sensors()],
-        plugins=[(p, p.get_state()) for p in structure.all_plugins()],
+        plugins=plugins,
         handles=[(h, h.get_state()) for h in sim.entities.stateful()]
         + [(part, part.get_state()) for part in (sim.faults, sim.parameter_table, sim.action_table)]
         + [(part, part.get_state()) for part in (sim.pausing, sim.site)]
@@ -92,8 +93,15 @@ def take(sim: Simulation) -> Snapshot:
     )
 
 
-def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
-    """Puts a simulation into the state of a snapshot; its schedule is the caller's to make anew."""
+def bring_back(sim: Simulation, snapshot: Snapshot, *, with_inbox: bool = True) -> None:
+    """Puts a simulation into the state of a snapshot; its schedule is the caller's to make anew.
+
+    Args:
+        sim: the simulation.
+        snapshot: of it.
+        with_inbox: whether what waits for the next step goes back too; without it, what goes back is only a change
+            that failed, and time goes on.
+    """
     if snapshot.structure is not sim.structure:
         left, originals = sim.mj_model, dict(sim.originals)
         for sensor in sim.structure.all_sensors() if originals else ():
@@ -109,6 +117,7 @@ def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
             sim.touch(field)[:] = snapshot.fields[field]
     model.opt.gravity[:] = snapshot.fields["gravity"]
     mujoco.mj_copyData(sim.mj_data, model, snapshot.data)
+    sim.jump(snapshot.tick - physics.tick)
     physics.tick = snapshot.tick
     physics.changed(STALE)
     physics.clear_warnings()
@@ -117,7 +126,8 @@ def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
     physics.last_pushed = snapshot.last_pushed.copy()
     physics.shows_applied = True
     physics.sleep.set_state(snapshot.sleep)
-    sim.bus.inbox.refill(snapshot.inbox)
+    if with_inbox:
+        sim.bus.inbox.refill(snapshot.inbox)
     for handle, state in snapshot.handles:
         if isinstance(handle, Model):
             handle._rest = state
@@ -126,5 +136,5 @@ def bring_back(sim: Simulation, snapshot: Snapshot) -> None:
     for sensor, state in snapshot.sensors:
         sensor.set_state(state)
     for plugin, state in snapshot.plugins:
-        plugin.set_state(state)
+        sim.faults.take_back(plugin, state)
     sim.stand_wrenches(are_applied=True)

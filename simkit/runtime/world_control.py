@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from simkit.errors import InputError
-from simkit.pose import Pose
+from simkit.pose import Pose, Vector
+from simkit.runtime.aspect import Aspect
 from simkit.runtime.collisions import enable_collisions
 from simkit.runtime.loop import guarded
 from simkit.runtime.on_demand import OnDemand
 from simkit.runtime.pausing import Pausing
-from simkit.runtime.renaming import renamed, world_now
+from simkit.runtime.renaming import check_name, renamed, world_now
 from simkit.runtime.resets import reset_models
 from simkit.runtime.site import Site
 
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneWorld
 
 
-class WorldControl:
+class WorldControl(Aspect):
     """The part of a simulation behind the services of its world.
 
     Attributes:
@@ -37,10 +40,6 @@ class WorldControl:
     def open_world(self, sim: Simulation) -> None:
         """Makes the parts, for a world that runs on."""
         self.pausing, self.on_demand, self.site = Pausing(sim), OnDemand(sim), Site(sim)
-
-    @property
-    def _whole(self) -> Simulation:
-        return cast("Simulation", self)
 
     # ------------------------------------------------------------------ running
 
@@ -78,6 +77,24 @@ class WorldControl:
         sim.seed = seed
         sim.streams.reseed(seed)
 
+    # ------------------------------------------------------------------ gravity
+
+    @property
+    def gravity(self) -> Vector:
+        """Acceleration that everything feels [m/s²], world frame, shape (3,); settable at any time."""
+        return np.array(self._whole.mj_model.opt.gravity)
+
+    @gravity.setter
+    def gravity(self, value: Sequence[float] | Vector) -> None:
+        numbers = np.asarray(value, dtype=float)
+        if numbers.shape != (3,) or not np.isfinite(numbers).all():
+            raise ValueError(f"gravity takes 3 finite numbers, got {value}")
+        sim = self._whole
+        for sensor in sim.structure.all_sensors():
+            sensor.take_held()  # what was held was measured under the old one
+        sim.physics.changed_model()
+        sim.mj_model.opt.gravity[:] = numbers
+
     # ------------------------------------------------------------------ models
 
     def clone(self, name: str, new_name: str, pose: Pose | None = None) -> Model:
@@ -85,10 +102,12 @@ class WorldControl:
 
         Raises:
             KeyError: there is no such model; names the closest.
-            InputError: there is a model of the new name, or the model is of a kind that cannot be copied.
+            InputError: there is a model of the new name, no model can have that name, or the model is of a kind that
+                cannot be copied.
         """
         sim = self._whole
         scene = sim.model(name).scene
+        check_name(new_name)
         if new_name in sim.models:
             raise InputError(f"SK-LOAD-011 there is a model {new_name!r} already", "SK-LOAD-011")
         return sim.spawn(renamed(scene, new_name, sim.model(name).pose if pose is None else pose))
@@ -127,7 +146,7 @@ class WorldControl:
         Plugins start anew too, as they do in Gazebo Classic; sensors go on.
         """
         sim = self._whole
-        sim._check_open()
+        sim._check_loaded()
         reset_models(sim, sim._loaded)
         sim.reschedule()
         for plugin in sim.structure.all_plugins():

@@ -90,12 +90,21 @@ def test_entities_made_by_hand_have_parents() -> None:
 
 
 def test_a_method_that_is_not_there_says_what_to_use() -> None:
-    with pytest.raises(AttributeError, match=r"no request_remove_entity\(\); use simkit's own sim\.remove\(name\)"):
+    with pytest.raises(AttributeError, match=r"no request_remove_entity; use simkit's own sim\.remove\(name\)"):
         EntityComponentManager().request_remove_entity  # noqa: B018
-    with pytest.raises(AttributeError, match=r"no create_entitty\(\); use create_entity"):
+    with pytest.raises(AttributeError, match=r"has no create_entitty; did you mean 'create_entity'"):
         EntityComponentManager().create_entitty  # noqa: B018
     with pytest.raises(RuntimeError, match="shows no simulation"):
         EntityComponentManager().simulation  # noqa: B018
+
+
+def test_later_versions_names_and_loops_work_too() -> None:
+    ecm = EntityComponentManager()
+    e = ecm.create_entity()
+    ecm.create_component(e, components.Name, "a")
+    assert ecm.component_data(e, components.Name) == "a"
+    assert ecm.each_data(components.Name) == [(e, "a")]
+    assert [(entity, name) for entity, (name,) in ecm.each([components.Name])] == [(e, "a")]
 
 
 # ---------------------------------------------------------------------- of a simulation
@@ -148,3 +157,24 @@ def test_what_the_simulation_says_cannot_be_overwritten() -> None:
 
     with pytest.raises(simkit.PluginError, match="Name of model 'body' is what the simulation says"):
         run(write)
+
+
+def test_a_change_in_place_that_has_no_effect_is_refused() -> None:
+    def move(info: Any, ecm: EntityComponentManager) -> None:
+        ecm.component(4, components.Pose).set_x(9)
+        ecm.set_changed(4, components.Pose)
+
+    with pytest.raises(simkit.PluginError, match="Pose of model 'body' is what the simulation says; use a command"):
+        run(move)
+
+
+def test_ones_own_data_can_be_changed_in_place() -> None:
+    mine = components.register_custom_component("Mine")
+
+    def keep(info: Any, ecm: EntityComponentManager) -> None:
+        ecm.create_component(4, mine, {"value": 1})
+        ecm.component(4, mine)["value"] = 2
+        ecm.set_changed(4, mine)
+        assert ecm.component_data(4, mine) == {"value": 2}
+
+    run(keep)

@@ -59,11 +59,14 @@ def test_installing_lasts_until_it_is_taken_back() -> None:
 
 def test_a_name_that_is_not_there_says_what_is() -> None:
     with gzpython.importable():
-        with pytest.raises(ImportError, match="no Gui: simkit has no user interface"):
+        with pytest.raises(ImportError, match="no Gui; simkit has no user interface"):
             from gz.sim8 import Gui  # type: ignore[import-not-found]  # noqa: F401
+        with pytest.raises(ImportError, match=r"no world_entty; did you mean 'world_entity'"):
+            from gz.sim8 import world_entty  # noqa: F401
+        assert not hasattr(importlib.import_module("gz.sim8"), "Gui")
         with pytest.raises(ModuleNotFoundError, match=r"simkit has no gz\.msgs\.marker_pb2; it has actuators_pb2"):
             importlib.import_module("gz.msgs10.marker_pb2")
-        with pytest.raises(ImportError, match="no Root; simkit.describe"):
+        with pytest.raises(ImportError, match="no Root; use simkit.describe"):
             from sdformat14 import Root  # type: ignore[import-not-found]  # noqa: F401
 
 

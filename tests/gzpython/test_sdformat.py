@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+
 import pytest
 
 from simkit.gzpython.math import Angle, Color, Pose3d, Vector2d, Vector3d
@@ -83,3 +85,12 @@ def test_an_element_is_written_as_xml() -> None:
 
 def test_an_axis_without_a_file_is_z() -> None:
     assert JointAxis().xyz() == Vector3d(0, 0, 1) and JointAxis().upper() == 1e16
+
+
+def test_attributes_have_a_place_and_what_is_missing_a_hint() -> None:
+    element = Element(Params("e", attributes={"a": "1", "b": "2"}))
+    second = element.get_attribute(1)
+    assert second is not None and second.get_key() == "b" and element.get_attribute(2) is None
+    assert copy.deepcopy(element).get_int("b") == 2
+    with pytest.raises(AttributeError, match="Element has no get_element; use find_element"):
+        element.get_element  # noqa: B018

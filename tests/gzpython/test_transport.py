@@ -11,8 +11,8 @@ import pytest
 import simkit
 from simkit import msgs
 from simkit.gzpython.msgs import contents_of, message_class
-from simkit.gzpython.msgs.ros import _TWINS, from_ros, to_ros
-from simkit.gzpython.transport import Node
+from simkit.gzpython.msgs.ros import _twins, from_ros, to_ros
+from simkit.gzpython.transport import AdvertiseMessageOptions, Node
 from simkit.plugins.gz_system import GzSystem
 
 WORLD = """<sdf version="1.9"><world name="w"><model name="body"><link name="link">
@@ -55,7 +55,7 @@ def test_a_wrong_field_names_the_closest_and_a_wrong_value_its_kind() -> None:
         Pose().position = 3
 
 
-@pytest.mark.parametrize("kind", sorted(_TWINS))
+@pytest.mark.parametrize("kind", sorted(_twins()))
 def test_every_message_goes_to_ros_and_back(kind: str) -> None:
     made = message_class(kind)()
     for number, (name, form) in enumerate(message_class(kind).FIELDS.items(), 1):
@@ -65,7 +65,7 @@ def test_every_message_goes_to_ros_and_back(kind: str) -> None:
             setattr(made, name, number)
         elif form == "Vector3d":
             getattr(made, name).y = number + 0.25
-    for twin in _TWINS[kind]:
+    for twin in _twins()[kind]:
         there = to_ros(made, twin.ros)
         assert msgs.type_name(there) == twin.ros and msgs.serialize(there) is not None
         back = from_ros(message_class(kind), there)
@@ -198,7 +198,7 @@ def test_a_node_made_before_the_simulation_is_opened_on_it(monkeypatch: pytest.M
     node.subscribe(Clock, "/clock", lambda message: heard.append(message.sim.nsec))
     node.subscribe(Twist, "/never", heard.append)
     out = node.advertise("/speed", Double)
-    assert not out.publish(Double(data=1.0)) and node.unsubscribe("/never")
+    assert out.publish(Double(data=1.0)) and node.unsubscribe("/never")
     fixture = TestFixture(WORLD)
     speeds = fixture.server().simulation.subscribe("/speed")
     fixture.server().run(True, 21, False)
@@ -235,3 +235,53 @@ def test_services_of_the_world_are_called_with_gzs_messages(sim: Any, talker: Ta
 def test_a_service_that_is_not_there_is_not_called(sim: Any, talker: Talker) -> None:
     done, answer = talker.node.request("/world/w/dance", Pose(), Pose, message_class("Boolean"), 1000)
     assert not done and not answer.data
+
+
+# ---------------------------------------------------------------------- as gz says it
+
+
+def test_a_message_says_its_full_name() -> None:
+    assert Pose.DESCRIPTOR.full_name == Pose().DESCRIPTOR.full_name == "gz.msgs.Pose"
+    modules = ("altimeter", "battery_state", "contacts", "entity_factory", "laserscan", "navsat", "stringmsg", "pose_v")
+    assert [next(iter(contents_of(f"{name}_pb2"))).lower().replace("_", "") for name in modules] == [
+        name.replace("_", "") for name in modules
+    ]
+
+
+def test_contacts_go_both_ways() -> None:
+    made = message_class("Contacts")()
+    contact = made.contact.add(collision1={"id": 4, "name": "a"}, depth=[0.5])
+    contact.position.add(x=1.0)
+    contact.wrench.add(body_1_name="m").body_1_wrench.force.z = 3.0
+    ros = to_ros(made, "ros_gz_interfaces/msg/Contacts")
+    assert ros.contacts[0].wrenches[0].body_1_name.data == "m" and ros.contacts[0].positions[0].x == 1
+    assert from_ros(type(made), ros) == made
+
+
+def heard_poses(topic: str) -> set[str]:
+    names: set[str] = set()
+
+    class Listener:
+        def configure(self, *_: Any) -> None:
+            self.node = Node()
+            self.node.subscribe(message_class("Pose_V"), topic, lambda m: names.update(p.name for p in m.pose))
+
+    with simkit.load(WORLD, plugins=[GzSystem(Listener())]) as sim:
+        sim.run(0.1)
+    return names
+
+
+def test_the_scene_broadcasters_poses_have_names_of_their_own() -> None:
+    assert heard_poses("/world/w/pose/info") == heard_poses("/world/w/dynamic_pose/info") == {"body", "link"}
+
+
+def test_a_rate_that_has_no_effect_is_warned_of() -> None:
+    class Speaker:
+        def configure(self, *_: Any) -> None:
+            options = AdvertiseMessageOptions()
+            options.msgs_per_sec = 5
+            self.out = Node().advertise("/out", Double, options)
+
+    with simkit.load(WORLD, plugins=[GzSystem(Speaker())]) as sim:
+        found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-086"]
+    assert len(found) == 1 and "msgs_per_sec = 5 for '/out' has no effect" in found[0].message

@@ -84,6 +84,13 @@ def test_plugins_of_a_spawned_robot_are_in_its_namespace(own: str, topic: str) -
         assert topic in sim.topics()
 
 
+def test_a_namespace_is_text_and_no_xml() -> None:
+    with load() as sim:
+        response = sim.call("/spawn_entity", {"xml": RANGE.format(""), "robot_namespace": "left</namespace><a>&"})
+        assert response.success, response.status_message
+        assert sum(topic.startswith("/left") for topic in sim.topics()) == 1
+
+
 @pytest.mark.parametrize(
     ("request_", "why"),
     [

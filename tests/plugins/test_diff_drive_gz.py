@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
+import mujoco
 import numpy as np
 import pytest
 from plugin_worlds import GROUND, gz_drive, rover, stamps, world, xyz, yaw
@@ -154,3 +157,16 @@ def test_a_missing_side_is_an_error() -> None:
 def test_a_drive_on_the_world_is_left_out_with_a_warning() -> None:
     with simkit.load(world(GROUND, rover(), gz_drive())) as sim:
         assert "SK-PLUGIN-007" in [d.code for d in sim.diagnostics]
+
+
+def test_a_command_beyond_all_bounds_stops_no_other_robot() -> None:
+    other = "/model/other/cmd_vel"
+    robots = [rover(gz_drive()), rover(gz_drive()).replace("name='rover'", "name='other'")]
+    with simkit.load(world(GROUND, robots[0], robots[1])) as sim:
+        assert other in sim.topics()
+        sim.publish("/model/rover/cmd_vel", {"linear": {"x": 1e12}})
+        sim.publish(other, {"linear": {"x": 0.3}})
+        before = sim.mj_data.warning.number.copy()
+        with suppress(simkit.SimulationDiverged):
+            sim.step(50)
+        assert not (sim.mj_data.warning.number - before)[int(mujoco.mjtWarning.mjWARN_BADCTRL)]

@@ -64,3 +64,5 @@ def test_body_and_topic_are_needed() -> None:
     assert [d.code for d in errors] == ["SK-PARAM-001"] * 2
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003"):
         loaded("0 0 9 0 0 0", bodyName="stick")
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003.*no link ''"):
+        loaded("0 0 9 0 0 0", bodyName="")

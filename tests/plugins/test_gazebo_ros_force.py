@@ -77,6 +77,8 @@ def test_a_restore_puts_back_the_push_of_then() -> None:
 def test_what_cannot_be_used_is_told() -> None:
     with pytest.raises(LoadError, match="no link 'bodi'"):
         load(BODY, push("<link_name>bodi</link_name>"))
+    with pytest.raises(LoadError, match="no link ''; it has: 'body'"):
+        load(BODY, push("<link_name/>"))
     with pytest.raises(LoadError, match="needs <link_name>"):
         load(BODY, push(""))
     with pytest.raises(LoadError, match="needs <topicName>"):
@@ -87,3 +89,34 @@ def test_what_cannot_be_used_is_told() -> None:
     sim.publish("/gazebo_ros_force", {"force": {"x": math.nan}})
     sim.step(2)
     assert len(codes(sim.diagnostics, "SK-PLUGIN-041")) == 1
+
+
+def test_of_two_pushes_a_reset_ends_both_and_a_restore_brings_both_back() -> None:
+    other = BODY.replace('name="body"', 'name="other"')
+    sim = load(BODY, other, push("<link_name>other</link_name>") + push(f"{LINK}<ros><namespace>/a</namespace></ros>"))
+    for topic in ("/gazebo_ros_force", "/a/gazebo_ros_force"):
+        sim.publish(topic, {"force": {"x": 2.0}})
+    sim.run(0.1)
+    kept = sim.snapshot()
+    sim.reset()
+    sim.run(0.1)
+    assert [sim.link(f"m::{n}").linear_velocity[0] for n in ("body", "other")] == [0.0, 0.0]
+    sim.restore(kept)
+    sim.run(0.1)
+    speeds = [sim.link(f"m::{n}").linear_velocity[0] for n in ("body", "other")]
+    assert speeds == pytest.approx([0.2, 0.2], rel=1e-9)
+
+
+def test_a_model_under_the_name_of_one_that_was_pushed_is_not() -> None:
+    sim = load(BODY, push(LINK))
+    text = f'<sdf version="1.9"><model name="m">{BODY}{push(LINK)}</model></sdf>'
+    sim.publish("/gazebo_ros_force", {"force": {"x": 2.0}})
+    sim.run(0.1)
+    kept = sim.snapshot()
+    sim.remove("m")
+    sim.spawn(text, name="m")
+    sim.run(0.1)
+    assert not sim.link("m::body").linear_velocity.any()
+    sim.restore(kept)
+    sim.run(0.1)
+    assert sim.link("m::body").linear_velocity[0] == pytest.approx(0.2, rel=1e-9)

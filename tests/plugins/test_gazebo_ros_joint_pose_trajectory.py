@@ -111,3 +111,10 @@ def test_a_reset_forgets_the_trajectory() -> None:
     sim.reset()
     sim.run(0.5)
     assert positions(sim) == [0.0, 0.0]
+
+
+def test_at_a_rate_next_to_nothing_nothing_is_set_for_long() -> None:
+    sim = load(ARM, poses("<update_rate>1e-300</update_rate>"))
+    send(sim, [(0.0, [0.5, 0.2]), (0.0, [1.0, 0.4])])
+    sim.step(20)
+    assert positions(sim) == [0.0, 0.0]

@@ -151,3 +151,5 @@ def test_a_body_is_needed_and_has_to_be_there() -> None:
         simkit.load(fixed(imu(bodyName=None)))
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003(.|\n)*did you mean 'head'"):
         simkit.load(fixed(imu(bodyName="haed")))
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003.*no link ''"):
+        simkit.load(fixed(imu(bodyName="")))

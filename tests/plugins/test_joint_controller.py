@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from joint_worlds import codes, load, rotor, velocity
+from joint_worlds import codes, gz, load, rotor, velocity
 
 import simkit
 from simkit import LoadError
+from simkit.runtime.physics import FRESH, Physics
 
 A, B = "<joint_name>j_a</joint_name>", "<joint_name>j_b</joint_name>"
 FORCE = "<use_force_commands>true</use_force_commands>"
@@ -160,7 +161,7 @@ def test_wrong_names_are_told_all_at_once_with_the_closest() -> None:
 # ---------------------------------------------------------------------- what holds a joint back
 
 
-def cart(slope: float, wheels: str = "") -> simkit.Simulation:
+def cart(slope: float, more: str = "", *, by_velocity: bool = True) -> simkit.Simulation:
     """A cart of 10.4 kg on four round wheels of 0.1 m, whose own inertia is 1e-4 kg m², on a slope [rad]."""
     parts = [
         "<link name='base'><pose>0 0 0.1 0 0 0</pose><inertial><mass>10</mass><inertia><ixx>1</ixx><iyy>1</iyy>"
@@ -174,7 +175,8 @@ def cart(slope: float, wheels: str = "") -> simkit.Simulation:
             f"<parent>base</parent><child>{name}</child><axis><xyz>0 0 1</xyz>"
             "<limit><effort>4</effort></limit></axis></joint>"
         )
-    for one, other in (("fl", "rl"), ("fr", "rr")):
+    parts.append(more)
+    for one, other in (("fl", "rl"), ("fr", "rr")) if by_velocity else ():
         names = f"<joint_name>j_{one}</joint_name><joint_name>j_{other}</joint_name>"
         parts.append(velocity(f"{names}<topic>/wheels</topic>"))
     ground = "<model name='g'><static>true</static><link name='l'><collision name='c'><geometry><plane/></geometry>"
@@ -281,3 +283,113 @@ def test_it_is_the_same_in_another_process() -> None:
         for seed in ("1", "2")
     }
     assert len(seen) == 1
+
+
+# ---------------------------------------------------------------------- what it costs, and what it stands
+
+
+def forwards(sim: simkit.Simulation, steps: int, monkeypatch: pytest.MonkeyPatch) -> float:
+    """How often a step asks the engine for a forward pass."""
+    asked = 0
+    fresh = Physics.fresh
+
+    def counted(physics: Any) -> Any:
+        nonlocal asked
+        asked += physics.stage != FRESH
+        return fresh(physics)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Physics, "fresh", counted)
+        sim.step(steps)
+    return asked / steps
+
+
+def test_in_steady_motion_a_step_asks_the_engine_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    sim = two(f"{A}{B}<initial_velocity>2</initial_velocity>")
+    sim.step(5)
+    assert forwards(sim, 50, monkeypatch) == 1.0
+    rolling = cart(0.1)
+    rolling.publish("/wheels", {"data": 3.0})
+    rolling.step(300)
+    assert forwards(rolling, 100, monkeypatch) < 2.0
+
+
+def test_joints_of_many_models_find_their_efforts_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    models = "".join(
+        f"<model name='m{i}'>{rotor('a', damping=0.01 * (i % 3), inertia=0.1 + 0.01 * i)}{rotor('b', parent='a')}"
+        f"{velocity(f'{A}<initial_velocity>{i}</initial_velocity>')}</model>"
+        for i in range(40)
+    )
+    sim = load(rotor("a"), velocity(f"{A}<initial_velocity>-1</initial_velocity>"), extra=models, step=0.005)
+    sim.step(5)
+    assert [sim.joint(f"m{i}::j_a").velocity for i in range(40)] == pytest.approx(range(40), abs=1e-4)
+    assert sim.joint("m::j_a").velocity == pytest.approx(-1.0, abs=1e-4)
+    assert forwards(sim, 5, monkeypatch) <= 2.0
+
+
+@pytest.mark.parametrize("inertias", [(1e-12, 1.0), (1.0, 1e-12), (1e9, 1e-9), (1e-30, 1e-30)])
+def test_inertias_that_are_nothing_to_each_other_do_not_matter(inertias: tuple[float, float]) -> None:
+    arm = rotor("a", inertia=inertias[0]) + rotor("b", parent="a", inertia=inertias[1])
+    sim = load(arm, velocity(f"{A}{B}<initial_velocity>2</initial_velocity>"))
+    sim.step(20)
+    assert [sim.joint(f"m::j_{n}").velocity for n in "ab"] == pytest.approx([2.0, 2.0], abs=1e-4)
+
+
+def test_a_joint_that_is_held_fast_stays_where_it_is() -> None:
+    lock = "<joint name='lock' type='fixed'><parent>world</parent><child>a</child></joint>"
+    sim = load(rotor("a"), lock, velocity(f"{A}<initial_velocity>2</initial_velocity>"))
+    sim.step(100)
+    assert abs(sim.joint("m::j_a").position) < 1e-4
+
+
+def test_damping_that_is_set_while_it_runs_is_made_up_for() -> None:
+    sim = load(rotor("a"), velocity(f"{A}<initial_velocity>2</initial_velocity>"), step=0.02)
+    sim.step(5)
+    sim.touch("dof_damping")[:] = 5.0
+    sim.step(5)
+    assert sim.joint("m::j_a").velocity == pytest.approx(2.0, abs=1e-4)
+    assert sim.joint("m::j_a").effort == pytest.approx(10.0, abs=1e-3)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("speed", ["1e12", "1e300"])
+def test_a_velocity_beyond_all_bounds_diverges_and_the_plugin_is_named(speed: str) -> None:
+    sim = load(rotor("a"), velocity(f"{A}<initial_velocity>{speed}</initial_velocity>"))
+    with pytest.raises(simkit.SimulationDiverged, match="JointController.*has joint 'm::j_a' move at 1e"):
+        sim.step(5)
+
+
+def test_gains_set_while_it_runs_are_the_files_again_after_a_reset() -> None:
+    sim = two(f"{A}{FORCE}<p_gain>2</p_gain><initial_velocity>4</initial_velocity>")
+    sim.run(0.5)
+    first = sim.joint("m::j_a").velocity
+    sim.set_parameter("/model/m/joint/j_a/velocity_controller", "p_gain", 20.0)
+    sim.run(0.5)
+    sim.reset()
+    sim.run(0.5)
+    assert sim.joint("m::j_a").velocity == first
+
+
+def test_two_controllers_of_one_joint_have_parameters_of_their_own() -> None:
+    sim = load(rotor("a"), *[velocity(f"{A}{FORCE}<p_gain>{p}</p_gain>") for p in (2, 3)])
+    node = "/model/m/joint/j_a/velocity_controller"
+    assert [sim.parameters[n]["p_gain"].value for n in (node, f"{node}_2")] == [2.0, 3.0]
+
+
+def test_a_turret_keeps_its_velocity_while_its_base_starts_and_turns() -> None:
+    turret = "<link name='turret'><pose>0 0 0.2 0 0 0</pose><inertial><mass>0.1</mass><inertia><ixx>1e-3</ixx>"
+    turret += "<iyy>1e-3</iyy><izz>1e-3</izz></inertia></inertial></link><joint name='turn' type='revolute'>"
+    turret += "<parent>base</parent><child>turret</child><axis><xyz>0 0 1</xyz></axis></joint>"
+    turret += velocity("<joint_name>turn</joint_name><initial_velocity>0.4</initial_velocity>")
+    drive = gz(
+        "diff-drive",
+        "DiffDrive",
+        "<left_joint>j_fl</left_joint><left_joint>j_rl</left_joint><right_joint>j_fr</right_joint>"
+        "<right_joint>j_rr</right_joint><wheel_separation>0.4</wheel_separation><wheel_radius>0.1</wheel_radius>",
+    )
+    sim = cart(0.0, drive + turret, by_velocity=False)
+    sim.publish("/model/m/cmd_vel", {"linear": {"x": 0.5}, "angular": {"z": 2.0}})
+    sim.step(5)
+    for _ in range(200):
+        sim.step()
+        assert sim.joint("m::turn").velocity == pytest.approx(0.4, abs=1e-3)

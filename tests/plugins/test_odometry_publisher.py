@@ -90,3 +90,8 @@ def test_noise_is_on_the_twist_and_its_variance_in_the_covariance() -> None:
 def test_dimensions_other_than_two_or_three_are_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PARAM-002"):
         load("<dimensions>4</dimensions>")
+
+
+def test_a_noise_whose_square_is_no_number_is_an_error() -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-002.*gaussian_noise"):
+        load("<gaussian_noise>1e300</gaussian_noise>")

@@ -140,6 +140,8 @@ def test_a_missing_or_unknown_body_is_an_error() -> None:
         opened(ros="")
     with pytest.raises(simkit.LoadError, match="(?s)SK-PLUGIN-003.*'bse'.*did you mean 'base'"):
         opened(body_name="bse")
+    with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003.*no link ''"):
+        opened(body_name="")
     with pytest.raises(simkit.LoadError, match="SK-PARAM-001.*topicName"):
         opened(bodyName="base")
 

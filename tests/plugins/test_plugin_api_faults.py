@@ -322,3 +322,90 @@ def test_open_files_threads_and_generators_are_each_reported_by_attribute_and_le
         "numbers",
         "nested",
     ]
+
+
+class Forgetful(WorldPlugin):
+    """Raises over its own state."""
+
+    def __init__(self, hook: str, on_error: Any) -> None:
+        self.hook, self.on_error, self.steps, self.is_loaded = hook, on_error, 0, False
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        pass
+
+    def after_step(self) -> None:
+        self.steps += 1
+
+    def get_state(self) -> Any:
+        if self.hook == "get_state" and self.steps:
+            raise RuntimeError("cannot remember")
+        return super().get_state()
+
+    def set_state(self, state: Any) -> None:
+        if self.hook == "set_state":
+            raise RuntimeError("cannot remember")
+        super().set_state(state)
+
+
+@pytest.mark.parametrize("hook", ["get_state", "set_state"])
+def test_a_plugin_that_raises_over_its_state_is_met_as_in_any_hook(hook: str) -> None:
+    with simkit.load(world(FLOATING), plugins=[Forgetful(hook, "stop")]) as sim:
+        sim.step(2)
+        with pytest.raises(simkit.PluginError, match=f"'Forgetful'.*raised in {hook} .*cannot remember"):
+            sim.restore(sim.snapshot())
+    with simkit.load(world(FLOATING), plugins=[Forgetful(hook, "disable")]) as sim:
+        sim.step(2)
+        sim.restore(sim.snapshot())
+        sim.step(2)
+        assert [hook in line and "is left out" in line for line in warnings(sim)] == [True]
+        assert sim.plugins["Forgetful"].steps == 2
+
+
+def test_what_is_refused_in_load_names_the_plugin() -> None:
+    class Server(WorldPlugin):
+        def load(self, parent: Simulation, params: Params) -> None:
+            self.offer("home", "std_srvs/srv/Trigger", lambda request: None)
+
+    class Second(Server):
+        on_error = "disable"
+
+    with pytest.raises(
+        simkit.PluginError, match=r"plugin 'Server' .* raised in load .*there is a service '/home' already"
+    ):
+        simkit.load(world(FLOATING), plugins=[Server(), Server()])
+    with simkit.load(world(FLOATING), plugins=[Server(), Second()]) as sim:
+        assert "/home" in sim.services() and "plugin 'Second' raised in load" in warnings(sim)[0]
+
+
+def test_load_cannot_go_back_to_what_is_not_there_yet() -> None:
+    class Hasty(WorldPlugin):
+        def load(self, parent: Simulation, params: Params) -> None:
+            parent.reset()
+
+    with pytest.raises(simkit.PluginError, match="'Hasty'.*still being loaded"):
+        simkit.load(world(FLOATING), plugins=[Hasty()])
+
+
+@pytest.mark.parametrize("what", ["topic", "service", "parameter"])
+def test_one_that_calls_itself_for_ever_is_left_out_with_a_word(what: str) -> None:
+    class Echo(WorldPlugin):
+        on_error = "disable"
+
+        def load(self, parent: Simulation, params: Params) -> None:
+            self.out = self.advertise("out", "std_msgs/msg/Empty")
+            self.subscribe("out", self.out.publish)
+            self.offer("srv", "std_srvs/srv/Trigger", lambda request: parent.call("/srv"))
+            self.gain = self.declare("gain", 1.0, on_change=lambda v: parent.set_parameter("/Echo", "gain", v + 1))
+
+        def after_step(self) -> None:
+            if what == "topic":
+                self.out.publish(simkit.msgs.make("std_msgs/msg/Empty"))
+
+    with simkit.load(world(FLOATING), plugins=[Echo()]) as sim:
+        if what == "service":
+            with pytest.raises(simkit.InputError, match="plugin 'Echo' is left out"):
+                sim.call("/srv")
+        if what == "parameter":
+            sim.set_parameter("/Echo", "gain", 2.0)
+        sim.step(2)
+        assert ["RecursionError" in line and "is left out" in line for line in warnings(sim)] == [True]

@@ -154,9 +154,19 @@ def test_a_links_command_takes_along_what_joints_tie_to_it() -> None:
 def test_a_command_that_is_not_finite_is_left_out() -> None:
     with opened() as sim:
         sim.publish(TOPIC, {"linear": {"x": 0.5}})
-        sim.publish(TOPIC, {"linear": {"x": math.nan}})
+        for _ in range(2):
+            sim.publish(TOPIC, {"linear": {"x": math.nan}})
         sim.run(1.0)
         np.testing.assert_allclose(planar(sim), (0.5, 0, 0), atol=1e-6)
+        assert [d.code for d in sim.diagnostics if d.severity == "warning"] == ["SK-PLUGIN-041"]
+
+
+@pytest.mark.parametrize("part", ["linear", "angular"])
+def test_a_command_beyond_all_bounds_diverges_and_says_so(part: str) -> None:
+    with opened() as sim:
+        sim.publish(TOPIC, {part: {"z": 1e300}})
+        with pytest.raises(simkit.SimulationDiverged):
+            sim.step(5)
 
 
 def test_a_stamped_command_does_the_same() -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from service_worlds import load, model
 
@@ -446,3 +448,78 @@ def test_a_call_from_a_hook_is_done_at_once() -> None:
     with load(plugins=[Spawner()]) as sim:
         sim.run(0.05)
         assert sim.model("one").pose.position == pytest.approx((4, 0, 0.5), abs=1e-3)
+
+
+def test_a_rotation_of_huge_or_tiny_numbers_is_one_too() -> None:
+    with load() as sim:
+        for w, z in ((1e308, 1e308), (1e-300, 1e-300), (5e-324, 5e-324)):
+            request = {"entity": {"name": "box"}, "pose": {"orientation": {"w": w, "z": z}}}
+            assert sim.call("/world/w/set_pose", request).success
+            assert np.allclose(sim.model("box").pose.rpy, (0.0, 0.0, math.pi / 2))
+
+
+def test_a_model_whose_plugin_raises_is_not_spawned_and_the_run_goes_on(tmp_path: Path) -> None:
+    lines = (
+        "import simkit",
+        "class Bad(simkit.ModelPlugin):",
+        "    def load(self, parent, params):",
+        "        raise ValueError('no')",
+    )
+    (tmp_path / "bad.py").write_text("\n".join(lines))
+    bad = model("bad").replace("</model>", '<plugin name="bad" filename="bad.py"/></model>')
+    with load(plugin_paths=[tmp_path]) as sim:
+        there = list(sim.models)
+        assert not sim.call("/world/w/create", {"entity_factory": {"sdf": bad}}).success
+        answer = sim.call("/spawn_entity", {"xml": bad})
+        assert not answer.success
+        assert "plugin 'bad'" in answer.status_message and "ValueError('no')" in answer.status_message
+        several = {"entity_factories": [{"sdf": model("good")}, {"sdf": bad}]}
+        assert "plugin 'bad'" in sim.call("/world/w/create_multiple", several).status_message
+        assert list(sim.models) == there
+        sim.step()
+
+
+@pytest.mark.parametrize("name", ["a::b", "", " ", "world", "__model__"])
+def test_names_that_no_model_can_have_are_refused(name: str) -> None:
+    with load() as sim:
+        for add in (lambda: sim.spawn(model("z"), name=name), lambda: sim.clone("box", name)):
+            with pytest.raises(simkit.InputError, match="name"):
+                add()
+        if name.strip():  # in a message an empty one is none
+            assert "name" in sim.call("/spawn_entity", {"xml": model("z"), "name": name}).status_message
+        assert list(sim.models) == ["ground", "box", "arm"]
+
+
+def test_several_of_which_one_cannot_be_leave_no_trace_in_the_bits() -> None:
+    def run(asks: bool) -> bytes:
+        with load() as sim:
+            sim.run(0.5)  # the box rests
+            if asks:
+                factories = [{"sdf": model("good")}, {"sdf": "<bad"}]
+                assert not sim.call("/world/w/create_multiple", {"entity_factories": factories}).success
+            sim.run(0.5)
+            return bytes(sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes())
+
+    assert run(False) == run(True)
+
+
+def test_commands_behind_one_whose_spawn_fails_are_not_lost(tmp_path: Path) -> None:
+    class Asks(simkit.WorldPlugin):
+        def load(self, parent: Any, params: simkit.Params) -> None:
+            self.taken: list[int] = []
+            self.listen("number", "std_msgs/msg/Int32", self.take)
+
+        def take(self, message: Any) -> None:
+            self.taken.append(int(message.data))
+            if message.data == 1:
+                assert not self.sim.call("/spawn_entity", {"xml": bad}).success
+
+    lines = ("import simkit", "class Bad(simkit.ModelPlugin):", "    def load(self, parent, params):", "        1 / 0")
+    (tmp_path / "bad.py").write_text("\n".join(lines))
+    bad = model("bad").replace("</model>", '<plugin name="bad" filename="bad.py"/></model>')
+    asks = Asks()
+    with load(plugins=[asks], plugin_paths=[tmp_path]) as sim:
+        for number in range(4):
+            sim.publish("/number", {"data": number})
+        sim.step()
+        assert asks.taken == [0, 1, 2, 3]

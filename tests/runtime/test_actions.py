@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.errors import ActionError, MessageError, PluginError
+from simkit.errors import ActionError, MessageError, PluginError, SubscriberError
 from simkit.runtime.actions import GoalStatus
 
 EMPTY = '<sdf version="1.9"><world name="w"/></sdf>'
@@ -147,3 +147,46 @@ def test_what_a_plugin_raises_on_a_goal_names_it() -> None:
         sim.send_goal("/break")
         with pytest.raises(PluginError, match="'Faulty'.*action /break"):
             sim.step()
+
+
+def test_what_the_one_who_sent_it_raises_is_not_the_plugins_fault(sim: Any) -> None:
+    def on_feedback(message: Any) -> None:
+        raise ValueError("too slow")
+
+    sim.send_goal("/fibonacci", {"order": 5}, on_feedback)
+    with pytest.raises(
+        SubscriberError, match=r"on_feedback.*'/fibonacci/_action/feedback' raised at t=0.1 s.*too slow"
+    ):
+        sim.run(1.0)
+    sim.faults.on_error = "disable"
+    goal = sim.send_goal("/fibonacci", {"order": 3}, None, lambda goal: 1 / 0)
+    with pytest.raises(SubscriberError, match="get_result.*ZeroDivisionError"):
+        sim.run(1.0)
+    assert goal.status is GoalStatus.SUCCEEDED and not any(d.code == "SK-PLUGIN-020" for d in sim.diagnostics)
+
+
+def test_a_goal_ends_when_the_model_behind_it_is_removed_and_goes_on_with_a_restore() -> None:
+    class OnModel(simkit.ModelPlugin):
+        def load(self, parent: Any, params: simkit.Params) -> None:
+            self.act("wait", FIBONACCI, lambda goal: None)
+
+    world = '<sdf version="1.9"><world name="w"><model name="m"><link name="l"/></model></world></sdf>'
+    ended: list[Any] = []
+    with simkit.load(world, plugins=[OnModel()]) as sim:
+        goal = sim.send_goal("/wait", None, None, ended.append)
+        sim.step()
+        before = sim.snapshot()
+        sim.remove("m")
+        assert goal.status is GoalStatus.ABORTED and goal.reason == "the action is gone" and ended == [goal]
+        sim.restore(before)
+        assert goal.status is GoalStatus.EXECUTING and goal.reason == ""
+
+
+def test_a_goal_that_was_taken_cannot_be_rejected_and_one_that_has_ended_has_no_feedback(sim: Any) -> None:
+    goal = sim.send_goal("/fibonacci", {"order": 3})
+    sim.step()
+    with pytest.raises(ActionError, match="was taken already; abort it"):
+        goal.reject()
+    sim.run(1.0)
+    goal.publish_feedback({"sequence": [7]})
+    assert list(goal.feedback.sequence) == [0, 1, 1, 2]

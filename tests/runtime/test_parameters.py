@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 import simkit
@@ -131,3 +132,55 @@ def test_the_first_value_is_the_files_own(tmp_path: Any) -> None:
     with pytest.raises(LoadError) as caught:
         simkit.load(world(bad), plugin_paths=[tmp_path])
     assert len([d for d in caught.value.diagnostics if d.code == "SK-PARAM-002"]) == 3
+
+
+def test_a_model_that_comes_under_the_name_of_one_that_went_has_its_node_and_a_restore_gives_it_back(
+    tmp_path: Any,
+) -> None:
+    (tmp_path / "tuned.py").write_text(
+        "import simkit\n\n\nclass T(simkit.ModelPlugin):\n    filenames = ('libtuned.so',)\n\n"
+        "    def load(self, parent, params):\n"
+        "        self.gains = [self.declare(name, 2.0) for name in ('p_gain', 'i_gain')]\n"
+    )
+    inertia = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
+    plugin = '<plugin name="tuned" filename="libtuned.so"><p_gain>{}</p_gain></plugin>'
+    model = f'<model name="m"><link name="l">{inertia}</link>{plugin}</model>'
+    world = f'<sdf version="1.9"><world name="w">{model.format(3)}</world></sdf>'
+    with simkit.load(world, plugin_paths=[tmp_path]) as sim:
+        kept = sim.snapshot()
+        sim.remove("m")
+        assert not sim.parameters
+        sim.spawn(f'<sdf version="1.9">{model.format(5)}</sdf>', name="m")
+        assert {n: p.value for n, p in sim.parameters["/tuned"].items()} == {"p_gain": 5.0, "i_gain": 2.0}
+        sim.restore(kept)
+        sim.set_parameter("/tuned", "i_gain", 4.0)
+        assert {n: p.value for n, p in sim.parameters["/tuned"].items()} == {"p_gain": 3.0, "i_gain": 4.0}
+        assert sim.call("/tuned/get_parameters", {"names": ["i_gain"]}).values[0].double_value == 4.0
+
+
+@pytest.mark.parametrize(
+    ("default", "given", "taken"),
+    [
+        (1.0, np.array([1.0, 2.0]), None),
+        (1.0, 10**400, None),
+        (1, 2**63, None),
+        (1, 2**53 + 1, 2**53 + 1),
+        (1, np.int64(4), 4),
+        (False, np.bool_(True), True),
+        ((1.0, 2.0), {3.0, 4.0}, None),
+        ((1.0, 2.0), np.array([3, 4]), (3.0, 4.0)),
+    ],
+)
+def test_odd_values_are_taken_as_they_are_or_refused(default: Any, given: Any, taken: Any) -> None:
+    class One(simkit.WorldPlugin):
+        def load(self, parent: Any, params: simkit.Params) -> None:
+            self.value = self.declare("value", default)
+
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[One()]) as sim:
+        if taken is None:
+            with pytest.raises(ParameterError, match="One value: found .*, allowed is"):
+                sim.set_parameter("/One", "value", given)
+        else:
+            sim.set_parameter("/One", "value", given)
+        now = sim.parameters["/One"]["value"].value
+        assert now == (default if taken is None else taken) and type(now) is type(default)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 import simkit
 
@@ -117,3 +118,20 @@ def test_who_watches_is_told_of_every_change_and_of_nothing_else() -> None:
         sim.step(5)
         sim.paused = False
         assert heard == [True, False]
+
+
+@pytest.mark.parametrize("begin", [0, 5])
+def test_who_keeps_a_world_running_has_their_turn_when_a_hook_goes_back(begin: int) -> None:
+    class Again(simkit.WorldPlugin):
+        after_step_rate = 100.0
+
+        def load(self, parent: Any, params: simkit.Params) -> None:
+            pass
+
+        def after_step(self) -> None:
+            self.sim.reset()
+
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[Again()]) as sim, sim.pausing.served():
+        sim.step(begin)
+        sim.pausing.advance(1000)
+        assert sim.tick == 0

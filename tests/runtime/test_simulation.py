@@ -341,6 +341,23 @@ def test_a_reset_by_who_is_called_back_ends_its_tick() -> None:
             sim.subscribe(topics["a"], look)
             sim.subscribe(topics["b"], lambda m: found.append((sim.tick, m.angular_velocity.x)))
             sim.step(100)
+            assert sim.steps == 100
         return found
 
-    assert numbers(reset_at=50) == numbers(reset_at=-1)
+    assert numbers(reset_at=50) == [found for found in numbers(reset_at=-1) if found[0] <= 50]
+
+
+def test_a_plugin_that_resets_again_and_again_does_not_keep_a_run_from_its_end() -> None:
+    class Episodes(simkit.WorldPlugin):
+        def load(self, parent: Any, params: simkit.Params) -> None:
+            pass
+
+        def after_step(self) -> None:
+            if self.sim.tick == 30:
+                self.sim.reset()
+
+    with simkit.load('<sdf version="1.9"><world name="w"/></sdf>', plugins=[Episodes()]) as sim:
+        sim.step(100)
+        assert (sim.steps, sim.tick) == (100, 10)
+        sim.run(0.05)
+        assert (sim.steps, sim.tick) == (150, 0)

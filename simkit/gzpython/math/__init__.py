@@ -106,15 +106,15 @@ __all__ = [
 ]
 
 _INSTEAD: Final = {
-    "Rand": "random.Random(seed), which two runs with one seed draw the same from",
-    "GaussMarkovProcess": "random.Random(seed).gauss",
-    "Stopwatch": "info.sim_time",
-    "DiffDriveOdometry": "the topic of the DiffDrive plugin",
-    "MecanumDriveOdometry": "the topic of an OdometryPublisher plugin",
-    "SpeedLimiter": "the limits of the DiffDrive and VelocityControl plugins",
-    "RotationSpline": "Quaterniond.squad",
-    "SignalStats": "mean and variance",
-    "SemanticVersion": "packaging.version",
+    "Rand": "use random.Random(seed), which two runs with one seed draw the same from",
+    "GaussMarkovProcess": "use random.Random(seed).gauss",
+    "Stopwatch": "use info.sim_time",
+    "DiffDriveOdometry": "use the topic of the DiffDrive plugin",
+    "MecanumDriveOdometry": "use the topic of an OdometryPublisher plugin",
+    "SpeedLimiter": "use the limits of the DiffDrive and VelocityControl plugins",
+    "RotationSpline": "use Quaterniond.squad",
+    "SignalStats": "use mean and variance",
+    "SemanticVersion": "use packaging.version",
 }
 """What gz-math has, this package has not, and something else does."""
 

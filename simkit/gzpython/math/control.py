@@ -83,53 +83,25 @@ class PID:
         """Error, integral's part and rate of the error."""
         return self._error, self._integral, self._rate
 
-    def p_gain(self) -> float:
-        return self._p
 
-    def i_gain(self) -> float:
-        return self._i
+def _add_gains() -> None:
+    """Gives each gain and bound its methods `p_gain`, `set_p_gain`, …"""
 
-    def d_gain(self) -> float:
-        return self._d
+    def reader(part: str) -> Any:
+        return lambda self: getattr(self, part)
 
-    def i_max(self) -> float:
-        return self._i_max
+    def writer(part: str) -> Any:
+        return lambda self, value: setattr(self, part, float(value))
 
-    def i_min(self) -> float:
-        return self._i_min
+    names = {"p_gain": "_p", "i_gain": "_i", "d_gain": "_d", "cmd_offset": "_offset"}
+    for name in ("i_max", "i_min", "cmd_max", "cmd_min"):
+        names[name] = f"_{name}"
+    for name, part in names.items():
+        setattr(PID, name, reader(part))
+        setattr(PID, f"set_{name}", writer(part))
 
-    def cmd_max(self) -> float:
-        return self._cmd_max
 
-    def cmd_min(self) -> float:
-        return self._cmd_min
-
-    def cmd_offset(self) -> float:
-        return self._offset
-
-    def set_p_gain(self, value: float) -> None:
-        self._p = float(value)
-
-    def set_i_gain(self, value: float) -> None:
-        self._i = float(value)
-
-    def set_d_gain(self, value: float) -> None:
-        self._d = float(value)
-
-    def set_i_max(self, value: float) -> None:
-        self._i_max = float(value)
-
-    def set_i_min(self, value: float) -> None:
-        self._i_min = float(value)
-
-    def set_cmd_max(self, value: float) -> None:
-        self._cmd_max = float(value)
-
-    def set_cmd_min(self, value: float) -> None:
-        self._cmd_min = float(value)
-
-    def set_cmd_offset(self, value: float) -> None:
-        self._offset = float(value)
+_add_gains()
 
 
 class RollingMean:

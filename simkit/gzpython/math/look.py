@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any, ClassVar, Final
 
 from simkit.gzpython.math.scalars import EQUAL, clamp, shown
 from simkit.gzpython.math.vectors import Vector3d
 
 _KELVIN: Final = 273.15
+_LARGEST: Final = sys.float_info.max
 
 
 class Color:
@@ -151,7 +153,7 @@ class AxisAlignedBox:
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: Any) -> None:
-        self._min, self._max = Vector3d(*[math.inf] * 3), Vector3d(*[-math.inf] * 3)
+        self._min, self._max = Vector3d(*[_LARGEST] * 3), Vector3d(*[-_LARGEST] * 3)
         if len(values) == 1:
             values = (values[0].min(), values[0].max())
         elif len(values) == 6:

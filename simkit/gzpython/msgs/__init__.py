@@ -5,6 +5,7 @@ The classes behave as those protobuf makes, but for wire formats: nothing here i
 
 from __future__ import annotations
 
+import re
 from typing import Any, Final
 
 from simkit.gzpython.absent import absent
@@ -39,12 +40,17 @@ LaserScan header:Header frame:s angle_min:f angle_max:f angle_step:f range_min:f
 NavSat header:Header latitude_deg:f longitude_deg:f altitude:f velocity_east:f velocity_north:f velocity_up:f frame_id:s
 Magnetometer header:Header field_tesla:Vector3d
 FluidPressure header:Header pressure:f variance:f
+Altimeter header:Header vertical_position:f vertical_velocity:f vertical_reference:f
+BatteryState header:Header voltage:f current:f charge:f capacity:f percentage:f
 Axis xyz:Vector3d position:f velocity:f force:f
 Joint header:Header name:s id:i parent:s child:s pose:Pose axis1:Axis axis2:Axis
 Model header:Header name:s id:i joint:Joint[] pose:Pose
 Actuators header:Header position:f[] velocity:f[] normalized:f[]
 Entity header:Header id:i name:s type:i
 EntityWrench header:Header entity:Entity wrench:Wrench
+JointWrench header:Header body_1_name:s body_1_id:i body_2_name:s body_2_id:i body_1_wrench:Wrench body_2_wrench:Wrench
+Contact header:Header collision1:Entity collision2:Entity position:Vector3d[] depth:f[] wrench:JointWrench[] normal:Vector3d[]
+Contacts header:Header contact:Contact[]
 Image header:Header width:i height:i pixel_format_type:i step:i data:y
 EntityFactory header:Header sdf:s sdf_filename:s clone_name:s pose:Pose name:s allow_renaming:b
 WorldReset header:Header all:b time_only:b model_only:b
@@ -54,14 +60,15 @@ define(_DEFINITIONS)
 _ENTITY_TYPES: Final = ("NONE", "LIGHT", "MODEL", "LINK", "VISUAL", "COLLISION", "SENSOR", "JOINT", "ACTOR", "WORLD")
 for _number, _kind in enumerate(_ENTITY_TYPES):
     setattr(CLASSES["Entity"], _kind, _number)  # as in `Entity.MODEL`
-_FILES: Final = {
-    **{f"{name.lower()}_pb2": name for name in CLASSES if name not in ("Map", "WorldReset")},
-    "entity_factory_pb2": "EntityFactory",
-    "entity_wrench_pb2": "EntityWrench",
-    "world_control_pb2": "WorldControl",
-    "world_reset_pb2": "WorldReset",
-    "fluid_pressure_pb2": "FluidPressure",
-}
+_ONE_WORD: Final = ("LaserScan", "NavSat", "StringMsg")
+
+
+def _file_of(name: str) -> str:
+    apart = name if name in _ONE_WORD else re.sub("(?<=[a-z])(?=[A-Z])", "_", name)
+    return f"{apart.lower()}_pb2"
+
+
+_FILES: Final = {_file_of(name): name for name in CLASSES if name != "Map"}
 """Module of gz.msgs -> the message it holds."""
 
 

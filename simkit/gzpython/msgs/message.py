@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable, Mapping
-from typing import Any, ClassVar, Final, TypeVar
+from typing import Any, ClassVar, Final, NamedTuple, TypeVar
 
 from simkit.diagnostics import did_you_mean
 
@@ -33,13 +33,22 @@ class Repeated(list[Any]):
         self.extend(copy.deepcopy(list(other)))
 
 
+class Descriptor(NamedTuple):
+    """What protobuf tells of a class of messages."""
+
+    name: str
+    full_name: str
+
+
 class Message:
     """What all messages share.
 
     Attributes:
+        DESCRIPTOR: its names.
         FIELDS: name -> letter of a plain kind or a message's name, with `[]` after it where repeated.
     """
 
+    DESCRIPTOR: ClassVar[Descriptor]
     FIELDS: ClassVar[Mapping[str, str]] = {}
     __slots__ = ("_values",)
     _values: dict[str, Any]
@@ -162,5 +171,6 @@ def define(text: str) -> dict[str, type[Message]]:
     for line in text.strip().splitlines():
         name, *fields = line.split()
         kinds = dict(field.split(":") for field in fields)
-        CLASSES[name] = type(name, (Message,), {"FIELDS": kinds, "__slots__": (), "__module__": __name__})
+        own = {"DESCRIPTOR": Descriptor(name, f"gz.msgs.{name}"), "FIELDS": kinds, "__slots__": ()}
+        CLASSES[name] = type(name, (Message,), {**own, "__module__": __name__})
     return CLASSES

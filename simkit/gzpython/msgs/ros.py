@@ -8,15 +8,54 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final
 
 import numpy as np
 
 from simkit import msgs
 from simkit.errors import MessageError
-from simkit.gzpython.msgs.message import CLASSES, Message
+from simkit.gzpython.msgs.message import CLASSES, PLAIN, Message
 
-FRAME: Final = "frame_id"
+_FIELDS: Final = """
+Boolean std_msgs/msg/Bool data
+Double std_msgs/msg/Float64 data
+Float std_msgs/msg/Float32 data
+Int32 std_msgs/msg/Int32 data
+UInt32 std_msgs/msg/UInt32 data
+Int64 std_msgs/msg/Int64 data
+StringMsg std_msgs/msg/String data
+Empty std_msgs/msg/Empty
+Float_V ros_gz_interfaces/msg/Float32Array data
+Double_V std_msgs/msg/Float64MultiArray data
+Time builtin_interfaces/msg/Time sec nsec=nanosec
+Clock rosgraph_msgs/msg/Clock sim=clock
+Color std_msgs/msg/ColorRGBA r g b a
+Vector2d geometry_msgs/msg/Vector3 x y
+Vector3d geometry_msgs/msg/Vector3 x y z
+Vector3d geometry_msgs/msg/Point x y z
+Pose geometry_msgs/msg/PoseStamped header .=pose
+Pose geometry_msgs/msg/Pose position orientation
+Twist geometry_msgs/msg/Twist linear angular
+Twist geometry_msgs/msg/TwistStamped header .=twist
+Wrench geometry_msgs/msg/Wrench force torque
+Wrench geometry_msgs/msg/WrenchStamped header .=wrench
+Odometry nav_msgs/msg/Odometry header pose=pose.pose twist=twist.twist
+IMU sensor_msgs/msg/Imu header entity_name<header.frame_id orientation angular_velocity linear_acceleration
+LaserScan sensor_msgs/msg/LaserScan header frame<header.frame_id angle_min angle_max angle_step=angle_increment range_min range_max ranges intensities
+NavSat sensor_msgs/msg/NavSatFix header frame_id<header.frame_id latitude_deg=latitude longitude_deg=longitude altitude
+Magnetometer sensor_msgs/msg/MagneticField header field_tesla=magnetic_field
+FluidPressure sensor_msgs/msg/FluidPressure header pressure=fluid_pressure variance
+Altimeter ros_gz_interfaces/msg/Altimeter header vertical_position vertical_velocity vertical_reference
+BatteryState sensor_msgs/msg/BatteryState header voltage current charge capacity percentage
+Actuators actuator_msgs/msg/Actuators header position velocity normalized
+Entity ros_gz_interfaces/msg/Entity id name type
+EntityWrench ros_gz_interfaces/msg/EntityWrench header entity wrench
+JointWrench ros_gz_interfaces/msg/JointWrench header body_1_name=body_1_name.data body_1_id=body_1_id.data body_2_name=body_2_name.data body_2_id=body_2_id.data body_1_wrench body_2_wrench
+Contact ros_gz_interfaces/msg/Contact collision1 collision2 position=positions normal=normals depth=depths wrench=wrenches
+Contacts ros_gz_interfaces/msg/Contacts header contact=contacts
+"""  # noqa: E501
+"""Message, ROS type, fields: `gz`, `gz=ros` under another name, `gz<ros` only read, `.` the whole message."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,225 +66,141 @@ class Twin:
         ros: its name.
         to_ros: fields for `simkit.msgs.make` of a message of gz.
         from_ros: fills a message of gz from one of ROS.
+        is_wrapped: whether it is the message with more around it, and so not what it is within others.
     """
 
     ros: str
     to_ros: Callable[[Any], dict[str, Any]]
     from_ros: Callable[[Any, Any], None]
+    is_wrapped: bool = False
 
 
-def _copy(*names: str) -> tuple[Callable[[Any], dict[str, Any]], Callable[[Any, Any], None]]:
-    """Fields of the same name and plain kind on both sides."""
+# ---------------------------------------------------------------------- field by field
+
+
+def _by_field(name: str, ros: str, fields: list[str]) -> Twin:
+    """The twin of a line of the table."""
+    pairs = []
+    for field in fields:
+        ours, _, theirs = field.replace("<", "=").partition("=")
+        kind = name if ours == "." else CLASSES[name].FIELDS[ours]
+        pairs.append((ours, tuple((theirs or ours).split(".")), kind, "<" in field))
 
     def to_ros(gz: Any) -> dict[str, Any]:
-        return {name: getattr(gz, name) for name in names}
+        found: dict[str, Any] = {}
+        for ours, (*outer, last), kind, is_read_only in pairs:
+            if not is_read_only:
+                place = found
+                for part in outer:
+                    place = place.setdefault(part, {})
+                place[last] = _outward(kind, gz if ours == "." else getattr(gz, ours))
+        return found
 
-    def from_ros(gz: Any, ros: Any) -> None:
-        for name in names:
-            setattr(gz, name, getattr(ros, name))
+    def from_ros(gz: Any, message: Any) -> None:
+        for ours, path, kind, _ in pairs:
+            value = message
+            for part in path:
+                value = getattr(value, part)
+            if ours == ".":
+                _part(kind).from_ros(gz, value)
+            else:
+                _inward(gz, ours, kind, value)
 
-    return to_ros, from_ros
+    return Twin(ros, to_ros, from_ros, is_wrapped="." in (ours for ours, *_ in pairs))
 
 
-_data_to, _data_from = _copy("data")
-_xyz_to, _xyz_from = _copy("x", "y", "z")
-_xyzw_to, _xyzw_from = _copy("x", "y", "z", "w")
-_rgba_to, _rgba_from = _copy("r", "g", "b", "a")
+@cache
+def _part(kind: str) -> Twin:
+    """What a message is within others."""
+    return next(twin for twin in _twins()[kind] if not twin.is_wrapped)
+
+
+def _outward(kind: str, value: Any) -> Any:
+    if kind in PLAIN:
+        return value
+    if not kind.endswith("[]"):
+        return _part(kind).to_ros(value)
+    return list(value) if kind[:-2] in PLAIN else [_outward(kind[:-2], one) for one in value]
+
+
+def _inward(gz: Any, ours: str, kind: str, value: Any) -> None:
+    if kind in PLAIN:
+        setattr(gz, ours, value)
+    elif not kind.endswith("[]"):
+        _part(kind).from_ros(getattr(gz, ours), value)
+    elif kind[:-2] in PLAIN:
+        getattr(gz, ours).extend(np.asarray(value).tolist())
+    else:
+        for one in value:
+            _part(kind[:-2]).from_ros(getattr(gz, ours).add(), one)
+
+
+# ---------------------------------------------------------------------- what is put another way
+
+
+def _entry(header: Any, key: str) -> str:
+    """What gz keeps beside the stamp, such as the name of the frame."""
+    return next((str(entry.value[0]) for entry in header.data if entry.key == key and entry.value), "")
+
+
+def _header_to(gz: Any) -> dict[str, Any]:
+    return {"stamp": _outward("Time", gz.stamp), "frame_id": _entry(gz, "frame_id")}
+
+
+def _header_from(gz: Any, ros: Any) -> None:
+    _inward(gz, "stamp", "Time", ros.stamp)
+    if ros.frame_id:
+        gz.data.add(key="frame_id", value=[ros.frame_id])
 
 
 def _quaternion_to(gz: Any) -> dict[str, Any]:
     """One of zeros, which is what a new message has, means no rotation."""
-    values = _xyzw_to(gz)
-    return values if any(values.values()) else {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+    values = {axis: getattr(gz, axis) for axis in "xyzw"}
+    return values if any(values.values()) else {**values, "w": 1.0}
 
 
-def _time_to(gz: Any) -> dict[str, Any]:
-    return {"sec": gz.sec, "nanosec": gz.nsec}
-
-
-def _time_from(gz: Any, ros: Any) -> None:
-    gz.sec, gz.nsec = int(ros.sec), int(ros.nanosec)
-
-
-def _header_to(gz: Any) -> dict[str, Any]:
-    frame = next((entry.value[0] for entry in gz.data if entry.key == FRAME and entry.value), "")
-    return {"stamp": _time_to(gz.stamp), "frame_id": frame}
-
-
-def _header_from(gz: Any, ros: Any) -> None:
-    _time_from(gz.stamp, ros.stamp)
-    if ros.frame_id:
-        gz.data.add(key=FRAME, value=[ros.frame_id])
-
-
-def _pose_to(gz: Any) -> dict[str, Any]:
-    return {"position": _xyz_to(gz.position), "orientation": _quaternion_to(gz.orientation)}
-
-
-def _pose_from(gz: Any, ros: Any) -> None:
-    _xyz_from(gz.position, ros.position)
-    _xyzw_from(gz.orientation, ros.orientation)
-
-
-def _twist_to(gz: Any) -> dict[str, Any]:
-    return {"linear": _xyz_to(gz.linear), "angular": _xyz_to(gz.angular)}
-
-
-def _twist_from(gz: Any, ros: Any) -> None:
-    _xyz_from(gz.linear, ros.linear)
-    _xyz_from(gz.angular, ros.angular)
-
-
-def _wrench_to(gz: Any) -> dict[str, Any]:
-    return {"force": _xyz_to(gz.force), "torque": _xyz_to(gz.torque)}
-
-
-def _wrench_from(gz: Any, ros: Any) -> None:
-    _xyz_from(gz.force, ros.force)
-    _xyz_from(gz.torque, ros.torque)
-
-
-def _stamped(
-    part: str, to_ros: Callable[[Any], dict[str, Any]], from_ros: Callable[[Any, Any], None]
-) -> tuple[Callable[[Any], dict[str, Any]], Callable[[Any, Any], None]]:
-    """The same with ROS's header around it."""
-
-    def to_stamped(gz: Any) -> dict[str, Any]:
-        return {"header": _header_to(gz.header), part: to_ros(gz)}
-
-    def from_stamped(gz: Any, ros: Any) -> None:
-        _header_from(gz.header, ros.header)
-        from_ros(gz, getattr(ros, part))
-
-    return to_stamped, from_stamped
-
-
-def _clock_to(gz: Any) -> dict[str, Any]:
-    return {"clock": _time_to(gz.sim)}
-
-
-def _clock_from(gz: Any, ros: Any) -> None:
-    _time_from(gz.sim, ros.clock)
+def _quaternion_from(gz: Any, ros: Any) -> None:
+    gz.x, gz.y, gz.z, gz.w = ros.x, ros.y, ros.z, ros.w
 
 
 def _odometry_to(gz: Any) -> dict[str, Any]:
-    header = _header_to(gz.header)
-    child = next((entry.value[0] for entry in gz.header.data if entry.key == "child_frame_id" and entry.value), "")
-    pose, twist = {"pose": _pose_to(gz.pose)}, {"twist": _twist_to(gz.twist)}
-    return {"header": header, "child_frame_id": child, "pose": pose, "twist": twist}
+    return {**_plain("Odometry").to_ros(gz), "child_frame_id": _entry(gz.header, "child_frame_id")}
 
 
 def _odometry_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
+    _plain("Odometry").from_ros(gz, ros)
     if ros.child_frame_id:
         gz.header.data.add(key="child_frame_id", value=[ros.child_frame_id])
-    _pose_from(gz.pose, ros.pose.pose)
-    _twist_from(gz.twist, ros.twist.twist)
-
-
-def _imu_to(gz: Any) -> dict[str, Any]:
-    return {
-        "header": _header_to(gz.header),
-        "orientation": _quaternion_to(gz.orientation),
-        "angular_velocity": _xyz_to(gz.angular_velocity),
-        "linear_acceleration": _xyz_to(gz.linear_acceleration),
-    }
-
-
-def _imu_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
-    gz.entity_name = ros.header.frame_id
-    _xyzw_from(gz.orientation, ros.orientation)
-    _xyz_from(gz.angular_velocity, ros.angular_velocity)
-    _xyz_from(gz.linear_acceleration, ros.linear_acceleration)
-
-
-def _scan_to(gz: Any) -> dict[str, Any]:
-    return {
-        "header": _header_to(gz.header),
-        "angle_min": gz.angle_min,
-        "angle_max": gz.angle_max,
-        "angle_increment": gz.angle_step,
-        "range_min": gz.range_min,
-        "range_max": gz.range_max,
-        "ranges": list(gz.ranges),
-        "intensities": list(gz.intensities),
-    }
 
 
 def _scan_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
-    gz.frame = ros.header.frame_id
-    gz.angle_min, gz.angle_max, gz.angle_step = ros.angle_min, ros.angle_max, ros.angle_increment
-    gz.range_min, gz.range_max = ros.range_min, ros.range_max
-    gz.ranges.extend(ros.ranges.tolist())
-    gz.intensities.extend(ros.intensities.tolist())
+    _plain("LaserScan").from_ros(gz, ros)
     gz.count, gz.vertical_count = len(gz.ranges), 1
 
 
-def _navsat_to(gz: Any) -> dict[str, Any]:
-    place = {"latitude": gz.latitude_deg, "longitude": gz.longitude_deg, "altitude": gz.altitude}
-    return {"header": _header_to(gz.header), **place}
-
-
-def _navsat_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
-    gz.frame_id = ros.header.frame_id
-    gz.latitude_deg, gz.longitude_deg, gz.altitude = ros.latitude, ros.longitude, ros.altitude
-
-
-def _magnetometer_to(gz: Any) -> dict[str, Any]:
-    return {"header": _header_to(gz.header), "magnetic_field": _xyz_to(gz.field_tesla)}
-
-
-def _magnetometer_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
-    _xyz_from(gz.field_tesla, ros.magnetic_field)
-
-
-def _pressure_to(gz: Any) -> dict[str, Any]:
-    return {"header": _header_to(gz.header), "fluid_pressure": gz.pressure, "variance": gz.variance}
-
-
-def _pressure_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
-    gz.pressure, gz.variance = ros.fluid_pressure, ros.variance
+_AXIS: Final = {"position": "position", "velocity": "velocity", "force": "effort"}
+"""What gz has of a joint's axis -> field of a JointState."""
 
 
 def _joints_to(gz: Any) -> dict[str, Any]:
-    return {
-        "header": _header_to(gz.header),
-        "name": [joint.name for joint in gz.joint],
-        "position": [joint.axis1.position for joint in gz.joint],
-        "velocity": [joint.axis1.velocity for joint in gz.joint],
-        "effort": [joint.axis1.force for joint in gz.joint],
-    }
+    columns = {theirs: [getattr(joint.axis1, ours) for joint in gz.joint] for ours, theirs in _AXIS.items()}
+    return {"header": _header_to(gz.header), "name": [joint.name for joint in gz.joint], **columns}
 
 
 def _joints_from(gz: Any, ros: Any) -> None:
     _header_from(gz.header, ros.header)
     for place, name in enumerate(ros.name):
         axis = gz.joint.add(name=name).axis1
-        for ours, theirs in (("position", ros.position), ("velocity", ros.velocity), ("force", ros.effort)):
-            setattr(axis, ours, float(theirs[place]) if place < len(theirs) else math.nan)
-
-
-def _actuators_to(gz: Any) -> dict[str, Any]:
-    parts = {name: list(getattr(gz, name)) for name in ("position", "velocity", "normalized")}
-    return {"header": _header_to(gz.header), **parts}
-
-
-def _actuators_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
-    for name in ("position", "velocity", "normalized"):
-        getattr(gz, name).extend(getattr(ros, name).tolist())
+        for ours, theirs in _AXIS.items():
+            column = getattr(ros, theirs)
+            setattr(axis, ours, float(column[place]) if place < len(column) else math.nan)
 
 
 def _frames_to(gz: Any) -> dict[str, Any]:
     transforms = []
     for pose in gz.pose:
         header = _header_to(pose.header if pose.HasField("header") else gz.header)
-        turn = {"translation": _xyz_to(pose.position), "rotation": _quaternion_to(pose.orientation)}
+        turn = {"translation": _outward("Vector3d", pose.position), "rotation": _quaternion_to(pose.orientation)}
         transforms.append({"header": header, "child_frame_id": pose.name, "transform": turn})
     return {"transforms": transforms}
 
@@ -254,44 +209,10 @@ def _frames_from(gz: Any, ros: Any) -> None:
     for transform in ros.transforms:
         pose = gz.pose.add(name=transform.child_frame_id)
         _header_from(pose.header, transform.header)
-        _xyz_from(pose.position, transform.transform.translation)
-        _xyzw_from(pose.orientation, transform.transform.rotation)
+        _inward(pose, "position", "Vector3d", transform.transform.translation)
+        _quaternion_from(pose.orientation, transform.transform.rotation)
     if ros.transforms:
         _header_from(gz.header, ros.transforms[0].header)
-
-
-def _planar_to(gz: Any) -> dict[str, Any]:
-    return {"x": gz.x, "y": gz.y, "z": 0.0}
-
-
-def _planar_from(gz: Any, ros: Any) -> None:
-    gz.x, gz.y = ros.x, ros.y
-
-
-def _list_to(gz: Any) -> dict[str, Any]:
-    return {"data": list(gz.data)}
-
-
-def _list_from(gz: Any, ros: Any) -> None:
-    gz.data.extend(ros.data.tolist())
-
-
-def _entity_to(gz: Any) -> dict[str, Any]:
-    return {name: getattr(gz, name) for name in ("id", "name", "type")}
-
-
-def _entity_from(gz: Any, ros: Any) -> None:
-    gz.id, gz.name, gz.type = int(ros.id), ros.name, int(ros.type)
-
-
-def _entity_wrench_to(gz: Any) -> dict[str, Any]:
-    return {"header": _header_to(gz.header), "entity": _entity_to(gz.entity), "wrench": _wrench_to(gz.wrench)}
-
-
-def _entity_wrench_from(gz: Any, ros: Any) -> None:
-    _header_from(gz.header, ros.header)
-    _entity_from(gz.entity, ros.entity)
-    _wrench_from(gz.wrench, ros.wrench)
 
 
 _PIXELS: Final = {"mono8": 1, "mono16": 2, "rgb8": 3, "rgba8": 4, "bgra8": 5, "rgb16": 6, "bgr8": 8, "32FC1": 13}
@@ -310,52 +231,35 @@ def _image_from(gz: Any, ros: Any) -> None:
     gz.pixel_format_type, gz.data = _PIXELS.get(ros.encoding, 0), np.asarray(ros.data).tobytes()
 
 
-_POSE_STAMPED = _stamped("pose", _pose_to, _pose_from)
-_TWINS: Final[dict[str, tuple[Twin, ...]]] = {
-    "Boolean": (Twin("std_msgs/msg/Bool", _data_to, _data_from),),
-    "Double": (Twin("std_msgs/msg/Float64", _data_to, _data_from),),
-    "Float": (Twin("std_msgs/msg/Float32", _data_to, _data_from),),
-    "Int32": (Twin("std_msgs/msg/Int32", _data_to, _data_from),),
-    "UInt32": (Twin("std_msgs/msg/UInt32", _data_to, _data_from),),
-    "StringMsg": (Twin("std_msgs/msg/String", _data_to, _data_from),),
-    "Empty": (Twin("std_msgs/msg/Empty", lambda _: {}, lambda *_: None),),
-    "Header": (Twin("std_msgs/msg/Header", _header_to, _header_from),),
-    "Color": (Twin("std_msgs/msg/ColorRGBA", _rgba_to, _rgba_from),),
-    "Vector3d": (
-        Twin("geometry_msgs/msg/Vector3", _xyz_to, _xyz_from),
-        Twin("geometry_msgs/msg/Point", _xyz_to, _xyz_from),
-    ),
-    "Vector2d": (Twin("geometry_msgs/msg/Vector3", _planar_to, _planar_from),),
-    "Float_V": (Twin("ros_gz_interfaces/msg/Float32Array", _list_to, _list_from),),
-    "Double_V": (Twin("std_msgs/msg/Float64MultiArray", _list_to, _list_from),),
-    "Int64": (Twin("std_msgs/msg/Int64", _data_to, _data_from),),
-    "Entity": (Twin("ros_gz_interfaces/msg/Entity", _entity_to, _entity_from),),
-    "EntityWrench": (Twin("ros_gz_interfaces/msg/EntityWrench", _entity_wrench_to, _entity_wrench_from),),
-    "Image": (Twin("sensor_msgs/msg/Image", _image_to, _image_from),),
-    "Quaternion": (Twin("geometry_msgs/msg/Quaternion", _quaternion_to, _xyzw_from),),
-    "Pose": (
-        Twin("geometry_msgs/msg/PoseStamped", *_POSE_STAMPED),
-        Twin("geometry_msgs/msg/Pose", _pose_to, _pose_from),
-    ),
-    "Pose_V": (Twin("tf2_msgs/msg/TFMessage", _frames_to, _frames_from),),
-    "Twist": (
-        Twin("geometry_msgs/msg/Twist", _twist_to, _twist_from),
-        Twin("geometry_msgs/msg/TwistStamped", *_stamped("twist", _twist_to, _twist_from)),
-    ),
-    "Wrench": (
-        Twin("geometry_msgs/msg/Wrench", _wrench_to, _wrench_from),
-        Twin("geometry_msgs/msg/WrenchStamped", *_stamped("wrench", _wrench_to, _wrench_from)),
-    ),
-    "Clock": (Twin("rosgraph_msgs/msg/Clock", _clock_to, _clock_from),),
-    "Odometry": (Twin("nav_msgs/msg/Odometry", _odometry_to, _odometry_from),),
-    "IMU": (Twin("sensor_msgs/msg/Imu", _imu_to, _imu_from),),
-    "LaserScan": (Twin("sensor_msgs/msg/LaserScan", _scan_to, _scan_from),),
-    "NavSat": (Twin("sensor_msgs/msg/NavSatFix", _navsat_to, _navsat_from),),
-    "Magnetometer": (Twin("sensor_msgs/msg/MagneticField", _magnetometer_to, _magnetometer_from),),
-    "FluidPressure": (Twin("sensor_msgs/msg/FluidPressure", _pressure_to, _pressure_from),),
-    "Model": (Twin("sensor_msgs/msg/JointState", _joints_to, _joints_from),),
-    "Actuators": (Twin("actuator_msgs/msg/Actuators", _actuators_to, _actuators_from),),
-}
+# ---------------------------------------------------------------------- the table
+
+
+@cache
+def _lines() -> dict[str, tuple[Twin, ...]]:
+    found: dict[str, tuple[Twin, ...]] = {}
+    for line in _FIELDS.strip().splitlines():
+        name, ros, *fields = line.split()
+        found[name] = (*found.get(name, ()), _by_field(name, ros, fields))
+    return found
+
+
+def _plain(name: str) -> Twin:
+    return _lines()[name][0]
+
+
+@cache
+def _twins() -> dict[str, tuple[Twin, ...]]:
+    scan, odometry = _plain("LaserScan"), _plain("Odometry")
+    return {
+        **_lines(),
+        "Header": (Twin("std_msgs/msg/Header", _header_to, _header_from),),
+        "Quaternion": (Twin("geometry_msgs/msg/Quaternion", _quaternion_to, _quaternion_from),),
+        "Odometry": (Twin(odometry.ros, _odometry_to, _odometry_from),),
+        "LaserScan": (Twin(scan.ros, scan.to_ros, _scan_from),),
+        "Model": (Twin("sensor_msgs/msg/JointState", _joints_to, _joints_from),),
+        "Pose_V": (Twin("tf2_msgs/msg/TFMessage", _frames_to, _frames_from),),
+        "Image": (Twin("sensor_msgs/msg/Image", _image_to, _image_from),),
+    }
 
 
 def twins_of(kind: type[Message]) -> tuple[Twin, ...]:
@@ -364,11 +268,16 @@ def twins_of(kind: type[Message]) -> tuple[Twin, ...]:
     Raises:
         MessageError: it has none.
     """
-    found = _TWINS.get(kind.__name__)
+    found = _twins().get(kind.__name__)
     if found is None:
-        listed = ", ".join(sorted(_TWINS))
+        listed = ", ".join(sorted(_twins()))
         raise MessageError(f"gz.msgs.{kind.__name__} has no ROS type to go on a topic as; those that have: {listed}")
     return found
+
+
+def fields_of(message: Message) -> dict[str, Any]:
+    """The fields of the ROS message that it is within others."""
+    return _part(type(message).__name__).to_ros(message)
 
 
 def to_ros(message: Message, ros: str) -> Any:

@@ -6,7 +6,7 @@ from typing import Any
 
 from simkit.errors import InputError
 from simkit.gzpython.msgs.message import Message
-from simkit.gzpython.msgs.ros import _pose_to
+from simkit.gzpython.msgs.ros import fields_of
 
 
 def call(sim: Any, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
@@ -39,9 +39,9 @@ def _fields(request: Any) -> dict[str, Any]:
     if kind == "EntityFactory":
         names = ("name", "allow_renaming", "sdf", "sdf_filename", "clone_name")
         plain = {name: getattr(request, name) for name in names}
-        return {"entity_factory": {**plain, "pose": _pose_to(request.pose)}}
+        return {"entity_factory": {**plain, "pose": fields_of(request.pose)}}
     if kind == "Entity":
         return {"entity": {name: getattr(request, name) for name in ("id", "name", "type")}}
     if kind == "Pose":
-        return {"entity": {"name": request.name, "id": request.id, "type": 2}, "pose": _pose_to(request)}
+        return {"entity": {"name": request.name, "id": request.id, "type": 2}, "pose": fields_of(request)}
     raise InputError(f"simkit has no service that takes gz.msgs.{kind}")

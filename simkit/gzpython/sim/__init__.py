@@ -41,10 +41,9 @@ __all__ = [
 ]
 
 _INSTEAD: Final = {
-    "Gui": "simkit's own viewers: it has no user interface of Gazebo's",
-    "HelperFixture": "TestFixture, its later name",
-    "Visual": "Link.visuals and simkit's own sim.visuals",
-    "get_install_prefix": "nothing: there is no Gazebo whose folder it could be",
+    "Gui": "simkit has no user interface",
+    "HelperFixture": "use TestFixture, its later name",
+    "get_install_prefix": "there is no Gazebo whose folder it could be",
 }
 
 

@@ -32,7 +32,6 @@ class Commands:
         pose: of models in the world.
         linear, angular: velocity of models [m/s, rad/s] and links in their own axes; kept as zeros after a step.
         limits: of joints: what is limited, and (lower, upper) for each axis.
-        surroundings: what else is to be done, in order: a function of the simulation.
     """
 
     def __init__(self) -> None:

@@ -73,6 +73,14 @@ def _of(kind: str, read: _Reader) -> _Reader:
     return lambda ecm, record: read(ecm, record) if record.kind == kind else None
 
 
+_HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _Sensor, "world": _World}
+
+
+def _told(kind: str, method: Callable[[Any, EntityComponentManager], Any]) -> _Reader:
+    """What a method of the handle says."""
+    return _of(kind, lambda ecm, record: method(_HANDLES[kind](record.entity), ecm))
+
+
 def _if(kinds: tuple[str, ...], read: _Reader) -> _Reader:
     return lambda ecm, record: read(ecm, record) if record.kind in kinds else None
 
@@ -109,31 +117,31 @@ _READERS: Final[dict[str, _Reader]] = {
     "WorldPose": _if(("model", "link", "sensor"), lambda ecm, record: world_pose(record.entity, ecm)),
     "Static": _of("model", lambda _, record: record.scene.static),
     "SelfCollide": _of("model", lambda _, record: record.scene.self_collide),
-    "SourceFilePath": _of("model", lambda ecm, record: _Model(record.entity).source_file_path(ecm)),
-    "ModelCanonicalLink": _of("model", lambda ecm, record: _Model(record.entity).canonical_link(ecm)),
+    "SourceFilePath": _told("model", _Model.source_file_path),
+    "ModelCanonicalLink": _told("model", _Model.canonical_link),
     "WindMode": _of("link", lambda _, record: record.scene.enable_wind),
     "Inertial": _of("link", _inertial),
-    "WorldLinearVelocity": _of("link", lambda ecm, record: _Link(record.entity).world_linear_velocity(ecm)),
-    "WorldAngularVelocity": _of("link", lambda ecm, record: _Link(record.entity).world_angular_velocity(ecm)),
-    "WorldLinearAcceleration": _of("link", lambda ecm, record: _Link(record.entity).world_linear_acceleration(ecm)),
-    "WorldAngularAcceleration": _of("link", lambda ecm, record: _Link(record.entity).world_angular_acceleration(ecm)),
+    "WorldLinearVelocity": _told("link", _Link.world_linear_velocity),
+    "WorldAngularVelocity": _told("link", _Link.world_angular_velocity),
+    "WorldLinearAcceleration": _told("link", _Link.world_linear_acceleration),
+    "WorldAngularAcceleration": _told("link", _Link.world_angular_acceleration),
     "LinearVelocity": _of("link", _in_link_axes(_Link.world_linear_velocity)),
     "AngularVelocity": _of("link", _in_link_axes(_Link.world_angular_velocity)),
     "LinearAcceleration": _of("link", _in_link_axes(_Link.world_linear_acceleration)),
     "AngularAcceleration": _of("link", _in_link_axes(_Link.world_angular_acceleration)),
-    "JointType": _of("joint", lambda ecm, record: _Joint(record.entity).type(ecm)),
+    "JointType": _told("joint", _Joint.type),
     "JointAxis": _of("joint", lambda ecm, record: next(iter(_Joint(record.entity).axis(ecm) or ()), None)),
-    "JointPosition": _of("joint", lambda ecm, record: _Joint(record.entity).position(ecm)),
-    "JointVelocity": _of("joint", lambda ecm, record: _Joint(record.entity).velocity(ecm)),
-    "JointTransmittedWrench": _of("joint", lambda ecm, record: _Joint(record.entity).transmitted_wrench(ecm)),
-    "ParentLinkName": _of("joint", lambda ecm, record: _Joint(record.entity).parent_link_name(ecm)),
-    "ChildLinkName": _of("joint", lambda ecm, record: _Joint(record.entity).child_link_name(ecm)),
+    "JointPosition": _told("joint", _Joint.position),
+    "JointVelocity": _told("joint", _Joint.velocity),
+    "JointTransmittedWrench": _told("joint", _Joint.transmitted_wrench),
+    "ParentLinkName": _told("joint", _Joint.parent_link_name),
+    "ChildLinkName": _told("joint", _Joint.child_link_name),
     "ThreadPitch": _of("joint", lambda _, record: record.scene.thread_pitch),
-    "SensorTopic": _of("sensor", lambda ecm, record: _Sensor(record.entity).topic(ecm)),
-    "Gravity": _of("world", lambda ecm, record: _World(record.entity).gravity(ecm)),
-    "MagneticField": _of("world", lambda ecm, record: _World(record.entity).magnetic_field(ecm)),
-    "Atmosphere": _of("world", lambda ecm, record: _World(record.entity).atmosphere(ecm)),
-    "SphericalCoordinates": _of("world", lambda ecm, record: _World(record.entity).spherical_coordinates(ecm)),
+    "SensorTopic": _told("sensor", _Sensor.topic),
+    "Gravity": _told("world", _World.gravity),
+    "MagneticField": _told("world", _World.magnetic_field),
+    "Atmosphere": _told("world", _World.atmosphere),
+    "SphericalCoordinates": _told("world", _World.spherical_coordinates),
 }
 _TAG_READERS: Final[dict[str, _Reader]] = {
     **{name: _of(name.lower(), lambda *_: True) for name in _TAGS},
@@ -152,46 +160,33 @@ _ENABLED: Final = {
 }
 """Component -> reading that its making turns on."""
 
-_Writer = Callable[[EntityComponentManager, int, Any], None]
-
 
 def _numbers(data: Any) -> tuple[float, ...]:
     return tuple(float(v) for v in data)
 
 
-def _pose_command(ecm: EntityComponentManager, entity: int, data: Any) -> None:
-    _Model(entity).set_world_pose_cmd(ecm, data)
-
-
-_COMMANDS: Final[dict[str, tuple[tuple[str, ...], _Writer]]] = {
-    "JointForceCmd": (("joint",), lambda ecm, e, data: ecm.commands.force.update({e: _numbers(data)})),
-    "JointVelocityCmd": (("joint",), lambda ecm, e, data: ecm.commands.velocity.update({e: _numbers(data)})),
-    "JointPositionReset": (("joint",), lambda ecm, e, data: ecm.commands.position_reset.update({e: _numbers(data)})),
-    "JointVelocityReset": (("joint",), lambda ecm, e, data: ecm.commands.velocity_reset.update({e: _numbers(data)})),
-    "WorldPoseCmd": (("model",), _pose_command),
-    "LinearVelocityCmd": (("model", "link"), lambda ecm, e, data: ecm.commands.linear.update({e: vector_of(data)})),
-    "AngularVelocityCmd": (("model", "link"), lambda ecm, e, data: ecm.commands.angular.update({e: vector_of(data)})),
+_COMMANDS: Final[dict[str, tuple[tuple[str, ...], str, Callable[[Any], Any]]]] = {
+    "JointForceCmd": (("joint",), "force", _numbers),
+    "JointVelocityCmd": (("joint",), "velocity", _numbers),
+    "JointPositionReset": (("joint",), "position_reset", _numbers),
+    "JointVelocityReset": (("joint",), "velocity_reset", _numbers),
+    "WorldPoseCmd": (("model",), "pose", pose_of),
+    "LinearVelocityCmd": (("model", "link"), "linear", vector_of),
+    "AngularVelocityCmd": (("model", "link"), "angular", vector_of),
 }
-_WAITING: Final[dict[str, str]] = {
-    "JointForceCmd": "force",
-    "JointVelocityCmd": "velocity",
-    "JointPositionReset": "position_reset",
-    "JointVelocityReset": "velocity_reset",
-    "WorldPoseCmd": "pose",
-    "LinearVelocityCmd": "linear",
-    "AngularVelocityCmd": "angular",
-}
+"""Component -> who takes it, where among the commands it waits, what its data becomes."""
+
 _DESCRIBED: Final = "simkit's own simkit.describe(file)"
 _INSTEAD: Final = {
-    "Geometry": f"{_DESCRIBED}, or Link.compute_axis_aligned_box for its bounds",
-    "Material": _DESCRIBED,
-    "Physics": "info.dt for the step size",
-    "ExternalWorldWrenchCmd": "Link.add_world_wrench",
-    "ContactSensorData": "a subscription to the contact sensor's topic",
-    "DetachableJoint": "the DetachableJoint plugin",
-    "SlipComplianceCmd": "the <surface> of the collision",
-    **dict.fromkeys(("Altimeter", "Imu", "Camera", "GpuLidar", "NavSat", "Magnetometer"), "Sensor and its topic"),
-    **dict.fromkeys(("BatterySoC", "Actuators", "Wind"), "a topic; register_custom_component keeps data of your own"),
+    "Geometry": f"use {_DESCRIBED}, or Link.compute_axis_aligned_box for its bounds",
+    "Material": f"use {_DESCRIBED}",
+    "Physics": "use info.dt for the step size",
+    "ExternalWorldWrenchCmd": "use Link.add_world_wrench",
+    "ContactSensorData": "use a subscription to the contact sensor's topic",
+    "DetachableJoint": "use the DetachableJoint plugin",
+    "SlipComplianceCmd": "use the <surface> of the collision",
+    **dict.fromkeys(("Altimeter", "Imu", "Camera", "GpuLidar", "NavSat", "Magnetometer"), "use Sensor and its topic"),
+    **dict.fromkeys(("BatterySoC", "Actuators", "Wind"), "use a topic; register_custom_component keeps data"),
 }
 NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
 """Components of gz-sim that are known here."""
@@ -214,8 +209,8 @@ def read(ecm: EntityComponentManager, entity: int, kind: Any) -> Any:
         return None
     if proxy.name in _TAG_READERS:
         return proxy if _TAG_READERS[proxy.name](ecm, record) else None
-    if proxy.name in _WAITING:
-        return getattr(ecm.commands, _WAITING[proxy.name]).get(entity)
+    if proxy.name in _COMMANDS:
+        return getattr(ecm.commands, _COMMANDS[proxy.name][1]).get(entity)
     reader = _READERS.get(proxy.name)
     return reader(ecm, record) if reader is not None else None
 
@@ -240,25 +235,43 @@ def write(ecm: EntityComponentManager, entity: int, kind: Any, *data: Any) -> No
             raise TypeError(f"{proxy.name} needs data")
         ecm.custom.setdefault(proxy.name, {})[entity] = proxy if is_tag else data[0]
     elif proxy.name in _COMMANDS:
-        kinds, command = _COMMANDS[proxy.name]
+        kinds, waiting, convert = _COMMANDS[proxy.name]
         if record.kind not in kinds:
             raise TypeError(f"{proxy.name} is for a {' or a '.join(kinds)}, entity {entity} is a {record.kind}")
         if not data or data[0] is None:
             raise TypeError(f"{proxy.name} needs data")
-        command(ecm, entity, data[0])
+        if proxy.name == "WorldPoseCmd":
+            _Model(entity).set_world_pose_cmd(ecm, data[0])  # warns of nested models
+        else:
+            getattr(ecm.commands, waiting)[entity] = convert(data[0])
     elif proxy.name in _ENABLED:
         ecm.enable(entity, _ENABLED[proxy.name], True)
     elif proxy.name == "Pose" and record.kind == "light":
         ecm.handle(entity, "light").set_pose(pose_of(data[0]))
     else:
-        what = f"{proxy.name} of {record.kind} {record.name!r}"
-        raise NotImplementedError(f"{what} is what the simulation says; use a command such as WorldPoseCmd")
+        raise _told_by_simulation(proxy, record)
+
+
+def _told_by_simulation(proxy: ComponentProxy, record: Record) -> NotImplementedError:
+    what = f"{proxy.name} of {record.kind} {record.name!r}"
+    return NotImplementedError(f"{what} is what the simulation says; use a command such as WorldPoseCmd")
+
+
+def mark(ecm: EntityComponentManager, entity: int, kind: Any) -> None:
+    """Takes note that data was changed in place, which is all where it was given from here.
+
+    Raises:
+        NotImplementedError: the simulation says what it is, so the change has no effect.
+    """
+    proxy, record = _checked(kind), ecm.record(entity)
+    if record is not None and record.kind and proxy.name in _READERS and entity not in ecm.custom.get(proxy.name, {}):
+        raise _told_by_simulation(proxy, record)
 
 
 def remove(ecm: EntityComponentManager, entity: int, kind: Any) -> bool:
     """Takes away a component that was given; whether it was there."""
     proxy = _checked(kind)
-    if proxy.name in _WAITING and getattr(ecm.commands, _WAITING[proxy.name]).pop(entity, None) is not None:
+    if proxy.name in _COMMANDS and getattr(ecm.commands, _COMMANDS[proxy.name][1]).pop(entity, None) is not None:
         return True
     if proxy.name in _ENABLED and ecm.checks.pop((entity, _ENABLED[proxy.name]), None) is not None:
         return True
@@ -276,6 +289,10 @@ class ComponentCursor:
     entity = 0
     components: list[Any]
 
+    def __iter__(self) -> Iterator[Any]:
+        """`for entity, (pose, name) in ecm.each([Pose, Name])`"""
+        return iter((self.entity, tuple(self.components)))
+
 
 def each(ecm: EntityComponentManager, kinds: list[Any]) -> Iterator[ComponentCursor]:
     """Every entity that has them all, by number; the same cursor each time."""
@@ -290,4 +307,4 @@ def each(ecm: EntityComponentManager, kinds: list[Any]) -> Iterator[ComponentCur
 def __getattr__(name: str) -> Any:
     if name in NAMES:
         return ComponentProxy(name)
-    raise absent("gz.sim.components", name, NAMES, _INSTEAD)
+    raise absent("gz.sim.components", name, NAMES, _INSTEAD, "register_custom_component makes one to keep data in")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.gzpython.absent import absent
@@ -15,19 +15,18 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _INSTEAD: Final = {
-    "request_remove_entity": "simkit's own sim.remove(name)",
-    "clone": "simkit's own sim.spawn(source, name)",
-    "entity_by_components": "Model.link_by_name, World.model_by_name and their like, or each",
-    "children_by_components": "Model.links, Link.collisions and their like, or each",
-    "entities_by_components": "World.models, Model.links and their like, or each",
-    "component_types": "entity_has_component_type",
-    "state": "simkit's own sim.snapshot()",
-    "set_state": "simkit's own sim.restore(snapshot)",
-    "changed_state": "simkit's own sim.snapshot()",
-    "descendants": "Model.links, Model.models and their like",
-    "pin_entity": "nothing: entities are never taken away by levels",
-    "each_new": "each",
-    "each_removed": "each",
+    "request_remove_entity": "use simkit's own sim.remove(name)",
+    "clone": "use simkit's own sim.spawn(source, name)",
+    "entity_by_components": "use Model.link_by_name, World.model_by_name and their like, or each",
+    "children_by_components": "use Model.links, Link.collisions and their like, or each",
+    "entities_by_components": "use World.models, Model.links and their like, or each",
+    "component_types": "use entity_has_component_type",
+    "state": "use simkit's own sim.snapshot()",
+    "changed_state": "use simkit's own sim.snapshot()",
+    "descendants": "use Model.links, Model.models and their like",
+    "pin_entity": "entities are never taken away by levels",
+    **dict.fromkeys(("each_new", "each_new_data", "each_removed", "each_removed_data"), "use each_data and has_entity"),
+    "component_state": "use component_data: nothing is sent of components, so none is marked as changed",
 }
 
 
@@ -36,6 +35,9 @@ class EntityComponentManager:
 
     Of a simulation it is a view: components of gz-sim that simkit has a twin of are read from the simulation and
     commands among them go to it. Made by itself it holds only what is put into it.
+
+    Attributes:
+        published: of a simulation, the joints whose state a plugin of gz publishes, by scoped name.
     """
 
     def __init__(self) -> None:
@@ -46,6 +48,8 @@ class EntityComponentManager:
         self.checks: dict[tuple[int, str], int] = {}
         self.values: dict[tuple[int, str], Any] = {}
         self.custom: dict[str, dict[int, Any]] = {}
+        self.published: Callable[[Any], frozenset[str]] = lambda _: frozenset()
+        self._published: tuple[Any, frozenset[int]] = (None, frozenset())
 
     # ------------------------------------------------------------------ the simulation behind it
 
@@ -101,7 +105,18 @@ class EntityComponentManager:
     def is_enabled(self, entity: int, what: str) -> bool | None:
         """None where a reading was not asked for; False until a step has passed since."""
         since = self.checks.get((entity, what))
+        if since is None and what in ("position", "velocity") and entity in self._published_joints():
+            since = 0
         return None if since is None else self.simulation.tick != since
+
+    def _published_joints(self) -> frozenset[int]:
+        """Joints of a JointStatePublisher: as in gz-sim it has position and velocity read for everybody."""
+        sim = self.simulation
+        if sim.tick == 0 or sim.structure is not self._published[0]:  # while loading, plugins still come
+            names = self.published(sim)
+            own = (r.entity for r in self.sync() if r.kind == "joint" and r.scene.scoped in names)
+            self._published = (sim.structure, frozenset(own))
+        return self._published[1]
 
     # ------------------------------------------------------------------ state
 
@@ -167,6 +182,8 @@ class EntityComponentManager:
 
         return components.read(self, entity, kind)
 
+    component_data = component  # its name in later versions
+
     def create_component(self, entity: int, kind: Any, *data: Any) -> None:
         """Gives an entity a component, or other data to the one it has."""
         from simkit.gzpython.sim import components
@@ -190,13 +207,24 @@ class EntityComponentManager:
         return components.remove(self, entity, kind)
 
     def set_changed(self, entity: int, kind: Any, state: Any = None) -> None:
-        """Nothing is sent of components, so nothing is to be marked."""
+        """Says that the data of a component was changed in place.
+
+        Raises:
+            NotImplementedError: of something that the simulation says, which then stays as it is.
+        """
+        from simkit.gzpython.sim import components
+
+        components.mark(self, entity, kind)
 
     def each(self, kinds: Any) -> Iterator[Any]:
         """Entities that have every one of some components: `.entity`, `.components`; one object moves along."""
         from simkit.gzpython.sim import components
 
         return components.each(self, list(kinds))
+
+    def each_data(self, *kinds: Any) -> list[tuple[Any, ...]]:
+        """The same as a list, as later versions have it: (entity, data, data, …)."""
+        return [(item.entity, *item.components) for item in self.each(kinds)]
 
     def __getattr__(self, name: str) -> Any:
         raise absent("EntityComponentManager", name, dir(type(self)), _INSTEAD)

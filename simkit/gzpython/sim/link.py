@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.gzpython.math.inertia import Inertiald, MassMatrix3d
+from simkit.gzpython.math.look import AxisAlignedBox
 from simkit.gzpython.math.matrices import Matrix3d
 from simkit.gzpython.math.pose import Pose3d
 from simkit.gzpython.math.vectors import Vector3d
 from simkit.gzpython.sim.base import EntityHandle
+from simkit.gzpython.sim.boxes import box_of, moved
 from simkit.gzpython.sim.convert import cross, gz_pose, gz_vector, vector_of
 from simkit.gzpython.sim.ecm import EntityComponentManager
 
 if TYPE_CHECKING:
     from simkit.gzpython.sim.model import Model
 
-_VELOCITY, _ACCELERATION = "velocity", "acceleration"
+_VELOCITY, _ACCELERATION, _BOX = "velocity", "acceleration", "box"
 
 
 class Link(EntityHandle):
@@ -154,6 +156,26 @@ class Link(EntityHandle):
         assert linear is not None and angular is not None
         turning = float(angular.dot(inertial.moi() * angular))
         return 0.5 * (inertial.mass_matrix().mass() * float(linear.squared_length()) + turning)
+
+    # ------------------------------------------------------------------ the box around it
+
+    def enable_bounding_box_checks(self, ecm: EntityComponentManager, enable: bool = True) -> None:
+        if self.valid(ecm):
+            ecm.enable(self._entity, _BOX, enable)
+
+    def axis_aligned_box(self, ecm: EntityComponentManager) -> AxisAlignedBox | None:
+        """Around its collisions, along the link's axes; None until it is enabled, empty without collisions."""
+        return None if self._reading(ecm, _BOX) is None else self.compute_axis_aligned_box(ecm)
+
+    def world_axis_aligned_box(self, ecm: EntityComponentManager) -> AxisAlignedBox | None:
+        """Along the world's axes, around the box along the link's; None until it is enabled."""
+        box = self.axis_aligned_box(ecm)
+        return moved(box, self._handle(ecm).pose) if box is not None else None
+
+    def compute_axis_aligned_box(self, ecm: EntityComponentManager) -> AxisAlignedBox | None:
+        """Around its collisions, along the link's axes, whether enabled or not."""
+        link = self._handle(ecm)
+        return box_of(ecm.simulation, link.scoped) if link is not None else None
 
     # ------------------------------------------------------------------ commands
 

@@ -1,0 +1,3 @@
+import simkit
+class F(simkit.ModelPlugin):
+    def load(self,p,q): raise ValueError(1)
