@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -12,7 +11,7 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.odometry import TRANSFORMS
-from simkit.plugins.part_poses import Part, PartPoses, Seven, Taken, what_joints_move
+from simkit.plugins.part_poses import Part, PartPoses, Taken, stamped, vector_message, what_joints_move
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -96,7 +95,7 @@ class PosePublisher(ModelPlugin):
         poses = self.sim.names.shared(f"{which} poses {id(self)}", partial(PartPoses, self.sim, parts))
         taken, time_ns = poses.take(), self.sim.time_ns
         if self._is_vector:
-            out.publish_later(partial(_vector, time_ns, taken))
+            out.publish_later(partial(vector_message, time_ns, taken))
             return
         for index in range(len(parts)):
             out.publish_later(partial(_message, self._type, time_ns, taken, index))
@@ -138,16 +137,11 @@ def _common_rate(rate: float, other: float) -> float:
     return high if low > 0 and (high / low).is_integer() else 0.0
 
 
-def _vector(time_ns: int, taken: Taken) -> Any:
-    """One message of all parts."""
-    return msgs.type_of(TRANSFORMS)([_stamped(time_ns, *one) for one in taken.placed])
-
-
 def _message(type_name: str, time_ns: int, taken: Taken, index: int) -> Any:
     """The message of one part."""
     frame, child, seven = taken.placed[index]
     if type_name == STAMPED:
-        return _stamped(time_ns, frame, child, seven)
+        return stamped(time_ns, frame, child, seven)
     x, y, z, w, i, j, k = seven
     place, turn = {"x": x, "y": y, "z": z}, {"x": i, "y": j, "z": k, "w": w}
     if type_name.endswith("/Transform"):
@@ -155,15 +149,3 @@ def _message(type_name: str, time_ns: int, taken: Taken, index: int) -> Any:
     if type_name.endswith("/Pose"):
         return msgs.make(type_name, position=place, orientation=turn)
     return msgs.make(type_name, header=msgs.header(time_ns, frame), pose={"position": place, "orientation": turn})
-
-
-def _stamped(time_ns: int, frame: str, child: str, seven: Seven) -> Any:
-    stamped, transform, vector, quaternion = _stamped_types()
-    x, y, z, w, i, j, k = seven
-    return stamped(msgs.header(time_ns, frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
-
-
-@functools.cache
-def _stamped_types() -> tuple[Any, ...]:
-    names = ("TransformStamped", "Transform", "Vector3", "Quaternion")
-    return tuple(msgs.type_of(f"geometry_msgs/msg/{name}") for name in names)

@@ -9,7 +9,8 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joint_axes import JointAxis, find_joints
-from simkit.plugins.joint_servo import Layout, VelocityServo
+from simkit.plugins.joint_layout import Layout
+from simkit.plugins.joint_servo import VelocityServo
 from simkit.plugins.once import Once
 from simkit.plugins.pid import FIELDS, Pid
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from simkit import msgs
+from simkit.plugins.odometry import TRANSFORMS
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
@@ -107,21 +110,21 @@ class PartPoses:
 
     def _find(self, part: Part) -> _Found:
         if part.place is not None:
-            return _Found(part, _numbers(part.place))
+            return _Found(part, numbers(part.place))
         assert part.handle is not None
         body, offset = self._spot(part.handle)
         if part.within is None:
-            place = _numbers(offset)
+            place = numbers(offset)
             return _Found(part, place) if body == 0 else _Found(part, None, self._row(body), place)
         base, its_offset = self._spot(part.within)
         if body == base:
-            return _Found(part, _numbers(its_offset.inverse() @ offset))
+            return _Found(part, numbers(its_offset.inverse() @ offset))
         weld = self._sim.mj_model.body_weldid
         if weld[body] == weld[base] != 0:  # no joint between them: they are as they were loaded for ever
-            place = _numbers(part.within.scene.pose_world.inverse() @ part.handle.scene.pose_world)
+            place = numbers(part.within.scene.pose_world.inverse() @ part.handle.scene.pose_world)
             return _Found(part, place)
-        back = _numbers(its_offset.inverse())
-        return _Found(part, None, self._row(body), _numbers(offset), self._row(base), back)
+        back = numbers(its_offset.inverse())
+        return _Found(part, None, self._row(body), numbers(offset), self._row(base), back)
 
     def _spot(self, handle: Any) -> tuple[int, Pose]:
         """The body that carries a link or a model, and its frame in that of the body."""
@@ -156,12 +159,31 @@ class Taken:
         return placed
 
 
+def vector_message(time_ns: int, taken: Taken, others: Sequence[Placed] = ()) -> Any:
+    """A `tf2_msgs/msg/TFMessage` of all parts, and others after them."""
+    return msgs.type_of(TRANSFORMS)([stamped(time_ns, *one) for one in (*taken.placed, *others)])
+
+
+def stamped(time_ns: int, frame: str, child: str, seven: Seven) -> Any:
+    """A `geometry_msgs/msg/TransformStamped` of one part."""
+    message, transform, vector, quaternion = _stamped_types()
+    x, y, z, w, i, j, k = seven
+    return message(msgs.header(time_ns, frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
+
+
+@functools.cache
+def _stamped_types() -> tuple[Any, ...]:
+    names = ("TransformStamped", "Transform", "Vector3", "Quaternion")
+    return tuple(msgs.type_of(f"geometry_msgs/msg/{name}") for name in names)
+
+
 def what_joints_move(joints: Sequence[Any]) -> frozenset[str]:
     """Scoped names of the links at either end of a joint that is not fixed."""
     return frozenset(end for joint in joints if joint.type != "fixed" for end in (joint.parent_link, joint.child_link))
 
 
-def _numbers(pose: Pose) -> Seven:
+def numbers(pose: Pose) -> Seven:
+    """A pose as plain numbers."""
     x, y, z = pose.position.tolist()
     w, i, j, k = pose.quaternion.tolist()
     return x, y, z, w, i, j, k

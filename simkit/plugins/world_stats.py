@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
@@ -12,8 +13,8 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.clock import TYPE as CLOCK
-from simkit.plugins.odometry import TRANSFORMS, transforms
-from simkit.pose import Pose
+from simkit.plugins.odometry import TRANSFORMS
+from simkit.plugins.part_poses import Part, PartPoses, Taken, numbers, vector_message
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -116,24 +117,32 @@ class WorldStats(WorldPlugin):
     def _clock(self, _topic: str) -> Any:
         return msgs.type_of(CLOCK)(msgs.time(self.sim.time_ns))
 
-    def _all_poses(self, _topic: str) -> Any:
-        found = [placed for scene in self.sim.structure.models.values() for placed in self._of_model(scene, True)]
-        lights = [light for light in self.sim.lights.values() if not light.scene.link]
-        found += [(self.sim.world.name, light.scoped, light.pose) for light in lights]
-        return transforms(self.sim.time_ns, *found)
+    def _all_poses(self, _topic: str) -> Callable[[], Any]:
+        sim = self.sim
+        lights = [light for light in sim.lights.values() if not light.scene.link]
+        placed = [(sim.world.name, light.scoped, numbers(light.pose)) for light in lights]
+        return partial(vector_message, sim.time_ns, self._take("all poses", with_all=True), placed)
 
-    def _moving_poses(self, _topic: str) -> Any:
-        moving = [scene for scene in self.sim.structure.models.values() if not scene.static]
-        return transforms(self.sim.time_ns, *(placed for scene in moving for placed in self._of_model(scene, False)))
+    def _moving_poses(self, _topic: str) -> Callable[[], Any]:
+        return partial(vector_message, self.sim.time_ns, self._take("moving poses", with_all=False))
 
-    def _of_model(self, scene: SceneModel, with_visuals: bool) -> Iterator[tuple[str, str, Pose]]:
+    def _take(self, name: str, *, with_all: bool) -> Taken:
+        """Where things are now: all models with their visuals, or those that may move without."""
+        poses: PartPoses = self.sim.names.shared(name, lambda: PartPoses(self.sim, self._parts(with_all)))
+        return poses.take()
+
+    def _parts(self, with_all: bool) -> list[Part]:
+        scenes = [s for s in self.sim.structure.models.values() if with_all or not s.static]
+        return [part for scene in scenes for part in self._of_model(scene, with_all)]
+
+    def _of_model(self, scene: SceneModel, with_visuals: bool) -> Iterator[Part]:
         sim, outer = self.sim, scene.scoped.rpartition("::")[0]
-        pose = sim.model(scene.scoped).pose
-        back = pose.inverse()
-        yield outer or sim.world.name, scene.scoped, sim.model(outer).pose.inverse() @ pose if outer else pose
+        model = sim.model(scene.scoped)
+        within = sim.model(outer) if outer else None
+        yield Part(outer or sim.world.name, scene.scoped, handle=model, within=within)
         for link in scene.links:
-            yield scene.scoped, link.scoped, back @ sim.link(link.scoped).pose
+            yield Part(scene.scoped, link.scoped, handle=sim.link(link.scoped), within=model)
             for visual in link.visuals if with_visuals else ():
-                yield link.scoped, visual.scoped, visual.pose_link
+                yield Part(link.scoped, visual.scoped, visual.pose_link)
         for nested in scene.models:
             yield from self._of_model(nested, with_visuals)

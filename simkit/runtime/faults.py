@@ -196,6 +196,11 @@ def _codes() -> frozenset[CodeType]:
     return frozenset((*inner, called.__code__))
 
 
+def is_guarded(callback: object) -> bool:
+    """Whether it is of `Faults.guard`: what still comes out of it is to go on upwards."""
+    return getattr(callback, "__code__", None) in _codes()
+
+
 def called(plugin: Any, hook: str, method: Callable[..., Any], *values: Any) -> Any:  # noqa: ARG001 - `at_work` reads
     """Calls something of a plugin that is not guarded (`prepare`, `load`), so that `at_work` finds it."""
     return method(*values)

@@ -49,7 +49,7 @@ class OnDemand:
         Args:
             topics: topic -> its type.
             rate: [Hz].
-            make: gives the message for a topic.
+            make: gives the message for a topic, or what makes it once somebody looks at it.
             is_aside: whether recorders and counters leave them out unless they are named.
             is_listed: whether those are listed while nobody reads them.
 
@@ -65,7 +65,11 @@ class OnDemand:
         def publish(_: int) -> None:
             for topic, publisher in publishers.items():
                 if publisher.wanted:
-                    publisher.publish(make(topic))
+                    message = make(topic)
+                    if callable(message):
+                        publisher.publish_later(message)
+                    else:
+                        publisher.publish(message)
 
         for topic in topics:
             bus.on_audience(topic, self.look)

@@ -22,6 +22,7 @@ from simkit.runtime.audience import (
 )
 from simkit.runtime.clashes import clash_with
 from simkit.runtime.ends import Listener, Publisher
+from simkit.runtime.faults import is_guarded
 from simkit.runtime.inbox import DEPTH, Inbox
 
 __all__ = ["NOTHING", "Callback", "Later", "Listener", "OnError", "Publisher", "Subscription", "TopicBus", "absolute"]
@@ -305,7 +306,7 @@ class TopicBus:
 
     def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
         """What becomes of a subscriber that raised, called while that is being handled."""
-        if isinstance(error, (PluginError, SimulationDiverged)):
+        if isinstance(error, (PluginError, SimulationDiverged)) or is_guarded(subscription.callback):
             raise error
         topic, name = subscription.topic, callback_name(subscription.callback)
         if subscription.on_error == "stop":
