@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import partial
@@ -309,9 +309,14 @@ def _nothing(*_: Any, **__: Any) -> Any:
 
 
 def _model_to_spawn(
-    source: Source, *, resolver: Resolver, name: str | None, pose: Pose | None, taken: set[str]
-) -> tuple[SceneModel, Diagnostics]:
-    diagnostics = Diagnostics()
+    source: Source,
+    diagnostics: Diagnostics,
+    *,
+    resolver: Resolver,
+    name: str | None = None,
+    pose: Pose | None = None,
+    taken: Container[str] = (),
+) -> SceneModel:
     scene = load_scene(
         source,
         resolver=resolver,
@@ -330,4 +335,4 @@ def _model_to_spawn(
     diagnostics.raise_if_errors()
     model = models[0]
     assert model is not None
-    return model, diagnostics
+    return model

@@ -11,13 +11,13 @@ import numpy as np
 from simkit import msgs
 from simkit.plugins.world_entities import (
     Refused,
-    added,
     find,
     finite,
     frame_of,
     handle_of,
     pose_fields,
     pose_of,
+    spawned,
     vector_fields,
     vector_of,
 )
@@ -60,7 +60,7 @@ def spawn(sim: Simulation, xml: str, name: str, namespace: str, pose_message: An
         number = 0
         while name in sim.models:
             name, number = f"{wanted}_{number}", number + 1
-    return added(sim.spawn, source, name, pose)
+    return str(spawned(sim.spawn, source, name, pose).name)
 
 
 def in_namespace(xml: str, namespace: str) -> str:

@@ -66,14 +66,14 @@ def heeding(sim: Simulation, name: str, does: Callable[[Any], Any]) -> Callable[
     return handle
 
 
-def added(make: Callable[..., Any], *values: Any) -> str:
-    """The name of the model that `sim.spawn` or `sim.clone` adds.
+def spawned(make: Callable[..., Any], *values: Any) -> Any:
+    """What `sim.spawn`, `sim.spawn_all` or `sim.clone` adds.
 
     Raises:
         Refused: a plugin of the model raised when it was loaded; the world is as before.
     """
     try:
-        return str(make(*values).name)
+        return make(*values)
     except PluginError as error:
         raise Refused(str(error)) from error
 

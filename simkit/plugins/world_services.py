@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import replace
 from typing import Any, Final
 
@@ -14,7 +14,6 @@ from simkit.plugins.base import WorldPlugin
 from simkit.plugins.world_entities import (
     KINDS,
     Refused,
-    added,
     answering,
     colour_of,
     entity_id,
@@ -27,6 +26,7 @@ from simkit.plugins.world_entities import (
     pose_fields,
     pose_of,
     scoped_names,
+    spawned,
     vector_of,
 )
 from simkit.plugins.world_physics import set_physics
@@ -119,36 +119,61 @@ class WorldServices(WorldPlugin):
 
     def _create_multiple(self, request: Any) -> None:
         with self.sim.all_or_none():
+            waiting: dict[str, tuple[str, Pose | None]] = {}
             for factory in request.entity_factories:
-                self._spawn(factory)
+                if factory.clone_name or factory.relative_to not in ("", "world"):  # may be of one that waits
+                    self._spawn_waiting(waiting)
+                    self._spawn(factory)
+                else:
+                    source, name, pose = self._wanted(factory, waiting)
+                    if name is None:
+                        name = self._free_name(self.sim.name_in_file(source), False, waiting)
+                    waiting[name] = source, pose
+            self._spawn_waiting(waiting)
 
-    def _spawn(self, factory: Any) -> str:
-        sim = self.sim
+    def _spawn_waiting(self, waiting: dict[str, tuple[str, Pose | None]]) -> None:
+        """Spawns models by name, compiled once for all of them."""
+        if waiting:
+            spawned(self.sim.spawn_all, [(source, name, pose) for name, (source, pose) in waiting.items()])
+            waiting.clear()
+
+    def _spawn(self, factory: Any) -> None:
+        if factory.clone_name:
+            pose = self._asked_pose(factory)
+            _, old = find(self.sim, factory.clone_name, ("model",))
+            spawned(self.sim.clone, old, self._free_name(factory.name or old, True), pose)
+        else:
+            spawned(self.sim.spawn, *self._wanted(factory))
+
+    def _wanted(self, factory: Any, waiting: Container[str] = ()) -> tuple[str, str | None, Pose | None]:
+        """The source, name and pose of a model to be spawned, as `sim.spawn` takes them."""
+        pose = self._asked_pose(factory)
+        source, name = factory.sdf or factory.sdf_filename, factory.name or None
+        if factory.allow_renaming:
+            name = self._free_name(name or self.sim.name_in_file(source), True, waiting)
+        elif name is not None:
+            self._free_name(name, False, waiting)
+        return source, name, pose
+
+    def _asked_pose(self, factory: Any) -> Pose | None:
+        """Where a model is to be spawned; None for the file's own."""
         ways = {"sdf": factory.sdf, "sdf_filename": factory.sdf_filename, "clone_name": factory.clone_name}
         given = [way for way, value in ways.items() if value]
         if len(given) != 1:
             raise Refused(f"found {' and '.join(given) or 'none'} of sdf, sdf_filename and clone_name, allowed is one")
         asked = pose_of(factory.pose)
         # the message cannot leave its pose out: where there is nothing in it, the file's own is meant
-        pose = None if asked == IDENTITY and not factory.relative_to else frame_of(sim, factory.relative_to) @ asked
-        if given == ["clone_name"]:
-            _, old = find(sim, factory.clone_name, ("model",))
-            return added(sim.clone, old, self._free_name(factory.name or old, True), pose)
-        source = factory.sdf or factory.sdf_filename
-        name = factory.name or None
-        if factory.allow_renaming:
-            name = self._free_name(name or sim.name_in_file(source), True)
-        elif name is not None:
-            self._free_name(name, False)
-        return added(sim.spawn, source, name, pose)
+        if asked == IDENTITY and not factory.relative_to:
+            return None
+        return frame_of(self.sim, factory.relative_to) @ asked
 
-    def _free_name(self, name: str, may_rename: bool) -> str:
+    def _free_name(self, name: str, may_rename: bool, waiting: Container[str] = ()) -> str:
         """The name, or with a number behind it where it is taken, as gz does; raises Refused."""
-        taken = self.sim.models
-        if name in taken and not may_rename:
+        models = self.sim.models
+        if (name in models or name in waiting) and not may_rename:
             raise Refused(f"there is a model {name!r} already, and allow_renaming is false")
         wanted, number = name, 0
-        while name in taken:
+        while name in models or name in waiting:
             name, number = f"{wanted}_{number}", number + 1
         return name
 

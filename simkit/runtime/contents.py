@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -116,12 +116,26 @@ class Contents(Aspect):
             LoadError: the source has errors, or the name is taken.
             InputError: no model can have this name.
         """
+        return self.spawn_all([(source, name, pose)])[0]
+
+    def spawn_all(self, models: Iterable[tuple[Any, str | None, Pose | None]]) -> list[Model]:
+        """Adds several models at once, which takes little longer than one; all of them or none.
+
+        Args:
+            models: source, name and pose of each, as for `spawn`.
+
+        Raises:
+            LoadError: one of the sources has errors, or its name is taken.
+            InputError: no model can have one of the names.
+        """
         self._whole._check_open()
-        if name is not None:
-            check_name(name)
-        name = self._population.spawn(source, name, pose)
+        wanted = list(models)
+        for _, name, _ in wanted:
+            if name is not None:
+                check_name(name)
+        names = self._population.spawn(wanted)
         self._whole.reschedule()
-        return self.model(name)
+        return [self.model(name) for name in names]
 
     def remove(self, name: str) -> None:
         """Takes a top-level model away while time goes on."""

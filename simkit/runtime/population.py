@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics
@@ -23,8 +23,10 @@ from simkit.scene import SceneJoint, SceneModel
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
-ModelLoader = Callable[..., tuple[SceneModel, Diagnostics]]
+ModelLoader = Callable[..., SceneModel]
 PartsMaker = Callable[..., Parts]
+Wanted = tuple[Any, str | None, Pose | None]
+"""What a model is read from (or a model), and the name and the pose that it gets instead of its own."""
 
 
 class Population:
@@ -48,36 +50,37 @@ class Population:
         self.loaded_plugins: list[Any] = []
         self.structure: Structure
 
-    def spawn(self, source: Any, name: str | None, pose: Pose | None) -> str:
-        """Adds a model; returns its name. Where it fails, all is as before."""
+    def spawn(self, wanted: Sequence[Wanted]) -> list[str]:
+        """Adds models, compiled once for all of them; returns their names. Where one fails, all is as before."""
         sim, old = self._sim, self.structure
-        if isinstance(source, SceneModel):  # a copy of what is there
-            scene, found = source, Diagnostics()
-        else:
-            scene, found = self._load_model(source, name=name, pose=pose, taken=set(old.models))
-        before = take(sim)
-        builder = old.builder.copy()
-        builder.add_model(scene)
-        parts = self._made(scene, builder, found)
+        before, builder, found = take(sim), old.builder.copy(), Diagnostics()
+        models, parts, names = dict(old.models), dict(old.parts), []
+        for source, name, pose in wanted:
+            scene = source  # a copy of what is there
+            if not isinstance(source, SceneModel):
+                scene = self._load_model(source, found, name=name, pose=pose, taken=models)
+            builder.add_model(scene)
+            models[scene.name], parts[scene.name] = scene, self._made(scene, builder, found)
+            names.append(scene.name)
         compiled = builder.recompile(old.compiled, sim.mj_data)
-        models, all_parts = {**old.models, scene.name: scene}, {**old.parts, scene.name: parts}
-        self.switch(Structure(builder, compiled, models, old.movable, all_parts))
-        self._start_or_restore(parts, found, before)
+        self.switch(Structure(builder, compiled, models, old.movable, parts))
+        self._start_or_restore([parts[name] for name in names], found, before)
         # a new schedule asks every sensor when it is due, so they have been started
-        own = {link.scoped for link in scene.all_links()}
-        soften(sim, {g for n, link in compiled.names.links.items() if n in own for g in link.geoms})
-        return scene.name
+        new = {link.scoped for name in names for link in models[name].all_links()}
+        soften(sim, {g for n, link in compiled.names.links.items() if n in new for g in link.geoms})
+        return names
 
     def read(self, source: Any) -> SceneModel:
         """A model as its own file has it, without spawning it. Raises LoadError."""
-        return self._load_model(source, name=None, pose=None, taken=set())[0]
+        return self._load_model(source, Diagnostics())
 
     def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> str:
         """Fits a sensor to a link or a joint; returns its scoped name. Where it fails, all is as before."""
         sim, old = self._sim, self.structure
         _, owner = fitting.find_owner(old, name)
         text = fitting.as_model(fitting.as_text(sensor), isinstance(owner, SceneJoint))
-        read, found = self._load_model(text, name=None, pose=None, taken=set())
+        found = Diagnostics()
+        read = self._load_model(text, found)
         top, shell, scoped = fitting.fitted(old, name, read)
         before = take(sim)
         builder = old.builder.copy()
@@ -88,7 +91,7 @@ class Population:
         there = old.parts[top]
         joined = Parts([*there.sensors, *parts.sensors], [*there.plugins, *parts.plugins])
         self.switch(Structure(builder, compiled, old.models, old.movable, {**old.parts, top: joined}))
-        self._start_or_restore(parts, found, before)
+        self._start_or_restore([parts], found, before)
         return scoped
 
     def _made(self, scene: SceneModel, builder: Any, found: Diagnostics) -> Parts:
@@ -100,17 +103,18 @@ class Population:
         found.raise_if_errors()
         return parts
 
-    def _start_or_restore(self, parts: Parts, found: Diagnostics, before: Snapshot) -> None:
+    def _start_or_restore(self, added: list[Parts], found: Diagnostics, before: Snapshot) -> None:
         """Starts what was added; where that fails, all is as before."""
         try:
-            self.start([parts], found)
+            self.start(added, found)
         except SimkitError:
             self.undo(before)
             raise
-        for sensor in parts.sensors:
-            sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
-        for plugin, _ in parts.plugins:
-            plugin.report_unread()
+        for parts in added:
+            for sensor in parts.sensors:
+                sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
+            for plugin, _ in parts.plugins:
+                plugin.report_unread()
         self._sim.reports.extend(found)
 
     def undo(self, before: Snapshot) -> None:
