@@ -23,8 +23,9 @@ STEPPING = 0.2  # [s] of wall time that a file that loads is stepped for
 STEPS = 250
 STAND = """<sdf version="1.9"><world name="w"><model name="m"><link name="l"/><link name="k"/>
 <joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/></joint>
+<link name="o"/><joint name="i" type="revolute"><parent>l</parent><child>o</child><axis/></joint>
 <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"><topic>cmd_vel</topic>
-<left_joint>j</left_joint><right_joint>j</right_joint></plugin>
+<left_joint>j</left_joint><right_joint>i</right_joint></plugin>
 <plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">
 <joint_name>j</joint_name></plugin></model></world></sdf>"""
 
