@@ -109,18 +109,7 @@ def load(
     diagnostics.raise_if_errors()
     builder = SpecBuilder(world, diagnostics)
     builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
-    parts: dict[str, Any] = {}
-    try:
-        for model in world.models:
-            parts[model.name] = parts_of_model(model, builder, diagnostics, allowed)
-        parts[""] = parts_of_world(world, builder, diagnostics, allowed)
-        add_made(parts, plugins, world, builder, diagnostics)
-    except Exception:
-        # What was left out for its own fault (a joint without a direction) may be asked for here.
-        diagnostics.raise_if_errors()
-        raise
-    if diagnostics.has_errors:
-        _load_the_rest(world, builder, parts, diagnostics)
+    parts = _all_parts(world, builder, diagnostics, allowed, plugins)
     diagnostics.raise_if_errors(strict)
     compiled = builder.compile()
     diagnostics.raise_if_errors(strict)
@@ -138,6 +127,25 @@ def load(
         simulation.close()
         raise
     return simulation
+
+
+def _all_parts(
+    world: SceneWorld, builder: Any, diagnostics: Diagnostics, allowed: Sequence[Path], plugins: Sequence[Any]
+) -> dict[str, Any]:
+    """The sensors and plugins of every model, of the world (under no name), and those made in Python."""
+    parts: dict[str, Any] = {}
+    try:
+        for model in world.models:
+            parts[model.name] = parts_of_model(model, builder, diagnostics, allowed)
+        parts[""] = parts_of_world(world, builder, diagnostics, allowed)
+        add_made(parts, plugins, world, builder, diagnostics)
+    except Exception:
+        # What was left out for its own fault (a joint without a direction) may be asked for here.
+        diagnostics.raise_if_errors()
+        raise
+    if diagnostics.has_errors:
+        _load_the_rest(world, builder, parts, diagnostics)
+    return parts
 
 
 def describe(
