@@ -226,7 +226,7 @@ def _scene(
         mesh_reader=_triangles,
     )
     from simkit.overrides import apply_overrides
-    from simkit.plugins.sensors_system import with_sensors_colours
+    from simkit.plugins.gz.sensors import with_sensors_colours
 
     if overrides:
         diagnostics.raise_if_errors()

@@ -88,12 +88,12 @@ def _order(one: _Found, places: Mapping[str, tuple[_Place, str | None]]) -> _Pla
 
 
 def parts_of_world(world: SceneWorld, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
-    from simkit.plugins.clock import ClockPublisher
-    from simkit.plugins.gazebo_ros_services import ClassicServices
+    from simkit.plugins.classic.services import ClassicServices
+    from simkit.plugins.drives.tf import StaticTransforms
     from simkit.plugins.made import Hung
-    from simkit.plugins.tf import StaticTransforms
-    from simkit.plugins.world_services import WorldServices
-    from simkit.plugins.world_stats import WorldStats
+    from simkit.plugins.world.clock import ClockPublisher
+    from simkit.plugins.world.services import WorldServices
+    from simkit.plugins.world.stats import WorldStats
     from simkit.runtime import Parts
     from simkit.sensors.known import report_homeless
 

@@ -1,7 +1,7 @@
 """What may stand for a plugin without deriving from `Plugin`: a class, an object or a module with the hooks of gz-sim.
 
 gz-sim's own are `configure`, `pre_update`, `update`, `post_update` and `reset`; a module may have them as functions, or
-a function `get_system` that gives an object with them. What they are called with: `simkit.plugins.gz_system`.
+a function `get_system` that gives an object with them. What they are called with: `simkit.plugins.gz.system`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from simkit.plugins.base import Plugin
 
 def as_plugin(made: Any, diagnostics: Diagnostics, where: Where = NOWHERE) -> Plugin | None:
     """A plugin of what was handed over; None after an error that says what may be."""
-    from simkit.plugins.gz_system import GzSystem
+    from simkit.plugins.gz.system import GzSystem
 
     if isinstance(made, Plugin):
         return made
@@ -33,7 +33,7 @@ def as_plugin(made: Any, diagnostics: Diagnostics, where: Where = NOWHERE) -> Pl
 
 def as_class(found: Any) -> type[Plugin] | None:
     """The class of plugins that a class, or a module with gz's hooks, stands for; None where it is no plugin."""
-    from simkit.plugins.gz_system import GzSystem
+    from simkit.plugins.gz.system import GzSystem
 
     if inspect.isclass(found) and issubclass(found, Plugin):
         return None if inspect.isabstract(found) else found
@@ -49,7 +49,7 @@ def as_class(found: Any) -> type[Plugin] | None:
 
 def has_hooks(made: Any) -> bool:
     """Whether a class, an object or a module has one of gz's hooks, or the function that gives a system."""
-    from simkit.plugins.gz_system import HOOKS
+    from simkit.plugins.gz.system import HOOKS
 
     if isinstance(made, Plugin) or (inspect.isclass(made) and issubclass(made, Plugin)):
         return False
@@ -58,7 +58,7 @@ def has_hooks(made: Any) -> bool:
 
 def system_of(made: Any) -> Any:
     """The object whose hooks are called: what `get_system` gives, an instance of the class, or the thing itself."""
-    from simkit.plugins.gz_system import HOOKS
+    from simkit.plugins.gz.system import HOOKS
 
     if inspect.isclass(made):
         return made()
@@ -68,7 +68,7 @@ def system_of(made: Any) -> Any:
 
 def allowed() -> str:
     """What may be a plugin, in words."""
-    from simkit.plugins.gz_system import HOOKS
+    from simkit.plugins.gz.system import HOOKS
 
     return f"a class derived from simkit's Plugin with a load method, or one with hooks of gz ({', '.join(HOOKS)})"
 

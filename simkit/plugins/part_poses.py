@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit import msgs
-from simkit.plugins.odometry import TRANSFORMS
+from simkit.plugins.drives.odometry import TRANSFORMS
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:

@@ -73,7 +73,7 @@ def test_plugins_of_an_allowed_folder_are_listed_too(tmp_path: Path) -> None:
 def test_info_takes_any_spelling(name: str) -> None:
     text = simkit("info", name).stdout
     assert text.startswith("gz-sim-diff-drive-system: DiffDrive, on a model\n")
-    assert "gz_diff_drive.py:" in text
+    assert "gz/diff_drive.py:" in text
 
 
 def test_info_says_parameters_topics_and_their_types() -> None:

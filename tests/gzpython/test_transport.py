@@ -13,7 +13,7 @@ from simkit import msgs
 from simkit.gzpython.msgs import contents_of, message_class
 from simkit.gzpython.msgs.ros import _twins, from_ros, to_ros
 from simkit.gzpython.transport import AdvertiseMessageOptions, Node
-from simkit.plugins.gz_system import GzSystem
+from simkit.plugins.gz.system import GzSystem
 
 WORLD = """<sdf version="1.9"><world name="w"><model name="body"><link name="link">
   <sensor name="imu" type="imu"><update_rate>100</update_rate></sensor></link></model></world></sdf>"""

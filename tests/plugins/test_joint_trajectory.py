@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from simkit.plugins.joint_trajectory import SECOND, Path, Point, State, active_point, faults
+from simkit.plugins.joints.trajectory import SECOND, Path, Point, State, active_point, faults
 
 
 def point(seconds: float, position: float, *rest: float) -> Point:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.plugins.odometry import DeadReckoning
-from simkit.plugins.odometry_noise import ErringOdometry, FollowedMotion, OdometryNoise, displaced
+from simkit.plugins.drives.odometry import DeadReckoning
+from simkit.plugins.drives.odometry_noise import ErringOdometry, FollowedMotion, OdometryNoise, displaced
 from simkit.pose import Pose
 from simkit.runtime.random import RandomStreams
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from simkit.plugins.pid import Pid
+from simkit.plugins.joints.pid import Pid
 
 
 def test_the_first_call_differentiates_from_zero_and_the_integral_is_bounded_in_the_output() -> None:

@@ -12,7 +12,7 @@ from plugin_worlds import GROUND, stamps, world, xyz, yaw
 
 import simkit
 from simkit.params import Params
-from simkit.plugins.gazebo_ros_planar_move import read_options
+from simkit.plugins.classic.planar_move import read_options
 
 
 def opened(*others: str, step: float = 0.002, pose: str = "0 0 0.1 0 0 0", **values: Any) -> simkit.Simulation:

@@ -1,0 +1,107 @@
+"""Cameras of Gazebo Classic with one picture: `libgazebo_ros_camera.so` of ROS 2 and ROS 1, and ROS 1's variants."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from simkit.params import Params
+from simkit.plugins.base import SensorPlugin
+from simkit.plugins.classic import pictures
+from simkit.plugins.classic.pictures import CameraNames
+
+_NEAREST = 0.4  # [m] where <min_depth> says nothing
+
+
+class GazeboRosCamera(SensorPlugin):
+    """Publishes its camera below `<camera_name>` (by default the sensor's name), in the link's frame.
+
+    Topics: `image_raw` and `camera_info`; of a depth camera also `depth/image_raw`, `depth/camera_info` and `points`,
+    whose axes are optical; of a multicamera both below each camera's name. `<hack_baseline>` [m] stands in the
+    projection matrix (of a multicamera: of all but the left one). `<triggered>` true takes a picture for each message
+    on `image_trigger`, at the sensor's next due time. `<min_depth>` and `<max_depth>` [m] bound the depths. Written as
+    for ROS 1: `<cameraName>`, `<imageTopicName>`, `<cameraInfoTopicName>`, `<frameName>`, `<updateRate>`, ….
+    """
+
+    filenames = ("libgazebo_ros_camera.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        if hasattr(parent, "eyes"):
+            publish_eyes(self, parent, CameraNames(self, parent), lambda name: name)
+        elif pictures.is_camera(self, parent, "camera, depth or multicamera"):
+            names = CameraNames(self, parent)
+            topics = image_topics(names)
+            if parent.has_depth:
+                near, far = pictures.read_depths(params, "min_depth", "max_depth", _NEAREST)
+                parent.bound_depths(near, far if math.isfinite(far) else None)
+                topics["depth_image"] = names.topic("depth/image_raw")
+                topics["depth_camera_info"] = names.topic("depth/camera_info")
+                topics["points"] = names.topic("points")
+            publish(self, parent, names, topics)
+        if params.boolean("triggered", False) and hasattr(parent, "trigger_on"):
+            parent.trigger_on(CameraNames(self, parent).topic("image_trigger"), pictures.EMPTY, counts=True)
+
+
+class GazeboRosTriggeredCamera(SensorPlugin):
+    """ROS 1: as `libgazebo_ros_camera.so`, a picture after a message on `<triggerTopicName>` (`image_trigger`)."""
+
+    filenames = ("libgazebo_ros_triggered_camera.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        if pictures.is_camera(self, parent, "camera"):
+            names = CameraNames(self, parent, is_ros_1=True)
+            publish(self, parent, names, image_topics(names))
+            trigger(self, parent, names)
+
+
+class GazeboRosProsilica(SensorPlugin):
+    """ROS 1: streams as `libgazebo_ros_camera.so` does; it cannot be polled, since there are no services."""
+
+    filenames = ("libgazebo_ros_prosilica.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        if pictures.is_camera(self, parent, "camera"):
+            names = CameraNames(self, parent, is_ros_1=True)
+            publish(self, parent, names, image_topics(names))
+            why = "there are no services; the camera streams"
+            pictures.report_without_effect(self, {"pollServiceName": why, "trigger_mode": why})
+
+
+def image_topics(names: CameraNames) -> dict[str, str]:
+    """Product -> topic of a camera with one picture."""
+    return {"image": names.topic(names.image), "camera_info": names.topic(names.info)}
+
+
+def publish(plugin: SensorPlugin, sensor: Any, names: CameraNames, topics: dict[str, str]) -> None:
+    """Names a camera's topics and frame, and reads what all camera plugins do with it."""
+    params = plugin.params
+    baseline = params.number("hack_baseline", params.number("hackBaseline", 0.0))
+    pictures.name_frame(plugin, sensor)
+    if names.is_ros_1:
+        pictures.take_rate(plugin, sensor)
+    pictures.tell_intrinsics(plugin, sensor, is_ros_1=names.is_ros_1)
+    pictures.report_without_effect(plugin, pictures.CROP)
+    if baseline:
+        sensor.set_baseline(baseline)
+    if "points" in topics:
+        sensor.turn_clouds()
+    sensor.publish_on(topics)
+
+
+def publish_eyes(plugin: SensorPlugin, sensor: Any, names: CameraNames, folder: Any) -> None:
+    """The same for a multicamera.
+
+    Args:
+        folder: gives the name that a camera's topics are below, of the camera's name.
+    """
+    topics = {}
+    for eye in sensor.eyes:
+        topics[f"{eye.name}/image"] = names.topic(names.image, folder(eye.name))
+        topics[f"{eye.name}/camera_info"] = names.topic(names.info, folder(eye.name))
+    publish(plugin, sensor, names, topics)
+
+
+def trigger(plugin: SensorPlugin, sensor: Any, names: CameraNames) -> None:
+    """ROS 1: pictures only after a message on `<triggerTopicName>`."""
+    topic = plugin.params.text("triggerTopicName", "image_trigger")
+    sensor.trigger_on(names.topic(topic), pictures.EMPTY)

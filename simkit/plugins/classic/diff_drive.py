@@ -1,0 +1,331 @@
+"""Differential drive of Gazebo Classic: `libgazebo_ros_diff_drive.so`, with its ROS 2 and its ROS 1 spelling.
+
+Each wheel is a velocity servo limited to the wheel torque. Where it differs from Gazebo Classic on purpose: the
+acceleration ramp follows the commanded rim speed (Classic adds to it what the wheel still lacks, and winds up while a
+wheel is held), and an encoder twist is negative when the robot drives backwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import (
+    COMMAND_TYPES,
+    ODOMETRY,
+    TRANSFORMS,
+    BodyTwist,
+    DeadReckoning,
+    TrueMotion,
+    command_of,
+    odometry_message,
+    planar_covariance,
+    rolling_twist,
+    transforms,
+)
+from simkit.plugins.drives.odometry_noise import (
+    ErringOdometry,
+    FollowedMotion,
+    OdometryNoise,
+    displaced,
+    read_odometry_noise,
+)
+from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.joint_states import JOINT_STATE, joint_state, readings
+from simkit.plugins.lookups import numbers
+from simkit.plugins.once import Once
+from simkit.plugins.ros_names import is_ros_1
+from simkit.pose import Pose, Vector
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+_ROS_1 = ("robotNamespace", "leftJoint", "rightJoint", "wheelSeparation", "wheelDiameter", "commandTopic", "updateRate")
+_CLOSE = 0.01  # rim speed [m/s] below which a wheel takes its target at once
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two opposite wheels: joint names, distance between them [m], radius [m]."""
+
+    left: str
+    right: str
+    separation: float
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """The plugin's parameters; rates Hz, torque N·m, acceleration m/s² at the rim (0: no limit); `noise` is our own."""
+
+    update_rate: float
+    pairs: tuple[Pair, ...]
+    max_torque: float
+    max_acceleration: float
+    command_topic: str
+    odometry_topic: str
+    odometry_frame: str
+    base_frame: str
+    from_encoders: bool
+    publish_odom: bool
+    publish_odom_tf: bool
+    publish_wheel_tf: bool
+    publish_wheel_joint_state: bool
+    publish_ground_truth: bool
+    covariance: tuple[float, float, float]
+    noise: OdometryNoise | None = None
+
+
+def read_options(params: Params) -> Options:
+    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    if is_ros_1(params, _ROS_1):
+        return _read_ros_1(params)
+    command_topic, odometry_topic = "cmd_vel", "odom"
+    for name, fixed in (("command_topic", command_topic), ("odometry_topic", odometry_topic)):
+        # the ROS 2 plugin has no such element; one that only repeats the name it uses anyway is no loss
+        if any(c.name == name and c.value.strip("/") == fixed for c in params.children):
+            params.child(name)
+    return Options(
+        update_rate=params.number("update_rate", 100.0, minimum=0),
+        pairs=_read_pairs(params),
+        max_torque=params.number("max_wheel_torque", 5.0, minimum=0),
+        max_acceleration=params.number("max_wheel_acceleration", 0.0, minimum=0),
+        command_topic=command_topic,
+        odometry_topic=odometry_topic,
+        odometry_frame=params.text("odometry_frame", "odom"),
+        base_frame=params.text("robot_base_frame", "base_footprint"),
+        from_encoders=params.integer("odometry_source", 1, minimum=0, maximum=1) == 0,
+        publish_odom=params.boolean("publish_odom", False),
+        publish_odom_tf=params.boolean("publish_odom_tf", False),
+        publish_wheel_tf=params.boolean("publish_wheel_tf", False),
+        publish_wheel_joint_state=False,
+        publish_ground_truth=params.boolean("publish_ground_truth", False),
+        covariance=_read_covariance(params),
+        noise=read_odometry_noise(params),
+    )
+
+
+def _read_ros_1(params: Params) -> Options:
+    left, right = params.text("leftJoint", "left_joint"), params.text("rightJoint", "right_joint")
+    if params.boolean("legacyMode", False):
+        # for files of before 2016, whose wheels were named the other way round
+        left, right = right, left
+    params.child("rosDebugLevel")  # of the plugin's log
+    pair = Pair(
+        left=left,
+        right=right,
+        separation=params.number("wheelSeparation", 0.34, minimum=1e-6),
+        radius=params.number("wheelDiameter", 0.15, minimum=1e-6) / 2,
+    )
+    publish_tf = params.boolean("publishTf", True)
+    return Options(
+        update_rate=params.number("updateRate", 100.0, minimum=0),
+        pairs=(pair,),
+        max_torque=params.number("wheelTorque", 5.0, minimum=0),
+        max_acceleration=params.number("wheelAcceleration", 0.0, minimum=0),
+        command_topic=params.text("commandTopic", "cmd_vel"),
+        odometry_topic=params.text("odometryTopic", "odom"),
+        odometry_frame=params.text("odometryFrame", "odom"),
+        base_frame=params.text("robotBaseFrame", "base_footprint"),
+        from_encoders=params.choice("odometrySource", ("world", "encoder", "1", "0"), "world") in {"encoder", "0"},
+        publish_odom=publish_tf,  # Gazebo's element of that name is of both
+        publish_odom_tf=params.boolean("publishOdomTF", True) and publish_tf,
+        publish_wheel_tf=params.boolean("publishWheelTF", False),
+        publish_wheel_joint_state=params.boolean("publishWheelJointState", False),
+        publish_ground_truth=params.boolean("publish_ground_truth", False),
+        covariance=_read_covariance(params),
+        noise=read_odometry_noise(params),
+    )
+
+
+def _read_covariance(params: Params) -> tuple[float, float, float]:
+    x = params.number("covariance_x", 1e-5, minimum=0)
+    y = params.number("covariance_y", 1e-5, minimum=0)
+    return x, y, params.number("covariance_yaw", 1e-3, minimum=0)
+
+
+def _read_pairs(params: Params) -> tuple[Pair, ...]:
+    count = params.integer("num_wheel_pairs", 1, minimum=1)
+    left, right = ([c.value for c in params.all(name)] for name in ("left_joint", "right_joint"))
+    for name, found in (("left_joint", left), ("right_joint", right)):
+        if not found:
+            params.text(name, required=True)
+    if left and right and not len(left) == len(right) == count:
+        found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
+        params.error("SK-PARAM-002", f"{found_text}, allowed is one of each for each of {count} <num_wheel_pairs>")
+        return ()
+    separations = numbers(params, "wheel_separation", minimum=1e-6)
+    diameters = numbers(params, "wheel_diameter", minimum=1e-6)
+    # Gazebo's default stands for each pair that the lists do not reach
+    separations += [0.34] * (len(left) - len(separations))
+    diameters += [0.15] * (len(left) - len(diameters))
+    joined = zip(left, right, separations, diameters, strict=False)
+    return tuple(Pair(a, b, separation, diameter / 2) for a, b, separation, diameter in joined)
+
+
+class GazeboRosDiffDrive(ModelPlugin):
+    """Drives pairs of wheels from `cmd_vel`, and says where the robot went on `odom` and `/tf`.
+
+    The last command holds until the next. With `<publish_ground_truth>` (simkit's own) the model's true pose in the
+    world goes out on `ground_truth/odom`, at the same instants as the odometry. With `<odometry_noise>` (simkit's own)
+    the odometry errs from either source, and tells the covariance that its wheels' errors add up to.
+    """
+
+    filenames = ("libgazebo_ros_diff_drive.so",)
+    drives = True
+    is_level = False  # whether the odometry leaves out the height
+
+    def read(self, params: Params) -> Options:
+        """The parameters, in the spelling that they are in."""
+        return read_options(params)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self.options = options = self.read(params)
+        sides = {"left wheel": [p.left for p in options.pairs], "right wheel": [p.right for p in options.pairs]}
+        wheels = find_wheels(scene, sides, params)
+        self._joints: list[tuple[str, str, str]] = []  # scoped names: joint, parent link, child link
+        self._servos: list[Any] = []
+        self._canonical = scene.canonical_link
+        for joint in (joint for pair in zip(*wheels.values(), strict=False) for joint in pair):
+            self._joints.append((joint.scoped, joint.parent_link, joint.child_link))
+            servo = builder.add_velocity_servo(joint.scoped, max_effort=options.max_torque, owner=self.name)
+            self._servos.append(servo)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        options = self.options
+        self.before_step_rate = self.after_step_rate = options.update_rate
+        self._wheels = [self.sim.joint(name) for name, _, _ in self._joints]
+        self._true = TrueMotion(parent, self.sim.link(self._canonical))
+        self._command = (0.0, 0.0)
+        self._rims = [0.0] * len(self._wheels)
+        self._last_ns = self.sim.time_ns
+        self._reckoning = DeadReckoning()
+        self._angles = self._first_angles()
+        self._covariance = planar_covariance(*options.covariance)
+        self._erring, self._followed = self._start_erring()
+        self._last_read_ns = self.sim.time_ns
+        self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
+        self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
+        self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_odom_tf or options.publish_wheel_tf else None
+        self._truth = self.advertise("ground_truth/odom", ODOMETRY) if options.publish_ground_truth else None
+        self._states = None
+        if options.publish_wheel_joint_state:
+            self._states = self.advertise("joint_states", JOINT_STATE)
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_command(self, message: Any) -> None:
+        command = command_of(message)
+        if command is None:
+            self.once.not_finite()
+        else:
+            self._command = command
+
+    def before_step(self) -> None:
+        """Moves each wheel's rim speed towards its target, by at most the acceleration limit."""
+        forward, turn = self._command
+        now = self.sim.time_ns
+        elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
+        for index, pair in enumerate(self.options.pairs):
+            for side, sign in ((0, -1.0), (1, 1.0)):
+                wheel = 2 * index + side
+                target = forward + sign * turn * pair.separation / 2
+                speed = self._ramped(self._rims[wheel], target, elapsed)
+                if speed != self._rims[wheel]:
+                    self._rims[wheel] = speed
+                    self.sim.set_control(self._servos[wheel], speed / pair.radius)
+
+    def _ramped(self, speed: float, target: float, elapsed: float) -> float:
+        limit = self.options.max_acceleration
+        if limit == 0 or abs(target - speed) < _CLOSE:
+            return target
+        step = limit * elapsed
+        return speed + max(-step, min(step, target - speed))
+
+    # ------------------------------------------------------------------ readings
+
+    def after_step(self) -> None:
+        """Odometry, transforms and whatever else was asked for."""
+        options, now = self.options, self.sim.time_ns
+        if self._erring is not None:
+            self._err(self._erring)
+        elif options.from_encoders:
+            self._advance()
+        if self._truth is not None and self._truth.wanted:
+            self._truth.publish(odometry_message(now, "world", options.base_frame, *self._true.state()))
+        odom = self._odom if self._odom is not None and self._odom.wanted else None
+        tf = self._tf if self._tf is not None and self._tf.wanted else None
+        if odom or tf:
+            pose, twist = self._measured()
+            if odom:
+                frames = options.odometry_frame, options.base_frame
+                shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if self.is_level else pose
+                odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *self._covariances()))
+            if tf:
+                tf.publish_later(partial(transforms, now, *self._transforms(pose)))
+        if self._states is not None and self._states.wanted:
+            self._states.publish_later(partial(joint_state, now, readings(self._wheels)))
+
+    def _measured(self) -> tuple[Pose, BodyTwist]:
+        """Pose and twist from the chosen source; the twist in the robot's own axes."""
+        if self._erring is not None:
+            reckoned, twist = self._erring.reckoning, self._erring.twist
+            return (displaced(self._true.state()[0], reckoned) if self._followed is not None else reckoned.pose), twist
+        if not self.options.from_encoders:
+            return self._true.state()
+        pair = self.options.pairs[0]
+        return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
+
+    def _start_erring(self) -> tuple[ErringOdometry | None, FollowedMotion | None]:
+        """The odometry that errs, and the wheels that it is told of where its source is the world."""
+        options, followed = self.options, None
+        if options.noise is None:
+            return None, None
+        pair, angles, start = options.pairs[0], self._angles, None
+        if not options.from_encoders:
+            followed = FollowedMotion(self._true.state()[0], pair.radius, pair.separation)
+            angles, start = followed.angles, followed.start
+        stream = self.random("odometry_noise", 2)
+        return ErringOdometry(options.noise, pair.radius, pair.separation, stream, angles, start), followed
+
+    def _err(self, erring: ErringOdometry) -> None:
+        now = self.sim.time_ns
+        elapsed, self._last_read_ns = (now - self._last_read_ns) * 1e-9, now
+        if self._followed is None:
+            erring.advance(*self._first_angles(), elapsed)
+        else:
+            left, right, sideways = self._followed.follow(self._true.state()[0])
+            erring.advance(left, right, elapsed, sideways)
+
+    def _covariances(self) -> tuple[Vector, ...]:
+        """Those that the wheels' errors add up to, or the file's where they have no random ones."""
+        erring = self._erring
+        if erring is None or not erring.noise.wheel_variance:
+            return (self._covariance,)
+        return erring.messages_covariance()
+
+    def _advance(self) -> None:
+        pair = self.options.pairs[0]
+        angles = self._first_angles()
+        left, right = ((new - old) * pair.radius for new, old in zip(angles, self._angles, strict=True))
+        self._angles = angles
+        self._reckoning.advance(left, right, pair.separation)
+
+    def _first_angles(self) -> tuple[float, float]:
+        left, right = self._wheels[:2]
+        return float(left.position), float(right.position)
+
+    def _transforms(self, base: Pose) -> list[tuple[str, str, Pose]]:
+        found = []
+        if self.options.publish_odom_tf:
+            found.append((self.options.odometry_frame, self.options.base_frame, base))
+        if self.options.publish_wheel_tf:
+            for _, above, below in self._joints:
+                parent, child = self.sim.link(above), self.sim.link(below)
+                found.append((parent.name, child.name, parent.pose.inverse() @ child.pose))
+        return found

@@ -1,0 +1,39 @@
+"""The satellite receiver of Gazebo Classic: `libgazebo_ros_gps_sensor.so` of ROS 2."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from simkit.params import Params
+from simkit.plugins.base import SensorPlugin
+from simkit.plugins.classic.sensor_topics import given_frame
+
+_KINDS = ("gps", "navsat")
+_BACKWARDS = -0.999  # cosine of a heading of 180 degrees, or nearly
+
+
+class GazeboRosGpsSensor(SensorPlugin):
+    """Publishes the fix on `~/out` and the velocity (east, north, up) on `~/vel`, after `<remapping>`.
+
+    In the link's frame or `<frame_name>`.
+    """
+
+    filenames = ("libgazebo_ros_gps_sensor.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        if parent.kind not in _KINDS:
+            self.refuse(parent, "gps")
+            return
+        parent.frame_id = given_frame(parent, params)
+        parent.err_as_classic()
+        self._check_heading(params)
+        parent.publish_on({"fix": self.ros.topic("~/out"), "velocity": self.ros.topic("~/vel")})
+
+    def _check_heading(self, params: Params) -> None:
+        """Classic turns positions by 180 degrees; worlds that undo it are turned here."""
+        place = self.sim.world.spherical_coordinates
+        if place is not None and math.cos(place.heading) < _BACKWARDS and not self.sim.world.gazebo_quirks:
+            message = "<heading_deg> 180 points x to the west; in Gazebo Classic, which is half a turn off, to the east"
+            hint = "<heading_deg>0</heading_deg>, or <gazebo_quirks> for Classic's half turn"
+            params.diagnostics.warning("SK-SENSOR-068", message, place.where, hint)

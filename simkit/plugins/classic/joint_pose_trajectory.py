@@ -1,0 +1,134 @@
+"""Joints put through poses in Gazebo Classic: `libgazebo_ros_joint_pose_trajectory.so`."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.errors import InputError
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.joints.axes import nearest
+from simkit.plugins.joints.trajectory import nanoseconds
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.runtime import Joint, Link, Model
+
+TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
+_WORLD: Final = frozenset({"", "world", "map"})
+_NEVER: Final = 1e18  # [ns]
+
+
+class GazeboRosJointPoseTrajectory(ModelPlugin):
+    """Puts joints at the positions of a `JointTrajectory`, one point after another; between them they are free.
+
+    Gazebo counts the times so: the first point is set at once (or at the time of the header, where that is later), and
+    after each point its `time_from_start` passes before the next. `<simkit:point_times>` from_start sets each at its
+    own time instead. Points are set at `<update_rate>` (ROS 2, 100 Hz; 0: every step), one at a time.
+
+    The header's `frame_id` is `world`, `map`, or a link, of this model or another, that keeps its place; the joints
+    are then that model's. ROS 2: on `set_joint_trajectory`. ROS 1: `<topicName>`, at every step; there the world's
+    physics stands still meanwhile, here it goes on.
+    """
+
+    filenames = ("libgazebo_ros_joint_pose_trajectory.so",)
+    drives = True
+
+    def load(self, parent: Model, params: Params) -> None:
+        self.once = Once(self)
+        self._model = parent
+        is_ros_1 = any(params.has(name) for name in ("topicName", "serviceName", "updateRate", "robotNamespace"))
+        if is_ros_1:
+            self._say_ros_1(params)
+            rate, topic = 0.0, params.text("topicName", "set_joint_trajectory")
+        else:
+            rate, topic = params.number("update_rate", 100.0, minimum=0.0), "set_joint_trajectory"
+        self._period = round(min(1e9 / rate, _NEVER)) if rate > 0.0 else 0
+        self._is_chained = params.choice("point_times", ("chained", "from_start"), "chained") == "chained"
+        self._points: list[tuple[tuple[float, ...], int]] = []
+        self._names: tuple[str, ...] = ()
+        self._of, self._fixed = parent.scoped, ""
+        self._index, self._due, self._start, self._last = 0, 0, 0, 0
+        if topic:
+            self.listen(topic, TRAJECTORY, self._on_trajectory)
+
+    def _say_ros_1(self, params: Params) -> None:
+        params.number("updateRate", 0.0, minimum=0.0)  # read by Gazebo, and used for nothing
+        params.text("serviceName", "")  # of a service that Gazebo is built without
+        message = f"plugin {self.name!r}: the physics goes on while a trajectory plays; Gazebo on ROS 1 stops it"
+        params.diagnostics.note("SK-PLUGIN-046", message, self.where)
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_trajectory(self, message: Any) -> None:
+        frame = str(message.header.frame_id).strip("/")
+        link = self._reference(frame)
+        if link is None and frame not in _WORLD:
+            return
+        model = self._model if link is None else self.sim.model(link.scoped.rsplit("::", 1)[0])
+        names = tuple(str(name) for name in message.joint_names)
+        known = model._below("joints")
+        unknown = [name for name in names if name not in known]
+        if unknown:
+            what = f"a trajectory is left out: model {model.scoped!r} has no joint {unknown[0]!r}"
+            self.once.left_out(unknown[0], what, nearest(unknown[0], list(known)))
+            return
+        points = [(tuple(float(v) for v in p.positions), nanoseconds(p.time_from_start)) for p in message.points]
+        for i, (positions, _) in enumerate(points):
+            if not all(math.isfinite(v) for v in positions):
+                self.once.left_out("finite", f"a trajectory is left out: point {i} has a number that is not finite")
+                return
+        self._names, self._points, self._of = names, points, model.scoped
+        self._fixed = link.scoped if link is not None else ""
+        self._start = self._due = max(nanoseconds(message.header.stamp), self.sim.time_ns)
+        self._index = 0
+
+    def _reference(self, frame: str) -> Link | None:
+        """The link that a trajectory holds in place; None for the world, or after a report."""
+        if frame in _WORLD:
+            return None
+        links: dict[str, Link] = self.sim.entities.tables["link"]
+        own = f"{self.scoped}::{frame}"
+        found = links.get(own) or links.get(frame)
+        found = found or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)
+        if found is None:
+            what = f"a trajectory is left out: its frame_id {frame!r} is neither 'world' nor a link"
+            self.once.left_out(f"frame {frame}", what, nearest(frame, list(links)))
+        return found
+
+    def before_step(self) -> None:
+        if self._index >= len(self._points):
+            return
+        now = self.sim.time_ns
+        positions, time = self._points[self._index]
+        due = self._due if self._is_chained else self._start + time
+        if now < due or now - self._last < self._period:
+            return
+        if len(positions) == len(self._names):
+            self._put(positions)
+        else:
+            counts = f"{len(positions)} positions for {len(self._names)} joint names"
+            self.once.left_out(counts, f"point {self._index} of a trajectory has {counts}; it is left out")
+        self._last = now
+        self._due += time
+        self._index += 1
+
+    def _put(self, positions: tuple[float, ...]) -> None:
+        """Sets the joints; the link of reference, or the model, stays where it is."""
+        model = self.sim.model(self._of)
+        link = self.sim.link(self._fixed) if self._fixed else None
+        before = model.pose if link is None else link.pose
+        for name, position in zip(self._names, positions, strict=True):
+            joint: Joint = model.joint(name)
+            if joint.dof != 1:
+                what = f"joint {joint.scoped!r} is {joint.type} and not set; allowed is a joint with one axis"
+                self.once.left_out(joint.scoped, what)
+                continue
+            try:
+                joint.set_position(position)
+            except InputError as error:
+                self.once.left_out(joint.scoped, str(error))
+        after = model.pose if link is None else link.pose
+        if after != before:
+            model.set_pose(before @ after.inverse() @ model.pose)

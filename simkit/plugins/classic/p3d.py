@@ -1,0 +1,115 @@
+"""Gazebo Classic's true pose of a link as odometry, in ROS 2 and ROS 1 spelling: `libgazebo_ros_p3d.so`."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import LARGEST, Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.lookups import named_link
+from simkit.plugins.ros_names import is_ros_1
+from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+_ROS_1 = ("robotNamespace", "bodyName", "topicName", "frameName", "gaussianNoise", "updateRate")
+_INERTIAL = {"world", "map"}
+
+
+class GazeboRosP3D(ModelPlugin):
+    """Publishes where the link `<body_name>` truly is, and how it moves, on `odom` (ROS 1: `<topicName>`).
+
+    Pose and twist are in the world's axes, or in those of the link that `<frame_name>` names, as seen from it; the
+    twist is that of the link's origin, and never in the link's own axes. `<xyz_offset>` is added to the position, along
+    the axes of the frame, and `<rpy_offset>` turns the orientation about them; neither changes the twist.
+    `<gaussian_noise>` is the standard deviation on each part of the twist [m/s, rad/s], and its square stands on the
+    diagonals of both covariances. `<update_rate>` [Hz]; 0 is every step.
+
+    Where the reference is a link that turns, Gazebo multiplies orientations in the wrong order, turns velocities the
+    wrong way and leaves out what the turning adds; here the twist is how the pose changes.
+    """
+
+    filenames = ("libgazebo_ros_p3d.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        is_old = is_ros_1(params, _ROS_1)
+        if is_old:
+            body, frame = "bodyName", params.text("frameName", "world")
+            self._topic = params.text("topicName", required=True)
+            deviation, rate = "gaussianNoise", "updateRate"
+        else:
+            body, frame = "body_name", params.text("frame_name", "world")
+            self._topic = "odom"
+            deviation, rate = "gaussian_noise", "update_rate"
+        params.child("alwaysOn" if is_old else "always_on")
+        self._deviation = params.number(deviation, 0.0, minimum=0, maximum=LARGEST)
+        self.after_step_rate = params.number(rate, 0.0, minimum=0)
+        self._shift = np.array(_offset(params, "xyz", is_old))
+        self._turn = quat_from_rpy(*_offset(params, "rpy", is_old))
+        self._body = named_link(scene, body, params)
+        self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
+
+    def _find_reference(self, scene: SceneModel, frame: str, params: Params) -> str:
+        """The scoped name of the link that poses are told in; empty for the world."""
+        if frame in _INERTIAL:
+            return ""
+        links = {link.name: link.scoped for link in scene.all_links()}
+        links |= {link.scoped.removeprefix(f"{scene.scoped}::"): link.scoped for link in scene.all_links()}
+        if frame not in links:
+            message = f"plugin {self.name!r}: frame {frame!r} is no link of model {scene.scoped!r}"
+            hint = did_you_mean(frame, [*links, *_INERTIAL])
+            params.diagnostics.warning("SK-PLUGIN-054", f"{message}; poses are the world's", self.where, hint)
+        return links.get(frame, "")
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._link = self.sim.link(self._body)
+        self._base = self.sim.link(self._reference) if self._reference else None
+        self._stream = self.random("gaussian_noise", 6) if self._deviation > 0 else None
+        self._index = 0
+        self._spread = np.diag([self._deviation**2] * 6).reshape(36)
+        self._out = self.advertise(self._topic, ODOMETRY)
+
+    def after_step(self) -> None:
+        """Publishes."""
+        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        if not self._out.wanted:
+            return
+        pose, motion = self._reading()
+        told = partial(self._message, self.sim.time_ns, pose, motion, self._index)
+        self._out.publish_later(told)
+
+    def _reading(self) -> tuple[Pose, Vector]:
+        """Pose with its offset, and the twist: linear (3) and angular (3), both along the axes of the frame."""
+        link, base = self._link, self._base
+        pose, linear, angular = link.pose, link.linear_velocity, link.angular_velocity
+        if base is not None:
+            frame, turning = base.pose, base.angular_velocity
+            back = quat_conjugate(frame.quaternion)
+            carried = base.linear_velocity + np.cross(turning, pose.position - frame.position)
+            linear, angular = quat_rotate(back, linear - carried), quat_rotate(back, angular - turning)
+            pose = frame.inverse() @ pose
+        shifted = Pose(pose.position + self._shift, quat_multiply(self._turn, pose.quaternion))
+        return shifted, np.concatenate((linear, angular))
+
+    def _message(self, time_ns: int, pose: Pose, motion: Vector, index: int) -> Any:
+        if self._stream is not None:
+            motion = motion + self._deviation * self._stream.normal(index)
+        twist = BodyTwist(motion[:3].tolist(), motion[3:].tolist())
+        return odometry_message(time_ns, self._frame, self._link.name, pose, twist, self._spread)
+
+
+def _offset(params: Params, kind: str, is_old: bool) -> tuple[float, float, float]:
+    """`<xyz_offset>`, or `<xyz_offsets>` as it was called before; `<xyzOffset>` on ROS 1."""
+    zero = (0.0, 0.0, 0.0)
+    if is_old:
+        x, y, z = params.vector3(f"{kind}Offset", zero)
+    else:
+        x, y, z = params.vector3(f"{kind}_offset", params.vector3(f"{kind}_offsets", zero))
+    return float(x), float(y), float(z)

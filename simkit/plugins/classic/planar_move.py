@@ -1,0 +1,214 @@
+"""Gazebo Classic's planar move, in ROS 2 and ROS 1 spelling: `libgazebo_ros_planar_move.so`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.held_motion import HeldMotion, Move, Mover
+from simkit.plugins.drives.odometry import (
+    COMMAND_TYPES,
+    ODOMETRY,
+    TRANSFORMS,
+    BodyTwist,
+    TrueMotion,
+    odometry_message,
+    planar_covariance,
+    transforms,
+)
+from simkit.plugins.once import Once
+from simkit.plugins.ros_names import is_ros_1
+from simkit.pose import Pose, Vector, quat_from_rpy
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime.clock import Grid
+    from simkit.scene import SceneModel
+
+_ROS_1 = (
+    "robotNamespace",
+    "commandTopic",
+    "odometryTopic",
+    "odometryFrame",
+    "robotBaseFrame",
+    "odometryRate",
+    "cmdTimeout",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """The plugin's parameters: rates Hz (0: every step); `timeout` [s] is for ever where it is infinite."""
+
+    command_topic: str
+    odometry_topic: str
+    odometry_frame: str
+    base_frame: str
+    update_rate: float
+    publish_rate: float
+    publish_odom: bool
+    publish_odom_tf: bool
+    timeout: float
+    covariance: Vector
+    twist_covariance: Vector
+    is_level: bool
+
+
+def read_options(params: Params) -> Options:
+    """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    if is_ros_1(params, _ROS_1):
+        return _read_ros_1(params)
+    variances = (
+        params.number("covariance_x", 1e-5, minimum=0),
+        params.number("covariance_y", 1e-5, minimum=0),
+        params.number("covariance_yaw", 1e-3, minimum=0),
+    )
+    return Options(
+        command_topic="cmd_vel",
+        odometry_topic="odom",
+        odometry_frame=params.text("odometry_frame", "odom"),
+        base_frame=params.text("robot_base_frame", "base_footprint"),
+        update_rate=params.number("update_rate", 20.0, minimum=0),
+        publish_rate=params.number("publish_rate", 20.0, minimum=0),
+        publish_odom=params.boolean("publish_odom", True),
+        publish_odom_tf=params.boolean("publish_odom_tf", True),
+        timeout=math.inf,
+        covariance=planar_covariance(*variances),
+        twist_covariance=planar_covariance(*variances),
+        is_level=False,
+    )
+
+
+def _read_ros_1(params: Params) -> Options:
+    rate = params.number("odometryRate", 20.0, minimum=0)
+    # a negative timeout is none, and so is one that is absent
+    timeout = params.number("cmdTimeout", -1.0)
+    return Options(
+        command_topic=params.text("commandTopic", "cmd_vel"),
+        odometry_topic=params.text("odometryTopic", "odom"),
+        odometry_frame=params.text("odometryFrame", "odom"),
+        base_frame=params.text("robotBaseFrame", "base_footprint"),
+        update_rate=0.0,
+        publish_rate=rate,
+        publish_odom=rate > 0,
+        publish_odom_tf=rate > 0,
+        timeout=timeout if timeout >= 0 else math.inf,
+        covariance=planar_covariance(1e-5, 1e-5, 1e-3),
+        twist_covariance=np.zeros(36),
+        is_level=True,
+    )
+
+
+class GazeboRosPlanarMove(ModelPlugin):
+    """Moves the model over the plane with the twist on `cmd_vel`: ahead, to the left, and about the vertical.
+
+    The linear speeds are along the model's heading, about the model's origin; the last command holds, in ROS 1 for
+    `<cmdTimeout>` [s]. The model neither tilts nor climbs by itself, and slides on what is static; where nothing
+    touches it, it falls. Odometry on `odom` and `/tf` is the model's true pose in the world and its true twist along
+    its heading; ROS 1's leaves out the height, and has zeros for the twist's covariance. `<odometryRate>` 0 publishes
+    nothing.
+
+    Gazebo sets the velocity anew at `<update_rate>` (20 Hz) only, and lets friction brake in between; here it is held
+    at every step, and commands are taken at that rate.
+    """
+
+    filenames = ("libgazebo_ros_planar_move.so",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self.options = read_options(params)
+        self.after_step_rate = self.options.publish_rate
+        self._canonical = scene.canonical_link
+        self._links = [link.scoped for link in scene.all_links()]
+        canonical = next(link for link in scene.all_links() if link.scoped == scene.canonical_link)
+        self._in_canonical = canonical.pose_world.inverse() @ scene.pose_world
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        options = self.options
+        self._true = TrueMotion(parent, self.sim.link(self._canonical))
+        self._told = self._command = (0.0, 0.0, 0.0)
+        self._told_ns = self.sim.time_ns
+        self._next = 0
+        self._motion = HeldMotion(self.sim, self._links, self._canonical, self._in_canonical)
+        self._mover = Mover(self.sim)
+        if not self._motion:
+            message = f"plugin {self.name!r}: model {self.scoped!r} is joined to the world and stays where it is"
+            hint = "leave out the joint to the world"
+            params.diagnostics.warning("SK-PLUGIN-053", message, self.where, hint)
+        self.listen(options.command_topic, COMMAND_TYPES, self._on_command)
+        self._odom = self.advertise(options.odometry_topic, ODOMETRY) if options.publish_odom else None
+        self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_odom_tf else None
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_command(self, message: Any) -> None:
+        twist = getattr(message, "twist", message)
+        told = float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)
+        if all(map(math.isfinite, told)):
+            self._told, self._told_ns = told, self.sim.time_ns
+        else:
+            self.once.not_finite()
+
+    def before_step(self) -> None:
+        """Sets the velocity that holds through the step."""
+        self._mover.move(self._moves())
+
+    @classmethod
+    def before_step_together(
+        cls, plugins: Sequence[GazeboRosPlanarMove]
+    ) -> Callable[[Iterable[GazeboRosPlanarMove]], None]:
+        """The same of many: what they share is worked out once."""
+        mover = Mover(plugins[0].sim)
+
+        def run(rota: Iterable[GazeboRosPlanarMove]) -> None:
+            mover.move([move for plugin in rota for move in plugin._moves()])
+
+        return run
+
+    def _moves(self) -> list[Move]:
+        """What is to be moved now: the model, in the axes of its heading."""
+        tick = self.sim.tick
+        if tick >= self._next:
+            grid: Grid | None = self.sim.clock.grid(self.options.update_rate)
+            self._next = grid.next(tick) if grid is not None else tick
+            self._command = self._told
+        if (self.sim.time_ns - self._told_ns) * 1e-9 > self.options.timeout:
+            self._told = self._command = (0.0, 0.0, 0.0)
+        if not self._motion:
+            return []
+        ahead, aside, turn = self._command
+        pose = self._motion.frame
+        level = Pose(pose.position, quat_from_rpy(0.0, 0.0, float(pose.rpy[2])))
+        return [Move(self._motion, level, (ahead, aside, 0.0), (0.0, 0.0, turn), falls=True)]
+
+    # ------------------------------------------------------------------ readings
+
+    def after_step(self) -> None:
+        """Odometry and its transform."""
+        odom = self._odom if self._odom is not None and self._odom.wanted else None
+        tf = self._tf if self._tf is not None and self._tf.wanted else None
+        if not (odom or tf):
+            return
+        options, now, (pose, twist) = self.options, self.sim.time_ns, self._reading()
+        frames = options.odometry_frame, options.base_frame
+        if odom:
+            shown = Pose((*pose.position[:2], 0.0), pose.quaternion) if options.is_level else pose
+            covariances = options.covariance, options.twist_covariance
+            odom.publish_later(partial(odometry_message, now, *frames, shown, twist, *covariances))
+        if tf:
+            tf.publish_later(partial(transforms, now, (*frames, pose)))
+
+    def _reading(self) -> tuple[Pose, BodyTwist]:
+        """True pose, and the twist in the plane along the heading."""
+        pose, twist = self._true.state()
+        level = quat_from_rpy(0.0, 0.0, -float(pose.rpy[2]))
+        x, y, _ = Pose((0.0, 0.0, 0.0), level).rotate(pose.rotate(twist.linear)).tolist()
+        return pose, BodyTwist((x, y, 0.0), (0.0, 0.0, float(pose.rotate(twist.angular)[2])))

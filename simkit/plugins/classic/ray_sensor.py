@@ -1,0 +1,106 @@
+"""Lidars of Gazebo Classic: `libgazebo_ros_ray_sensor.so` of ROS 2, `libgazebo_ros_laser.so` and kin of ROS 1."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from simkit.params import LARGEST, Params
+from simkit.plugins.base import SensorPlugin
+from simkit.plugins.classic.sensor_topics import given_frame, topic_of
+
+_OUTPUTS = {
+    "sensor_msgs/LaserScan": "scan",
+    "sensor_msgs/PointCloud2": "hits",
+    "sensor_msgs/PointCloud": "old_hits",
+    "sensor_msgs/Range": "range",
+}
+RADIATION = {"ultrasound": 0, "infrared": 1}  # of a Range
+
+
+class GazeboRosRaySensor(SensorPlugin):
+    """Publishes its lidar on `~/out` (after `<remapping>`), in the link's frame or `<frame_name>`.
+
+    `<output_type>` is sensor_msgs/LaserScan, PointCloud2 (the default), PointCloud or Range. Intensities are at least
+    `<min_intensity>`. `<radiation_type>` (ultrasound or infrared) goes into Range messages.
+    """
+
+    filenames = ("libgazebo_ros_ray_sensor.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        output = _OUTPUTS[params.choice("output_type", tuple(_OUTPUTS), "sensor_msgs/PointCloud2")]
+        radiation = RADIATION[params.choice("radiation_type", tuple(RADIATION), "infrared")]
+        least = params.number("min_intensity", 0.0)
+        topic = topic_of(self, "out", "topicName")
+        _connect(self, parent, {output: topic}, least, radiation)
+
+
+class GazeboRosLaser(SensorPlugin):
+    """ROS 1: a LaserScan on `<topicName>` (`/world`), in the link's frame or `<frameName>`."""
+
+    filenames = ("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
+
+    def load(self, parent: Any, params: Params) -> None:
+        _connect(self, parent, {"scan": _named_topic(self)}, 0.0, RADIATION["infrared"])
+
+
+class GazeboRosBlockLaser(SensorPlugin):
+    """ROS 1: a PointCloud with a point for every ray on `<topicName>` (`/world`), in the link's frame or `<frameName>`.
+
+    A ray without a reading ends at the sensor's maximum range. `<gaussianNoise>` is a standard deviation on x, y and z
+    [m] of those with one, and on every intensity, besides the sensor's own noise. `<hokuyoMinIntensity>` and
+    `<updateRate>` change nothing, as in Gazebo.
+    """
+
+    filenames = ("libgazebo_ros_block_laser.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        noise = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
+        for name in ("hokuyoMinIntensity", "updateRate"):
+            params.number(name, 0.0)
+            if params.has(name):
+                message = f"plugin {self.name!r}: <{name}> changes nothing, as in Gazebo"
+                hint = "the sensor's <update_rate> counts" if name == "updateRate" else ""
+                params.diagnostics.note("SK-PLUGIN-061", message, params.block(name).where, hint)
+        if _connect(self, parent, {"block": _named_topic(self)}, 0.0, RADIATION["infrared"]) and noise > 0:
+            parent.add_point_noise(noise)
+
+
+def _named_topic(plugin: SensorPlugin) -> str:
+    """`<topicName>`, which in Gazebo is `/world` where it is not given."""
+    topic = plugin.params.text("topicName", "")
+    if not topic:
+        message = f"plugin {plugin.name!r} has no <topicName>: it publishes on '/world', as in Gazebo"
+        plugin.params.diagnostics.note("SK-PLUGIN-062", message, plugin.where, "<topicName>scan</topicName>")
+    return plugin.ros.topic(topic or "/world")
+
+
+class GazeboRosVelodyneLaser(SensorPlugin):
+    """A PointCloud2 with x, y, z, intensity and ring, on `~/out` (after `<remapping>`; or `<topicName>`).
+
+    Only points farther than `<min_range>`, nearer than `<max_range>` and of at least `<min_intensity>`; with
+    `<organize_cloud>` every ray has its place. `<gaussianNoise>`, a standard deviation [m], is added to the sensor's.
+    """
+
+    filenames = ("libgazebo_ros_velodyne_laser.so", "libgazebo_ros_velodyne_gpu_laser.so")
+
+    def load(self, parent: Any, params: Params) -> None:
+        limits = params.number("min_range", 0.0, minimum=0), params.number("max_range", math.inf, finite=False)
+        keeps_order = params.boolean("organize_cloud", False)
+        least = params.number("min_intensity", -math.inf)
+        noise = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
+        topic = topic_of(self, "out", "topicName")
+        if _connect(self, parent, {"velodyne": topic}, least, RADIATION["infrared"]):
+            parent.cloud_range, parent.keeps_order = limits, keeps_order
+            if noise > 0:
+                parent.add_ray_noise(noise)
+
+
+def _connect(plugin: SensorPlugin, sensor: Any, topics: dict[str, str], min_intensity: float, radiation: int) -> bool:
+    if not hasattr(sensor, "min_intensity"):
+        plugin.refuse(sensor, "ray")
+        return False
+    sensor.frame_id = given_frame(sensor, plugin.params)
+    sensor.min_intensity, sensor.radiation = min_intensity, radiation
+    sensor.publish_on(topics)
+    return True

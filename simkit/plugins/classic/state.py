@@ -1,0 +1,34 @@
+"""Gazebo Classic's states and properties of a world where a file names them: gazebo_ros_state, _properties."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.classic.service_states import STATES_RATE
+from simkit.plugins.classic.services import broadcast_states, offer_table, property_services, state_services
+
+
+class GazeboRosState(WorldPlugin):
+    """Publishes `model_states` and `link_states`, and offers `get_entity_state`, `set_entity_state` and the rest.
+
+    All in its own `<ros><namespace>`. `<update_rate>` [Hz] is 100 where it is not given; of 0 it is every step.
+    """
+
+    filenames = ("libgazebo_ros_state.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        rate = params.number("update_rate", STATES_RATE, minimum=0.0)
+        offer_table("", self.sim, state_services(self.sim), named=self.ros.topic)
+        models, links = self.ros.topic("model_states"), self.ros.topic("link_states")
+        broadcast_states(self.sim, models, links, rate, is_aside=False)
+
+
+class GazeboRosProperties(WorldPlugin):
+    """Offers `get_model_properties`, `get_physics_properties` and the rest in its own `<ros><namespace>`."""
+
+    filenames = ("libgazebo_ros_properties.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        offer_table("", self.sim, property_services(self.sim), named=self.ros.topic)

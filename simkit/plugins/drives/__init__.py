@@ -1,0 +1,1 @@
+"""What the plugins that move robots share: wheels, odometry, held velocities."""

@@ -1,0 +1,200 @@
+"""Odometry that errs as that of real wheels does, and knows how far it may be off.
+
+The random part is the model of Siegwart and Nourbakhsh, "Introduction to Autonomous Mobile Robots", section 5.2.4:
+each wheel's travel has an error of its own whose variance grows with the way it rolls, k·|Δs|, whatever the rate of the
+odometry; the covariance of the pose goes along by equation 5.9. (Variances that grow with the square of a step's way,
+as in table 5.6 of Thrun, Burgard and Fox, "Probabilistic Robotics", vanish as steps get short.) The systematic part is
+what Borenstein and Feng (1996) measure on a robot: wheels and a track that are not what the drive takes them for.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.drives.odometry import UNKNOWN, BodyTwist, DeadReckoning
+from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
+
+_PLANAR = np.ix_((0, 1, 5), (0, 1, 5))
+_FAR = 0.9  # of itself; a wheel is not taken for one of no size
+
+
+@dataclass(frozen=True, slots=True)
+class OdometryNoise:
+    """The `<odometry_noise>` block of a drive, of our own.
+
+    Attributes:
+        wheel_variance: k, variance of a wheel's travel per length of it [m²/m].
+        left_radius_error, right_radius_error: by what part of itself the drive takes a wheel for larger than it is.
+        separation_error: the same of the distance between the wheels.
+        resolution: of the wheels' angles [rad per count]; 0 counts nothing.
+    """
+
+    wheel_variance: float = 0.0
+    left_radius_error: float = 0.0
+    right_radius_error: float = 0.0
+    separation_error: float = 0.0
+    resolution: float = 0.0
+
+
+def read_odometry_noise(params: Params) -> OdometryNoise | None:
+    """The drive's `<odometry_noise>`, or None where it has none."""
+    block = params.child("odometry_noise")
+    if block is None:
+        return None
+    counts = block.number("counts_per_revolution", 1.0, minimum=1) if block.has("counts_per_revolution") else math.inf
+    return OdometryNoise(
+        wheel_variance=block.number("wheel_variance", 0.0, minimum=0, maximum=1e3),
+        left_radius_error=block.number("left_radius_error", 0.0, minimum=-_FAR, maximum=_FAR),
+        right_radius_error=block.number("right_radius_error", 0.0, minimum=-_FAR, maximum=_FAR),
+        separation_error=block.number("separation_error", 0.0, minimum=-_FAR, maximum=_FAR),
+        resolution=2 * math.pi / counts,
+    )
+
+
+class ErringOdometry:
+    """Dead reckoning from the angles of two wheels as a drive reads them, and the covariance that it predicts.
+
+    The covariance is that of the random errors; of systematic ones a drive knows nothing.
+
+    Args:
+        noise: what errs.
+        radius, separation: of the wheels, as they are [m].
+        stream: two normal numbers for each update.
+        angles: of the left and the right wheel at the start [rad].
+        start: where the reckoning begins.
+
+    Attributes:
+        reckoning: where the drive takes itself to be.
+        covariance: of x [m], y [m] and yaw [rad], shape (3, 3).
+        twist: over the last update, in the body's axes.
+        twist_covariance: of its forward speed [m/s] and turning rate [rad/s], shape (2, 2).
+    """
+
+    def __init__(
+        self,
+        noise: OdometryNoise,
+        radius: float,
+        separation: float,
+        stream: Any,
+        angles: tuple[float, float] = (0.0, 0.0),
+        start: DeadReckoning | None = None,
+    ) -> None:
+        self.noise = noise
+        self._radii = (radius * (1 + noise.left_radius_error), radius * (1 + noise.right_radius_error))
+        self._separation = separation * (1 + noise.separation_error)
+        self._stream, self._index = stream, 0
+        self._counted = tuple(self._count(angle) for angle in angles)
+        self.reckoning = replace(start) if start is not None else DeadReckoning()
+        self.covariance: Vector = np.zeros((3, 3))
+        self.twist, self.twist_covariance = BodyTwist(), np.zeros((2, 2))
+
+    def advance(self, left: float, right: float, elapsed: float, sideways: float = 0.0) -> None:
+        """Goes on to other angles of the wheels.
+
+        Args:
+            left, right: angles [rad].
+            elapsed: since the last update [s].
+            sideways: way across, which no wheel measures and none errs in [m].
+        """
+        self._index += 1
+        counted = tuple(self._count(angle) for angle in (left, right))
+        rolled = [(b - a) * r for a, b, r in zip(self._counted, counted, self._radii, strict=True)]
+        self._counted = counted
+        variances = np.array([self.noise.wheel_variance * abs(way) for way in rolled])
+        if self.noise.wheel_variance > 0:
+            errors = np.sqrt(variances) * self._stream.normal(self._index)
+            rolled = [way + float(error) for way, error in zip(rolled, errors, strict=True)]
+        self._spread(rolled, variances)
+        left_way, right_way = rolled
+        self.reckoning.advance(left_way, right_way, self._separation, sideways)
+        if elapsed > 0:
+            self._tell_twist(rolled, variances, elapsed, sideways)
+
+    def messages_covariance(self) -> tuple[Vector, Vector]:
+        """6×6 row-major covariances of pose and twist, shape (36,) each, in the order of ROS.
+
+        What wheels do not measure has a huge variance; the speed across, which they forbid, that of the speed ahead.
+        """
+        pose, twist = (np.diag([UNKNOWN] * 6) for _ in range(2))
+        pose[_PLANAR] = self.covariance
+        ahead, turn = self.twist_covariance
+        twist[_PLANAR] = [[ahead[0], 0, ahead[1]], [0, ahead[0], 0], [turn[0], 0, turn[1]]]
+        return pose.reshape(36), twist.reshape(36)
+
+    def _count(self, angle: float) -> float:
+        step = self.noise.resolution
+        return math.floor(angle / step + 0.5) * step if step > 0 else angle
+
+    def _spread(self, rolled: list[float], variances: Vector) -> None:
+        """Equation 5.9: the covariance before, carried along, and that of this way."""
+        way, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / self._separation
+        middle = self.reckoning.yaw + turn / 2
+        cos, sin, arm = math.cos(middle), math.sin(middle), way / (2 * self._separation)
+        along = np.array([[1, 0, -way * sin], [0, 1, way * cos], [0, 0, 1]])
+        # columns: left, right
+        by_wheel = np.array(
+            [
+                [cos / 2 + arm * sin, cos / 2 - arm * sin],
+                [sin / 2 - arm * cos, sin / 2 + arm * cos],
+                [-1 / self._separation, 1 / self._separation],
+            ]
+        )
+        self.covariance = along @ self.covariance @ along.T + (by_wheel * variances) @ by_wheel.T
+
+    def _tell_twist(self, rolled: list[float], variances: Vector, elapsed: float, sideways: float) -> None:
+        width = self._separation
+        ahead, turn = (rolled[0] + rolled[1]) / 2, (rolled[1] - rolled[0]) / width
+        self.twist = BodyTwist((ahead / elapsed, sideways / elapsed, 0.0), (0.0, 0.0, turn / elapsed))
+        by_wheel = np.array([[0.5, 0.5], [-1 / width, 1 / width]]) / elapsed
+        self.twist_covariance = (by_wheel * variances) @ by_wheel.T
+
+
+class FollowedMotion:
+    """A true motion as the angles that wheels without slip would have turned by.
+
+    Args:
+        pose: where it begins.
+        radius, separation: of the wheels [m].
+    """
+
+    def __init__(self, pose: Pose, radius: float, separation: float) -> None:
+        self._radius, self._separation = radius, separation
+        self.angles = (0.0, 0.0)
+        self._last = _planar(pose)
+
+    @property
+    def start(self) -> DeadReckoning:
+        """The planar pose of the moment."""
+        return DeadReckoning(*self._last)
+
+    def follow(self, pose: Pose) -> tuple[float, float, float]:
+        """Goes on to a pose; angles of the left and right wheel [rad], and the way across since the last [m]."""
+        x, y, yaw = _planar(pose)
+        dx, dy = x - self._last[0], y - self._last[1]
+        turn = math.remainder(yaw - self._last[2], 2 * math.pi)
+        middle = self._last[2] + turn / 2
+        # arc over chord, the inverse of what the reckoning does
+        arc = turn / 2 / math.sin(turn / 2) if abs(turn) > 1e-4 else 1 + turn * turn / 24
+        ahead = (dx * math.cos(middle) + dy * math.sin(middle)) * arc
+        across = (dy * math.cos(middle) - dx * math.sin(middle)) * arc
+        half = turn * self._separation / 2
+        left, right = self.angles
+        self.angles = (left + (ahead - half) / self._radius, right + (ahead + half) / self._radius)
+        self._last = (x, y, yaw)
+        return (*self.angles, across)
+
+
+def displaced(pose: Pose, reckoned: DeadReckoning) -> Pose:
+    """A true pose with the place and heading that a reckoning has instead; height and tilt stay."""
+    turn = quat_from_rpy(0.0, 0.0, reckoned.yaw - _planar(pose)[2])
+    return Pose((reckoned.x, reckoned.y, pose.position[2]), quat_multiply(turn, pose.quaternion))
+
+
+def _planar(pose: Pose) -> tuple[float, float, float]:
+    x, y, _ = pose.position
+    return float(x), float(y), float(pose.rpy[2])

@@ -1,0 +1,83 @@
+"""`/tf_static`: the frames that never move within a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.drives.odometry import TRANSFORMS, transforms
+from simkit.pose import Pose
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneModel
+
+
+class StaticTransforms(WorldPlugin):
+    """Publishes, latched, how the fixed joints of each moving model tie its links, and sensor frames to their links.
+
+    Frames are plain link names as in ROS; where two models have a link of one name, the later model's frames are
+    `<model>/<link>`. A sensor whose frame is not a link's but its own (`model::link::sensor`, as gz has it) gets a
+    transform from its link, on static models too; a camera's `<optical_frame_id>` gets one from the sensor's frame,
+    unless it is a link's. Part of every world; looks once a second of simulated time for models that came or went.
+    """
+
+    after_step_rate = 1.0
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._static = self.advertise("/tf_static", TRANSFORMS, latched=True)
+        self._known: tuple[str, ...] = ()
+        self.after_step()
+
+    def reset(self) -> None:
+        self._known = ()
+        self.after_step()
+
+    def after_step(self) -> None:
+        """Publishes all transforms again where the models have changed."""
+        names = tuple(self.sim.models)
+        if names == self._known:
+            return
+        self._known = names
+        found = list(self._all())
+        if found:
+            self._static.publish(transforms(0, *found))
+
+    def _all(self) -> Iterator[tuple[str, str, Pose]]:
+        taken: set[str] = set()
+        # those that move come first: what stands around takes no name from a robot
+        for scene in sorted((handle.scene for handle in self.sim.models.values()), key=lambda scene: scene.static):
+            links = {link.scoped: link for link in scene.all_links()}
+            clash = any(link.name in taken for link in links.values())
+            frames = {s: f"{scene.name}/{link.name}" if clash else link.name for s, link in links.items()}
+            taken.update(frames.values())
+            if not scene.static:
+                yield from self._links(scene, frames)
+            yield from self._sensors(scene, frames)
+
+    def _links(self, scene: SceneModel, frames: dict[str, str]) -> Iterator[tuple[str, str, Pose]]:
+        poses = {link.scoped: link.pose_world for link in scene.all_links()}
+        for joint in scene.all_joints():
+            if joint.type == "fixed" and joint.parent_link in poses and joint.child_link in poses:
+                pose = poses[joint.parent_link].inverse() @ poses[joint.child_link]
+                yield frames[joint.parent_link], frames[joint.child_link], pose
+
+    def _sensors(self, scene: SceneModel, frames: dict[str, str]) -> Iterator[tuple[str, str, Pose]]:
+        children = {joint.scoped: joint.child_link for joint in scene.all_joints()}
+        links = {frames[link.scoped]: link.pose_world for link in scene.all_links()}
+        for described in scene.all_sensors():
+            link = children[described.parent] if described.on_joint else described.parent
+            # a Classic plugin names a link's frame; a kind that simkit does not have is in the scene only
+            if described.plugins or link not in frames or not self.sim.has_sensor(described.scoped):
+                continue
+            sensor = self.sim.sensor(described.scoped)
+            frame, pose = sensor.frame_id, sensor.scene.pose_link
+            if frame in {described.name, described.scoped} - set(links):
+                yield frames[link], frame, pose
+            for optical, turned in sensor.optical_frames().items():
+                if optical in links or optical == frame:
+                    continue
+                if frame in links:  # another link's perhaps
+                    turned = links[frame].inverse() @ links[frames[link]] @ pose @ turned
+                yield frame, optical, turned

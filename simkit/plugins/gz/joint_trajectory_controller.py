@@ -1,0 +1,234 @@
+"""gz's trajectories of joints: `gz::sim::systems::JointTrajectoryController`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.joints.axes import JointAxis, has_axis, nearest
+from simkit.plugins.joints.commands import ControlledJoints
+from simkit.plugins.joints.pid import FIELDS, Pid, declare_pid
+from simkit.plugins.joints.trajectory import (
+    INTERPOLATIONS,
+    Path,
+    Point,
+    State,
+    active_point,
+    faults,
+    nanoseconds,
+    read_points,
+)
+from simkit.plugins.lookups import find_joint, numbers
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneJoint, SceneModel
+
+TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
+PROGRESS: Final = "std_msgs/msg/Float32"
+_ONE_AXIS: Final = frozenset({"revolute", "continuous", "prismatic", "gearbox"})
+_DEFAULTS: Final = {"i_max": -1.0, "cmd_max": -1.0}
+
+
+@dataclass(slots=True)
+class _Axis:
+    """A joint with its two controllers and what it is to do now."""
+
+    joint: JointAxis
+    position_pid: Pid
+    velocity_pid: Pid
+    position: float
+    velocity: float = 0.0
+    effort: float = 0.0
+    path: Path | None = None
+
+
+class JointTrajectoryController(ControlledJoints, ModelPlugin):
+    """Follows a `JointTrajectory` with a PID on position, a PID on velocity, and efforts, which add up.
+
+    The target is the first point whose time is not over, as a whole: gz does not interpolate. Of a point only the
+    fields that it has change the target; after the last one it holds. A new message takes the place of the trajectory
+    that runs. The start is the step after the message comes, or with `<use_header_start_time>` the time in its header.
+    Each time that the target changes, how much of the trajectory is begun goes out on `<topic>_progress`.
+
+    `<simkit:interpolation>` linear, cubic or quintic (`simkit.plugins.joints.trajectory`) moves positions and
+    velocities from point to point instead.
+
+    Without `<joint_name>` all joints of the model with one axis. The numbers of the controllers are repeated, one
+    for each joint in that order, and are live parameters (`<joint>.position_p_gain`).
+    """
+
+    filenames = ("gz-sim-joint-trajectory-controller-system",)
+    names = ("gz::sim::systems::JointTrajectoryController",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        chosen: list[SceneJoint] = []
+        elements = params.all("joint_name")
+        for element in elements:
+            joint = find_joint(scene, element.value, element)
+            if joint is None or not has_axis(joint, 0, element):
+                continue
+            if joint.type not in _ONE_AXIS or len(joint.axes) != 1:
+                message = f"joint {joint.name!r} is {joint.type}; allowed is one of " + ", ".join(sorted(_ONE_AXIS))
+                element.error("SK-PLUGIN-003", message)
+            elif joint in chosen:
+                message = f"plugin {self.name!r}: joint {joint.name!r} comes twice"
+                params.diagnostics.warning("SK-PLUGIN-044", message, element.where, "the first one counts")
+            else:
+                chosen.append(joint)
+        if not elements:
+            chosen = [joint for joint in scene.joints if joint.type in _ONE_AXIS and len(joint.axes) == 1]
+            if not chosen:
+                message = f"model {scene.scoped!r} has no joint with one axis, which plugin {self.name!r} is for"
+                params.error("SK-PLUGIN-003", message)
+        self._scoped = [joint.scoped for joint in chosen]
+
+    @property
+    def node(self) -> str:
+        """Name of its node, for its parameters, where the file gives it none but its class."""
+        return valid_topic(f"/model/{self.scoped.replace('::', '/')}/joint_trajectory_controller")
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        self._axes = self._read_axes(params)
+        attribute = params.attribute("use_header_start_time")  # gz looks for it there, its manual has an element
+        self._by_header = params.boolean("use_header_start_time", attribute.lower() in ("true", "1"))
+        self._rule: Any = params.choice("interpolation", INTERPOLATIONS, "none")
+        topic = valid_topic(params.text("topic", "") or f"/model/{parent.name}/joint_trajectory")
+        self.listen(topic, TRAJECTORY, self._on_trajectory)
+        self._progress = self.advertise(f"{topic}_progress", PROGRESS)
+        self._is_ready = False
+        self._message: tuple[list[str], list[Point], int] | None = None
+        self._names: list[str] = []
+        self._points: list[Point] = []
+        self._times: list[int] = []
+        self._start, self._index = 0, -1
+
+    def _read_axes(self, params: Params) -> dict[str, _Axis]:
+        """Every joint with its numbers, by name."""
+        count = len(self._scoped)
+        table = {
+            f"{kind}_{name}": self._repeated(params, f"{kind}_{name}", _DEFAULTS.get(name, 0.0))
+            for kind in ("position", "velocity")
+            for name in FIELDS
+        }
+        starts = self._repeated(params, "initial_position", 0.0)
+        axes: dict[str, _Axis] = {}
+        for i in range(count):
+            joint = JointAxis(self.sim.joint(self._scoped[i]))
+            by_position, by_velocity = (
+                Pid.of({name: table[f"{kind}_{name}"][i] for name in FIELDS}) for kind in ("position", "velocity")
+            )
+            name = self._scoped[i].removeprefix(f"{self.scoped}::")
+            axes[name] = _Axis(joint, by_position, by_velocity, starts[i])
+        for name, axis in axes.items():
+            declare_pid(self, axis.position_pid, partial(self._pid_of, name, "position_pid"), f"{name}.position_")
+            declare_pid(self, axis.velocity_pid, partial(self._pid_of, name, "velocity_pid"), f"{name}.velocity_")
+        return axes
+
+    def _pid_of(self, joint: str, kind: str) -> Pid:
+        pid: Pid = getattr(self._axes[joint], kind)
+        return pid
+
+    def _repeated(self, params: Params, element: str, default: float) -> list[float]:
+        """A number for each joint: those of the elements in order, then the default."""
+        found, count = numbers(params, element), len(self._scoped)
+        if len(found) > count:
+            message = f"plugin {self.name!r}: {len(found)} times <{element}> for {count} joint{'s'[: count != 1]}"
+            hint = "one each, in the order of <joint_name>; those too many have no effect"
+            params.diagnostics.warning("SK-PLUGIN-044", message, params.all(element)[count].where, hint)
+        return (found + [default] * count)[:count]
+
+    def controllers(self) -> list[tuple[JointAxis, Pid]]:
+        pairs = [(a.joint, pid) for a in self._axes.values() for pid in (a.position_pid, a.velocity_pid)]
+        return [(joint, pid) for joint, pid in pairs if pid.p or pid.i or pid.d]
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_trajectory(self, message: Any) -> None:
+        names, points = [str(name) for name in message.joint_names], read_points(message)
+        fault = faults(names, points) if names else "it names no joints"
+        if fault:
+            self.once.left_out(fault, f"a trajectory is left out: {fault}")
+            return
+        for name in names:
+            if name not in self._axes:
+                what = f"a trajectory is for joint {name!r} too, which is not controlled; that part of it is left out"
+                self.once.left_out(name, what, nearest(name, list(self._axes)))
+        if any(point.accelerations for point in points) and self._rule != "quintic":
+            what = "accelerations of a trajectory are not used"
+            self.once.warn("SK-PLUGIN-045", "accelerations", what, "<simkit:interpolation>quintic uses them")
+        start = nanoseconds(message.header.stamp) if self._by_header else 0
+        self._message = names, points, start
+
+    def _begin(self, now: int) -> None:
+        """Takes up the trajectory that came last."""
+        assert self._message is not None
+        self._names, self._points, start = self._message
+        self._message = None
+        self._times = [point.time for point in self._points]
+        self._start, self._index = start or now, -1
+        for axis in self._axes.values():
+            axis.path = None
+        if self._rule == "none":
+            return
+        for place, name in enumerate(self._names):
+            found = self._axes.get(name)
+            if found is not None:
+                here = State(found.joint.position, found.joint.velocity)
+                found.path = Path.through(here, self._points, place, self._rule)
+
+    def _follow(self, now: int) -> None:
+        """Sets the targets for now."""
+        since = now - self._start
+        if not self._points or since < 0:
+            return
+        index = active_point(self._times, since)
+        if index != self._index:
+            self._index = index
+            point = self._points[index]
+            for place, name in enumerate(self._names):
+                axis = self._axes.get(name)
+                if axis is None:
+                    continue
+                for field, values in _targets(point):
+                    if place < len(values):
+                        setattr(axis, field, values[place])
+            self._publish_progress((index + 1) / len(self._points))
+        for axis in self._axes.values():
+            if axis.path is not None:
+                state = axis.path.at(since)
+                axis.position, axis.velocity = state.position, state.velocity
+
+    def _publish_progress(self, progress: float) -> None:
+        if self._progress.wanted:
+            self._progress.publish(msgs.type_of(PROGRESS)(progress))
+
+    def before_step(self) -> None:
+        now = self.sim.time_ns
+        if self._message is not None:
+            self._begin(now)
+        self._follow(now)
+        if not self._is_ready:  # gz asks for the state of the joints in its first step
+            self._is_ready = True
+            return
+        step = self.period
+        for axis in self._axes.values():
+            joint = axis.joint
+            by_position = axis.position_pid.update(joint.position - axis.position, step)
+            by_velocity = axis.velocity_pid.update(joint.velocity - axis.velocity, step)
+            joint.push(by_position + by_velocity + axis.effort)
+            for pid in (axis.position_pid, axis.velocity_pid):
+                if pid.swings.runs_away:
+                    self.watch(joint, pid)
+
+
+def _targets(point: Point) -> tuple[tuple[str, tuple[float, ...]], ...]:
+    return ("position", point.positions), ("velocity", point.velocities), ("effort", point.efforts)

@@ -1,0 +1,151 @@
+"""gz's poses of a model and its parts: `gz::sim::systems::PosePublisher`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import TRANSFORMS
+from simkit.plugins.part_poses import Part, PartPoses, Taken, stamped, vector_message, what_joints_move
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
+    from simkit.scene import SceneCollision, SceneLink, SceneModel, SceneSensor, SceneVisual
+
+STAMPED: Final = "geometry_msgs/msg/TransformStamped"
+_TYPES: Final = (
+    STAMPED,
+    "geometry_msgs/msg/PoseStamped",
+    "geometry_msgs/msg/Transform",
+    "geometry_msgs/msg/Pose",
+)
+"""What a bridge may make of one gz pose."""
+
+
+class PosePublisher(ModelPlugin):
+    """Tells on `/model/<model>/pose` where the parts of its model are, each in the frame of what it is part of.
+
+    Links by default; with `<publish_visual_pose>`, `<publish_collision_pose>`, `<publish_sensor_pose>`,
+    `<publish_nested_model_pose>` and `<publish_model_pose>` (as the nested ones' where it is not given) more of them.
+    With `<use_pose_vector_msg>` they come in one `tf2_msgs/msg/TFMessage`, else one by one, each a
+    `geometry_msgs/msg/TransformStamped` or what `<simkit:pose_type>` says. Frames are scoped names without the world's,
+    and the world's name for what is in it.
+
+    With `<static_publisher>` only links that a joint moves are told there. All else goes out on `<topic>_static`, the
+    model's own pose included, as in gz. `<update_frequency>` and `<static_update_frequency>` [Hz] that are not positive
+    mean every step.
+    """
+
+    filenames = ("gz-sim-pose-publisher-system",)
+    names = ("gz::sim::systems::PosePublisher",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        nested = params.boolean("publish_nested_model_pose", False)
+        self._wants = {
+            "link": params.boolean("publish_link_pose", True),
+            "visual": params.boolean("publish_visual_pose", False),
+            "collision": params.boolean("publish_collision_pose", False),
+            "sensor": params.boolean("publish_sensor_pose", False),
+            "nested": nested,
+            "model": params.boolean("publish_model_pose", nested),
+        }
+        self._is_vector = params.boolean("use_pose_vector_msg", False)
+        self._type = params.choice("pose_type", _TYPES, STAMPED)
+        self._has_static = params.boolean("static_publisher", False)
+        self._rate = max(0.0, params.number("update_frequency", -1.0))
+        self._static_rate = self._rate
+        if self._has_static:
+            self._static_rate = max(0.0, params.number("static_update_frequency", self._rate))
+        path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
+        self._topic = valid_topic(params.text("topic", "") or f"{path}/pose")
+        self.after_step_rate = _common_rate(self._rate, self._static_rate)
+
+    def load(self, parent: Model, params: Params) -> None:
+        kind = TRANSFORMS if self._is_vector else self._type
+        self._out = self.advertise(self._topic, kind)
+        self._static = self.advertise(f"{self._topic}_static", kind) if self._has_static else None
+        self._jointed = what_joints_move(parent.scene.all_joints())
+        parts = [*self._of_model(parent.scene)]
+        self._resting = [part for part in parts if not part.moves]
+        self._moving = [part for part in parts if part.moves]
+        if self._static is None:
+            self._moving = self._resting + self._moving
+
+    def after_step(self) -> None:
+        static = self._static
+        if static is not None and static.wanted and self._is_due(self._static_rate):
+            self._publish(static, "resting", self._resting)
+        if self._out.wanted and (static is None or self._is_due(self._rate)):
+            self._publish(self._out, "moving", self._moving)
+
+    # ------------------------------------------------------------------ inside
+
+    def _is_due(self, rate: float) -> bool:
+        """Whether this tick is one of a rate's; the hook is called on those of both rates."""
+        grid, tick = self.sim.clock.grid(rate), self.sim.tick
+        return grid is None or grid.next(tick - 1) == tick
+
+    def _publish(self, out: Any, which: str, parts: list[Part]) -> None:
+        poses = self.sim.names.shared(f"{which} poses {id(self)}", partial(PartPoses, self.sim, parts))
+        taken, time_ns = poses.take(), self.sim.time_ns
+        if self._is_vector:
+            out.publish_later(partial(vector_message, time_ns, taken))
+            return
+        for index in range(len(parts)):
+            out.publish_later(partial(_message, self._type, time_ns, taken, index))
+
+    def _of_model(self, scene: SceneModel) -> Iterator[Part]:
+        model = self.sim.model(scene.scoped)
+        outer = scene.scoped.rpartition("::")[0]
+        if outer and self._wants["nested"]:
+            yield Part(outer, scene.scoped, handle=model, within=self.sim.model(outer))
+        elif not outer and self._wants["model"]:
+            yield Part(self.sim.world.name, scene.scoped, handle=model)
+        for link in scene.links:
+            if self._wants["link"]:
+                yield self._link(link, scene)
+            yield from self._on_link(link)
+        for joint in scene.joints:
+            for sensor in joint.sensors if self._wants["sensor"] else ():
+                yield Part(joint.scoped, sensor.scoped, joint.pose_world.inverse() @ sensor.pose_world)
+        for nested in scene.models:
+            yield from self._of_model(nested)
+
+    def _link(self, link: SceneLink, outer: SceneModel) -> Part:
+        if link.scoped == outer.canonical_link:  # it carries the model's frame
+            return Part(outer.scoped, link.scoped, outer.pose_world.inverse() @ link.pose_world)
+        model, handle = self.sim.model(outer.scoped), self.sim.link(link.scoped)
+        return Part(outer.scoped, link.scoped, None, handle, model, link.scoped in self._jointed)
+
+    def _on_link(self, link: SceneLink) -> Iterator[Part]:
+        parts: dict[str, tuple[SceneVisual | SceneCollision | SceneSensor, ...]]
+        parts = {"visual": link.visuals, "collision": link.collisions, "sensor": link.sensors}
+        for kind, found in parts.items():
+            for part in found if self._wants[kind] else ():
+                yield Part(link.scoped, part.scoped, part.pose_link)
+
+
+def _common_rate(rate: float, other: float) -> float:
+    """A rate whose ticks include those of both, 0 (every step) where neither is a multiple of the other."""
+    low, high = sorted((rate, other))
+    return high if low > 0 and (high / low).is_integer() else 0.0
+
+
+def _message(type_name: str, time_ns: int, taken: Taken, index: int) -> Any:
+    """The message of one part."""
+    frame, child, seven = taken.placed[index]
+    if type_name == STAMPED:
+        return stamped(time_ns, frame, child, seven)
+    x, y, z, w, i, j, k = seven
+    place, turn = {"x": x, "y": y, "z": z}, {"x": i, "y": j, "z": k, "w": w}
+    if type_name.endswith("/Transform"):
+        return msgs.make(type_name, translation=place, rotation=turn)
+    if type_name.endswith("/Pose"):
+        return msgs.make(type_name, position=place, orientation=turn)
+    return msgs.make(type_name, header=msgs.header(time_ns, frame), pose={"position": place, "orientation": turn})

@@ -1,0 +1,158 @@
+"""gz-sim's `PythonSystemLoader`: a world names a Python module whose `get_system` gives a system."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib
+import os
+import re
+import sys
+import types
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.gzpython import imports
+from simkit.params import Params
+from simkit.plugins import GROUP
+from simkit.plugins.gz.system import HOOKS, GzSystem, line_of
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+
+VARIABLES: Final = ("GZ_SIM_SYSTEM_PLUGIN_PATH", "IGN_GAZEBO_SYSTEM_PLUGIN_PATH", "PYTHONPATH")
+"""Variables of the environment whose folders the user allows Python to be taken from."""
+
+SHADOW: Final = "SIMKIT_SHADOW_GZ"
+_NAME: Final = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*\Z")
+
+
+class PythonSystemLoader(GzSystem):
+    """Finds `<module_name>` in the folders that the user allows, and hangs what its `get_system()` gives on the entity.
+
+    Searched are the plugin paths, then the folders of `GZ_SIM_SYSTEM_PLUGIN_PATH` and `PYTHONPATH`, then modules of
+    installed packages that an entry point of the group `simkit.plugins` names. `<simkit:shadow_gz>` lets simkit's `gz`
+    modules go before installed ones.
+    """
+
+    filenames = ("gz-sim-python-system-loader-system",)
+    names = ("gz::sim::systems::PythonSystemLoader",)
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        self._module_name = params.text("module_name", required=True)
+        asked = os.environ.get(SHADOW, "") not in ("", "0")
+        self.shadow = params.boolean("shadow_gz", asked)
+        self._module: types.ModuleType | None = None
+        self._file: Path | None = None
+        if not self._module_name:
+            return
+        if not _NAME.match(self._module_name):
+            message = f"<module_name>{self._module_name}</module_name> is no name of a Python module"
+            params.error("SK-PLUGIN-080", message, "the name as after `import`: without folder and without .py")
+            return
+        self._find(params)
+
+    def _find(self, params: Params) -> None:
+        """Finds and imports the module, or says why not."""
+        folders = [path.absolute() for path in (*self.plugin_paths, *folders_of_environment())]
+        found = _file_of(self._module_name, folders)
+        if found is not None:
+            self._file, folder = found
+            if not has_get_system(self._file):
+                message = f"{self._file} has no get_system, which PythonSystemLoader calls; it is not run"
+                params.error("SK-PLUGIN-081", message, "def get_system(): return MySystem()")
+                return
+            self._import(params, folder, folders)
+        elif any(point.value.split(":")[0].strip() == self._module_name for point in entry_points(group=GROUP)):
+            self._import(params, None, folders)
+        else:
+            searched = ", ".join(map(str, folders)) or "no folder, since none is allowed"
+            hint = "allow its folder with --plugin-path or plugin_paths, or name it in GZ_SIM_SYSTEM_PLUGIN_PATH"
+            message = f"no module {self._module_name!r} for PythonSystemLoader; searched: {searched}; it is left out"
+            params.diagnostics.warning("SK-PLUGIN-080", message, self.where, hint)
+            params.mark_all_read()
+
+    def _import(self, params: Params, folder: Path | None, folders: list[Path]) -> None:
+        added = [str(f) for f in folders if str(f) not in sys.path]
+        sys.path.extend(added)  # it may import what lies beside it
+        try:
+            with imports.importable(self.shadow):
+                name = self._module_name if folder is None else f"{_package_of(folder)}.{self._module_name}"
+                importlib.invalidate_caches()  # it may have been written a moment ago
+                self._module = importlib.import_module(name)
+                self._report_installed(params)
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
+            message = f"importing {self._module_name!r}{line_of(error)} failed: {type(error).__name__}: {error}"
+            params.error("SK-PLUGIN-082", message)
+        finally:
+            for one in added:
+                sys.path.remove(one)
+
+    def _report_installed(self, params: Params) -> None:
+        """Says which installed modules of Gazebo the import found instead of simkit's."""
+        for name, module in sorted(sys.modules.items()):
+            target = imports.target_of(name)
+            if not target or imports.is_shim(module) or name.split(".")[0] == "simkit":
+                continue
+            place = getattr(module, "__file__", None) or "a package"
+            message = f"module {name} is installed ({place}) and goes before simkit's own"
+            hint = f"<simkit:shadow_gz>true</simkit:shadow_gz> or {SHADOW}=1 lets simkit's go first"
+            if target.endswith(".sim"):
+                params.error("SK-PLUGIN-083", f"{message}; it knows nothing of a simulation of simkit's", hint)
+            else:
+                params.diagnostics.note("SK-PLUGIN-083", message, self.where, hint)
+
+    def find_system(self) -> Any:
+        if self._module is None:
+            return None
+        system = self._module.get_system()
+        if not any(callable(getattr(system, hook, None)) for hook in HOOKS):
+            message = f"get_system() of {self._module_name!r} gives {type(system).__name__}, which has no hook"
+            self.params.error("SK-PLUGIN-084", message, "hooks: " + ", ".join(HOOKS))
+            return None
+        return system
+
+
+def folders_of_environment() -> list[Path]:
+    """The folders that the variables of the environment name, in order; relative ones are meant from here."""
+    named = [part for variable in VARIABLES for part in os.environ.get(variable, "").split(os.pathsep) if part]
+    return [Path(part) for part in dict.fromkeys(named) if Path(part).is_dir()]
+
+
+def _file_of(name: str, folders: list[Path]) -> tuple[Path, Path] | None:
+    """The file of a module and the folder it was found in; what a link leads out of the folder to does not count."""
+    relative = Path(*name.split("."))
+    for folder in folders:
+        for file in (folder / relative / "__init__.py", folder / relative.with_suffix(".py")):
+            if file.is_file() and file.resolve().is_relative_to(folder.resolve()):
+                return file, folder
+    return None
+
+
+def _package_of(folder: Path) -> str:
+    """A package of its own for the modules of a folder, so that they shadow nothing; made at the first use."""
+    name = f"simkit_gz_systems_{hashlib.sha1(str(folder.resolve()).encode(), usedforsecurity=False).hexdigest()[:16]}"
+    if name not in sys.modules:
+        package = types.ModuleType(name)
+        package.__path__ = [str(folder)]
+        sys.modules[name] = package
+    return name
+
+
+def has_get_system(file: Path) -> bool:
+    """Whether a file makes something called `get_system`; it is read, not run. True too where it is no Python."""
+    try:
+        tree = ast.parse(file.read_bytes(), str(file))
+    except (SyntaxError, ValueError):
+        return True  # the import says what is wrong
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and node.name == "get_system":
+            return True
+        if isinstance(node, ast.Name) and node.id == "get_system" and isinstance(node.ctx, ast.Store):
+            return True
+        if isinstance(node, (ast.Import, ast.ImportFrom)) and any(
+            (alias.asname or alias.name) in ("get_system", "*") for alias in node.names
+        ):
+            return True
+    return False

@@ -1,0 +1,138 @@
+"""gz's velocity control: `gz::sim::systems::VelocityControl`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.held_motion import HeldMotion, Move, Mover, Triple
+from simkit.plugins.drives.odometry import COMMAND_TYPES
+from simkit.plugins.lookups import find_link
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneModel
+
+Motion = tuple[Triple, Triple]
+
+
+class VelocityControl(ModelPlugin):
+    """Moves the model with the twist on `/model/<model>/cmd_vel`, in the model's own axes, about the model's origin.
+
+    It holds still until a command comes, or goes on with `<initial_linear>` and `<initial_angular>`; the last command
+    holds. Nothing else moves the model but contacts: it stays in the air, and needs no wheels. For each `<link_name>`
+    there is `/model/<model>/link/<link>/cmd_vel`, a twist in the link's own axes: from the first command on, the link
+    and all that joints tie it to are moved with that.
+    """
+
+    filenames = ("gz-sim-velocity-control-system",)
+    names = ("gz::sim::systems::VelocityControl",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        zero = (0.0, 0.0, 0.0)
+        self._first = _triple(params.vector3("initial_linear", zero)), _triple(params.vector3("initial_angular", zero))
+        self._topic = params.text("topic", "")
+        found = [(element.value, find_link(scene, element.value, params)) for element in params.all("link_name")]
+        self._link_names = {name: link.scoped for name, link in found if link is not None}
+        self._links = {link.scoped: link.pose_world for link in scene.all_links()}
+        self._canonical, self._pose = scene.canonical_link, scene.pose_world
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        self._target: Motion = self._first
+        self._link_targets: dict[str, Motion] = {}
+        self._mover = Mover(self.sim)
+        trees = _trees(self.sim, list(self._links))
+        self._whole = self._held(self._links)
+        # of each link that may be commanded, the tree of links that goes with it
+        self._parts = {name: HeldMotion(self.sim, trees[link], link) for name, link in self._link_names.items()}
+        # and the rest of the model, which its own command moves
+        self._rests: dict[frozenset[str], HeldMotion] = {}
+        for name in [name for name, part in self._parts.items() if not part] + ([] if self._whole else [""]):
+            self._report_fixed(name)
+        own = f"/model/{parent.name}"
+        self.listen(valid_topic(self._topic or f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        for name in self._link_names:
+            self.listen(valid_topic(f"{own}/link/{name}/cmd_vel"), COMMAND_TYPES, partial(self._on_link_command, name))
+
+    def _report_fixed(self, link: str) -> None:
+        what = f"link {link!r} of model {self.scoped!r}" if link else f"model {self.scoped!r}"
+        message = f"plugin {self.name!r}: {what} is joined to the world and stays where it is; no command moves it"
+        self.params.diagnostics.warning("SK-PLUGIN-053", message, self.where, "leave out the joint to the world")
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_command(self, message: Any) -> None:
+        motion = self._motion_of(message)
+        if motion is not None:
+            self._target = motion
+
+    def _on_link_command(self, link: str, message: Any) -> None:
+        motion = self._motion_of(message)
+        if motion is not None:
+            self._link_targets.pop(link, None)  # the last command stands last
+            self._link_targets[link] = motion
+
+    def _motion_of(self, message: Any) -> Motion | None:
+        twist = getattr(message, "twist", message)
+        linear, angular = ((float(v.x), float(v.y), float(v.z)) for v in (twist.linear, twist.angular))
+        if all(map(math.isfinite, (*linear, *angular))):
+            return linear, angular
+        self.once.not_finite()
+        return None
+
+    def before_step(self) -> None:
+        """Sets the velocities that hold through the step."""
+        self._mover.move(self._moves())
+
+    @classmethod
+    def before_step_together(cls, plugins: Sequence[VelocityControl]) -> Callable[[Iterable[VelocityControl]], None]:
+        """The same of many: what they share is worked out once."""
+        mover = Mover(plugins[0].sim)
+
+        def run(rota: Iterable[VelocityControl]) -> None:
+            mover.move([move for plugin in rota for move in plugin._moves()])
+
+        return run
+
+    def _moves(self) -> list[Move]:
+        """What is to be moved now."""
+        if not self._link_targets:
+            return [Move(self._whole, self._whole.frame, *self._target)] if self._whole else []
+        rest = self._rest()
+        moves = [Move(rest, rest.frame, *self._target)] if rest else []
+        trees = {self._parts[name].links: name for name in self._link_targets}  # of one tree the last command counts
+        parts = [(self._parts[name], self._link_targets[name]) for name in trees.values()]
+        return moves + [Move(part, part.frame, *motion) for part, motion in parts if part]
+
+    def _held(self, links: Iterable[str]) -> HeldMotion:
+        """Links of the model, to be moved with its frame."""
+        return HeldMotion(self.sim, links, self._canonical, self._links[self._canonical].inverse() @ self._pose)
+
+    def _rest(self) -> HeldMotion:
+        """What of the model no link's command moves."""
+        commanded = frozenset(self._link_targets)
+        if commanded not in self._rests:
+            gone = {link for name in commanded for link in self._parts[name].links}
+            self._rests[commanded] = self._held([link for link in self._links if link not in gone])
+        return self._rests[commanded]
+
+
+def _triple(vector: Any) -> Triple:
+    x, y, z = map(float, vector)
+    return x, y, z
+
+
+def _trees(sim: Simulation, links: list[str]) -> dict[str, list[str]]:
+    """Of each link, the links that hang together with it by joints, itself among them."""
+    model, names = sim.mj_model, sim.names
+    root = {link: int(model.body_rootid[names.link(link).body]) for link in links}
+    return {link: [other for other in links if root[other] == root[link]] for link in links}

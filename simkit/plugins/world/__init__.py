@@ -1,0 +1,1 @@
+"""What every world brings: its clock, its services, its statistics."""
