@@ -23,7 +23,7 @@ from simkit.plugins.joint_states import JointStatePublisher
 HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
 """What a system may have; without one of them it is none."""
 
-_OWN: Final = str(Path(__file__).resolve().parents[1]) + os.sep
+_OWN: Final = str(Path(__file__).resolve().parents[2]) + os.sep
 _MODULE = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
 
 _STATELESS: Final = (type(threading.Lock()), type(threading.RLock()), types.ModuleType)
