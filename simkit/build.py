@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, Where, follows_from
 from simkit.engine import import_engine
-from simkit.errors import InputError, SimkitError
+from simkit.errors import InputError, LoadError, SimkitError
 from simkit.loaders import Resolver, load_scene
 from simkit.parts import add_made, parts_of_model, parts_of_world, report_unread
 from simkit.pose import Pose
@@ -180,7 +180,7 @@ def check(
     base: str = "auto",
 ) -> Diagnostics:
     """Every problem of a file, also of compiling it and of loading its plugins; never raises for one."""
-    from simkit.errors import LoadError, PluginError
+    from simkit.errors import PluginError
     from simkit.lint import lint
 
     diagnostics = Diagnostics()
@@ -278,8 +278,9 @@ def _load_the_rest(world: SceneWorld, builder: Any, parts: dict[str, Any], diagn
     with suppress(SimkitError, ValueError, KeyError, AttributeError, TypeError):
         compiled = builder.compile()
         structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
-        with Simulation(world, structure, diagnostics, 0, _nothing, _nothing):
-            report_unread(parts.values())
+        with suppress(LoadError), Simulation(world, structure, diagnostics, 0, _nothing, _nothing):
+            pass  # what is wrong with a plugin is said once all of them have been loaded
+        report_unread(parts.values())
     diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE)
 
 

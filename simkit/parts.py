@@ -224,9 +224,10 @@ def _visual_parent(scoped: str) -> Callable[[Any], Any]:
 
 
 def report_unread(parts: Iterable[Parts]) -> None:
-    """Warns about each parameter that its plugin or sensor did not read."""
+    """Warns about each parameter that its plugin or sensor did not read; a plugin that was not loaded read nothing."""
     for part in parts:
         for sensor in part.sensors:
             sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
         for plugin, _ in part.plugins:
-            plugin.report_unread()
+            if hasattr(plugin, "sim"):
+                plugin.report_unread()

@@ -6,6 +6,7 @@ computed at the turn of the first; where somebody has written to the physics in 
 
 from __future__ import annotations
 
+import abc
 from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -18,7 +19,7 @@ LEAST = 4
 Member = TypeVar("Member", bound="Sampler")
 
 
-class Crew(Generic[Member]):
+class Crew(abc.ABC, Generic[Member]):
     """Members of one kind that are due at the same ticks.
 
     Args:
@@ -35,13 +36,13 @@ class Crew(Generic[Member]):
         for place, member in enumerate(self.members):
             member.crew, member.place_in_crew = self, place
 
+    @abc.abstractmethod
     def look(self, data: Any) -> None:
         """Takes what all members need from the data, which have everything computed."""
-        raise NotImplementedError
 
+    @abc.abstractmethod
     def raw_of(self, place: int) -> Any:
         """What `capture` would give of a member."""
-        raise NotImplementedError
 
     def serve(self, member: Sampler, tick: int) -> bool:
         """Does all that there is to a sample of which every message is waited for; False where the member has to."""

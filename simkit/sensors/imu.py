@@ -220,12 +220,12 @@ class Imu(Sensor):
         wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
         fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
         if self._mount != _AS_IT_IS:
-            attitude = _product(attitude, self._mount)
+            attitude = hamilton_product(attitude, self._mount)
             a, b, c, d, e, f, g, h, i = self._rotation
             wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
             fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
         if self._from_reference != _AS_IT_IS:
-            attitude = _product(self._from_reference, attitude)
+            attitude = hamilton_product(self._from_reference, attitude)
         return ImuReading(attitude, (wx, wy, wz, fx, fy, fz))
 
     def perturb(self, reading: ImuReading, index: int) -> ImuReading:
@@ -234,10 +234,10 @@ class Imu(Sensor):
             motion = self.noise.apply_to_numbers(motion, index)
         if not self._attitude_noise.is_silent:
             turn = self._attitude_noise.apply_to_numbers((0.0, 0.0, 0.0), index)
-            orientation = _product(orientation, _small_turn(turn))
+            orientation = hamilton_product(orientation, _small_turn(turn))
         if self._more_noise is not None:
             numbers = self._more_noise.apply_to_numbers((*motion, 0.0, 0.0, 0.0), index)
-            motion, orientation = numbers[:6], _product(orientation, _small_turn(numbers[6:]))
+            motion, orientation = numbers[:6], hamilton_product(orientation, _small_turn(numbers[6:]))
         return ImuReading(orientation, motion)
 
     def memory(self) -> Any:
@@ -278,8 +278,8 @@ class Imu(Sensor):
         self._covariances = of_all
 
 
-def _product(a: Any, b: Any) -> Four:
-    """Hamilton product of two (w, x, y, z)."""
+def hamilton_product(a: Any, b: Any) -> Any:
+    """Hamilton product of two (w, x, y, z), each a number or a row of them."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (

@@ -10,6 +10,7 @@ import numpy as np
 from simkit import msgs
 from simkit.pose import Vector
 from simkit.sensors.crews import Crew, form
+from simkit.sensors.imu import hamilton_product
 from simkit.sensors.sample import Sample
 
 if TYPE_CHECKING:
@@ -168,22 +169,10 @@ class ImuCrew(Crew["Imu"]):
         wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
         fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
         if self._mounts is not None:
-            attitude = _product(attitude, self._mounts)
+            attitude = hamilton_product(attitude, self._mounts)
             a, b, c, d, e, f, g, h, i = self._turns
             wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
             fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
         if self._references is not None:
-            attitude = _product(self._references, attitude)
+            attitude = hamilton_product(self._references, attitude)
         return attitude, (wx, wy, wz, fx, fy, fz)
-
-
-def _product(a: Any, b: Any) -> tuple[Vector, ...]:
-    """Hamilton products of (w, x, y, z), each number a row."""
-    aw, ax, ay, az = a
-    bw, bx, by, bz = b
-    return (
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-    )

@@ -215,3 +215,14 @@ def test_gz_worlds_of_the_ignition_time_load_unchanged() -> None:
     )
     sim: simkit.Simulation = load(rotor("a"), plugin)
     assert CMD in sim.topics()
+
+
+def test_a_wrong_joint_hides_no_wrong_number_and_no_fault_of_another_plugin_hides_an_unread_element() -> None:
+    text = """<sdf version="1.9"><world name="w"><model name="m"><link name="l"/><link name="k"/>
+      <joint name="j" type="revolute"><parent>l</parent><child>k</child><axis/></joint>
+      <plugin filename="gz-sim-joint-position-controller-system" name="gz::sim::systems::JointPositionController">
+        <joint_name>jj</joint_name><i_gain>many</i_gain></plugin>
+      <plugin filename="gz-sim-joint-state-publisher-system" name="gz::sim::systems::JointStatePublisher">
+        <topik>/joints</topik></plugin></model></world></sdf>"""
+    found = [(d.code, d.severity) for d in simkit.check(text) if d.severity != "note"]
+    assert sorted(found) == [("SK-PARAM-002", "error"), ("SK-PARAM-003", "warning"), ("SK-PLUGIN-003", "error")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import math
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -82,7 +83,11 @@ class JointCommander(ControlledJoints, ModelPlugin):
     _index: int = 0
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        faults = params.diagnostics.error_count
         found = find_joints(scene, params, axis=self._index)
+        if params.diagnostics.error_count > faults:  # it will not be loaded: what else is wrong is said now
+            for element in FIELDS:
+                params.number(element)
         self._scoped = [joint.scoped for joint in found]
         self._first = next((e.value for e in params.all("joint_name") if e.value), "")
 
@@ -159,9 +164,9 @@ class JointCommander(ControlledJoints, ModelPlugin):
         if self._by_velocity:
             self._drive()
 
+    @abc.abstractmethod
     def command(self) -> None:
         """Brings the joints nearer to the target, by `push` or `turn`."""
-        raise NotImplementedError
 
     def push(self, error: float) -> None:
         """Pushes all joints as the controller says to an error of the first."""
