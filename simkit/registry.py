@@ -6,7 +6,7 @@ import importlib
 import inspect
 import logging
 import pkgutil
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from importlib.metadata import entry_points
 from types import MappingProxyType
@@ -22,12 +22,12 @@ def _installed() -> Any:
 
 
 def discover(
-    package: str, group: str, base: type[T], names: Callable[[type[T]], Iterable[str]]
+    packages: str | Sequence[str], group: str, base: type[T], names: Callable[[type[T]], Iterable[str]]
 ) -> Mapping[str, type[T]]:
-    """Every class under `package` and in the entry points `group` that is a `base`, by each name it answers to.
+    """Every class under `packages` and in the entry points `group` that is a `base`, by each name it answers to.
 
     Args:
-        package: dotted name of the package whose modules (and sub-packages' modules) are read.
+        packages: dotted names of the packages whose modules (and sub-packages' modules) are read.
         group: entry-point group.
         base: classes must derive from it; abstract and nameless ones are passed over.
         names: gives the names that a class answers to.
@@ -36,8 +36,8 @@ def discover(
         RuntimeError: two classes answer to one name.
     """
     classes: dict[type[T], None] = {}
-    root = importlib.import_module(package)
-    for info in pkgutil.walk_packages(root.__path__, package + "."):
+    roots = [importlib.import_module(p) for p in ((packages,) if isinstance(packages, str) else packages)]
+    for info in (i for root in roots for i in pkgutil.walk_packages(root.__path__, root.__name__ + ".")):
         module = importlib.import_module(info.name)
         for cls in vars(module).values():
             own = inspect.isclass(cls) and cls.__module__ == module.__name__

@@ -20,9 +20,11 @@ ROOMS: dict[str, frozenset[str]] = {
     "sensors": frozenset({"runtime", "compiler", "scene", "earth"}),
     "gzpython": frozenset({"runtime", "scene", "earth"}),
     "plugins": frozenset({"runtime", "compiler", "scene", "earth", "gzpython"}),
+    "control": frozenset({"plugins", "runtime", "compiler", "scene"}),
+    "motion": frozenset({"control", "runtime", "scene"}),
     "authoring": frozenset({"plugins", "gzpython", "sensors", "runtime", "scene"}),
     "pytest_plugin": frozenset({"runtime"}),
-    "parts": frozenset({"plugins", "sensors", "runtime", "scene"}),
+    "parts": frozenset({"control", "motion", "plugins", "sensors", "runtime", "scene"}),
     "sinks": frozenset({"runtime", "writers"}),
     "fix_inertia": frozenset({"loaders", "compiler", "scene"}),
     "lint": frozenset({"runtime", "compiler", "scene"}),
@@ -33,7 +35,20 @@ ROOMS: dict[str, frozenset[str]] = {
     "codes": frozenset(),
     "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
     "cli": frozenset(
-        {"authoring", "build", "codes", "fix_inertia", "description", "bench", "engine", "overrides", "sinks", "vendor"}
+        {
+            "authoring",
+            "control",
+            "motion",
+            "build",
+            "codes",
+            "fix_inertia",
+            "description",
+            "bench",
+            "engine",
+            "overrides",
+            "sinks",
+            "vendor",
+        }
         | {"writers"}
     ),
 }

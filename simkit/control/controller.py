@@ -1,0 +1,140 @@
+"""What a controller is: claims interfaces of the hardware, and is updated at the controller manager's rate."""
+
+from __future__ import annotations
+
+import abc
+import copy
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from simkit.control.interfaces import Interfaces
+from simkit.params import Params
+
+if TYPE_CHECKING:
+    from simkit.control.hardware import Hardware
+    from simkit.plugins.base import Plugin
+    from simkit.runtime import Simulation
+
+
+class Controller(abc.ABC):
+    """Base of all controllers.
+
+    The controller manager makes it, then calls `configure` once, `activate` and `deactivate` as it is switched, and
+    `update` at its rate while it is active. Between `activate` and `deactivate` the interfaces that it named are its
+    own. What it writes stays until it writes again.
+
+    Attributes:
+        types: type names in YAML files that stand for this class
+            (`joint_trajectory_controller/JointTrajectoryController`).
+        name: the controller's, such as `arm_controller`.
+        plugin: the plugin that hosts the controller manager.
+        params: the controller's parameters from the YAML; an element for each key, `a.b` as the element b in a, a
+            list as repeated elements (`[j.value for j in params.all("joints")]`).
+        hardware: joints with their limits, mimics, and the tables of interfaces.
+        states: the state interfaces it named, bound before `configure` returns to the manager.
+        commands: the command interfaces it named, bound and claimed while it is active.
+        update_rate: [Hz]; 0 for the manager's.
+        log: a logger below `simkit`.
+    """
+
+    types: ClassVar[tuple[str, ...]] = ()
+
+    name: str
+    plugin: Plugin
+    params: Params
+    hardware: Hardware
+    states: Interfaces
+    commands: Interfaces
+    update_rate: int = 0
+    log: logging.Logger
+
+    def __init__(self, name: str, plugin: Plugin, params: Params, hardware: Hardware) -> None:
+        """Made by the controller manager.
+
+        Args:
+            name: the controller's.
+            plugin: the host.
+            params: its part of the YAML.
+            hardware: what it may claim.
+        """
+        self.name, self.plugin, self.params, self.hardware = name, plugin, params, hardware
+        self.log = logging.getLogger(f"simkit.control.{name}")
+
+    # ------------------------------------------------------------------ what a controller says and does
+
+    @abc.abstractmethod
+    def configure(self) -> None:
+        """Reads `params`, opens topics, services, actions; a problem recorded in `params` keeps it unconfigured."""
+
+    def command_interfaces(self) -> Sequence[str]:
+        """What it writes, such as `arm_1_joint/position`; asked after `configure`."""
+        return ()
+
+    def state_interfaces(self) -> Sequence[str]:
+        """What it reads, such as `arm_1_joint/velocity`; asked after `configure`."""
+        return ()
+
+    def activate(self) -> None:
+        """Its interfaces are bound; takes up the present state."""
+
+    def deactivate(self) -> None:
+        """Ends goals and lets go; the interfaces are released afterwards. Joints stay where they are."""
+
+    @abc.abstractmethod
+    def update(self, now_ns: int, period: float) -> None:
+        """Reads `states`, writes `commands`.
+
+        Args:
+            now_ns: simulated time [ns].
+            period: time since the last update [s].
+        """
+
+    # ------------------------------------------------------------------ what it may use
+
+    @property
+    def sim(self) -> Simulation:
+        """The simulation."""
+        return self.plugin.sim
+
+    def topic(self, name: str) -> str:
+        """A name as the controller's node has it: `~/state` is `<namespace>/<controller>/state`."""
+        return f"{self.name}/{name[2:]}" if name.startswith("~/") else name
+
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Any:
+        """As `Plugin.advertise`, with the controller's node."""
+        return self.plugin.advertise(self.topic(topic), type_name, latched=latched)
+
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Any:
+        """As `Plugin.listen`, with the controller's node."""
+        return self.plugin.listen(self.topic(topic), types, callback)
+
+    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Any:
+        """As `Plugin.offer`, with the controller's node."""
+        return self.plugin.offer(self.topic(service), type_name, handler)
+
+    def act(
+        self,
+        action: str,
+        type_name: str,
+        on_goal: Callable[[Any], None],
+        on_cancel: Callable[[Any], bool | None] | None = None,
+    ) -> Any:
+        """As `Plugin.act`, with the controller's node."""
+        return self.plugin.act(self.topic(action), type_name, on_goal, on_cancel)
+
+    def get_state(self) -> dict[str, Any]:
+        """A copy of every attribute it gave itself; handles and publishers stand for themselves."""
+        return copy.deepcopy({k: v for k, v in vars(self).items() if k not in _OWNED}, {id(self): self})
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Back to a state from `get_state`."""
+        for key in [k for k in vars(self) if k not in _OWNED and k not in state]:
+            delattr(self, key)
+        vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Controller:
+        return self
+
+
+_OWNED = frozenset(("name", "plugin", "params", "hardware", "states", "commands", "log"))

@@ -1,0 +1,70 @@
+"""Command and state interfaces of the hardware: named numbers that controllers read and write together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+from simkit.pose import Vector
+
+POSITION: Final = "position"
+VELOCITY: Final = "velocity"
+EFFORT: Final = "effort"
+
+
+class InterfaceTable:
+    """All interfaces of one direction, in one array.
+
+    Attributes:
+        names: `<joint or sensor>/<interface>`, such as `arm_1_joint/position`, in the order of the description.
+        values: theirs; rad, m, rad/s, m/s, N·m, N; NaN where there is none (yet).
+    """
+
+    def __init__(self, names: Iterable[str] = ()) -> None:
+        self.names: tuple[str, ...] = tuple(dict.fromkeys(names))
+        self._index = {name: k for k, name in enumerate(self.names)}
+        self.values: Vector = np.full(len(self.names), np.nan)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._index
+
+    def index(self, name: str) -> int:
+        """Where a name is in `values`. Raises InputError naming the closest."""
+        found = self._index.get(name)
+        if found is None:
+            near = did_you_mean(name, self.names)
+            raise InputError(f"there is no interface {name!r}{near and '; ' + near}")
+        return found
+
+    def select(self, names: Sequence[str]) -> Interfaces:
+        """Some of them, in the order asked for. Raises InputError."""
+        return Interfaces(self, names)
+
+
+class Interfaces:
+    """Some interfaces of a table, in the order in which a controller has them."""
+
+    def __init__(self, table: InterfaceTable, names: Sequence[str]) -> None:
+        self._table = table
+        self.names = tuple(names)
+        self._where = np.array([table.index(name) for name in names], dtype=np.intp)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Interfaces:
+        return self
+
+    @property
+    def values(self) -> Vector:
+        """A copy of their values."""
+        found: Vector = self._table.values[self._where]
+        return found
+
+    @values.setter
+    def values(self, values: Vector | Sequence[float]) -> None:
+        self._table.values[self._where] = values
