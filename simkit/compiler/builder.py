@@ -12,6 +12,7 @@ import mujoco
 
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import drop_twin
+from simkit.compiler.drive import add_rotor
 from simkit.compiler.first_state import damp, place_followers, steady_idle
 from simkit.compiler.inertia import put_back
 from simkit.compiler.lights import add_light, refine_for_lamps, report_light, report_lights
@@ -113,6 +114,7 @@ class SpecBuilder:
         Args:
             movable: a static model becomes mocap bodies, which can be set elsewhere while it runs.
         """
+        movable = movable or model.moved_by is not None
         record = ModelRecord(model, movable)
         if model.scoped in self.records:
             raise ValueError(f"there is a model {model.scoped!r} already")
@@ -279,6 +281,36 @@ class SpecBuilder:
         """Adds a servo whose control is a position [rad or m]; gains that would ring are capped. Raises KeyError."""
         return self._add_actuator("position", joint_scoped, axis, max_effort, owner, kp, kv)
 
+    def add_drive(
+        self,
+        joint_scoped: str,
+        *,
+        axis: int = 0,
+        max_effort: float,
+        max_velocity: float = float("inf"),
+        owner: str,
+        has_rotor: bool = True,
+    ) -> ActuatorRef:
+        """Adds a motor or servo by turns: its state is an effort, its control the rate at which that goes on.
+
+        Its force is the state and what `actuator_biasprm` adds (-kp, -kv), within the limit.
+
+        Args:
+            max_effort: [N·m or N]; the joint's own effort limit counts too.
+            max_velocity: [rad/s or m/s]; with the effort it says how heavy the drive's rotor is.
+            owner: who drives it; part of the actuator's name.
+            has_rotor: whether the joint may get an armature, as servos need it.
+
+        Raises:
+            KeyError: no such joint or axis.
+        """
+        ref = self._add_actuator("drive", joint_scoped, axis, max_effort, owner, None, None)
+        if has_rotor:
+            joint = self.names.joint(joint_scoped)
+            made = self.spec.joint(joint.joint_names[axis])
+            add_rotor(made, ref.max_effort, max_velocity, joint_scoped, self.diagnostics, joint.scene.where)
+        return ref
+
     def add_motor(
         self, joint_scoped: str, axis: int = 0, max_effort: float = float("inf"), owner: str = "motor"
     ) -> ActuatorRef:
@@ -308,7 +340,7 @@ class SpecBuilder:
             k += 1
             name = f"{base}#{k}"
         ref = ActuatorRef(name, kind, scoped, axis, max_effort, owner, kp, kv)
-        if kind != "motor":
+        if kind in ("position", "velocity"):
             add_armature(self.spec.joint(joint.joint_names[axis]), scoped, self.diagnostics, joint.scene.where)
         add_actuator(self.spec, ref, joint.joint_names[axis])
         record.actuators.append(ref)

@@ -107,6 +107,12 @@ class Couplings:
             self.couple(f"{scoped}#mimic{axis}", follower, leader.joint_names[of], offset, ratio)
             self._follow(leader, Follower(follower, ratio, offset=offset, axis=of))
 
+    def tie(self, follower: str, leader: str, ratio: float, offset: float) -> None:
+        """Has one joint of one axis follow another, by their scoped names: follower = offset + ratio · leader."""
+        ahead, behind = self.record.joints[leader], self.record.joints[follower].joint_names[0]
+        self.couple(f"{follower}#mimic0", behind, ahead.joint_names[0], offset, ratio)
+        self._follow(ahead, Follower(behind, ratio, offset=offset))
+
     def _head(
         self, joint: SceneJoint, axis: int, wanted: dict[tuple[str, int], tuple[SceneJoint, Mimic]]
     ) -> tuple[JointBinding, int, float, float] | None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from simkit.compiler.assets import Assets
 from simkit.compiler.friction import Contact, contact_of
-from simkit.compiler.groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, VISUAL
+from simkit.compiler.groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
 from simkit.compiler.heightmap import heights
 from simkit.compiler.looks import look_of
 from simkit.compiler.meshes.collision import bodies_of, hull_of
@@ -198,7 +198,8 @@ class GeomWriter:
             "material": self.assets.material(emission, look.specular, look.shininess, texture, repeat),
             "contype": 0,
             "conaffinity": 0,
-            "group": VISUAL,
+            # who is moved by a script touches nothing, and lidars that see collisions see it as it is drawn
+            "group": VISUAL if self.record.scene.moved_by is None else DRAWN_COLLISION,
             "castshadow": visual.cast_shadows,
         }
 

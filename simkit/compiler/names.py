@@ -129,7 +129,7 @@ class ActuatorRef:
 
     Attributes:
         name: MuJoCo's name.
-        kind: velocity, position or motor.
+        kind: velocity, position, motor or drive (a motor whose effort goes on by itself, for servos).
         joint, axis: scoped joint and the index of its axis.
         max_effort: what the actuator may give at most [N or N·m].
         kp, kv: wanted gains; None lets the servo rule choose.

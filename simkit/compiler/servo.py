@@ -34,7 +34,9 @@ def add_actuator(spec: mujoco.MjSpec, ref: ActuatorRef, joint_name: str) -> None
     actuator.ctrllimited = mujoco.mjtLimited.mjLIMITED_FALSE
     actuator.gaintype = mujoco.mjtGain.mjGAIN_FIXED
     actuator.biastype = mujoco.mjtBias.mjBIAS_NONE if ref.kind == "motor" else mujoco.mjtBias.mjBIAS_AFFINE
-    actuator.gainprm[0] = 1.0 if ref.kind == "motor" else 0.0
+    if ref.kind == "drive":
+        actuator.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
+    actuator.gainprm[0] = 1.0 if ref.kind in ("motor", "drive") else 0.0
     limited = math.isfinite(ref.max_effort)
     actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE if limited else mujoco.mjtLimited.mjLIMITED_FALSE
     if limited:
@@ -56,7 +58,7 @@ def add_armature(joint: Any, scoped: str, diagnostics: Diagnostics, where: Where
 
 def tune(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef]) -> None:
     """Sets the gains of all servos in the model and in the spec."""
-    refs = [r for r in refs if r.kind != "motor"]
+    refs = [r for r in refs if r.kind in ("position", "velocity")]
     if not refs:
         return
     inertia = _felt_inertia(model, refs)

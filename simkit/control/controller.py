@@ -5,9 +5,10 @@ from __future__ import annotations
 import abc
 import copy
 import logging
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from simkit.control.ends import Ends
 from simkit.control.interfaces import Interfaces
 from simkit.params import Params
 
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from simkit.control.hardware import Hardware
     from simkit.plugins.base import Plugin
     from simkit.runtime import Simulation
+    from simkit.runtime.parameters import Parameter
+
+T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 
 class Controller(abc.ABC):
@@ -36,6 +40,7 @@ class Controller(abc.ABC):
         commands: the command interfaces it named, bound and claimed while it is active.
         update_rate: [Hz]; 0 for the manager's.
         log: a logger below `simkit`.
+        ends: what it has opened; the manager gives it those of its name.
     """
 
     types: ClassVar[tuple[str, ...]] = ()
@@ -48,6 +53,7 @@ class Controller(abc.ABC):
     commands: Interfaces
     update_rate: int = 0
     log: logging.Logger
+    ends: Ends
 
     def __init__(self, name: str, plugin: Plugin, params: Params, hardware: Hardware) -> None:
         """Made by the controller manager.
@@ -60,6 +66,7 @@ class Controller(abc.ABC):
         """
         self.name, self.plugin, self.params, self.hardware = name, plugin, params, hardware
         self.log = logging.getLogger(f"simkit.control.{name}")
+        self.ends = Ends()
 
     # ------------------------------------------------------------------ what a controller says and does
 
@@ -103,15 +110,22 @@ class Controller(abc.ABC):
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Any:
         """As `Plugin.advertise`, with the controller's node."""
-        return self.plugin.advertise(self.topic(topic), type_name, latched=latched)
+        name = self.topic(topic)
+        return self.ends.open(
+            ("advertise", f"{name} {type_name}"), lambda: self.plugin.advertise(name, type_name, latched=latched)
+        )
 
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Any:
         """As `Plugin.listen`, with the controller's node."""
-        return self.plugin.listen(self.topic(topic), types, callback)
+        name, key = self.topic(topic), ("listen", f"{self.topic(topic)} {types}")
+        relay = self.ends.relay(key, callback)
+        return self.ends.open(key, lambda: self.plugin.listen(name, types, relay))
 
     def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Any:
         """As `Plugin.offer`, with the controller's node."""
-        return self.plugin.offer(self.topic(service), type_name, handler)
+        name, key = self.topic(service), ("offer", self.topic(service))
+        relay = self.ends.relay(key, handler)
+        return self.ends.open(key, lambda: self.plugin.offer(name, type_name, relay))
 
     def act(
         self,
@@ -121,20 +135,79 @@ class Controller(abc.ABC):
         on_cancel: Callable[[Any], bool | None] | None = None,
     ) -> Any:
         """As `Plugin.act`, with the controller's node."""
-        return self.plugin.act(self.topic(action), type_name, on_goal, on_cancel)
+        name, key = self.topic(action), ("act", self.topic(action))
+        relay = self.ends.relay(key, on_goal, lambda goal: goal.reject("the controller is not loaded"))
+        cancel = on_cancel and self.ends.relay(("cancel", name), on_cancel)
+        return self.ends.open(key, lambda: self.plugin.act(name, type_name, relay, cancel))
+
+    def declare(
+        self,
+        name: str,
+        default: T,
+        *,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        choices: Sequence[T] = (),
+        description: str = "",
+        on_change: Callable[[T], None] | None = None,
+    ) -> Parameter[T]:
+        """A live parameter of the controller's node, as `Plugin.declare`; its first value is the YAML's.
+
+        Args:
+            name: its name; `gains.arm_1_joint.p` is p in arm_1_joint in gains.
+            default: its value where the YAML says nothing; its type is the parameter's.
+            minimum, maximum: bounds of a number.
+            choices: what is allowed, where that is a list.
+            description: what it is, with its unit.
+            on_change: called with a new value, between two steps.
+        """
+        from simkit.control.live import declare
+
+        return declare(
+            self,
+            name,
+            default,
+            minimum=minimum,
+            maximum=maximum,
+            choices=choices,
+            description=description,
+            on_change=on_change,
+        )
 
     def get_state(self) -> dict[str, Any]:
-        """A copy of every attribute it gave itself; handles and publishers stand for themselves."""
-        return copy.deepcopy({k: v for k, v in vars(self).items() if k not in _OWNED}, {id(self): self})
+        """A copy of every attribute it gave itself; handles and publishers stand for themselves.
+
+        What cannot be copied is left out and told once (SK-PLUGIN-006).
+        """
+        own = {k: v for k, v in vars(self).items() if k not in _OWNED}
+        memo: dict[int, Any] = {id(self): self}
+        try:
+            return copy.deepcopy(own, memo)
+        except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
+            return dict(self._copied(own, memo))
 
     def set_state(self, state: Mapping[str, Any]) -> None:
-        """Back to a state from `get_state`."""
-        for key in [k for k in vars(self) if k not in _OWNED and k not in state]:
+        """Back to a state from `get_state`; what could not be copied stays as it is."""
+        uncopied = vars(self).get("_uncopied", ())
+        for key in [k for k in vars(self) if k not in _OWNED and k not in state and k not in uncopied]:
             delattr(self, key)
         vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
+
+    def _copied(self, own: Mapping[str, Any], memo: dict[int, Any]) -> Iterator[tuple[str, Any]]:
+        """Copies of the attributes that can be copied."""
+        uncopied: set[str] = vars(self).setdefault("_uncopied", set())
+        for key, value in own.items():
+            try:
+                yield key, copy.deepcopy(value, memo)
+            except Exception as error:  # noqa: BLE001 - as above
+                if key not in uncopied:
+                    uncopied.add(key)
+                    message = f"controller {self.name!r}: attribute {key!r} cannot be copied"
+                    message = f"{message}, snapshots and reset leave it as it is: {error}"
+                    self.sim.reports.warning("SK-PLUGIN-006", message, self.params.where)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Controller:
         return self
 
 
-_OWNED = frozenset(("name", "plugin", "params", "hardware", "states", "commands", "log"))
+_OWNED = frozenset(("name", "plugin", "params", "hardware", "states", "commands", "log", "ends", "_uncopied"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -22,12 +22,22 @@ class InterfaceTable:
     Attributes:
         names: `<joint or sensor>/<interface>`, such as `arm_1_joint/position`, in the order of the description.
         values: theirs; rad, m, rad/s, m/s, N·m, N; NaN where there is none (yet).
+        late: what is only read when somebody asks for it, such as a sensor: where it is, and what reads it.
     """
 
     def __init__(self, names: Iterable[str] = ()) -> None:
         self.names: tuple[str, ...] = tuple(dict.fromkeys(names))
         self._index = {name: k for k, name in enumerate(self.names)}
         self.values: Vector = np.full(len(self.names), np.nan)
+        self.late: list[tuple[Any, Callable[[], Any]]] = []
+
+    def catch_up(self, wanted: frozenset[int]) -> None:
+        """Reads what is late and wanted."""
+        due = [not wanted.isdisjoint(places.tolist()) for places, _ in self.late]
+        now = [one for one, is_due in zip(self.late, due, strict=True) if is_due]
+        self.late[:] = [one for one, is_due in zip(self.late, due, strict=True) if not is_due]
+        for places, read in now:
+            self.values[places] = read()
 
     def __contains__(self, name: str) -> bool:
         return name in self._index
@@ -52,6 +62,7 @@ class Interfaces:
         self._table = table
         self.names = tuple(names)
         self._where = np.array([table.index(name) for name in names], dtype=np.intp)
+        self._wanted = frozenset(self._where.tolist())
 
     def __len__(self) -> int:
         return len(self.names)
@@ -62,7 +73,10 @@ class Interfaces:
     @property
     def values(self) -> Vector:
         """A copy of their values."""
-        found: Vector = self._table.values[self._where]
+        table = self._table
+        if table.late:
+            table.catch_up(self._wanted)
+        found: Vector = table.values[self._where]
         return found
 
     @values.setter

@@ -6,7 +6,7 @@ the messages `<package>/srv/<Name>_Request` and `<package>/srv/<Name>_Response`.
 
 from __future__ import annotations
 
-from simkit.msgs import world
+from simkit.msgs import control, controller_manager, motions, world
 
 SERVICES: dict[str, str] = {
     "std_srvs/srv/Empty": """
@@ -55,5 +55,8 @@ string[] names
 ---
 rcl_interfaces/ParameterDescriptor[] descriptors
 """,
+    **control.SERVICES,
+    **controller_manager.SERVICES,
     **world.SERVICES,
+    **motions.SERVICES,
 }

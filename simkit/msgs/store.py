@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.actions import ACTIONS, MESSAGES
+from simkit.msgs.controller_manager import MESSAGES as CONTROL_MESSAGES
 from simkit.msgs.extras import DEFINITIONS
 from simkit.msgs.services import SERVICES
 from simkit.msgs.world import MESSAGES as WORLD_MESSAGES
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 
-_MESSAGES = {**MESSAGES, **WORLD_MESSAGES}
+_MESSAGES = {**MESSAGES, **CONTROL_MESSAGES, **WORLD_MESSAGES}
 _SERVICE_ENDS, _ACTION_ENDS = ("Request", "Response"), ("Goal", "Result", "Feedback")
 _USED = re.compile(r"^(\w+/\w+)", re.MULTILINE)
 

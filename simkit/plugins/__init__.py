@@ -47,7 +47,7 @@ def plugin_kinds() -> Mapping[str, type[Plugin]]:
     def names(cls: type[Plugin]) -> list[str]:
         return [normalise(name) for name in (*cls.filenames, *cls.names)]
 
-    return discover(("simkit.plugins", "simkit.control"), GROUP, Plugin, names)  # type: ignore[type-abstract]
+    return discover(("simkit.plugins", "simkit.control.hosts", "simkit.motion"), GROUP, Plugin, names)  # type: ignore[type-abstract]
 
 
 def find_plugin(

@@ -8,7 +8,7 @@ import inspect
 import re
 import sys
 from collections.abc import Sequence
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.plugins import GROUP, aliases, normalise
 from simkit.plugins.base import Plugin
 from simkit.plugins.duck import allowed, as_class, has_hooks
+from simkit.registry import points_of
 from simkit.scene import ScenePlugin
 
 _CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
@@ -33,7 +34,7 @@ def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Di
 def _by_class_name(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
     match = _CLASS.match(plugin.filename)
     assert match is not None
-    for point in entry_points(group=GROUP):
+    for point in points_of(GROUP):
         if point.value.replace(" ", "") == plugin.filename:
             return _by_entry_point(point, plugin, diagnostics)
     relative = Path(*match["module"].split("."))
@@ -73,7 +74,7 @@ def _by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostic
 def _by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
     """Looks among the names of entry points, then for the classes' own in modules directly in the allowed folders."""
     wanted = set(aliases(plugin))
-    for point in entry_points(group=GROUP):
+    for point in points_of(GROUP):
         if normalise(point.name) in wanted:
             return _by_entry_point(point, plugin, diagnostics)
     for folder in paths:

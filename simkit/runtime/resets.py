@@ -35,13 +35,14 @@ def reset_models(sim: Simulation, loaded: Snapshot) -> None:
         if field in sim.originals:
             sim.touch(field)[:] = sim.original(field)
     fresh = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:], data.act[:] = fresh.qpos, 0.0, fresh.act
+    data.qpos[:], data.qvel[:] = fresh.qpos, 0.0
     data.mocap_pos[:], data.mocap_quat[:] = fresh.mocap_pos, fresh.mocap_quat
     data.ctrl[:], data.eq_active[:] = fresh.ctrl, fresh.eq_active
     data.qacc_warmstart[:] = data.qfrc_applied[:] = 0.0
     data.xfrc_applied[:] = sim.physics.standing
     _copy_joints(first, first_data, model, data)
     _copy_rows(mujoco.mjtObj.mjOBJ_ACTUATOR, first, first_data.ctrl, model, data.ctrl)
+    _copy_activations(first, first_data, model, data)
     _copy_rows(mujoco.mjtObj.mjOBJ_EQUALITY, first, first_data.eq_active, model, data.eq_active)
     _copy_mocap(first, first_data, model, data)
     sim.physics.one_shot = False
@@ -64,6 +65,14 @@ def _pairs(kind: Any, count: int, old: Any, new: Any) -> list[tuple[int, int]]:
         if j >= 0:
             found.append((i, j))
     return found
+
+
+def _copy_activations(old: Any, old_data: Any, new: Any, data: Any) -> None:
+    """Of actuators that were there; that of others belongs to plugins that go on."""
+    for i, j in _pairs(mujoco.mjtObj.mjOBJ_ACTUATOR, old.nu, old, new):
+        a, b, count = int(old.actuator_actadr[i]), int(new.actuator_actadr[j]), int(old.actuator_actnum[i])
+        if count > 0 and count == int(new.actuator_actnum[j]):
+            data.act[b : b + count] = old_data.act[a : a + count]
 
 
 def _copy_joints(old: Any, old_data: Any, new: Any, data: Any) -> None:

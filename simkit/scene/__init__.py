@@ -37,6 +37,7 @@ from simkit.scene.model import (
 from simkit.scene.world import (
     Animation,
     Atmosphere,
+    PersonLook,
     Physics,
     Scene,
     SceneActor,
@@ -64,6 +65,7 @@ __all__ = [
     "Material",
     "Mesh",
     "Mimic",
+    "PersonLook",
     "Physics",
     "Plane",
     "Polyline",

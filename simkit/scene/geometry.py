@@ -66,6 +66,7 @@ class Mesh:
         optimization: what a collision that is not convex becomes: "" (the compiler's choice), "convex_hull" or
             "convex_decomposition".
         max_hulls: pieces of a convex decomposition.
+        bone: only what this bone of the file's skeleton carries, in its frame and before the file's unit counts.
     """
 
     file: Path
@@ -76,6 +77,7 @@ class Mesh:
     missing: bool = False
     optimization: str = ""
     max_hulls: int = 16
+    bone: str = ""
 
 
 @dataclass(frozen=True, slots=True)

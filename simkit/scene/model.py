@@ -276,6 +276,7 @@ class SceneModel:
         transmissions: of a URDF robot.
         controls: `<ros2_control>` elements as they stand in the file, for a plugin that reads them.
         mjcf: the engine's own description of the model, which is then what is simulated.
+        moved_by: what puts the links of a static model elsewhere while it runs (an actor's script); None: nothing.
     """
 
     name: str
@@ -296,6 +297,7 @@ class SceneModel:
     transmissions: tuple[Transmission, ...] = ()
     controls: tuple[Params, ...] = ()
     mjcf: MjcfSource | None = None
+    moved_by: object | None = None
 
     def all_models(self) -> list[SceneModel]:
         """This model and all nested ones, outermost first, in document order."""

@@ -15,6 +15,7 @@ PREFIX: Final = "simkit:"
 OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
     {
         "world": frozenset({"gazebo_quirks"}),
+        "actor": frozenset({"person"}),
         "scene": frozenset({"quality"}),
         "light": frozenset({"irradiance"}),
         "sensor": frozenset(
@@ -25,7 +26,10 @@ OWN_ELEMENTS: Final[Mapping[str, frozenset[str]]] = MappingProxyType(
         "imu": frozenset({"orientation"}),
         "magnetometer": frozenset({"date"}),
         "sonar": frozenset({"axis", "noise"}),
-        "plugin": frozenset({"interpolation", "odometry_noise", "on_error", "point_times", "pose_type", "shadow_gz"}),
+        "plugin": frozenset(
+            {"controllers", "interpolation", "odometry_noise", "on_error", "point_times", "pose_type"}
+            | {"ros2_control", "shadow_gz"}
+        ),
     }
 )
 """Element of SDF -> names in it that are our own. What is inside one of our own, or of a plugin's, needs no prefix."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from simkit.diagnostics import NOWHERE, Where
@@ -93,12 +93,26 @@ class Animation:
 
 
 @dataclass(frozen=True, slots=True)
+class PersonLook:
+    """How a person looks.
+
+    Attributes:
+        height: [m]; None leaves it to the name.
+        colours: red, green, blue from 0 to 1 of shirt, trousers, skin and hair, as far as they are given.
+    """
+
+    height: float | None = None
+    colours: Mapping[str, Vec3] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class SceneActor:
-    """A person or animal that follows a script; it is not moved yet.
+    """A person or animal that follows a script.
 
     Attributes:
         skin: URI of the mesh; empty where there is none.
         loop, delay_start, auto_start: how its script plays; the delay in seconds.
+        person: how a person of our own making looks who stands in for the skin; None leaves it to the name.
     """
 
     name: str
@@ -112,6 +126,7 @@ class SceneActor:
     auto_start: bool = True
     plugins: tuple[ScenePlugin, ...] = ()
     where: Where = NOWHERE
+    person: PersonLook | None = None
 
 
 QUALITIES: Final = ("fast", "gazebo", "high")

@@ -19,6 +19,7 @@ from simkit.compiler.meshes.files import Companions
 from simkit.compiler.meshes.gltf import read_gltf
 from simkit.compiler.meshes.obj import read_obj
 from simkit.compiler.meshes.part import MeshFileError, MeshPart
+from simkit.compiler.meshes.skin import bone_parts
 from simkit.compiler.meshes.stl import read_stl
 from simkit.compiler.meshes.text import FARTHEST_VERTEX, LARGEST_FACES, LARGEST_FILE
 from simkit.diagnostics import Diagnostics, Where, closest
@@ -33,6 +34,8 @@ def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPa
     What is wrong with a file is said once, however often it is used.
     """
     try:
+        if mesh.bone:
+            return [part.scaled(mesh.scale) for part in bone_parts(mesh.file, mesh.bone)]
         converted = convert_file(mesh.file)
         parts = _submesh(list(converted.parts), mesh.submesh) if mesh.submesh else list(converted.parts)
     except MeshFileError as problem:

@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit.loaders.sdf.light import read_light
 from simkit.loaders.sdf.names import named
+from simkit.loaders.sdf.old import modern
 from simkit.loaders.sdf.parts import local_pose
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
@@ -24,6 +25,7 @@ from simkit.scene import Inertial, SceneCollision, SceneLight, SceneLink, SceneS
 
 HEAVIEST = 1e15  # kg and kg m2: the products of larger ones leave the numbers
 _MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_SENSORS_VERSION = (1, 4)  # of SDF, as which Gazebo read URDF when robots wrote one <noise> for a whole IMU
 NO_MASS = Inertial(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), given=False)
 
 
@@ -202,7 +204,7 @@ def _visuals(
 
 def _sensors(draft: Draft, link: str, extension: Params) -> tuple[SceneSensor, ...]:
     pose, frame = draft.links_world[link], draft.frame(link)
-    elements = _without_twins(extension.all("sensor"), link, draft)
+    elements = [modern(e, _SENSORS_VERSION) for e in _without_twins(extension.all("sensor"), link, draft)]
     return tuple(
         read_sensor(
             element,

@@ -11,6 +11,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.heard import instants, publish_while_heard
 from simkit.plugins.lookups import named_link
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
@@ -50,7 +51,7 @@ class GazeboRosP3D(ModelPlugin):
             deviation, rate = "gaussian_noise", "update_rate"
         params.child("alwaysOn" if is_old else "always_on")
         self._deviation = params.number(deviation, 0.0, minimum=0, maximum=LARGEST)
-        self.after_step_rate = params.number(rate, 0.0, minimum=0)
+        self._rate = params.number(rate, 0.0, minimum=0)
         self._shift = np.array(_offset(params, "xyz", is_old))
         self._turn = quat_from_rpy(*_offset(params, "rpy", is_old))
         self._body = named_link(scene, body, params)
@@ -72,17 +73,16 @@ class GazeboRosP3D(ModelPlugin):
         self._link = self.sim.link(self._body)
         self._base = self.sim.link(self._reference) if self._reference else None
         self._stream = self.random("gaussian_noise", 6) if self._deviation > 0 else None
-        self._index = 0
         self._spread = np.diag([self._deviation**2] * 6).reshape(36)
         self._out = self.advertise(self._topic, ODOMETRY)
+        publish_while_heard(self, self._out, self._rate, "tell")
 
-    def after_step(self) -> None:
+    def tell(self) -> None:
         """Publishes."""
-        self._index += 1  # counted whether read or not, so that who listens does not change the noise
-        if not self._out.wanted:
-            return
         pose, motion = self._reading()
-        told = partial(self._message, self.sim.time_ns, pose, motion, self._index)
+        # counted whether heard or not, so that who listens does not change the noise
+        index = instants(self, self._rate)
+        told = partial(self._message, self.sim.time_ns, pose, motion, index)
         self._out.publish_later(told)
 
     def _reading(self) -> tuple[Pose, Vector]:

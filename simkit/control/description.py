@@ -1,0 +1,300 @@
+"""What a robot's file says of its control hardware: joints and sensors with their interfaces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final
+
+from simkit.control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.params import Params
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneJoint, SceneModel
+
+ALL_THREE: Final = (POSITION, VELOCITY, EFFORT)
+_ROS_1: Final = {"PositionJointInterface": POSITION, "VelocityJointInterface": VELOCITY, "EffortJointInterface": EFFORT}
+_SIMULATED: Final = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceDescription:
+    """A command or state interface.
+
+    Attributes:
+        name: such as position.
+        minimum, maximum: what a command is kept within; infinite where nothing is said.
+        initial: first value; NaN where nothing is said.
+    """
+
+    name: str
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    initial: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class PidGains:
+    """Gains of a joint's own loop: effort per error, per error and second, per error's rate.
+
+    Attributes:
+        i_max, i_min: bounds of the integral's part of the effort.
+        u_max, u_min: bounds of the whole effort.
+    """
+
+    p: float = 0.0
+    i: float = 0.0
+    d: float = 0.0
+    i_max: float = 0.0
+    i_min: float = 0.0
+    u_max: float = math.inf
+    u_min: float = -math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class JointDescription:
+    """A joint of the hardware.
+
+    Attributes:
+        commands, states: its interfaces, in the order of the file.
+        pids: its own loops by interface (position, velocity).
+        leader, multiplier, offset: what it mimics by the hardware's own words; empty for nothing.
+    """
+
+    name: str
+    commands: tuple[InterfaceDescription, ...]
+    states: tuple[InterfaceDescription, ...]
+    where: Where = NOWHERE
+    pids: dict[str, PidGains] = field(default_factory=dict)
+    leader: str = ""
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SensorDescription:
+    """A sensor of the hardware: its name and interfaces, such as `orientation.x`."""
+
+    name: str
+    interfaces: tuple[str, ...]
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentDescription:
+    """One `<ros2_control>` block, or what stands for one.
+
+    Attributes:
+        kind: system, actuator or sensor.
+        plugin: the hardware's class, as written.
+    """
+
+    name: str
+    kind: str
+    plugin: str
+    joints: tuple[JointDescription, ...] = ()
+    sensors: tuple[SensorDescription, ...] = ()
+
+
+def describe_hardware(scene: SceneModel, params: Params) -> list[ComponentDescription]:
+    """The control hardware of a model.
+
+    From `<ros2_control>` (of the URDF file, or in the plugin's own element), else from `<transmission>`, else every
+    joint of one axis with all interfaces, which a note tells.
+
+    Args:
+        scene: the model.
+        params: the plugin's parameters; problems go there.
+    """
+    found = params.diagnostics
+    blocks = [*scene.controls, *params.all("ros2_control")]
+    for block in blocks:
+        block.mark_all_read()
+    if blocks:
+        return _without_twins([_component(scene, block, found) for block in blocks], found)
+    if scene.transmissions:
+        return [_of_transmissions(scene, found)]
+    names = [joint.name for joint in scene.all_joints() if _is_drivable(joint)]
+    message = (
+        f"model {scene.scoped!r} has neither <ros2_control> nor <transmission>: each of its joints with one axis can "
+        f"be commanded by position, velocity or effort"
+    )
+    found.note("SK-CONTROL-005", message, params.where)
+    every = tuple(InterfaceDescription(name) for name in ALL_THREE)
+    joints = tuple(JointDescription(name, every, every) for name in names)
+    return [ComponentDescription(scene.name, "system", "simkit", joints)]
+
+
+def _is_drivable(joint: SceneJoint) -> bool:
+    return len(joint.axes) == 1 and joint.type in ("revolute", "continuous", "prismatic") and not joint.axes[0].mimic
+
+
+# ------------------------------------------------------------------ <ros2_control>
+
+
+def _component(scene: SceneModel, block: Params, found: Diagnostics) -> ComponentDescription:
+    hardware = block.block("hardware")
+    plugin = hardware.text("plugin", "")
+    name = block.attribute("name") or "hardware"
+    if plugin.rpartition("/")[2] not in _SIMULATED:
+        message = f"<ros2_control> {name!r}: the hardware {plugin or '(none)'!r} is the simulation here"
+        found.note("SK-CONTROL-006", message, block.where)
+    for unknown in (c for c in block.children if c.name == "gpio"):
+        message = f"<ros2_control> {name!r}: <gpio> {unknown.attribute('name')!r} has nothing that it stands for here"
+        found.warning("SK-CONTROL-007", f"{message}; it is left out", unknown.where)
+    joints = [_joint(scene, element, found) for element in block.all("joint")]
+    sensors = [_sensor(element) for element in block.all("sensor")]
+    kind = block.attribute("type") or "system"
+    return ComponentDescription(name, kind, plugin, tuple(j for j in joints if j is not None), tuple(sensors))
+
+
+def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescription | None:
+    name = element.attribute("name")
+    joints = {joint.name: joint for joint in scene.all_joints()}
+    if name not in joints:
+        near = did_you_mean(name, joints)
+        message = f"<ros2_control> names joint {name!r}, which model {scene.scoped!r} does not have; it is left out"
+        found.warning("SK-CONTROL-008", message, element.where, near)
+        return None
+    if len(joints[name].axes) != 1:
+        message = f"<ros2_control> names joint {name!r}, which is {joints[name].type}; one with one axis is needed"
+        found.warning("SK-CONTROL-008", f"{message}; it is left out", element.where)
+        return None
+    words = _words(element)
+    commands = [_interface(one, found) for one in element.all("command_interface")]
+    states = [_interface(one, found) for one in element.all("state_interface")]
+    pids = {}
+    for command in commands:
+        plain = command.name.removesuffix("_pid")
+        short = {"position": "pos", "velocity": "vel"}.get(plain, "")
+        if short and (command.name != plain or f"{short}_kp" in words):
+            pids[plain] = _gains_of_joint(words, short, element, found)
+    known = [command for command in commands if command.name.removesuffix("_pid") in ALL_THREE]
+    for command in commands:
+        if command not in known:
+            message = f"joint {name!r}: there is no command interface {command.name!r} here, there are {_listed()}"
+            near = did_you_mean(command.name, ALL_THREE)
+            found.warning("SK-CONTROL-009", f"{message}; it is left out", element.where, near)
+    leader = words.get("mimic", "")
+    if leader and leader not in joints:
+        message = f"joint {name!r} mimics {leader!r}, which model {scene.scoped!r} does not have"
+        found.warning("SK-CONTROL-008", f"{message}; it follows nothing", element.where, did_you_mean(leader, joints))
+        leader = ""
+    return JointDescription(
+        name,
+        tuple(InterfaceDescription(c.name.removesuffix("_pid"), c.minimum, c.maximum, c.initial) for c in known),
+        tuple(states),
+        element.where,
+        pids,
+        leader,
+        _number(words.get("multiplier", "1"), 1.0, element, found),
+        _number(words.get("offset", "0"), 0.0, element, found),
+    )
+
+
+def _listed() -> str:
+    return ", ".join(ALL_THREE)
+
+
+def _words(element: Params) -> dict[str, str]:
+    """Its `<param name="…">` by name."""
+    return {one.attribute("name"): one.value for one in element.all("param")}
+
+
+def _number(text: str, default: float, element: Params, found: Diagnostics) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if math.isnan(value):
+        found.error("SK-PARAM-002", f"found {text!r}, allowed is a number", element.where)
+        return default
+    return value
+
+
+def _interface(element: Params, found: Diagnostics) -> InterfaceDescription:
+    words = _words(element)
+    initial = words.get("initial_value", element.attribute("initial_value"))
+    return InterfaceDescription(
+        element.attribute("name"),
+        _number(words.get("min", "-inf") or "-inf", -math.inf, element, found),
+        _number(words.get("max", "inf") or "inf", math.inf, element, found),
+        _number(initial, math.nan, element, found) if initial else math.nan,
+    )
+
+
+def _gains_of_joint(words: dict[str, str], short: str, element: Params, found: Diagnostics) -> PidGains:
+    """Gains as `<param>`s of a joint: `pos_kp`, `pos_ki`, `pos_kd`, `pos_max_integral_error`."""
+
+    def number(name: str, default: float) -> float:
+        text = words.get(f"{short}_{name}", "")
+        return _number(text, default, element, found) if text else default
+
+    i, most = number("ki", 0.0), number("max_integral_error", math.inf)
+    bound = abs(i * most) if i else 0.0
+    return PidGains(number("kp", 0.0), i, number("kd", 0.0), bound, -bound)
+
+
+def _sensor(element: Params) -> SensorDescription:
+    names = tuple(one.attribute("name") for one in element.all("state_interface"))
+    return SensorDescription(element.attribute("name"), names, element.where)
+
+
+def _without_twins(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
+    """A joint that comes twice is the one of the first block."""
+    seen: set[str] = set()
+    kept = []
+    for component in components:
+        joints = []
+        for joint in component.joints:
+            if joint.name in seen:
+                message = f"<ros2_control> {component.name!r} names joint {joint.name!r} again; the first one counts"
+                found.warning("SK-CONTROL-004", message, joint.where)
+                continue
+            seen.add(joint.name)
+            joints.append(joint)
+        kept.append(replace(component, joints=tuple(joints)))
+    return kept
+
+
+# ------------------------------------------------------------------ <transmission>
+
+
+def _of_transmissions(scene: SceneModel, found: Diagnostics) -> ComponentDescription:
+    joints = {joint.name: joint for joint in scene.all_joints()}
+    wanted: dict[str, list[str]] = {}
+    places: dict[str, Where] = {}
+    for transmission in scene.transmissions:
+        for end in transmission.joints:
+            if end.name not in joints or len(joints[end.name].axes) != 1:
+                continue  # the loader tells of a joint that is not there
+            written = end.interfaces or tuple(i for a in transmission.actuators for i in a.interfaces)
+            names = _interfaces_of_ros_1(written, transmission.name, transmission.where, found)
+            wanted.setdefault(end.name, []).extend(names)
+            places.setdefault(end.name, transmission.where)
+    return ComponentDescription(
+        scene.name,
+        "system",
+        "gazebo_ros_control/DefaultRobotHWSim",
+        tuple(_plain(name, names, places[name]) for name, names in wanted.items()),
+    )
+
+
+def _plain(name: str, commands: Iterable[str], where: Where) -> JointDescription:
+    written = tuple(InterfaceDescription(one) for one in dict.fromkeys(commands))
+    return JointDescription(name, written, tuple(InterfaceDescription(one) for one in ALL_THREE), where)
+
+
+def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found: Diagnostics) -> list[str]:
+    names = []
+    for one in written:
+        plain = one.rpartition("/")[2]
+        if plain in _ROS_1:
+            names.append(_ROS_1[plain])
+        elif plain != "JointStateInterface":  # that one only reads, and every joint can be read
+            message = f"transmission {owner!r}: there is no hardware interface {one!r} here, there are "
+            message += ", ".join(_ROS_1)
+            found.warning("SK-CONTROL-009", f"{message}; it is left out", where, did_you_mean(plain, _ROS_1))
+    return names

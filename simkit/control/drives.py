@@ -1,0 +1,387 @@
+"""What moves the joints of the hardware: one actuator of the engine for each, which is a servo or a motor by turns.
+
+An actuator's force is its state − kp · position − kv · velocity, within the effort limit. As a servo its state is
+kp · reference + kv · the reference's velocity + what holds the joint against gravity and dry friction, and it goes on
+with the reference by itself; as a motor it is the effort. So everything between two updates of the controllers is the
+engine's, and a hundred commands a second make no staircase: a position is commanded for the end of the period that
+begins, and the reference moves there from the last one. A velocity servo's reference is where the commanded velocities
+have led, at most one whole effort from the joint: it loses nothing under load, and stands where it stands.
+
+A file's joint damping and dry friction stand for losses inside the drive (40 N·m·s/rad on an arm whose motors give
+43 N·m at up to 1.95 rad/s). A servo makes up for them, and its effort is what reaches the link: so the joint has
+neither while a servo drives it. Under an effort command or a PID of the file's, and where nothing drives it, it has
+both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.compiler.drive import drive_gains, felt_inertias
+from simkit.control.interfaces import POSITION, VELOCITY
+from simkit.control.rolling import lead
+from simkit.control.weights import Weights
+from simkit.pose import Vector
+from simkit.runtime.physics import CONTROL
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.control.description import PidGains
+    from simkit.control.hardware import HardwareJoint
+    from simkit.runtime import Simulation
+
+Mask = npt.NDArray[np.bool_]
+
+FREE, POSITION_MODE, VELOCITY_MODE, EFFORT_MODE, SPRING_MODE = range(5)
+
+_ROLLING: Final = 0.5
+"""Damping of a velocity servo, times step over inertia. Contacts are solved without what the integrator knows of it: a
+wheel slips in proportion (2 mm/s at 1 and 0.8 m/s²)."""
+
+_CATCH_UP: Final = 0.05
+"""[s] in which a velocity servo makes up for what it lost."""
+
+_PULL: Final = 2.0
+"""Times the whole effort that a position servo asks for at most: what damping takes off leaves the whole."""
+
+_LARGEST: Final = 9e9  # controls of 1e10 or more are none for the engine
+
+
+@dataclass(slots=True)
+class _Now:
+    """What the drives' modes amount to, one number or truth for each joint; made anew when the modes change."""
+
+    modes: Any
+    kp: Vector
+    kv: Vector
+    pull: Vector
+    lowest: Vector
+    highest: Vector
+    integral: tuple[Vector, Vector, Vector]
+    is_position: Mask
+    is_servo: Mask
+    is_helped: Mask
+    helped: Vector
+    direct: Vector
+    all_position: bool
+    reach: Vector
+    rolls: Any
+    roll_ids: Any
+    roll_places: Any
+    roll_dofs: Any
+    roll_stiffness: Vector
+    slack: Vector
+    catch_up: Vector
+    fastest: Vector
+    has_effort: bool
+    has_integral: bool
+    offset: Vector
+
+
+@dataclass(slots=True)
+class Drives:
+    """The actuators of all joints that can be commanded.
+
+    Attributes:
+        joints: which.
+        actuators: theirs.
+        pids: loops by joint and interface that take a servo's place.
+        modes: how each is driven now.
+        targets: references of servos [rad or m]; what they hold where nothing is commanded.
+        integrals: of loops with an integral part [N·m or N].
+        groups: number of the controller that has claimed each joint; 0 for none.
+    """
+
+    joints: tuple[HardwareJoint, ...] = ()
+    actuators: tuple[Any, ...] = ()
+    pids: Mapping[str, Mapping[str, PidGains]] = field(default_factory=dict)
+    modes: Any = field(default_factory=lambda: np.zeros(0, np.intp))
+    targets: Vector = field(default_factory=lambda: np.zeros(0))
+    integrals: Vector = field(default_factory=lambda: np.zeros(0))
+    groups: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    _sim: Any = None
+    _model: Any = None
+    _ids: Any = None
+    _states: Any = None  # addresses of the actuators' states
+    _qpos: Any = None
+    _dofs: Any = None
+    _gains: Any = None  # (joints, modes, 2): kp and kv
+    _integral: Any = None  # (joints, modes, 3): ki, lowest, highest
+    _is_given: Any = None  # (joints, modes): whether the loop is the file's
+    _bounds: Any = None  # (joints, modes, 2): lowest and highest effort
+    _leaders: Any = None
+    _leads: Any = None
+    _law: Any = None  # multiplier and offset (2, joints)
+    _ends: Any = None  # lower and upper (2, joints)
+    _fastest: Any = None
+    _follows: bool = False
+    _calm: Any = None  # (joints, 2): the highest kp and kd that do not ring
+    _weights: Any = None
+    _cached: _Now | None = None
+
+    @classmethod
+    def prepare(
+        cls,
+        builder: SpecBuilder,
+        owner: str,
+        joints: Sequence[HardwareJoint],
+        pids: Mapping[str, Mapping[str, PidGains]],
+    ) -> Drives:
+        """Adds the actuators to the spec; `pids`: loops by joint and interface that take a servo's place."""
+        actuators = [
+            builder.add_drive(
+                j.scoped,
+                max_effort=j.max_effort,
+                max_velocity=j.max_velocity,
+                owner=owner,
+                has_rotor=bool({POSITION, VELOCITY} & set(j.command_interfaces)),
+            )
+            for j in joints
+        ]
+        return cls(tuple(joints), tuple(actuators), pids)
+
+    def load(self, sim: Simulation) -> None:
+        """Ties them to a simulation; everything with a position interface holds where it is."""
+        self._sim, self._weights = sim, Weights(sim, [joint.scoped for joint in self.joints])
+        count = len(self.joints)
+        self.integrals = np.zeros(count)
+        self._bind()
+        self.targets = np.array(sim.mj_data.qpos[self._qpos])
+        idle = [POSITION_MODE if POSITION in joint.command_interfaces else FREE for joint in self.joints]
+        self.modes = np.full(count, -1)
+        self.switch(np.array(idle, np.intp))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Drives:
+        return self
+
+    def _bind(self) -> None:
+        """Finds itself in the engine's model, another one after every change of structure."""
+        sim = self._sim
+        self._model = model = sim.mj_model
+        self._cached = None
+        bindings = [sim.names.joint(joint.scoped) for joint in self.joints]
+        self._ids = np.array([sim.names.actuator(ref) for ref in self.actuators], np.intp)
+        self._states = np.array(model.actuator_actadr[self._ids], np.intp)
+        self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
+        self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
+        if self._gains is None:
+            self._take_limits()
+            self._choose_gains(np.array([b.joint_ids[0] for b in bindings], np.intp))
+
+    def _take_limits(self) -> None:
+        """Limits and laws of mimics, as arrays."""
+        joints = self.joints
+        index = {joint.name: k for k, joint in enumerate(joints)}
+        self._leaders = np.array([index.get(j.leader, k) for k, j in enumerate(joints)], np.intp)
+        self._leads = self._leaders == np.arange(len(joints))
+        self._law = np.array([(j.multiplier, j.offset) for j in joints], float).reshape(-1, 2).T
+        self._ends = np.array([(j.lower, j.upper) for j in joints], float).reshape(-1, 2).T
+        self._fastest = np.array([j.max_velocity for j in joints], float)
+        self._follows = not self._leads.all()
+
+    def _choose_gains(self, ids: Any) -> None:
+        """kp and kv of every joint as it is driven in each mode: those of the file's loops, else those of a servo."""
+        count, model = len(self.joints), self._model
+        step, limits = float(model.opt.timestep), np.array([joint.max_effort for joint in self.joints], float)
+        self._gains, self._integral = np.zeros((count, 5, 2)), np.zeros((count, 5, 3))
+        self._is_given = np.zeros((count, 5), bool)
+        self._bounds = np.repeat(np.stack((-limits, limits), 1)[:, None], 5, 1)
+        if not count:
+            return
+        least, most = felt_inertias(model, ids)
+        self._calm = np.stack((0.25 * least / step**2, least / step), 1)
+        is_slide = model.jnt_type[ids] == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        self._gains[:, POSITION_MODE] = np.stack(drive_gains(limits, is_slide, least, most, step), 1)
+        damping = _ROLLING * least / step
+        self._gains[:, VELOCITY_MODE] = np.stack((damping / _CATCH_UP, damping), 1)
+        for k, joint in enumerate(self.joints):
+            for mode, interface in ((POSITION_MODE, POSITION), (VELOCITY_MODE, VELOCITY)):
+                given = self.pids.get(joint.name, {}).get(interface)
+                if given:
+                    wanted = (given.p, given.d) if mode == POSITION_MODE else (0.0, given.p)
+                    self._gains[k, mode] = min(wanted[0], least[k] / step**2), min(wanted[1], least[k] / step)
+                    self._integral[k, mode] = given.i, given.i_min, given.i_max
+                    self._bounds[k, mode] = max(given.u_min, -limits[k]), min(given.u_max, limits[k])
+                    self._is_given[k, mode] = True
+
+    # ------------------------------------------------------------------ at work
+
+    def soften(self, springs: Mapping[str, tuple[float, float]]) -> None:
+        """Sets how joints give way in `SPRING_MODE`, in which a command is an effort that kp and kd take from.
+
+        Springs within the engine are calm at any rate of the controllers; what would ring at the engine's step is
+        weakened until it does not.
+
+        Args:
+            springs: kp [N·m/rad or N/m] and kd [N·m·s/rad or N·s/m] by joint.
+        """
+        for k, joint in enumerate(self.joints):
+            if joint.name in springs:
+                self._gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._calm[k])
+
+    def spring_gains(self, joints: Sequence[str]) -> tuple[Vector, Vector]:
+        """kp and kd of joints as `soften` has set them."""
+        index = {joint.name: k for k, joint in enumerate(self.joints)}
+        kp, kd = self._gains[[index[name] for name in joints], SPRING_MODE].T
+        return kp.copy(), kd.copy()
+
+    def switch(self, modes: Any) -> None:
+        """Drives each joint in a mode from now on; a servo begins where its joint is."""
+        if self._sim is None or not len(self.joints) or np.array_equal(modes, self.modes):
+            return
+        self._rebind_if_needed()
+        sim = self._sim
+        changed, self.modes = modes != self.modes, np.array(modes)
+        data = sim.mj_data
+        self.integrals[changed] = 0.0
+        self.targets[changed] = data.qpos[self._qpos[changed]]
+        now = self._now()
+        biases = sim.touch("actuator_biasprm")
+        biases[self._ids, 1], biases[self._ids, 2] = -now.kp, -now.kv
+        for loss in ("dof_damping", "dof_frictionloss"):
+            losses = sim.touch(loss)
+            losses[self._dofs] = np.where(now.is_helped, 0.0, sim.original(loss)[self._dofs])
+        self._bound(now)
+        # whoever commands efforts has not spoken yet: until then the joint does not fall
+        held = now.kp * self.targets + np.maximum(now.helped, now.direct) * self._weights.now()
+        data.act[self._states[changed]] = held[changed]
+        data.ctrl[self._ids[changed]] = 0.0
+        sim.physics.changed(CONTROL)
+
+    def _bound(self, now: _Now) -> None:
+        """Bounds the efforts as the present modes have it."""
+        is_bound = np.isfinite(now.lowest) | np.isfinite(now.highest)
+        if is_bound.any():
+            limited, ranges = self._sim.touch("actuator_forcelimited"), self._sim.touch("actuator_forcerange")
+            limited[self._ids] = is_bound
+            ranges[self._ids] = np.clip(np.stack((now.lowest, now.highest), 1), -_LARGEST, _LARGEST)
+
+    def _now(self) -> _Now:
+        """What the present modes amount to."""
+        if self._cached is not None and self._cached.modes is self.modes:
+            return self._cached
+        modes, rows = self.modes, np.arange(len(self.modes))
+        (kp, kv), bounds = self._gains[rows, modes].T, self._bounds[rows, modes]
+        is_position = modes == POSITION_MODE
+        is_servo = is_position | (modes == VELOCITY_MODE)
+        is_helped = is_servo & ~self._is_given[rows, modes]
+        integral = self._integral[rows, modes].T
+        rolls = np.flatnonzero(~is_position)
+        stiffness = np.maximum(kp[rolls], 1e-12)
+        self._cached = _Now(
+            modes=modes,
+            kp=kp.copy(),
+            kv=kv.copy(),
+            pull=np.where(is_servo, kp, 0.0),
+            lowest=bounds[:, 0].copy(),
+            highest=bounds[:, 1].copy(),
+            integral=(integral[0].copy(), integral[1].copy(), integral[2].copy()),
+            is_position=is_position,
+            is_servo=is_servo,
+            is_helped=is_helped,
+            helped=is_helped.astype(float),
+            direct=((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float),
+            all_position=bool(is_position.all()),
+            reach=np.where(is_position, _PULL * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
+            rolls=rolls,
+            roll_ids=self._ids[rolls],
+            roll_places=self._qpos[rolls],
+            roll_dofs=self._dofs[rolls],
+            roll_stiffness=stiffness,
+            slack=bounds[rolls, 1] / stiffness,
+            catch_up=np.maximum(kv[rolls], 1e-12) / stiffness,
+            fastest=np.where(is_servo, self._fastest, 0.0)[rolls],
+            has_effort=bool((modes >= EFFORT_MODE).any()),
+            has_integral=bool(integral[0].any()),
+            offset=np.where(is_position, self._law[1], 0.0),
+        )
+        return self._cached
+
+    def _rebind_if_needed(self) -> None:
+        if self._model is not self._sim.mj_model:
+            self._bind()
+
+    def write(self, commands: Vector, period: float) -> None:
+        """Sets the states of the actuators and how they go on.
+
+        Args:
+            commands: one for each joint in its mode; NaN for none: a position is held, a velocity or effort is 0.
+            period: since the last time [s].
+        """
+        if not len(self.joints):
+            return
+        self._rebind_if_needed()
+        now, data = self._now(), self._sim.physics.data
+        wanted = commands
+        if self._follows:  # a mimic has no command of its own
+            wanted = np.where(self._leads, wanted, self._law[0] * wanted[self._leaders] + now.offset)
+        is_given = np.isfinite(wanted)
+        if not is_given.all():
+            wanted = np.where(is_given, wanted, np.where(now.is_position, self.targets, 0.0))
+        reference, rate = self._follow(now, wanted, period)
+        state = now.pull * reference + now.kv * rate + now.helped * self._weights.now()
+        if now.has_integral:
+            state += self._integrate(now, reference, rate, period)
+        if now.has_effort:
+            state += now.direct * wanted
+        data.act[self._states] = np.minimum(np.maximum(state, -_LARGEST), _LARGEST)
+        data.ctrl[self._ids] = now.pull * rate
+        self._sim.physics.changed(CONTROL)
+
+    def _follow(self, now: _Now, wanted: Vector, period: float) -> tuple[Vector, Vector]:
+        """Where the references are [rad or m], and how fast they move from now on [rad/s or m/s], within the limits."""
+        targets = self.targets
+        if period <= 0.0:
+            return targets, np.zeros_like(targets)
+        data, most = self._sim.physics.data, self._fastest * period
+        # what is blocked, or was put elsewhere, does not whip back: its reference waits where it pulls with all it has
+        place = data.qpos[self._qpos]
+        targets = np.minimum(np.maximum(targets, place - now.reach), place + now.reach)
+        aim = np.minimum(np.maximum(wanted, self._ends[0]), self._ends[1])
+        move = np.minimum(np.maximum(aim - targets, -most), most)
+        if now.all_position:
+            self.targets = targets + move
+            return targets, move / period
+        rolls, rate = now.rolls, move / period
+        led, speed = self._roll(now, wanted[rolls], period)
+        reference = targets.copy()
+        self.targets = targets + move
+        reference[rolls] = self.targets[rolls] = led
+        rate[rolls] = speed
+        return reference, rate
+
+    def _roll(self, now: _Now, wanted: Vector, period: float) -> tuple[Vector, Vector]:
+        """The same of those that are not driven by position, `now.rolls`."""
+        data, rolls = self._sim.physics.data, now.rolls
+        fastest, stiffness = now.fastest, now.roll_stiffness
+        before = data.ctrl[now.roll_ids] / stiffness
+        return lead(
+            self.targets[rolls] + before * period,
+            np.minimum(np.maximum(wanted, -fastest), fastest),
+            place=data.qpos[now.roll_places],
+            turning=data.qvel[now.roll_dofs],
+            before=before,
+            slack=now.slack,
+            catch_up=now.catch_up,
+            groups=self.groups[rolls],
+        )
+
+    def _integrate(self, now: _Now, reference: Vector, rate: Vector, period: float) -> Vector:
+        """The integral parts of the file's loops, carried on [N·m or N]."""
+        data, (ki, lowest, highest) = self._sim.physics.data, now.integral
+        error = np.where(now.is_position, reference - data.qpos[self._qpos], rate - data.qvel[self._dofs])
+        self.integrals = np.minimum(np.maximum(self.integrals + ki * error * period, lowest), highest)
+        return self.integrals
+
+    def efforts(self) -> Vector:
+        """What each gives now [N·m or N]."""
+        now, data = self._now(), self._sim.physics.data
+        force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
+        effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)
+        return effort

@@ -1,0 +1,219 @@
+"""A model plugin that hosts a controller manager.
+
+What it needs is imported when it is used: the plugins of every world are looked through for their names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+from simkit.control.interfaces import POSITION, VELOCITY
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.ros_names import RosNames
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.control.description import PidGains
+    from simkit.control.hardware import Hardware
+    from simkit.control.manager import ControllerManager
+    from simkit.control.parameter_files import ParameterFile, ParameterFiles
+    from simkit.scene import SceneModel
+
+UPDATE_RATE: Final = 100.0
+"""[Hz] of a controller manager whose file says nothing."""
+
+
+class ControlHost(ModelPlugin):
+    """Reads the hardware and the controllers' parameter files, and runs the manager at its rate.
+
+    Attributes:
+        manager: the controller manager.
+        hardware: what it drives.
+        files: the controllers' parameters.
+        is_ros_1: whether it is ROS 1's.
+    """
+
+    drives = True
+    is_ros_1: ClassVar[bool] = False
+    manager: ControllerManager
+    hardware: Hardware
+    files: ParameterFiles
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        from simkit.control.description import describe_hardware
+        from simkit.control.hardware import Hardware
+        from simkit.control.parameter_files import ParameterFiles
+        from simkit.control.transmissions import transmissions_of
+
+        transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
+        self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
+        self.files = ParameterFiles(list(self._read_files(params, builder)))
+        self._manager_name = params.text("controller_manager_name", "") or "controller_manager"
+        self._chosen = [(word, one) for one in params.all("controllers") for word in _words(one)]
+        self.hardware.holds = params.boolean("hold_joints", True)
+        self.read_rest(params)
+        self.before_step_rate = self.read_rate(params, builder)
+        self.hardware.prepare(builder, self.name, self.read_pids())
+
+    # ------------------------------------------------------------------ what the file says
+
+    def read_rest(self, params: Params) -> None:
+        """Elements that mean something to the plugin in Gazebo and nothing here."""
+        for name in ("robot_param", "robot_param_node", "position_proportional_gain"):
+            params.child(name)
+        for name in ("controller_manager_prefix_node_name", "controller_manager_node_name", "robotNamespace"):
+            params.child(name)
+
+    def read_rate(self, params: Params, builder: SpecBuilder) -> float | None:
+        """[Hz] of the manager; None for every step."""
+        own = self.files.of_node(f"{self.ros.namespace}/{self._manager_name}")
+        if own is None or "update_rate" not in (own.below or {}):
+            return UPDATE_RATE
+        block = own.params("controller_manager", params.diagnostics)[0]
+        rate = block.number("update_rate", UPDATE_RATE, minimum=1e-3)
+        steps = 1.0 / builder.world.physics.max_step_size
+        if rate > steps * (1.0 + 1e-9):
+            message = f"the controller manager's update_rate is {rate:g} Hz, more than the {steps:g} steps a second"
+            params.diagnostics.warning("SK-CONTROL-017", f"{message}; it is updated at every step", block.where)
+        return rate
+
+    def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
+        """Loops that take a servo's place, by joint and interface.
+
+        Those of the hardware's joints, and those in `pid_gains` of the plugin's own node, which go over them.
+        """
+        found = {j.name: dict(j.pids) for c in self.hardware.components for j in c.joints}
+        entry = self.files.of_node(f"{self.ros.namespace}/{self.name}")
+        if entry is not None and "pid_gains" in (entry.below or {}):
+            block = entry.params(self.name, self.params.diagnostics)[0].block("pid_gains")
+            for interface in (POSITION, VELOCITY):
+                for gains in block.block(interface).children:
+                    if gains.name not in found:
+                        near = did_you_mean(gains.name, found)
+                        message = f"pid_gains names joint {gains.name!r}, which the hardware does not have"
+                        self.params.diagnostics.warning("SK-CONTROL-008", message, gains.where, near)
+                        continue
+                    found[gains.name][interface] = read_gains(gains)
+        return {joint: pids for joint, pids in found.items() if pids}
+
+    def _read_files(self, params: Params, builder: SpecBuilder) -> Iterator[ParameterFile]:
+        from simkit.control.parameter_files import read_parameter_file
+
+        elements = params.all("parameters")
+        for element in elements:
+            for uri in [element.value] if element.value.startswith("$(") else element.value.split():
+                path = self._find(uri, builder)
+                if path is None:
+                    message = f"the controllers' parameter file {uri} is not found: no controller of it is loaded"
+                    hint = "name its package's folder: --package-path NAME=DIR, or put the file beside the robot's"
+                    params.diagnostics.warning("SK-CONTROL-015", message, element.where, hint)
+                    continue
+                read = read_parameter_file(path, params.diagnostics)
+                if read is not None:
+                    yield read
+        if not any(element.value for element in elements):
+            message = f"plugin {self.name!r} names no parameter file: no controller is loaded"
+            hint = "name one in <parameters>, or in <simkit:parameters> where Gazebo must not see it"
+            params.diagnostics.note("SK-CONTROL-018", message, self.where, hint)
+
+    def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
+        """A file by its URI, else one of that name beside the robot's file, or in a `config` folder there."""
+        folder = Path(self.where.file).resolve().parent if self.where.file else None
+        path = builder.find_file(uri, folder)
+        if path is not None and path.is_file():
+            return path
+        name = uri.replace("\\", "/").rpartition("/")[2]
+        places = [] if folder is None else [folder, folder / "config", folder.parent / "config"]
+        return next((place / name for place in places if name and (place / name).is_file()), None)
+
+    # ------------------------------------------------------------------ at work
+
+    def load(self, parent: Any, params: Params) -> None:
+        from simkit.control.manager import ControllerManager
+        from simkit.control.manager_services import offer_services
+
+        self.hardware.load(self.sim)
+        self.manager = ControllerManager(self, self.hardware, self.files, self._manager_name, params.diagnostics)
+        self._stand_apart(parent.scoped.partition("::")[0], params)
+        self.manager.is_ros_1 = self.is_ros_1
+        offer_services(self.manager)
+        declared = self.manager.declared()
+        self._report_strays(declared)
+        chosen = list(declared) if not self._chosen else []
+        for name, element in self._chosen:
+            if name in declared:
+                chosen.append(name)
+                continue
+            near = did_you_mean(name, declared) or "it declares: " + (", ".join(declared) or "none")
+            message = f"<simkit:controllers> names {name!r}, which no parameter file declares with a type"
+            params.diagnostics.error("SK-CONTROL-013", message, element.where, near)
+        self.manager.start(chosen)
+
+    def _stand_apart(self, model: str, params: Params) -> None:
+        """Takes the model's name for a namespace where another robot has a manager of this one's name."""
+        wanted = f"{self.ros.namespace}/{self._manager_name}"
+        if f"{wanted}/list_controllers" not in self.sim.services():
+            return
+        self.ros = RosNames(self.name, f"{self.ros.namespace}/{model}", params=params)
+        message = (
+            f"there is a controller manager {wanted!r} already: that of {model!r}, its controllers and their topics "
+        )
+        hint = "give each robot a <namespace> in the plugin's <ros>"
+        params.diagnostics.note("SK-CONTROL-001", f"{message}are below {self.ros.namespace!r}", self.where, hint)
+
+    def _remember_loaded(self) -> None:
+        """Everything it keeps can be copied: there is no need to try."""
+
+    def _report_strays(self, declared: Mapping[str, str]) -> None:
+        """Tells of nodes that the files have parameters for and that nobody is: mostly misspelt controllers."""
+        known = {self._manager_name, *declared, "**", "*"}
+        for file in self.files.files:
+            for pattern, entry in file.nodes:
+                name = pattern.rpartition("/")[2]
+                near = did_you_mean(name, declared)
+                if name not in known and near:
+                    message = f"{file.path.name} has parameters for {name!r}, which no controller manager declares"
+                    self.params.diagnostics.warning("SK-CONTROL-019", message, entry.where, near)
+
+    def before_step(self) -> None:
+        self.manager.update(self.sim.time_ns)
+
+    def get_state(self) -> dict[str, Any]:
+        state = super().get_state()
+        if "manager" in state:
+            state["manager"] = self.manager.get_state()
+        return state
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        if "manager" not in state:
+            super().set_state(state)
+            return
+        manager = self.manager
+        super().set_state({**state, "manager": manager})
+        manager.set_state(state["manager"])
+
+
+def read_gains(params: Params) -> PidGains:
+    """Gains of a joint: `kp`, `ki`, `kd` and `max_integral_error`, or `p`, `i`, `d` and `i_clamp` as in ROS 1."""
+    from simkit.control.description import PidGains
+
+    i = params.number("ki", params.number("i", 0.0))
+    clamp = abs(params.number("i_clamp", 0.0))
+    if params.has("max_integral_error"):
+        clamp = abs(i * params.number("max_integral_error", 0.0, minimum=0.0))
+    params.child("antiwindup")
+    return PidGains(
+        p=params.number("kp", params.number("p", 0.0)),
+        i=i,
+        d=params.number("kd", params.number("d", 0.0)),
+        i_max=params.number("i_clamp_max", clamp),
+        i_min=params.number("i_clamp_min", -clamp),
+    )
+
+
+def _words(element: Params) -> list[str]:
+    return element.value.replace(",", " ").split()

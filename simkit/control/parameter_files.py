@@ -1,0 +1,267 @@
+"""Parameter files of ROS: YAML in, one block of typed parameters for each node out, every value with its line.
+
+ROS 2's layout has `ros__parameters` below the name of a node, which may be a pattern (`/**`, `/robot/*`); ROS 1's has
+the parameters themselves below the names of namespaces. Which of the two a file is in shows by that word.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.params import Params
+
+PARAMETERS: Final = "ros__parameters"
+_MOST_NODES: Final = 100_000  # of one file: anchors that are used again and again make much out of little
+_DEEPEST: Final = 100
+
+
+@dataclass(slots=True)
+class Entry:
+    """A key of a parameter file: a value, a list of values, or a block.
+
+    Attributes:
+        text: of a value, normalised (`true`, `inf`).
+        items: of a list; None where it is none.
+        below: of a block; None where it is none.
+        is_text: whether it stands for text, so that no number is meant.
+    """
+
+    where: Where
+    text: str = ""
+    items: list[Entry] | None = None
+    below: dict[str, Entry] | None = None
+    is_text: bool = False
+
+    def params(self, name: str, diagnostics: Diagnostics) -> list[Params]:
+        """It as elements of that name: one, or one for each item of a list."""
+        if self.items is not None:
+            return [one for item in self.items for one in item.params(name, diagnostics)]
+        children = [one for key, entry in (self.below or {}).items() for one in entry.params(key, diagnostics)]
+        return [Params(name, self.text, children=children, where=self.where, diagnostics=diagnostics)]
+
+    def merged(self, over: Entry) -> Entry:
+        """It with what another says about the same key, which goes over it."""
+        if self.below is None or over.below is None:
+            return over
+        below = dict(self.below)
+        for key, entry in over.below.items():
+            below[key] = below[key].merged(entry) if key in below else entry
+        return Entry(self.where, below=below)
+
+    def leaves(self) -> int:
+        """How many values there are in it."""
+        inside = [*(self.items or ()), *(self.below or {}).values()]
+        return sum(one.leaves() for one in inside) if inside else 1
+
+
+@dataclass(slots=True)
+class ParameterFile:
+    """One file as read.
+
+    Attributes:
+        path: of the file.
+        nodes: ROS 2: (pattern of the node's full name, its parameters), in the order of the file.
+        root: ROS 1: everything; None for ROS 2.
+    """
+
+    path: Path
+    nodes: list[tuple[str, Entry]] = field(default_factory=list)
+    root: Entry | None = None
+
+
+class ParameterFiles:
+    """All parameter files of one plugin; what a later one says goes over what an earlier one says."""
+
+    def __init__(self, files: Sequence[ParameterFile] = ()) -> None:
+        self.files = list(files)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> ParameterFiles:
+        return self  # nothing in it changes
+
+    def of_node(self, name: str) -> Entry | None:
+        """The parameters of the node with that full name (`/robot/arm_controller`); None where no file has any."""
+        found: Entry | None = None
+        for entry in self._of_node(name):
+            found = entry if found is None else found.merged(entry)
+        return found
+
+    def _of_node(self, name: str) -> Iterator[Entry]:
+        for file in self.files:
+            for pattern, entry in file.nodes:
+                if matches(pattern, name):
+                    yield entry
+            if file.root is not None:
+                inner: Entry | None = file.root
+                for part in name.strip("/").split("/"):
+                    inner = (inner.below or {}).get(part) if inner is not None and part else inner
+                if inner is not None and inner.below is not None:
+                    yield inner
+
+    def node_names(self) -> list[str]:
+        """Last parts of the names that the files have parameters for, to say which is near a misspelt one."""
+        return [pattern.rpartition("/")[2] for file in self.files for pattern, _ in file.nodes]
+
+
+def matches(pattern: str, name: str) -> bool:
+    """Whether a node's full name fits a key of a parameter file: `*` is one part of it, `**` any number of them."""
+    parts = [".*" if p == "**" else "[^/]*" if p == "*" else re.escape(p) for p in pattern.strip("/").split("/")]
+    expression = "/".join(parts).replace(".*/", "(.*/)?")
+    return re.fullmatch(expression, name.strip("/")) is not None
+
+
+def read_parameter_file(path: Path, diagnostics: Diagnostics) -> ParameterFile | None:
+    """Reads a file; None after an error that says where it is broken."""
+    root = _parsed(path, diagnostics)
+    if root is None:
+        return None
+    if root.below is None:
+        if root.text or root.items:
+            message = f"{path.name} is no parameter file: names of nodes are needed at its top"
+            diagnostics.error("SK-CONTROL-002", message, root.where)
+            return None
+        diagnostics.warning("SK-CONTROL-003", f"{path.name} is empty: no controller is loaded", root.where)
+        return ParameterFile(path)
+    nodes = list(_nodes(root, "", diagnostics))
+    if nodes:
+        return ParameterFile(path, nodes)
+    near = next((near for key in _keys(root) if (near := did_you_mean(key, [PARAMETERS]))), "")
+    if near:
+        misspelt = next(key for key in _keys(root) if did_you_mean(key, [PARAMETERS]))
+        message = f"{path.name}: no node has {PARAMETERS!r}, but there is {misspelt!r}; it is read as a file of ROS 1"
+        diagnostics.warning("SK-CONTROL-003", message, root.where, near)
+    return ParameterFile(path, root=root)
+
+
+def _keys(entry: Entry) -> Iterator[str]:
+    for key, below in (entry.below or {}).items():
+        yield key
+        yield from _keys(below)
+
+
+def _nodes(entry: Entry, path: str, diagnostics: Diagnostics) -> Iterator[tuple[str, Entry]]:
+    """Every node of a file in ROS 2's layout, with the pattern of its full name."""
+    for key, below in (entry.below or {}).items():
+        if key == PARAMETERS:
+            if below.below is not None:
+                yield path or "/**", _with_blocks(below)
+            elif below.text or below.items:
+                found = below.text or "a list"
+                message = f"found {found!r} under {PARAMETERS!r} of {path or '/**'!r}, allowed are names with values"
+                diagnostics.error("SK-CONTROL-002", message, below.where)
+        else:
+            yield from _nodes(below, f"{path}/{key.strip('/')}", diagnostics)
+
+
+def _with_blocks(entry: Entry) -> Entry:
+    """A block with its dotted keys as the blocks that they stand for: `a.b: 1` is `a: {b: 1}`."""
+    if entry.below is None:
+        return entry
+    whole = Entry(entry.where, below={})
+    for key, below in entry.below.items():
+        inner = _with_blocks(below)
+        for part in reversed(key.split(".")):
+            inner = Entry(below.where, below={part: inner})
+        whole = whole.merged(inner)
+    return whole
+
+
+# ------------------------------------------------------------------ YAML
+
+
+def _parsed(path: Path, diagnostics: Diagnostics) -> Entry | None:
+    import yaml
+
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        diagnostics.error("SK-CONTROL-002", f"{path} cannot be read: {error}", Where(str(path)))
+        return None
+    try:
+        node = _composed(text)
+        reader = _Reader(str(path), diagnostics)
+        return Entry(Where(str(path), 1)) if node is None else reader.entry(node, 0)
+    except (yaml.YAMLError, RecursionError, _TooMuch) as error:
+        mark = getattr(error, "problem_mark", None)
+        line = mark.line + 1 if mark is not None else None
+        what = getattr(error, "problem", None) or str(error) or "it is nested too deeply"
+        context = f" {error.context}" if getattr(error, "context", None) else ""  # type: ignore[union-attr]
+        message = f"{path.name} is not YAML that can be read: {what}{context}"
+        diagnostics.error("SK-CONTROL-002", message, Where(str(path), line), "check indentation, quotes and brackets")
+        return None
+
+
+def _composed(text: str) -> Any:
+    """The tree of a document; by libyaml where it is there, which takes a tenth of the time."""
+    import yaml
+
+    loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    depth = 0
+    for event in yaml.parse(text, Loader=loader):  # libyaml's own composer has no end to its recursion
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > _DEEPEST:
+            raise _TooMuch("it is nested too deeply")
+    return yaml.compose(text, Loader=loader)
+
+
+class _TooMuch(Exception):
+    """A file is larger than anybody means."""
+
+
+class _Reader:
+    """Turns YAML's nodes into entries."""
+
+    def __init__(self, file: str, diagnostics: Diagnostics) -> None:
+        self._file, self._diagnostics, self._count = file, diagnostics, 0
+
+    def entry(self, node: Any, depth: int) -> Entry:
+        import yaml
+
+        self._count += 1
+        if self._count > _MOST_NODES or depth > _DEEPEST:
+            raise _TooMuch("it has too many values, or is nested too deeply")
+        where = Where(self._file, node.start_mark.line + 1, self._count)
+        if isinstance(node, yaml.MappingNode):
+            return Entry(where, below=self._block(node, depth))
+        if isinstance(node, yaml.SequenceNode):
+            return Entry(where, items=[self.entry(one, depth + 1) for one in node.value])
+        return Entry(where, _text(node), is_text=node.tag == "tag:yaml.org,2002:str")
+
+    def _block(self, node: Any, depth: int) -> dict[str, Entry]:
+        below: dict[str, Entry] = {}
+        for key, value in node.value:
+            name = str(getattr(key, "value", ""))
+            if not isinstance(getattr(key, "value", None), str):
+                where = Where(self._file, key.start_mark.line + 1)
+                self._diagnostics.error("SK-CONTROL-002", "found a list or block as a name, allowed is a text", where)
+                continue
+            entry = self.entry(value, depth + 1)
+            entry.where = Where(self._file, key.start_mark.line + 1, entry.where.serial)
+            if name in below:
+                first = below[name].where.line
+                message = f"{name!r} comes twice, in line {first} too; the later one counts"
+                self._diagnostics.warning("SK-CONTROL-004", message, entry.where)
+            below[name] = entry
+        return below
+
+
+def _text(node: Any) -> str:
+    """A value as parameters have it."""
+    kind, text = node.tag.rpartition(":")[2], str(node.value)
+    if kind == "null":
+        return ""
+    if kind == "bool":
+        return "true" if text.lower() in ("true", "yes", "on") else "false"
+    if kind == "float":
+        return text.lower().replace(".inf", "inf").replace(".nan", "nan").replace("_", "")
+    if kind == "int":
+        plain = text.replace("_", "")
+        try:
+            return str(int(plain, 0))
+        except ValueError:
+            return plain.lstrip("0") or "0"
+    return text

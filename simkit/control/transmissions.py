@@ -1,0 +1,137 @@
+"""Transmissions: what the actuators behind the joints do, as `<transmission>` has it.
+
+Controllers command joints, in Gazebo and here; an actuator's position, velocity and effort are state interfaces of its
+name, worked out where a controller reads them. The laws are those of ros2_control's transmission_interface, with n_a
+and n_j the reductions of actuators and joints, x the joint's position less its offset:
+
+* simple: a = n_a n_j x;
+* differential: a1 = n_a1 (n_j1 x1 + n_j2 x2), a2 = n_a2 (n_j1 x1 − n_j2 x2);
+* four-bar linkage: a1 = n_a1 n_j1 x1, a2 = n_a2 (x1 + n_j2 x2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from simkit.control.interfaces import EFFORT, POSITION
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.scene.actuation import Transmission, TransmissionEnd
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneModel
+
+_KINDS: Final = {
+    "SimpleTransmission": "simple",
+    "DifferentialTransmission": "differential",
+    "FourBarLinkageTransmission": "four_bar_linkage",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """How actuators follow from joints.
+
+    Attributes:
+        actuators, joints: plain names.
+        motion: position or velocity of the actuators over that of the joints (actuators, joints).
+        force: effort of the actuators over that of the joints (actuators, joints).
+        offset: of the joints [rad or m].
+    """
+
+    actuators: tuple[str, ...]
+    joints: tuple[str, ...]
+    motion: Vector
+    force: Vector
+    offset: Vector
+
+    def actuate(self, interface: str, joints: Vector) -> Vector:
+        """An interface of the actuators, of that of the joints."""
+        if interface == EFFORT:
+            return np.asarray(self.force @ joints)
+        return np.asarray(self.motion @ (joints - self.offset if interface == POSITION else joints))
+
+
+def laws(transmissions: Iterable[Transmission], joints: Sequence[str], found: Diagnostics) -> list[Law]:
+    """The laws of all transmissions whose joints the hardware has."""
+    made = []
+    for transmission in transmissions:
+        law = _law(transmission)
+        if law is None:
+            counts = f"{len(transmission.joints)} joint(s) and {len(transmission.actuators)} actuator(s)"
+            message = f"transmission {transmission.name!r} ({transmission.type or 'of no type'}) has {counts}"
+            hint = "simple has one of each; differential and four-bar linkage have two of each; no reduction is 0"
+            found.warning("SK-CONTROL-008", f"{message}; its actuators are left out", transmission.where, hint)
+            continue
+        missing = [joint for joint in law.joints if joint not in joints]
+        for joint in missing:
+            message = f"transmission {transmission.name!r} names joint {joint!r}, which the hardware does not have"
+            found.warning(
+                "SK-CONTROL-008",
+                f"{message}; its actuators are left out",
+                transmission.where,
+                did_you_mean(joint, joints),
+            )
+        if not missing:
+            made.append(law)
+    return made
+
+
+def _law(transmission: Transmission) -> Law | None:
+    joints, actuators = _by_role(transmission.joints), _by_role(transmission.actuators)
+    n_j, n_a = [end.reduction for end in joints], [end.reduction for end in actuators]
+    two = len(joints) == len(actuators) == 2
+    if 0.0 in n_j or 0.0 in n_a:
+        return None
+    if transmission.kind == "simple" and len(joints) == len(actuators) == 1:
+        motion = np.array([[n_a[0] * n_j[0]]])
+        force = 1.0 / motion
+    elif transmission.kind == "differential" and two:
+        motion = np.array([[n_a[0] * n_j[0], n_a[0] * n_j[1]], [n_a[1] * n_j[0], -n_a[1] * n_j[1]]])
+        force = np.linalg.inv(motion.T)
+    elif transmission.kind == "four_bar_linkage" and two:
+        motion = np.array([[n_a[0] * n_j[0], 0.0], [n_a[1], n_a[1] * n_j[1]]])
+        force = np.array([[1.0 / (n_a[0] * n_j[0]), 0.0], [1.0 / n_a[1], 1.0 / (n_a[1] * n_j[1])]])
+    else:
+        return None
+    offset = np.array([end.offset for end in joints])
+    return Law(tuple(a.name for a in actuators), tuple(j.name for j in joints), motion, force, offset)
+
+
+def _by_role(ends: Sequence[TransmissionEnd]) -> list[TransmissionEnd]:
+    """In the order of their roles (`joint1`, `joint2`), where they have some."""
+    return sorted(ends, key=lambda end: end.role) if all(end.role for end in ends) else list(ends)
+
+
+def transmissions_of(scene: SceneModel, blocks: Iterable[Params]) -> list[Transmission]:
+    """Those in `<ros2_control>`, else those of the robot (which ROS 1 reads)."""
+    found = [_read(element) for block in blocks for element in block.all("transmission")]
+    return found or list(scene.transmissions)
+
+
+def _read(element: Params) -> Transmission:
+    plugin = element.text("plugin", "")
+    kind = _KINDS.get(plugin.rpartition("/")[2], plugin)
+    return Transmission(
+        name=element.attribute("name"),
+        kind=kind,
+        type=plugin,
+        joints=tuple(_end(one) for one in element.all("joint")),
+        actuators=tuple(_end(one) for one in element.all("actuator")),
+        params=element,
+        where=element.where,
+    )
+
+
+def _end(element: Params) -> TransmissionEnd:
+    return TransmissionEnd(
+        name=element.attribute("name"),
+        reduction=element.number("mechanical_reduction", 1.0),
+        offset=element.number("offset", 0.0),
+        role=element.attribute("role"),
+    )

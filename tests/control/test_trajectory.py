@@ -1,0 +1,110 @@
+"""Splines through the points of a trajectory."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from simkit.control.trajectory import (
+    SECOND,
+    Setpoint,
+    Spline,
+    TrajectoryPoint,
+    integrated,
+    shortest,
+    whole_turns,
+)
+
+
+def point(time: float, *fields: list[float] | None) -> TrajectoryPoint:
+    return TrajectoryPoint(round(time * SECOND), *(None if f is None else np.array(f) for f in fields))
+
+
+def at(spline: Spline, time: float) -> Setpoint:
+    return spline.at(round(time * SECOND))
+
+
+START = point(0.0, [0.0, 1.0], [0.0, 0.0])
+
+
+def test_positions_alone_are_joined_by_straight_lines() -> None:
+    spline = Spline.through(START, [point(2.0, [1.0, 0.0]), point(3.0, [1.0, 4.0])])
+    np.testing.assert_allclose(at(spline, 0.5).motion, [[0.25, 0.75], [0.5, -0.5], [0.0, 0.0]])
+    np.testing.assert_allclose(at(spline, 2.5).motion, [[1.0, 2.0], [0.0, 4.0], [0.0, 0.0]])
+    np.testing.assert_allclose(at(spline, 9.0).motion, [[1.0, 4.0], [0.0, 0.0], [0.0, 0.0]])
+
+
+def test_velocities_at_both_ends_make_it_the_cubic_of_hermite() -> None:
+    spline = Spline.through(START, [point(2.0, [1.0, 0.0], [0.5, 0.0]), point(4.0, [2.0, 0.0], [0.0, 0.0])])
+    s = 0.75 / 2.0  # the cubic of a rise of 1 in 2 s that begins at rest and ends at 0.5
+    expected = 1.0 * (3 * s**2 - 2 * s**3) + 0.5 * 2.0 * (s**3 - s**2)
+    assert at(spline, 0.75).motion[0, 0] == pytest.approx(expected, abs=1e-12)
+    for time in (1e-9, 2.0 - 1e-9, 2.0, 4.0 - 1e-9):
+        wanted = 0.5 if 1.0 < time < 3.0 else 0.0
+        assert at(spline, time).motion[1, 0] == pytest.approx(wanted, abs=1e-7)
+
+
+def test_accelerations_too_make_it_the_quintic() -> None:
+    ends = [point(1.0, [1.0], [0.2], [-0.4]), point(3.0, [0.0], [0.0], [0.0])]
+    spline = Spline.through(point(0.0, [0.0], [0.0], [0.3]), ends)
+    for time, motion in ((0.0, [0.0, 0.0, 0.3]), (1.0, [1.0, 0.2, -0.4])):
+        np.testing.assert_allclose(at(spline, time).motion[:, 0], motion, atol=1e-12)
+    before = at(spline, 1.0 - 1e-6).motion[:, 0]
+    np.testing.assert_allclose(before, [1.0, 0.2, -0.4], atol=1e-4)
+
+
+def test_a_measured_state_without_accelerations_begins_a_quintic_with_none() -> None:
+    spline = Spline.through(point(0.0, [0.0], [0.1]), [point(1.0, [1.0], [0.0], [0.0])])
+    s = 0.5
+    expected = 10 * s**3 - 15 * s**4 + 6 * s**5 + 0.1 * (s - 6 * s**3 + 8 * s**4 - 3 * s**5)
+    assert at(spline, 0.5).motion[0, 0] == pytest.approx(expected, abs=1e-12)
+
+
+def test_one_piece_without_velocities_is_straight_though_the_others_are_cubic() -> None:
+    points = [point(1.0, [1.0, 1.0], [0.0, 0.0]), point(2.0, [2.0, 1.0]), point(3.0, [3.0, 1.0], [0.0, 0.0])]
+    spline = Spline.through(START, points)
+    assert at(spline, 1.25).motion[0, 0] == pytest.approx(1.25)
+    assert at(spline, 0.25).motion[0, 0] == pytest.approx(3 * 0.25**2 - 2 * 0.25**3)
+
+
+def test_a_point_that_is_over_is_where_the_way_begins() -> None:
+    late = point(1.5, [5.0, 5.0])
+    spline = Spline.through(late, [point(1.0, [1.0, 1.0]), point(2.0, [3.0, 1.0])])
+    np.testing.assert_allclose(at(spline, 1.5).motion[0], [2.0, 1.0])
+
+
+def test_without_interpolation_the_next_point_is_wanted_at_once() -> None:
+    spline = Spline.through(START, [point(1.0, [1.0, 1.0]), point(2.0, [3.0, 2.0])], steps=True)
+    assert at(spline, 0.5).motion[0].tolist() == [0.0, 1.0]
+    assert at(spline, 1.5).motion[0].tolist() == [3.0, 2.0]
+    assert at(spline, 2.5).motion[0].tolist() == [3.0, 2.0]
+
+
+def test_efforts_are_drawn_out_between_their_points() -> None:
+    spline = Spline.through(START, [point(1.0, [1.0, 1.0], None, None, [4.0, 0.0]), point(2.0, [1.0, 1.0])])
+    efforts = at(spline, 0.5).efforts
+    assert efforts is not None and efforts.tolist() == [2.0, 0.0]
+    last = at(spline, 5.0).efforts
+    assert last is not None and last.tolist() == [0.0, 0.0]
+
+
+def test_velocities_are_summed_up_to_positions_where_none_are_given() -> None:
+    points = integrated(START, [point(1.0, None, [1.0, -1.0]), point(3.0, None, [1.0, -1.0])])
+    assert [p.positions.tolist() for p in points if p.positions is not None] == [[0.5, 0.5], [2.5, -1.5]]
+    (only,) = integrated(START, [point(2.0, None, None, [1.0, 0.0])])
+    assert only.velocities is not None and only.velocities.tolist() == [1.0, 0.0]
+
+
+def test_each_joint_comes_to_rest_at_its_own_deceleration() -> None:
+    spline = Spline.stop(np.array([1.0, 2.0, 3.0]), np.array([1.0, -2.0, 1.0]), np.array([2.0, 2.0, 0.0]))
+    # v²/(2a) = 0.25 m in 0.5 s, and 1 m in 1 s; the third has no deceleration and stops at once
+    np.testing.assert_allclose(at(spline, 0.25).motion[0], [1.0 + 0.25 - 0.0625, 2.0 - 0.5 + 0.0625, 3.0])
+    np.testing.assert_allclose(at(spline, 0.75).motion[0], [1.25, 2.0 - 1.5 + 0.5625, 3.0])
+    np.testing.assert_allclose(at(spline, 2.0).motion, [[1.25, 1.0, 3.0], [0.0] * 3, [0.0] * 3], atol=1e-12)
+
+
+def test_joints_that_turn_without_end_take_the_short_way() -> None:
+    turning = np.array([True, False])
+    turns = whole_turns(np.array([6.0, 6.0]), np.array([0.1, 0.1]), turning)
+    np.testing.assert_allclose(turns, [2 * np.pi, 0.0])
+    np.testing.assert_allclose(shortest(np.array([6.0, 6.0]), turning), [6.0 - 2 * np.pi, 6.0])
