@@ -15,6 +15,7 @@ from simkit.cli.convert import convert
 from simkit.cli.doctor import doctor
 from simkit.cli.explain import explain
 from simkit.cli.inspect import inspect
+from simkit.cli.motion import motion
 from simkit.cli.plugin import plugin
 from simkit.cli.run import run
 from simkit.cli.vendor import vendor
@@ -30,6 +31,7 @@ app = typer.Typer(
 for _command in (run, check, explain, inspect, convert, vendor, bench, doctor):
     app.command()(_command)
 app.add_typer(bag, name="bag")
+app.add_typer(motion, name="motion")
 app.add_typer(plugin, name="plugin")
 
 

@@ -1,0 +1,219 @@
+"""`simkit motion`: the motions that a robot knows by name, and how it plays them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli.console import guarded, out, print_diagnostics, say
+from simkit.cli.options import Force, Json, PackagePaths, PluginPaths, ResourcePaths, Verbose, XacroArgs, source
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.motion.motions import Motion
+
+motion = typer.Typer(help="Lists the motions that a robot knows by name, and plays them.", no_args_is_help=True)
+
+ROBOT = "tiago"
+Motions = Annotated[
+    list[Path],
+    typer.Option("--motions", help="One more file of motions, play_motion's or play_motion2's.", metavar="FILE.yaml"),
+]
+OfModel = Annotated[str | None, typer.Option("--model", help="Which robot, where several play.", metavar="NAME")]
+
+
+@motion.callback()
+def _group() -> None:
+    """Lists the motions that a robot knows by name, and plays them."""
+
+
+@motion.command("list")
+@guarded
+def list_motions(
+    file: Annotated[
+        str, typer.Argument(help="A robot, a world with one, or a file of motions.", metavar="[FILE]")
+    ] = ROBOT,
+    motions: Motions = [],
+    model: OfModel = None,
+    json_: Json = False,
+    resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
+    plugin_path: PluginPaths = [],
+    xacro_arg: XacroArgs = [],
+) -> int:
+    """Lists motions: joints, points, how long each takes, and what it is for."""
+    if Path(file).suffix.lower() in (".yaml", ".yml"):
+        found = _read([Path(file), *motions])
+    else:
+        from simkit.motion.session import chosen, players
+
+        options: Any = source(resource_path, package_path, xacro_arg)
+        with _opened(file, None, motions, 0, plugin_path, options, verbose=False) as sim:
+            found = list(chosen(players(sim), model).motions.values())
+    if json_:
+        shown = [{**one.as_message(), "duration": one.duration, "file": one.where.file} for one in found]
+        out().file.write(json.dumps(shown, indent=2) + "\n")
+        return 0
+    rows = [
+        (one.key, f"{one.duration:g} s", f"{len(one.times)} point{'s' * (len(one.times) > 1)}", _joints(one.joints))
+        for one in found
+    ]
+    widths = [max((len(row[k]) for row in rows), default=0) for k in range(4)]
+    for one, row in zip(found, rows, strict=True):
+        columns = "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
+        out().print(f"{columns}  {one.description}".rstrip())
+    return 0
+
+
+@motion.command("play")
+@guarded
+def play(
+    names: Annotated[
+        list[str], typer.Argument(help="Motions, played one after another.", metavar="MOTION...", show_default=False)
+    ],
+    world: Annotated[
+        str | None, typer.Option(help="Where: a file or a bare name; level ground otherwise.", metavar="WORLD")
+    ] = None,
+    robot: Annotated[
+        str | None,
+        typer.Option(help=f"Who: a file or a bare name; {ROBOT} where no world is given.", metavar="MODEL"),
+    ] = None,
+    motions: Motions = [],
+    model: OfModel = None,
+    skip_planning: Annotated[
+        bool, typer.Option("--skip-planning", help="Does not look whether anything is in the way.")
+    ] = False,
+    seed: Annotated[int, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = 0,
+    record: Annotated[
+        Path | None, typer.Option(help="Writes all topics: x.mcap one file, else a rosbag2 folder.", metavar="OUT")
+    ] = None,
+    force: Force = False,
+    picture: Annotated[Path | None, typer.Option(help="Draws the scene at the end.", metavar="OUT.png")] = None,
+    json_: Json = False,
+    verbose: Verbose = False,
+    resource_path: ResourcePaths = [],
+    package_path: PackagePaths = [],
+    plugin_path: PluginPaths = [],
+    xacro_arg: XacroArgs = [],
+) -> int:
+    """Plays motions: the way to the first point no faster than is safe, then as the file has it."""
+    from contextlib import ExitStack
+
+    from simkit.motion.session import chosen, play_all, players
+    from simkit.sinks import picture as pictures
+    from simkit.sinks import recorder
+
+    if picture is not None:
+        pictures.check_target(picture)
+    if record is not None:
+        recorder.check_target(record, overwrite=force)
+    options: Any = source(resource_path, package_path, xacro_arg)
+    shown = []
+    with ExitStack() as stack:
+        sim = stack.enter_context(_opened(world, robot, motions, seed, plugin_path, options, verbose=verbose))
+        if record is not None:
+            stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
+        for played in play_all(sim, chosen(players(sim), model), names, skip_planning=skip_planning):
+            joint, off = played.furthest
+            key = played.motion.key
+            shown.append({"motion": key, "duration": round(played.duration, 6), "joint": joint, "off": off})
+            if not json_:
+                out().print(f"{key}: done in {played.duration:.2f} s; {joint} is {abs(off):.2g} off")
+        if picture is not None:
+            _draw(sim, picture)
+    if json_:
+        out().file.write(json.dumps(shown, indent=2) + "\n")
+    return 0
+
+
+def _opened(
+    world: str | None,
+    robot: str | None,
+    motions: Sequence[Path],
+    seed: int,
+    plugin_paths: Sequence[Path],
+    options: Any,
+    *,
+    verbose: bool,
+) -> Any:
+    """The world with its robot, ready to play; further motions are known by then."""
+    from simkit.build import load
+    from simkit.motion.play import PlayMotion
+    from simkit.motion.session import controlled, empty_world_with, players
+
+    for path in motions:
+        if not path.is_file():
+            raise InputError(f"SK-MOTION-001 there is no file of motions {path}", "SK-MOTION-001")
+    text = world
+    if text is None:
+        text, folders = empty_world_with(robot or ROBOT)
+        options = {**options, "resource_paths": [*options["resource_paths"], *folders]}
+    sim = load(text, seed=seed, plugin_paths=plugin_paths, **options)
+    spawned = sim.spawn(robot) if world is not None and robot is not None else None
+    there = players(sim)
+    for player in there.values():
+        for path in motions:
+            player.read(path)
+    if motions and not there:
+        hosts = controlled(sim)
+        sim.close()
+        if len(hosts) != 1 or spawned is not None:
+            what = f"here are {len(hosts)} of them" if spawned is None else "put the robot into the world's file"
+            message = f"SK-MOTION-010 --motions is for the one robot that a controller manager moves; {what}"
+            raise InputError(message, "SK-MOTION-010")
+        made = PlayMotion(motions=[str(path.resolve()) for path in motions])
+        sim = load(text, seed=seed, plugin_paths=plugin_paths, plugins=[(hosts[0], made)], **options)
+    print_diagnostics(sim.diagnostics, verbose=verbose)
+    return sim
+
+
+def _read(paths: Sequence[Path]) -> list[Motion]:
+    """The motions of files, without a robot."""
+    from simkit.diagnostics import Diagnostics
+    from simkit.motion.reading import read_motions
+
+    problems = Diagnostics()
+    found: dict[str, Motion] = {}
+    for path in paths:
+        found.update(read_motions(path, problems).motions)
+    problems.raise_if_errors()
+    print_diagnostics(problems, verbose=False)
+    return list(found.values())
+
+
+def _joints(names: Sequence[str]) -> str:
+    """Joints in short: `arm_1_joint` to `arm_7_joint` are `arm_1-7`."""
+    short: list[tuple[str, int | None, int | None]] = []
+    for name in names:
+        stem = name.removesuffix("_joint")
+        match = re.fullmatch(r"(.*_)(\d+)", stem)
+        if match is None:
+            short.append((stem, None, None))
+            continue
+        prefix, number = match[1], int(match[2])
+        if short and short[-1][0] == prefix and short[-1][2] == number - 1:
+            short[-1] = (prefix, short[-1][1], number)
+        else:
+            short.append((prefix, number, number))
+    return ", ".join(
+        stem if first is None else f"{stem}{first}" + (f"-{last}" if last != first else "")
+        for stem, first, last in short
+    )
+
+
+def _draw(sim: Any, path: Path) -> None:
+    from simkit.build import render_view
+    from simkit.errors import RenderError
+    from simkit.sinks.picture import save_picture
+
+    try:
+        save_picture(sim, path, render_view)
+    except RenderError as error:
+        say(f"warning: no picture: {error}")
+    else:
+        out().print(f"picture {path}")

@@ -1,0 +1,110 @@
+"""What a motion is: joints, the positions they go through, and when they are there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from simkit.diagnostics import NOWHERE, Where
+
+_NS = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """A motion that a robot knows by name.
+
+    Attributes:
+        key: what it is called by (`unfold_arm`).
+        joints: plain names.
+        times: when each point is reached, from the start of the motion [s], rising; shape (points,).
+        positions: of each point, in the order of the joints [rad or m], shape (points, joints).
+        velocities: of each point [rad/s or m/s], shape (points, joints); empty where the file says nothing.
+        name, usage, description: for people.
+    """
+
+    key: str
+    joints: tuple[str, ...]
+    times: tuple[float, ...]
+    positions: tuple[tuple[float, ...], ...]
+    velocities: tuple[tuple[float, ...], ...] = ()
+    name: str = ""
+    usage: str = ""
+    description: str = ""
+    where: Where = NOWHERE
+
+    @property
+    def duration(self) -> float:
+        """When its last point is reached as the file has it, the approach apart [s]."""
+        return self.times[-1]
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Motion:
+        return self
+
+    def as_message(self) -> dict[str, Any]:
+        """The fields of a `play_motion2_msgs/msg/Motion`."""
+        return {
+            "key": self.key,
+            "name": self.name,
+            "usage": self.usage,
+            "description": self.description,
+            "joints": list(self.joints),
+            "positions": [value for row in self.positions for value in row],
+            "times_from_start": list(self.times),
+        }
+
+    def as_info(self) -> dict[str, Any]:
+        """The fields of a `play_motion_msgs/msg/MotionInfo`."""
+        sec, nanosec = divmod(round(self.duration * _NS), _NS)
+        return {"name": self.key, "joints": list(self.joints), "duration": {"sec": sec, "nanosec": nanosec}}
+
+
+def motion_of_message(message: Any) -> Motion:
+    """The motion that a `play_motion2_msgs/msg/Motion` holds.
+
+    Raises:
+        ValueError: it is none; says why.
+    """
+    joints, flat, times = list(message.joints), [float(v) for v in message.positions], list(message.times_from_start)
+    fault = faults(joints, flat, [float(t) for t in times])
+    if fault:
+        raise ValueError(fault)
+    return Motion(
+        message.key,
+        tuple(joints),
+        tuple(float(t) for t in times),
+        rows(flat, len(joints)),
+        name=message.name,
+        usage=message.usage,
+        description=message.description,
+    )
+
+
+def rows(flat: Sequence[float], width: int) -> tuple[tuple[float, ...], ...]:
+    """Positions of all points one after another, as a row for each point."""
+    return tuple(tuple(flat[k : k + width]) for k in range(0, len(flat), width))
+
+
+def faults(joints: Sequence[str], flat: Sequence[float], times: Sequence[float]) -> str:
+    """What makes these no motion; empty for nothing."""
+    if not joints:
+        return "it names no joint"
+    twice = next((joint for k, joint in enumerate(joints) if joint in joints[:k]), None)
+    if twice is not None:
+        return f"it names joint {twice!r} twice"
+    if not times:
+        return "it has no point"
+    if len(flat) != len(joints) * len(times):
+        counts = f"{len(joints)} joints at {len(times)} times"
+        return f"it has {len(flat)} positions, {counts} need {len(joints) * len(times)}"
+    bad = next((v for v in (*flat, *times) if not math.isfinite(v)), None)
+    if bad is not None:
+        return f"it has a number that is not finite ({bad})"
+    if times[0] < 0:
+        return f"its first time is {times[0]:g} s, before the start"
+    back = next((k for k in range(1, len(times)) if times[k] <= times[k - 1]), None)
+    if back is not None:
+        return f"its times do not rise: {times[back]:g} s comes after {times[back - 1]:g} s"
+    return ""

@@ -1,0 +1,60 @@
+"""Who moves which joint: the active controllers that follow trajectories, and what else may be asked of a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from simkit.control.controllers.joint_trajectory import JointTrajectoryController
+from simkit.control.host import ControlHost
+
+if TYPE_CHECKING:
+    from simkit.runtime import Model, Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """An active controller that follows trajectories.
+
+    Attributes:
+        name: the controller's.
+        action: name of its action.
+        joints: all that it moves, in its order.
+    """
+
+    name: str
+    action: str
+    joints: tuple[str, ...]
+
+
+def movers_of(sim: Simulation, robot: Model) -> list[Mover]:
+    """The active trajectory controllers of a robot, in the order in which they were loaded."""
+    found = []
+    for host in sim.structure.all_plugins():
+        if not isinstance(host, ControlHost) or not _is_of(host.scoped, robot.scoped) or not hasattr(host, "manager"):
+            continue
+        for name, loaded in host.manager.controllers.items():
+            controller: Any = loaded.controller
+            if loaded.state != "active" or not isinstance(controller, JointTrajectoryController):
+                continue
+            joints = dict.fromkeys(one.rpartition("/")[0] for one in controller.command_interfaces() if "/" in one)
+            action = host.ros.topic(controller.topic("~/follow_joint_trajectory"))
+            found.append(Mover(name, action, tuple(joints)))
+    return found
+
+
+def _is_of(scoped: str, robot: str) -> bool:
+    return scoped == robot or scoped.startswith(f"{robot}::")
+
+
+def unmoved(robot: Model, joints: Sequence[str], movers: Sequence[Mover]) -> list[str]:
+    """Which of these joints no active controller moves, itself or by a joint that they mimic."""
+    moved = {joint for mover in movers for joint in mover.joints}
+    return [joint for joint in joints if joint not in moved and _leader(robot, joint) not in moved]
+
+
+def _leader(robot: Model, joint: str) -> str:
+    axes = robot.joints[joint].scene.axes if joint in robot.joints else ()
+    mimic = axes[0].mimic if axes else None
+    return "" if mimic is None else mimic.joint.rpartition("::")[2]

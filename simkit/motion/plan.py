@@ -1,0 +1,162 @@
+"""From a motion to what the joints are to do: the way to its first point, its time, and what is in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.motion.limits import beyond_limits, speed_limits
+from simkit.motion.motions import Motion
+from simkit.motion.movers import Mover, unmoved
+from simkit.motion.timing import SHORTEST, Course, approach_time, course
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime import Joint, Model, Simulation
+
+MISSING_CONTROLLER: Final = -4
+NO_PLAN_FOUND: Final = -8
+OTHER_ERROR: Final = -42
+APPROACH_SPEED: Final = 0.5
+"""[rad/s or m/s], where nobody says anything."""
+_STEPS: Final = {"prismatic": 0.005}  # [m] between two places that are looked at
+_STEP: Final = 0.03  # [rad]
+_THERE: Final = 1e-3  # [rad or m] from the first point, where no way to it is needed
+
+
+class Refused(Exception):
+    """A motion is not played.
+
+    Attributes:
+        code: why, as `play_motion_msgs/action/PlayMotion` numbers it.
+    """
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """How the first point of a motion is reached.
+
+    Attributes:
+        speed: at most, on average of the joint that has the longest way [rad/s or m/s].
+        shortest: it takes at least that long [s].
+        free_joints: plain names of joints whose links may touch each other and whatever lies loose, as grippers do.
+    """
+
+    speed: float = APPROACH_SPEED
+    shortest: float = 0.0
+    free_joints: frozenset[str] = frozenset()
+
+
+def plan(
+    sim: Simulation,
+    robot: Model,
+    motion: Motion,
+    movers: Sequence[Mover],
+    approach: Approach,
+    *,
+    looks_around: bool = True,
+) -> Course:
+    """The course of a motion's joints from where they are now.
+
+    Args:
+        sim: the simulation.
+        robot: whose joints they are.
+        motion: what is to be done.
+        movers: controllers that can do it.
+        approach: how to get to its first point.
+        looks_around: whether it is to touch nothing.
+
+    Raises:
+        Refused: it cannot be done, or leaves the limits, or something is in the way.
+    """
+    joints = joints_of(robot, motion.joints, movers)
+    beyond = beyond_limits(motion, joints)
+    if beyond:
+        raise Refused(OTHER_ERROR, f"motion {motion.key!r} leaves the limits: {'; '.join(beyond)}")
+    start = np.array([float(joint.position) for joint in joints.values()])
+    found = course_from(start, motion, speed_limits(motion, joints), approach)
+    if looks_around and not approach.free_joints.issuperset(motion.joints):
+        look_around(sim, robot, motion, found, joints, approach.free_joints)
+    return found
+
+
+def joints_of(robot: Model, names: Sequence[str], movers: Sequence[Mover]) -> dict[str, Joint]:
+    """The joints of a motion by name, each of which a controller moves. Raises Refused."""
+    missing = [name for name in names if name not in robot.joints]
+    if missing:
+        near = did_you_mean(missing[0], robot.joints)
+        raise Refused(MISSING_CONTROLLER, f"{robot.name!r} has no joint {missing[0]!r}" + (f"; {near}" if near else ""))
+    free = unmoved(robot, names, movers)
+    if free:
+        listed = ", ".join(map(repr, free))
+        plural = "s" if len(free) > 1 else ""
+        verb = "are" if plural else "is"
+        raise Refused(MISSING_CONTROLLER, f"Joint{plural} {listed} {verb} not claimed by any active controller")
+    return {name: robot.joints[name] for name in names}
+
+
+def course_from(start: Vector, motion: Motion, limits: Vector, approach: Approach) -> Course:
+    """The course from where the joints are through the points of a motion.
+
+    The way to the first point takes the time that the motion gives it, or longer where a joint would be too fast; what
+    follows keeps its distance in time.
+    """
+    points = np.vstack([start, np.array(motion.positions)])
+    times = np.array(motion.times)
+    is_there = float(np.max(np.abs(points[1] - start))) <= _THERE
+    needed = SHORTEST if is_there else approach_time(start, points[1], approach.speed, approach.shortest)
+    shifted = np.concatenate([[0.0], times + max(needed - times[0], 0.0)])
+    given = np.array(motion.velocities) if motion.velocities else None
+    return course(points, shifted, given, limits)
+
+
+def look_around(
+    sim: Simulation,
+    robot: Model,
+    motion: Motion,
+    found: Course,
+    joints: Mapping[str, Joint],
+    free_joints: Collection[str],
+) -> None:
+    """Goes along a course in a copy of the state. Raises Refused where two links come into each other."""
+    from simkit.motion.clearance import Clearance
+
+    clearance = Clearance(sim, robot, list(joints.values()), free_joints)
+    steps = np.array([_STEPS.get(joint.type, _STEP) for joint in joints.values()])
+    reached = found.times[1]
+    for time, positions in found.samples(steps):
+        meeting = clearance.meeting(positions)
+        if meeting is not None:
+            at = time - reached + motion.times[0]
+            where = "on the way to its first point" if time < reached else f"at {at:.2f} s"
+            raise Refused(NO_PLAN_FOUND, f"motion {motion.key!r} collides {where}: {meeting}")
+
+
+def trajectory(found: Course, motion: Motion, mover: Mover, robot: Model) -> dict[str, Any]:
+    """The goal of one controller: its joints of a course; those that the motion leaves out stay where they are."""
+    columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in mover.joints]
+    here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in mover.joints]
+
+    def row(values: Vector, otherwise: Sequence[float]) -> list[float]:
+        return [otherwise[k] if c is None else float(values[c]) for k, c in enumerate(columns)]
+
+    at_rest = [0.0] * len(columns)
+    points = []
+    for k in range(1, len(found.times)):
+        sec, nanosec = divmod(round(float(found.times[k]) * 1e9), 1_000_000_000)
+        points.append(
+            {
+                "positions": row(found.positions[k], here),
+                "velocities": row(found.velocities[k], at_rest),
+                "time_from_start": {"sec": sec, "nanosec": nanosec},
+            }
+        )
+    return {"trajectory": {"joint_names": list(mover.joints), "points": points}}

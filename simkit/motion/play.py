@@ -1,0 +1,305 @@
+"""play_motion: a robot plays motions that it knows by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.motion.limits import beyond_limits, speed_limits
+from simkit.motion.motions import Motion, motion_of_message
+from simkit.motion.movers import movers_of
+from simkit.motion.plan import APPROACH_SPEED, OTHER_ERROR, Approach, Refused, course_from, joints_of, plan, trajectory
+from simkit.motion.reading import MotionFile, read_motions
+from simkit.motion.services import offer_services
+from simkit.motion.timing import STEEPEST
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.ros_names import RosNames
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
+    from simkit.runtime.actions import GoalHandle
+    from simkit.scene import SceneModel
+
+ROS_2: Final = "play_motion2_msgs/action/PlayMotion2"
+ROS_2_RAW: Final = "play_motion2_msgs/action/PlayMotion2Raw"
+ROS_1: Final = "play_motion_msgs/action/PlayMotion"
+SUCCEEDED, MOTION_NOT_FOUND, CONTROLLER_BUSY, TRAJECTORY_ERROR, GOAL_NOT_REACHED = 1, -1, -3, -5, -6
+_OF_FOLLOWING: Final = {-4: TRAJECTORY_ERROR, -5: GOAL_NOT_REACHED}
+_GRIPPING: Final = ("gripper", "finger", "hand")
+
+
+@dataclass(slots=True)
+class _Run:
+    """A motion that is being played.
+
+    Attributes:
+        goal: of whoever asked for it.
+        parts: goals of the controllers that have not got there yet, by controller.
+        until_ns: when it has failed [ns].
+    """
+
+    goal: GoalHandle
+    key: str
+    controllers: tuple[str, ...]
+    until_ns: int
+    parts: dict[str, GoalHandle] = field(default_factory=dict)
+
+
+class PlayMotion(ModelPlugin):
+    """Plays motions through the robot's trajectory controllers, as PAL's play_motion2 (and ROS 1's play_motion) does.
+
+    The way to the first point is no faster than `approach_velocity` and the joints' own limits; the motion follows as
+    its file has it, through all points smoothly. It is refused where it leaves the limits of a joint, and, unless the
+    goal says `skip_planning`, where links would come into each other or into something else.
+
+    Attributes:
+        robot: whose motions they are.
+        known: the motions that it knows, by key.
+    """
+
+    filenames = ("libsimkit_play_motion.so",)
+    names = ("simkit::PlayMotion",)
+    drives = True
+    robot: Model
+    known: dict[str, Motion]
+
+    # ------------------------------------------------------------------ what the file says
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        said = MotionFile()
+        for element in params.all("motions"):
+            path = self._find(element.value, builder)
+            if path is None:
+                message = f"the file of motions {element.value} is not found"
+                hint = "name its package's folder: --package-path NAME=DIR, or put the file beside the robot's"
+                params.diagnostics.warning("SK-MOTION-001", message, element.where, hint)
+                continue
+            said.update(read_motions(path, params.diagnostics))
+        self.known = dict(said.motions)
+        speed = said.approach_velocity or APPROACH_SPEED
+        shortest = said.approach_min_duration or 0.0
+        self._speed = params.number("approach_velocity", speed, minimum=1e-6)
+        self._shortest = params.number("approach_min_duration", shortest, minimum=0.0)
+        given = [name for p in params.all("exclude_from_planning_joints") for name in p.value.split()]
+        self._free_joints = tuple(given) if given else said.excluded_joints
+
+    def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
+        folder = Path(self.where.file).resolve().parent if self.where.file else None
+        found = builder.find_file(uri, folder)
+        if found is not None and found.is_file():
+            return found
+        name = uri.replace("\\", "/").rpartition("/")[2]
+        near = () if folder is None else (folder, folder / "motions", folder / "config", folder.parent / "motions")
+        places = (Path(uri), *(place / name for place in near if name))
+        return next((place for place in places if place.is_file()), None)
+
+    # ------------------------------------------------------------------ at work
+
+    def load(self, parent: Model, params: Params) -> None:
+        self.robot = parent
+        self._runs: list[_Run] = []
+        named = [n for n in parent.joints if any(word in n for word in _GRIPPING)]
+        self._approach = Approach(
+            self._speed, self._shortest, frozenset(named if self._free_joints is None else self._free_joints)
+        )
+        for motion in self.known.values():
+            self._check(motion, params.diagnostics)
+        self._find_names()
+        self._open()
+
+    def _find_names(self) -> None:
+        """Plays under the robot's own name where another one has the names that it would have."""
+        taken = self.ros.topic("play_motion2")
+        if taken not in self.sim.action_table.names():
+            return
+        self.ros = RosNames(self.ros.node, f"{self.ros.namespace}/{self.robot.name}", params=self.params)
+        message = f"robot {self.robot.name!r} plays motions under {self.action_name!r}: {taken!r} is another one's"
+        hint = "a namespace gives it other names: <ros><namespace>...</namespace></ros>"
+        self.params.diagnostics.note("SK-MOTION-007", message, self.where, hint)
+
+    def _open(self) -> None:
+        self.act("play_motion2", ROS_2, self._on_goal, self._on_cancel)
+        self.act("play_motion2/raw", ROS_2_RAW, self._on_raw_goal, self._on_cancel)
+        self.act("play_motion", ROS_1, self._on_goal, self._on_cancel)
+        offer_services(self)
+
+    def _check(self, motion: Motion, reports: Diagnostics) -> None:
+        """Says of a motion of a file what will come of it."""
+        joints = self.robot.joints
+        missing = next((n for n in motion.joints if n not in joints or len(joints[n].scene.axes) != 1), None)
+        if missing is not None:
+            near = did_you_mean(missing, [n for n, joint in joints.items() if len(joint.scene.axes) == 1])
+            what = "does not move along one axis" if missing in joints else f"is none of {self.robot.name!r}"
+            message = f"motion {motion.key!r} cannot be played: joint {missing!r} {what}"
+            reports.warning("SK-MOTION-004", message, motion.where, near)
+            return
+        beyond = beyond_limits(motion, self.robot.joints)
+        if beyond:
+            message = f"motion {motion.key!r} will be refused, it leaves the limits: {'; '.join(beyond)}"
+            reports.warning("SK-MOTION-004", message, motion.where)
+        elif len(motion.times) > 1:
+            self._check_speed(motion, reports)
+
+    def _check_speed(self, motion: Motion, reports: Diagnostics) -> None:
+        limits, rows = speed_limits(motion, self.robot.joints), np.array(motion.positions)
+        slopes = np.abs(np.diff(rows, axis=0)) / np.diff(motion.times)[:, None]
+        if not motion.velocities and np.all(slopes * STEEPEST <= limits):
+            return
+        alone = course_from(rows[0], motion, limits, self._approach)
+        if alone.stretched > 1.001:
+            took, takes = motion.times[-1] - motion.times[0], alone.times[-1] - alone.times[1]
+            message = f"motion {motion.key!r} takes {takes:.2f} s from its first point instead of {took:g}"
+            reports.note("SK-MOTION-005", f"{message}: a joint would be faster than its limit", motion.where)
+
+    def read(self, path: Path) -> None:
+        """Knows the motions of one more file from now on; what is wrong with them is among `sim.diagnostics`."""
+        found = read_motions(path, self.sim.reports)
+        self.known.update(found.motions)
+        for motion in found.motions.values():
+            self._check(motion, self.sim.reports)
+
+    @property
+    def action_name(self) -> str:
+        """Of the action `PlayMotion2`."""
+        return self.ros.topic("play_motion2")
+
+    @property
+    def motions(self) -> dict[str, Motion]:
+        """The motions it knows, by key."""
+        return dict(self.known)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no motion is being played."""
+        return not self._runs
+
+    # ------------------------------------------------------------------ goals
+
+    def _on_goal(self, goal: GoalHandle) -> None:
+        key = goal.request.motion_name
+        motion = self.known.get(key)
+        if motion is None:
+            near = did_you_mean(key, self.known) or "there is " + (", ".join(self.known) or "none")
+            self._refuse(goal, Refused(MOTION_NOT_FOUND, f"Motion '{key}' is not known; {near}"), rejects=True)
+            return
+        self._play(goal, motion)
+
+    def _on_raw_goal(self, goal: GoalHandle) -> None:
+        try:
+            motion = motion_of_message(goal.request.motion)
+        except ValueError as error:
+            self._refuse(goal, Refused(OTHER_ERROR, f"Motion is not valid: {error}"), rejects=True)
+            return
+        self._play(goal, motion)
+
+    def _play(self, goal: GoalHandle, motion: Motion) -> None:
+        movers = movers_of(self.sim, self.robot)
+        needed = [mover for mover in movers if set(mover.joints) & set(motion.joints)]
+        names = tuple(mover.name for mover in needed)
+        try:
+            self._check_idle(goal, names)
+            joints_of(self.robot, motion.joints, movers)
+        except Refused as refused:
+            self._refuse(goal, refused, rejects=True)
+            return
+        try:
+            checked = not goal.request.skip_planning
+            found = plan(self.sim, self.robot, motion, movers, self._approach, looks_around=checked)
+        except Refused as refused:
+            self._refuse(goal, refused, rejects=False)
+            return
+        until = self.sim.time_ns + round((2.0 * found.duration + 1.0) * 1e9)
+        run = _Run(goal, motion.key, names, until)
+        self._runs.append(run)
+        for k, mover in enumerate(needed):
+            request = trajectory(found, motion, mover, self.robot)
+            heard = self._on_feedback if k == 0 else None
+            run.parts[mover.name] = self.sim.action_table.send(mover.action, request, heard, self._on_part_done)
+
+    def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
+        """Raises Refused while another motion is being played; in ROS 1 only one with the same controllers counts."""
+        for run in self._runs:
+            common = [name for name in names if name in run.controllers]
+            if not _is_ros_1(goal):
+                raise Refused(CONTROLLER_BUSY, f"PlayMotion2 is busy: motion '{run.key}' is being played")
+            if common:
+                raise Refused(CONTROLLER_BUSY, f"controller '{common[0]}' is busy: motion '{run.key}' is being played")
+
+    def _refuse(self, goal: GoalHandle, refused: Refused, *, rejects: bool) -> None:
+        """Ends a goal that is not played; in ROS 1 with the number that says why."""
+        self.log.info("%s", refused)
+        if rejects and not _is_ros_1(goal):
+            goal.reject(str(refused))
+        else:
+            goal.abort(_result(goal, refused.code, str(refused)), str(refused))
+
+    def _on_cancel(self, goal: GoalHandle) -> bool:
+        run = next((run for run in self._runs if run.goal is goal), None)
+        if run is None:
+            return False
+        self._leave(run)
+        goal.canceled(_result(goal, OTHER_ERROR, "Motion canceled"), "Motion canceled")
+        return True
+
+    # ------------------------------------------------------------------ what the controllers say
+
+    def _on_part_done(self, part: GoalHandle) -> None:
+        run = next((run for run in self._runs if part in run.parts.values()), None)
+        if run is None:
+            return
+        name = next(name for name, one in run.parts.items() if one is part)
+        if part.status.name == "SUCCEEDED":
+            del run.parts[name]
+            if not run.parts:
+                self._runs.remove(run)
+                run.goal.succeed(_result(run.goal, SUCCEEDED, ""))
+            return
+        code = getattr(part.result, "error_code", 0)
+        why = part.reason or getattr(part.result, "error_string", "") or part.status.name.lower()
+        if part.status.name == "REJECTED":
+            text = f"Motion {run.key} aborted. Cannot send goal to {name}: {why}"
+        else:
+            text = f"Joint Trajectory failed: {name}: {why}"
+        self._fail(run, _OF_FOLLOWING.get(code, OTHER_ERROR), text)
+
+    def _on_feedback(self, feedback: Any) -> None:
+        """The first controller of a motion says how far it is."""
+        now = self.sim.time_ns
+        for run in tuple(self._runs):
+            if now > run.until_ns:
+                self._fail(run, OTHER_ERROR, "Timeout exceeded while the motion was played")
+            elif _is_ros_1(run.goal):
+                run.goal.publish_feedback(None)
+            elif any(part.feedback is feedback for part in run.parts.values()):
+                sec, nanosec = divmod(now, 1_000_000_000)
+                run.goal.publish_feedback({"current_time": {"sec": sec, "nanosec": nanosec}})
+
+    def _fail(self, run: _Run, code: int, text: str) -> None:
+        self.log.info("%s", text)
+        self._leave(run)
+        run.goal.abort(_result(run.goal, code, text), text)
+
+    def _leave(self, run: _Run) -> None:
+        """Calls the controllers off; their joints hold where they are."""
+        self._runs.remove(run)
+        for part in run.parts.values():
+            if not part.is_done:
+                part.cancel()
+
+
+def _is_ros_1(goal: GoalHandle) -> bool:
+    return hasattr(goal.request, "priority")
+
+
+def _result(goal: GoalHandle, code: int, text: str) -> dict[str, Any]:
+    """The fields of the result message that the goal's action has."""
+    if _is_ros_1(goal):
+        return {"error_code": code, "error_string": text}
+    return {"success": code == SUCCEEDED, "error": text}
