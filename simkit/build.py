@@ -22,6 +22,7 @@ from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.runtime.faults import OnError
+    from simkit.spawning import Spawn
 
 Source = str | os.PathLike[str]
 # what the engine says of a world that lacks its faulty parts
@@ -62,6 +63,7 @@ def load(
     package_paths: Mapping[str, Source] | None = None,
     render_thread: bool | None = None,
     on_error: OnError | None = None,
+    spawn: Sequence[str | Spawn] = (),
 ) -> Simulation:
     """Opens a world or a bare model and makes it ready to step.
 
@@ -84,6 +86,8 @@ def load(
         on_error: what becomes of a plugin that raises: "stop" ends the run with a PluginError, "disable" goes on
             without it. Goes over what the file (`<simkit:on_error>`) and the plugin's class say; None leaves it to
             them, and they to "stop".
+        spawn: models that come into the world as it is loaded: `"MODEL:x,y,yaw[:name]"`, or `Spawn` objects. MODEL is
+            a file or a bare name; unlike what `Simulation.spawn` adds later, they are there after a reset as well.
 
     Returns:
         The simulation at t = 0.
@@ -96,13 +100,15 @@ def load(
         raise InputError(f"on_error is 'stop' or 'disable', got {on_error!r}")
     import_engine()
     from simkit.compiler import SpecBuilder
+    from simkit.plugins.actors.stage import with_actors
     from simkit.runtime import Simulation, Structure
     from simkit.sensors.rendering.thread import usable_cores
 
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
-    scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides)
+    scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn)
     world = scene.world if sleep else _sleepless(scene.world)
+    world = with_actors(world, lambda uri, folder: resolver.search(uri, folder)[0], diagnostics)
     allowed = [Path(p) for p in plugin_paths]
     if diagnostics.has_errors:
         _look_further(world, diagnostics, allowed, resolver)
@@ -116,7 +122,8 @@ def load(
 
     load_model = partial(_model_to_spawn, resolver=resolver)
     make_parts = partial(parts_of_model, plugin_paths=allowed)
-    structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
+    movable = frozenset(m.name for m in world.models if m.moved_by is not None)
+    structure = Structure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.write_sdf = _sdf_of
     simulation.render_thread = usable_cores() > 1 if render_thread is None else render_thread
@@ -216,6 +223,7 @@ def _scene(
     xacro_args: Mapping[str, str] | None,
     base: str,
     overrides: Sequence[str],
+    spawn: Sequence[str | Spawn] = (),
 ) -> Scene:
     scene = load_scene(
         source,
@@ -225,6 +233,10 @@ def _scene(
         base=base,
         mesh_reader=_triangles,
     )
+    if spawn:
+        from simkit.spawning import add_spawned
+
+        scene = add_spawned(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
     from simkit.overrides import apply_overrides
     from simkit.plugins.gz.sensors import with_sensors_colours
 
@@ -233,6 +245,18 @@ def _scene(
     of_scene = [text for text in overrides if text.startswith("scene.")]
     scene = apply_overrides(scene, [text for text in overrides if text not in of_scene])
     return apply_overrides(with_sensors_colours(scene), of_scene)
+
+
+def _spawned_reader(resolver: Resolver) -> Any:
+    """Reads a model that comes into a world as it is loaded; None where it cannot be read, which is recorded."""
+
+    def read(source: Source, found: Diagnostics, **given: Any) -> SceneModel | None:
+        try:
+            return _model_to_spawn(source, found, resolver=resolver, **given)
+        except LoadError:
+            return None
+
+    return read
 
 
 def _triangles(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:
@@ -325,6 +349,7 @@ def _model_to_spawn(
     name: str | None = None,
     pose: Pose | None = None,
     taken: Container[str] = (),
+    xacro_args: Mapping[str, str] | None = None,
 ) -> SceneModel:
     scene = load_scene(
         source,
@@ -334,6 +359,7 @@ def _model_to_spawn(
         pose=pose,
         as_model=True,
         mesh_reader=_triangles,
+        xacro_args=xacro_args,
     )
     diagnostics.raise_if_errors()
     models = [scene.model] if scene.model else list(scene.world.models)

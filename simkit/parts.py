@@ -88,6 +88,7 @@ def _order(one: _Found, places: Mapping[str, tuple[_Place, str | None]]) -> _Pla
 
 
 def parts_of_world(world: SceneWorld, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
+    from simkit.plugins.actors import ActorMover
     from simkit.plugins.classic.services import ClassicServices
     from simkit.plugins.drives.tf import StaticTransforms
     from simkit.plugins.made import Hung
@@ -102,7 +103,8 @@ def parts_of_world(world: SceneWorld, builder: Any, diagnostics: Diagnostics, pl
     for plugin in world.plugins:
         one = _Found(plugin, "world", world, "", lambda sim: sim)
         _add_plugin(parts, one, ((False, plugin.where.serial),), builder, diagnostics, plugin_paths)
-    first, last = (ClockPublisher(), StaticTransforms()), (WorldStats(), WorldServices(), ClassicServices())
+    actors = (ActorMover(),) if world.actors else ()
+    first, last = (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), ClassicServices())
     for rank, instance in (*((0, one) for one in first), *((2, one) for one in last)):
         hung = Hung(instance, "", "", world, lambda sim: sim)
         _add_made(parts, hung, rank, builder, diagnostics)

@@ -63,6 +63,7 @@ class Request:
     verbose: bool = False
     quiet: bool = False
     watch: bool = False
+    spawn: tuple[str, ...] = ()
     source: Source = field(default_factory=lambda: source((), (), ()))
 
 
@@ -87,6 +88,10 @@ def run(
     set_: Annotated[
         list[str],
         typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
+    ] = [],
+    spawn: Annotated[
+        list[str],
+        typer.Option(help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"),
     ] = [],
     strict: Strict = False,
     view: Annotated[bool, typer.Option("--view", help="Opens a viewer.")] = False,
@@ -117,7 +122,7 @@ def run(
     request = Request(
         world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, _finite(rtf), tuple(set_), strict,
         view, picture, cmd_vel, script, tuple(plugin_path), _on_error(on_plugin_error), verbose, quiet, watch,
-        source(resource_path, package_path, xacro_arg, base),
+        tuple(spawn), source(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
     return execute(request)
 
@@ -158,6 +163,7 @@ def execute(request: Request) -> int:
             strict=request.strict,
             overrides=request.overrides,
             on_error=request.on_plugin_error,
+            spawn=request.spawn,
             **request.source,
         )
         with sim:

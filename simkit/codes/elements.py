@@ -73,7 +73,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-SDF-012",
         "warning",
-        "known, but not simulated: actors, image shapes, …",
+        "known, but not simulated: roads, image shapes, …",
         "",
         world('<road name="street"><width>4</width><point>0 0 0</point><point>10 0 0</point></road>'),
     ),

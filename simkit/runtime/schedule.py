@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 
 _LIMIT_GRID = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
 _INFO = "sensor_msgs/msg/CameraInfo"
+_RANGE = "sensor_msgs/msg/Range"
+_BLIND = frozenset(  # kinds that do not look around
+    ("imu", "force_torque", "contact", "altimeter", "magnetometer", "air_pressure", "air_speed", "navsat", "gps")
+)
 
 
 def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -> None:
@@ -45,9 +49,10 @@ def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -
         scheduler.every(_LIMIT_GRID, _holder(sim, coasting), "sense")
     _report_shared_topics(sim)
     _team_up(sim)
+    plugins = [plugin for plugin in sim.structure.all_plugins() if not sim.faults.is_disabled(plugin)]
+    _set_scenery(sim, scheduler, plugins)
     for sensor in sim.structure.all_sensors():
         scheduler.on(sensor.timetable(), sensor.sample, "sense")
-    plugins = [plugin for plugin in sim.structure.all_plugins() if not sim.faults.is_disabled(plugin)]
     for rate, task in together.tasks(sim, plugins, "before_step"):
         scheduler.every(rate, task, "before")
     for plugin in plugins:
@@ -56,6 +61,17 @@ def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -
     for rate, task in together.tasks(sim, plugins, "after_step"):
         scheduler.every(rate, task, "after")
     sim.on_demand.fill(scheduler)
+
+
+def _set_scenery(sim: Simulation, scheduler: Scheduler, plugins: Sequence[Any]) -> None:
+    """Has what moves by itself put where it is before anything is sensed, and at the ticks at which sensors look."""
+    for plugin in plugins:
+        if hasattr(plugin, "move_scenery"):
+            task = sim.faults.task(plugin, "move_scenery")
+            scheduler.every(plugin.scenery_rate, task, "sense")
+            for sensor in sim.structure.all_sensors():
+                if sensor.scene.kind not in _BLIND:
+                    scheduler.on(sensor.timetable(), task, "sense")
 
 
 def _holder(sim: Simulation, joints: Sequence[Joint]) -> Task:
@@ -93,6 +109,8 @@ def _report_shared_topics(sim: Simulation) -> None:
                 first[topic] = sensor.scoped, kind
                 continue
             other, other_kind = first[topic]
+            if kind == other_kind == _RANGE and other != sensor.scoped:
+                continue  # as ROS has it for a ring of sonars: each message names its sensor's frame
             if kind != _INFO or kind != other_kind or other not in told:
                 _report_shared(sim, sensor, topic, other, {other_kind, kind})
             told.add(other)

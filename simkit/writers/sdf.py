@@ -13,6 +13,7 @@ from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import (
     Inertial,
+    PersonLook,
     Scene,
     SceneActor,
     SceneFrame,
@@ -22,6 +23,7 @@ from simkit.scene import (
     SceneWorld,
     SphericalCoordinates,
 )
+from simkit.scene.own_elements import written_name
 from simkit.scene.world import Fog
 from simkit.writers import sdf_parts as parts
 from simkit.writers.sdf_parts import Place, given, other, text
@@ -89,7 +91,7 @@ class _Writer:
                 *(parts.plugin(p) for p in world.plugins),
                 *(parts.light(li, li.pose_world) for li in world.lights),
                 *(self.frame(f, IDENTITY, "", _links_of(world.models)) for f in world.frames),
-                *(self.model(m, IDENTITY) for m in world.models),
+                *(self.model(m, IDENTITY) for m in world.models if m.moved_by is None),
                 *(self.actor(a) for a in world.actors),
                 *(e for j in world.joints if (e := self.joint(j, "", _links_of(world.models))) is not None),
             ],
@@ -135,6 +137,7 @@ class _Writer:
                 pose(actor.pose_world),
                 element("skin", "", skin) if actor.skin else None,
                 *moves,
+                _person(actor.person),
                 element("script", "", script),
                 *(parts.plugin(p) for p in actor.plugins),
             ],
@@ -362,6 +365,14 @@ def _coordinates(place: SphericalCoordinates) -> Params:
 def _below(scoped: str, model: str) -> str:
     """A scoped name as it is written inside a model."""
     return scoped.removeprefix(f"{model}::") if model else scoped
+
+
+def _person(look: PersonLook | None) -> Params | None:
+    """The looks of a person of our own."""
+    if look is None:
+        return None
+    height = [] if look.height is None else [text("height", look.height)]
+    return element(written_name("person", "actor"), "", height + [text(k, numbers(v)) for k, v in look.colours.items()])
 
 
 def _links_of(models: Iterable[SceneModel]) -> dict[str, SceneLink]:

@@ -225,7 +225,7 @@ def test_what_is_set_of_a_light_is_there_at_once(fixture: TestFixture, ecm: Enti
 
 def test_what_is_set_of_an_actor_is_kept(ecm: EntityComponentManager) -> None:
     walker = Actor(World(1).actor_by_name(ecm, "walker"))
-    assert walker.pose(ecm) == Pose3d(1, 1, 0, 0, 0, 0) and walker.world_pose(ecm) is None
+    assert walker.pose(ecm) == walker.world_pose(ecm) == Pose3d(1, 1, 0, 0, 0, 0)
     assert walker.trajectory_pose(ecm) is walker.animation_name(ecm) is walker.animation_time(ecm) is None
     walker.set_trajectory_pose(ecm, Pose3d(2, 2, 0, 0, 0, 0))
     walker.set_animation_name(ecm, "walk")

@@ -109,7 +109,9 @@ WORLD = f"""<sdf version="1.6"><world name="w">{MODEL}{LIGHT}{PLUGIN}<frame name
   <actor name="walker">{POSE}<skin><filename>w.dae</filename><scale>1</scale></skin><animation name="walk">
     <filename>w.dae</filename><scale>1</scale><interpolate_x>1</interpolate_x></animation><script><loop>1</loop>
     <delay_start>0</delay_start><auto_start>1</auto_start><trajectory id="0" type="walk"><tension>0</tension>
-    <waypoint><time>0</time>{POSE}</waypoint></trajectory></script>{PLUGIN}</actor>
+    <waypoint><time>0</time>{POSE}</waypoint></trajectory></script>{PLUGIN}
+    <simkit:person><height>1.8</height><shirt>1 0 0</shirt><trousers>0 0 1</trousers><skin>1 1 1</skin>
+    <hair>0 0 0</hair></simkit:person></actor>
   <state world_name="w"><sim_time>1 0</sim_time><wall_time>1 0</wall_time><real_time>1 0</real_time>
     <iterations>1</iterations><insertions><model name="new"><link name="l"/></model>
     <light name="late" type="point"/><include><uri>model://box</uri><name>late_box</name></include></insertions>

@@ -64,7 +64,8 @@ class EntityTable:
         for entity, kind in ((2, "wind"), (3, "level")):
             self.records[entity] = Record(entity, kind, kind, None, WORLD)
         for model in models:
-            self._add_model(model, WORLD)
+            if model.moved_by is None:  # an actor, which comes below
+                self._add_model(model, WORLD)
         for actor in world.actors:
             self._add("actor", actor, WORLD)
         for light in world.lights:

@@ -42,7 +42,7 @@ class Sensor(EntityHandle):
 
 
 class Actor(EntityHandle):
-    """An actor. simkit does not move actors yet: what is set here is kept and given back, and shows nowhere."""
+    """An actor, which its script moves. What is set here is kept and given back, and shows nowhere."""
 
     KIND = "actor"
 
@@ -59,8 +59,9 @@ class Actor(EntityHandle):
         self._keep(ecm, "trajectory_pose", gz_pose(pose_of(pose)))
 
     def world_pose(self, ecm: EntityComponentManager) -> Pose3d | None:
-        """None: nothing computes where an actor is."""
-        return None
+        """Where it is in the world."""
+        model = ecm.simulation.models.get(self.name(ecm) or "")
+        return gz_pose(model.pose) if model is not None else None
 
     def animation_name(self, ecm: EntityComponentManager) -> str | None:
         return self._kept(ecm, "animation_name", str)
@@ -88,7 +89,7 @@ class Actor(EntityHandle):
     def _keep(self, ecm: EntityComponentManager, what: str, value: Any) -> None:
         if self.valid(ecm):
             ecm.values[self._entity, what] = value
-            ecm.simulation.log.debug("actor %s: %s is kept, actors are not moved", self.name(ecm), what)
+            ecm.simulation.log.debug("actor %s: %s is kept, only its script moves it", self.name(ecm), what)
 
 
 class Light(EntityHandle):

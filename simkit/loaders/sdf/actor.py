@@ -1,20 +1,16 @@
-"""`<actor>`: a person or animal that follows a script. It is read in full and does not move yet."""
+"""`<actor>`: a person or animal that follows a script."""
 
 from __future__ import annotations
 
-from simkit.diagnostics import Diagnostics
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.uris import is_count
 from simkit.params import Params
 from simkit.pose import Pose
-from simkit.scene import Animation, SceneActor, Trajectory, Waypoint
+from simkit.scene import Animation, PersonLook, SceneActor, Trajectory, Waypoint
 
 
-def read_actor(element: Params, name: str, pose_world: Pose, diagnostics: Diagnostics) -> SceneActor:
-    """An actor whose pose is resolved; a warning says that it stands still."""
-    diagnostics.warning(
-        "SK-SDF-012", f"<actor>: actors are not simulated; {name!r} is read and does not move", element.where
-    )
+def read_actor(element: Params, name: str, pose_world: Pose) -> SceneActor:
+    """An actor whose pose is resolved."""
     element.child("pose")
     skin, script = element.block("skin"), element.block("script")
     return SceneActor(
@@ -29,7 +25,17 @@ def read_actor(element: Params, name: str, pose_world: Pose, diagnostics: Diagno
         auto_start=script.boolean("auto_start", True),
         plugins=read_plugins(element.all("plugin"), name),
         where=element.where,
+        person=_person(element.block("person")) if element.has("person") else None,
     )
+
+
+def _person(element: Params) -> PersonLook:
+    height = element.number("height", minimum=0.3, maximum=3.0) if element.has("height") else None
+    colours = {}
+    for name in ("shirt", "trousers", "skin", "hair"):
+        if element.has(name):
+            colours[name] = element.vector3(name, (0.5, 0.5, 0.5))
+    return PersonLook(height, colours)
 
 
 def _animation(element: Params) -> Animation:

@@ -82,7 +82,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         where=element.where,
         wind=element.block("wind").vector3("linear_velocity", (0.0, 0.0, 0.0)),
         atmosphere=read_atmosphere(element, diagnostics),
-        actors=tuple(_actor(source, content.scope, workspace) for source in content.actors),
+        actors=tuple(_actor(source, content.scope) for source in content.actors),
     )
 
 
@@ -178,5 +178,5 @@ def _light(source: Source, scope: Scope, saved: Pose | None, workspace: Workspac
     return read_light(source.element, source.name, source.name, pose, "", workspace.diagnostics)
 
 
-def _actor(source: Source, scope: Scope, workspace: Workspace) -> SceneActor:
-    return read_actor(source.element, source.name, _pose_of(source, "actor", scope), workspace.diagnostics)
+def _actor(source: Source, scope: Scope) -> SceneActor:
+    return read_actor(source.element, source.name, _pose_of(source, "actor", scope))

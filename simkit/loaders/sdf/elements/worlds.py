@@ -65,7 +65,7 @@ spherical_coordinates/longitude_deg = longitude of the origin [degrees]
 spherical_coordinates/elevation = height of the origin [m]
 spherical_coordinates/heading_deg = from east to the world's x axis [degrees]
 population            = many copies of one model > population
-actor                 ~ read in full; it does not move > actor
+actor                 = a person or animal that follows a script > actor
 state                 = what Gazebo Classic saved > state
 road                  ! roads are not drawn
 gui                   - there is no Gazebo window
@@ -119,6 +119,12 @@ ACTOR = table(
 @name                           = its name
 pose                            = where it stands > pose
 skin                            = what it looks like
+person                          = the looks of a person of our own (our own; docs/actors.md)
+person/height                   = [m]
+person/shirt                    = its colour
+person/trousers                 = its colour
+person/skin                     = its colour
+person/hair                     = its colour
 skin/filename                   = mesh with a skeleton
 skin/scale                      = its scale
 animation                       = motion of the skeleton

@@ -1,0 +1,196 @@
+"""A person of our own making, drawn where an actor's skin cannot be: the shapes, and how they walk, stand and sit.
+
+All is measured for a height of 1.75 m and scaled from there; x forward, z up, feet on z = 0.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import Capsule, Cylinder, Ellipsoid, Geometry, PersonLook, Sphere
+
+Floats = npt.NDArray[np.float64]
+Rgb = tuple[float, float, float]
+
+HEIGHT: Final = 1.75
+STRIDE: Final = 1.40
+"""[m] that two steps take at a height of 1.75 m."""
+
+HIP: Final = (0.0, 0.09, 0.93)
+KNEE: Final = 0.43
+SOLE: Final = 0.50
+SHOULDER: Final = (0.0, 0.205, 1.42)
+ELBOW: Final = 0.29
+
+_BRISK = 0.6  # [m/s] from which legs and arms swing in full
+
+LIMBS: Final = (
+    "thigh_left", "thigh_right", "shin_left", "shin_right",
+    "upper_arm_left", "upper_arm_right", "forearm_left", "forearm_right",
+)  # fmt: skip
+PARTS: Final = ("torso", *LIMBS)
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A shape of one part."""
+
+    part: str
+    name: str
+    geometry: Geometry
+    pose: Pose
+    look: str
+
+
+@dataclass(frozen=True, slots=True)
+class Looks:
+    """Height [m] and colours of a person."""
+
+    height: float
+    colours: dict[str, Rgb]
+
+
+_SHIRTS: Final = ((0.20, 0.36, 0.60), (0.62, 0.22, 0.22), (0.25, 0.45, 0.33), (0.80, 0.66, 0.30), (0.42, 0.34, 0.52))
+_TROUSERS: Final = ((0.16, 0.18, 0.24), (0.30, 0.27, 0.24), (0.22, 0.28, 0.38))
+_SKINS: Final = ((0.89, 0.72, 0.60), (0.76, 0.57, 0.44), (0.55, 0.38, 0.28), (0.94, 0.80, 0.70))
+_HAIRS: Final = ((0.15, 0.11, 0.09), (0.35, 0.22, 0.13), (0.62, 0.50, 0.30), (0.45, 0.45, 0.46))
+
+
+def looks_of(name: str, given: PersonLook | None = None) -> Looks:
+    """Height and colours that go with a name, the same in every run, where the file does not give them."""
+    number = zlib.crc32(name.encode())
+    colours = {}
+    for look, choice in (("shirt", _SHIRTS), ("trousers", _TROUSERS), ("skin", _SKINS), ("hair", _HAIRS)):
+        number, index = divmod(number, len(choice))
+        colours[look] = choice[index]
+    colours |= {"shoes": (0.10, 0.09, 0.09), "eyes": (0.06, 0.05, 0.05)}
+    height = round(1.62 + 0.02 * (number % 13), 2)
+    if given is not None:
+        colours |= given.colours
+        height = given.height or height
+    return Looks(height, colours)
+
+
+def _at(x: float, y: float, z: float) -> Pose:
+    return Pose((x, y, z))
+
+
+def _across(y: float, z: float) -> Pose:
+    return Pose.from_rpy(0.0, y, z, math.pi / 2, 0.0, 0.0)
+
+
+def _figure() -> tuple[Piece, ...]:
+    found = [
+        Piece("torso", "pelvis", Ellipsoid((0.125, 0.170, 0.13)), _at(0.0, 0.0, 0.965), "trousers"),
+        Piece("torso", "belly", Ellipsoid((0.120, 0.162, 0.22)), _at(0.0, 0.0, 1.14), "shirt"),
+        Piece("torso", "chest", Ellipsoid((0.122, 0.190, 0.17)), _at(0.0, 0.0, 1.305), "shirt"),
+        Piece("torso", "shoulders", Capsule(0.068, 0.29), _across(0.0, 1.415), "shirt"),
+        Piece("torso", "neck", Cylinder(0.052, 0.12), _at(0.0, 0.0, 1.50), "skin"),
+        Piece("torso", "head", Ellipsoid((0.094, 0.076, 0.118)), _at(0.012, 0.0, 1.627), "skin"),
+        Piece("torso", "hair", Ellipsoid((0.094, 0.083, 0.092)), _at(-0.016, 0.0, 1.664), "hair"),
+        Piece("torso", "nose", Ellipsoid((0.020, 0.014, 0.022)), _at(0.104, 0.0, 1.618), "skin"),
+    ]
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        eye = Piece("torso", f"eye_{side}", Sphere(0.011), _at(0.094, sign * 0.031, 1.648), "eyes")
+        ear = Ellipsoid((0.018, 0.010, 0.028))
+        found += [
+            eye,
+            Piece("torso", f"ear_{side}", ear, _at(0.0, sign * 0.080, 1.628), "skin"),
+            Piece(f"thigh_{side}", "thigh", Capsule(0.078, 0.33), _at(0.0, 0.0, -0.205), "trousers"),
+            Piece(f"shin_{side}", "shin", Capsule(0.056, 0.36), _at(0.0, 0.0, -0.205), "trousers"),
+            Piece(f"shin_{side}", "shoe", Ellipsoid((0.135, 0.050, 0.052)), _at(0.055, 0.0, -0.448), "shoes"),
+            Piece(f"upper_arm_{side}", "upper_arm", Capsule(0.048, 0.24), _at(0.0, 0.0, -0.145), "shirt"),
+            Piece(f"forearm_{side}", "forearm", Capsule(0.037, 0.20), _at(0.0, 0.0, -0.125), "skin"),
+            Piece(f"forearm_{side}", "hand", Ellipsoid((0.042, 0.022, 0.075)), _at(0, 0, -0.300), "skin"),
+        ]
+    return tuple(found)
+
+
+FIGURE: Final = _figure()
+
+
+def scaled(shape: Geometry, scale: float) -> Geometry:
+    """A shape of the figure in another size."""
+    if isinstance(shape, Ellipsoid):
+        x, y, z = shape.radii
+        return Ellipsoid((x * scale, y * scale, z * scale))
+    if isinstance(shape, Sphere):
+        return Sphere(shape.radius * scale)
+    assert isinstance(shape, Capsule | Cylinder)
+    return type(shape)(shape.radius * scale, shape.length * scale)
+
+
+def walking(distance: Floats, speed: Floats) -> Floats:
+    """Angles of the limbs while walking; the stride follows the way, so that feet do not slide.
+
+    Args:
+        distance: way behind, in heights of 1.75 m [m], shape (n,).
+        speed: [m/s], shape (n,); below 0.6 m/s the limbs swing less, at rest they hang.
+
+    Returns:
+        Angles in the order of `LIMBS` [rad], forward positive, shape (n, 8). A shin's and a forearm's is that between
+        it and the limb above.
+    """
+    much = np.clip(speed / _BRISK, 0.0, 1.0)
+    angles = np.empty((len(distance), 8))
+    for side, ahead in ((0, 0.0), (1, 0.5)):
+        part = np.mod(distance / STRIDE + 0.25 + ahead, 1.0)
+        stands = part < 0.5
+        since = 2.0 * (part - 0.5)  # of the half in which the foot is in the air
+        # on the ground a foot stays where it is: it goes back under the hips as they go on
+        foot = STRIDE * np.where(stands, 0.25 - part, -0.25 * np.cos(math.pi * since))
+        bend = np.where(stands, 0.0, 0.95 * np.abs(np.sin(math.pi * since)) ** 1.5)
+        thigh = np.arcsin(np.clip(foot / (KNEE + SOLE), -1.0, 1.0)) + 0.5 * bend
+        angles[:, side] = much * thigh
+        angles[:, 2 + side] = -0.02 - much * bend
+        swing = np.cos(2.0 * math.pi * part)
+        angles[:, 4 + side] = -0.40 * much * swing
+        angles[:, 6 + side] = 0.14 + much * (0.22 - 0.14 * swing)
+    return angles
+
+
+SITTING: Final = (1.45, 1.45, -1.45, -1.45, 0.55, 0.55, 1.05, 1.05)
+"""Angles of the limbs of somebody who sits at a desk, in the order of `LIMBS` [rad]."""
+
+
+def figures(angles: Floats) -> tuple[Floats, Floats]:
+    """Where the parts are, for a height of 1.75 m, the lower sole on the ground.
+
+    Args:
+        angles: as `walking` gives them, shape (n, 8).
+
+    Returns:
+        Positions (n, 9, 3) and quaternions (n, 9, 4) of `PARTS`, in the person's frame.
+    """
+    count = len(angles)
+    places, turns = np.zeros((count, 9, 3)), np.zeros((count, 9, 4))
+    total = angles.copy()
+    total[:, 2:4] += total[:, 0:2]
+    total[:, 6:8] += total[:, 4:6]
+    turns[:, 0, 0] = 1.0
+    turns[:, 1:, 0], turns[:, 1:, 2] = np.cos(total / 2), -np.sin(total / 2)
+    x, down = np.sin(total), -np.cos(total)
+    for side, sign in ((0, 1.0), (1, -1.0)):
+        for first, (joint, upper) in ((1, (HIP, KNEE)), (5, (SHOULDER, ELBOW))):
+            above, below = first + side, first + 2 + side
+            places[:, above] = joint[0], sign * joint[1], joint[2]
+            places[:, below] = places[:, above]
+            places[:, below, 0] += upper * x[:, above - 1]
+            places[:, below, 2] += upper * down[:, above - 1]
+    soles = places[:, 3:5, 2] + SOLE * down[:, 2:4]
+    places[:, :, 2] -= soles.min(axis=1)[:, None]
+    return places, turns
+
+
+def still(sits: bool) -> dict[str, Pose]:
+    """Where the parts of somebody are who does not walk, for a height of 1.75 m."""
+    angles = np.array([SITTING]) if sits else walking(np.zeros(1), np.zeros(1))
+    places, turns = figures(angles)
+    return {part: Pose(places[0, i], turns[0, i]) for i, part in enumerate(PARTS)} | {"": IDENTITY}

@@ -1,0 +1,233 @@
+"""An actor's own skin, where its file can be read: rigid pieces, each going with its bone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from simkit.compiler.meshes.part import MeshFileError
+from simkit.compiler.meshes.skin import Skin, read_skin
+from simkit.diagnostics import Diagnostics
+from simkit.plugins.actors.script import Floats, Script, Track
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import Animation, Mesh, SceneActor, SceneLink, SceneModel, SceneVisual
+
+if TYPE_CHECKING:
+    from simkit.plugins.actors.stage import FindFile
+
+_AT_THE_HIPS: Final = (0.5, 1.5)
+_ROOT: Final = "link"
+
+
+@dataclass(frozen=True)
+class Clip:
+    """An animation: where the bones are in the actor's frame at its times.
+
+    Attributes:
+        times: [s], shape (f,); the first is 0.
+        places, turns: shape (f, n, 3) [m] and (f, n, 4).
+        root: way of the outermost bone [m], shape (f, 3).
+        follows_x: whether its time follows the way that is behind, not the clock.
+    """
+
+    times: Floats
+    places: Floats
+    turns: Floats
+    root: Floats
+    follows_x: bool
+
+    @property
+    def length(self) -> float:
+        return float(self.times[-1])
+
+
+@dataclass(frozen=True)
+class SkinRig:
+    """Bones that follow animations: the one that a trajectory names, else the first."""
+
+    clips: dict[str, Clip]
+    at_the_hips: bool
+
+    def lie(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
+        clip = self.clips.get(track.type) or next(iter(self.clips.values()))
+        rows = len(track.times)
+        times = np.zeros(rows) if rests else _times(clip, track)
+        after = np.clip(np.searchsorted(clip.times, times, side="right"), 1, max(1, len(clip.times) - 1))
+        before = after - 1
+        after = np.minimum(after, len(clip.times) - 1)
+        span = clip.times[after] - clip.times[before]
+        part = np.clip(
+            np.where(span > 0.0, (times - clip.times[before]) / np.where(span > 0.0, span, 1.0), 0.0), 0.0, 1.0
+        )
+        part = part[:, None, None]
+        places = clip.places[before] * (1.0 - part) + clip.places[after] * part
+        turns = clip.turns[before] * (1.0 - part) + clip.turns[after] * part
+        root = clip.root[before] * (1.0 - part[:, 0]) + clip.root[after] * part[:, 0]
+        if track.moves or self.at_the_hips:
+            # gz leaves the root's own way out and has waypoints at the height of the hips; Classic leaves out its x
+            places = places - (root if self.at_the_hips else root * (1.0, 0.0, 0.0))[:, None, :]
+        return places, turns / np.linalg.norm(turns, axis=-1, keepdims=True)
+
+
+def _times(clip: Clip, track: Track) -> Floats:
+    """Time in the animation at each row of a track."""
+    length = clip.length
+    x = clip.root[:, 0]
+    if clip.follows_x and track.moves and x[-1] - x[0] > 1e-3:
+        return np.asarray(np.interp(np.mod(track.distance, x[-1] - x[0]) + x[0], np.maximum.accumulate(x), clip.times))
+    return np.mod(track.times, length) if length > 0.0 else np.zeros_like(track.times)
+
+
+def dressed(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel | None:
+    """The actor in its own skin; None where there is none that can be read, which is reported."""
+    if not actor.skin:
+        return None
+    skin = _read(actor, actor.skin, "skin", find_file, diagnostics)
+    if skin is None or not skin.pieces:
+        if skin is not None:
+            _report(actor, f"its skin {actor.skin} carries no mesh", diagnostics)
+        return None
+    file = _found(actor, actor.skin, find_file)
+    assert file is not None
+    carrying = sorted(skin.pieces)
+    clips = _clips(actor, skin, carrying, find_file, diagnostics)
+    first = next(iter(clips.values()))
+    script = Script(actor, 0.0 if actor.trajectories and actor.trajectories[0].waypoints else first.length)
+    base = script.pose(0.0)
+    at_the_hips = any(t.moves for t in script.tracks) and _AT_THE_HIPS[0] <= base.position[2] <= _AT_THE_HIPS[1]
+    return _model(actor, skin, file, carrying, script, SkinRig(clips, at_the_hips))
+
+
+def _model(actor: SceneActor, skin: Skin, file: Path, carrying: list[int], script: Script, rig: SkinRig) -> SceneModel:
+    from simkit.plugins.actors.stage import Cast, model_of
+
+    cast = Cast(actor.name, script, rig)
+    poses = cast.poses(0.0)
+    sizes = [_size(m) for m in _worlds(skin, {i: bone.rest[None] for i, bone in enumerate(skin.bones)}, 1)]
+    links = [SceneLink(_ROOT, f"{actor.name}::{_ROOT}", Pose(poses[0, :3], poses[0, 3:]))]
+    for row, place in enumerate(carrying, 1):
+        name = skin.bones[place].name or f"bone_{place}"
+        scoped, scale = f"{actor.name}::{name}", sizes[place] * skin.unit * actor.skin_scale
+        shape = Mesh(file, actor.skin, (scale, scale, scale), bone=skin.bones[place].name)
+        visual = SceneVisual("skin", f"{scoped}::skin", IDENTITY, shape)
+        pose = Pose(poses[row, :3], poses[row, 3:])
+        links.append(SceneLink(name, scoped, pose, visuals=(visual,)))
+    return model_of(actor, links[0].pose_world, links, cast)
+
+
+def _clips(
+    actor: SceneActor, skin: Skin, carrying: list[int], find_file: FindFile, diagnostics: Diagnostics
+) -> dict[str, Clip]:
+    """The animations by name; the skin's own where none of them can be read."""
+    found = {}
+    for animation in actor.animations:
+        moved = _read(actor, animation.uri, f"animation {animation.name!r}", find_file, diagnostics)
+        clip = None if moved is None else _clip(skin, moved, carrying, animation, actor.skin_scale)
+        if clip is not None:
+            found[animation.name] = clip
+        elif moved is not None:
+            _report(actor, f"animation {animation.name!r} moves another skeleton than that of its skin", diagnostics)
+    if not found:
+        own = _clip(skin, skin, carrying, Animation("", actor.skin, actor.skin_scale), actor.skin_scale)
+        assert own is not None
+        found[""] = own
+    return found
+
+
+def _clip(skin: Skin, moved: Skin, carrying: list[int], animation: Animation, scale: float) -> Clip | None:
+    """An animation of one file on the skeleton of another; None where the two do not fit."""
+    place_of = _same_bones(skin, moved)
+    if place_of is None:
+        return None
+    count = max(1, len(moved.times))
+    frames = {}
+    for i, bone in enumerate(skin.bones):
+        j = place_of.get(i, -1)
+        frames[i] = moved.frames[j] if j in moved.frames else bone.rest[None]
+        if j in moved.frames and moved is not skin:
+            stretch = animation.scale * moved.unit / (scale * skin.unit)
+            frames[i] = frames[i].copy()
+            frames[i][:, :3, 3] *= stretch
+    worlds = _worlds(skin, frames, count)
+    places = np.stack([worlds[i][:, :3, 3] for i in carrying], axis=1) * skin.unit * scale
+    turns = np.stack([_quaternions(worlds[i][:, :3, :3]) for i in carrying], axis=1)
+    root = worlds[0][:, :3, 3] * skin.unit * scale
+    times = moved.times - moved.times[0] if len(moved.times) else np.zeros(1)
+    return Clip(times, places, turns, root, animation.interpolate_x)
+
+
+def _same_bones(skin: Skin, moved: Skin) -> dict[int, int] | None:
+    """For each bone of a skin the one of the other file: by name, else by order where both have as many."""
+    by_word = {word: i for i, bone in enumerate(moved.bones) for word in bone.words}
+    named = {i: by_word[w] for i, bone in enumerate(skin.bones) for w in bone.words if w in by_word}
+    if 2 * len(named) >= len(skin.bones):
+        return named
+    if len(skin.bones) == len(moved.bones):
+        return {i: i for i in range(len(skin.bones))}
+    return None
+
+
+def _worlds(skin: Skin, frames: dict[int, Floats], count: int) -> list[Floats]:
+    """Transforms of all bones in the skeleton's frame, each of shape (count, 4, 4)."""
+    found: list[Floats] = []
+    for i, bone in enumerate(skin.bones):
+        own = np.broadcast_to(frames[i], (count, 4, 4))
+        found.append(own if bone.parent < 0 else found[bone.parent] @ own)
+    return found
+
+
+def _size(matrices: Floats) -> float:
+    """How much a transform stretches."""
+    return float(np.cbrt(abs(np.linalg.det(matrices[0, :3, :3])))) or 1.0
+
+
+def _quaternions(matrices: Floats) -> Floats:
+    """Quaternions w, x, y, z of the turns nearest to matrices (f, 3, 3), in one hemisphere from frame to frame."""
+    left, _, right = np.linalg.svd(matrices)
+    turn = left @ right
+    turn *= np.sign(np.linalg.det(turn))[:, None, None]
+    found = np.empty((len(turn), 4))
+    for k, m in enumerate(turn):
+        # Shepperd's method: from the largest of the four
+        trace = m[0, 0] + m[1, 1] + m[2, 2]
+        size = np.array([trace, m[0, 0], m[1, 1], m[2, 2]])
+        i = int(size.argmax())
+        if i == 0:
+            q = np.array([1.0 + trace, m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
+        else:
+            a, b, c = i - 1, i % 3, (i + 1) % 3
+            q = np.empty(4)
+            q[0] = m[c, b] - m[b, c]
+            q[1 + a] = 1.0 + m[a, a] - m[b, b] - m[c, c]
+            q[1 + b] = m[a, b] + m[b, a]
+            q[1 + c] = m[a, c] + m[c, a]
+        found[k] = q / np.linalg.norm(q)
+        if k and found[k] @ found[k - 1] < 0.0:
+            found[k] = -found[k]
+    return found
+
+
+def _found(actor: SceneActor, uri: str, find_file: FindFile) -> Path | None:
+    folder = Path(actor.where.file).parent if actor.where.file else None
+    return find_file(uri, folder)
+
+
+def _read(actor: SceneActor, uri: str, what: str, find_file: FindFile, diagnostics: Diagnostics) -> Skin | None:
+    file = _found(actor, uri, find_file)
+    if file is None:
+        _report(actor, f"its {what} {uri} is not found", diagnostics)
+        return None
+    try:
+        return read_skin(file)
+    except MeshFileError as problem:
+        _report(actor, f"its {what} {uri} {problem}", diagnostics)
+        return None
+
+
+def _report(actor: SceneActor, what: str, diagnostics: Diagnostics) -> None:
+    rest = "a person of our own stands in for it" if "skin" in what else "another plays in its place"
+    hint = "name the folder that holds it with --resource-path or SIMKIT_RESOURCE_PATH" if "not found" in what else ""
+    diagnostics.warning("SK-ACTOR-001", f"actor {actor.name!r}: {what}; {rest}", actor.where, hint)

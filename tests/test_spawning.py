@@ -1,0 +1,84 @@
+"""Models put into a world as it is loaded: the texts of `--spawn`, on the command line and in Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import simkit
+from simkit.cli import app
+from simkit.diagnostics import Diagnostics
+from simkit.errors import LoadError
+from simkit.spawning import Spawn, read_spawn
+
+BOX = """<sdf version="1.9"><model name="box"><pose>0 0 0.25 0 0 1</pose><link name="link">
+<collision name="c"><geometry><box><size>0.5 0.5 0.5</size></box></geometry></collision></link></model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("tiago:1,2,0.5", Spawn("tiago", (1, 2, 0.5))),
+        ("tiago:1,2,.5:left", Spawn("tiago", (1, 2, 0.5), "left")),
+        ("a/b.urdf: -1 , 2e0, 0", Spawn("a/b.urdf", (-1, 2, 0))),
+        ("model://box:1,2,0.3,0:b", Spawn("model://box", (1, 2, 0.3, 0), "b")),
+        ("box:1,2,3,0.1,0.2,0.3", Spawn("box", (1, 2, 3, 0.1, 0.2, 0.3))),
+        (r"C:\robots\arm.urdf:0,0,0", Spawn(r"C:\robots\arm.urdf", (0, 0, 0))),
+        ("tiago", Spawn("tiago")),
+    ],
+)
+def test_a_text_says_what_comes_and_where(text: str, expected: Spawn) -> None:
+    found = Diagnostics()
+    assert read_spawn(text, found) == expected
+    assert not list(found)
+
+
+@pytest.mark.parametrize("text", ["", " ", "tiago:1,2", "tiago:1,x,2", "tiago:1,2,3,4,5", "tiago:nan,0,0"])
+def test_a_text_that_is_none_is_refused_with_what_is_allowed(text: str) -> None:
+    found = Diagnostics()
+    assert read_spawn(text, found) is None
+    (problem,) = found
+    assert problem.code == "SK-SPAWN-001"
+    assert "x,y,yaw" in problem.message + problem.hint
+
+
+def test_a_model_keeps_its_own_height_and_gets_place_and_direction(tmp_path: Path) -> None:
+    (tmp_path / "box.sdf").write_text(BOX)
+    with simkit.load("empty", spawn=[f"{tmp_path}/box.sdf:1,2,0.5", f"{tmp_path}/box.sdf:3,0,0.75,0:high"]) as sim:
+        pose = sim.model("box").pose
+        assert pose.position.tolist() == [1, 2, 0.25]
+        assert pose.rpy[2] == pytest.approx(0.5)
+        assert sim.model("high").pose.position.tolist() == [3, 0, 0.75]
+
+
+def test_what_was_spawned_with_the_world_is_there_after_a_reset() -> None:
+    with simkit.load("empty", spawn=["turtlebot3_burger:0,0,0:a", "turtlebot3_burger.urdf:0,1,0:b"]) as sim:
+        sim.run(0.2)
+        sim.reset()
+        assert {"a", "b"} <= set(sim.models)
+
+
+def test_overrides_reach_what_is_spawned() -> None:
+    with simkit.load("empty", spawn=["turtlebot3_burger:0,0,0:a"], overrides=["a::base_link.inertial.mass=2"]) as sim:
+        assert sim.model("a").link("base_link").mass == pytest.approx(2.0)
+
+
+def test_every_problem_of_several_is_told_at_once() -> None:
+    with pytest.raises(LoadError) as caught:
+        simkit.load("empty", spawn=["turtlebot3_burgr:0,0,0", "x:1", "turtlebot3_burger:0,0,0:ground_plane"])
+    assert {d.code for d in caught.value.diagnostics if d.severity == "error"} == {
+        "SK-LOAD-002",
+        "SK-SPAWN-001",
+        "SK-SPAWN-002",
+    }
+
+
+def test_the_command_line_takes_several() -> None:
+    line = ["run", "empty", "--duration", "0.1", "--spawn", "turtlebot3_burger:0,0,0:a", "--spawn"]
+    good = CliRunner().invoke(app, [*line, "turtlebot3_waffle:1,0,1.57"])
+    assert good.exit_code == 0, good.output
+    bad = CliRunner().invoke(app, [*line, "turtlebot3_burger:1,0"])
+    assert bad.exit_code != 0
+    assert "SK-SPAWN-001" in bad.output
