@@ -12,12 +12,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from simkit.control.parameter_block import Form, ParameterBlock
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 
 PARAMETERS: Final = "ros__parameters"
 _MOST_NODES: Final = 100_000  # of one file: anchors that are used again and again make much out of little
 _DEEPEST: Final = 100
+_MERGE: Final = "tag:yaml.org,2002:merge"
 
 
 @dataclass(slots=True)
@@ -40,9 +42,32 @@ class Entry:
     def params(self, name: str, diagnostics: Diagnostics) -> list[Params]:
         """It as elements of that name: one, or one for each item of a list."""
         if self.items is not None:
-            return [one for item in self.items for one in item.params(name, diagnostics)]
-        children = [one for key, entry in (self.below or {}).items() for one in entry.params(key, diagnostics)]
-        return [Params(name, self.text, children=children, where=self.where, diagnostics=diagnostics)]
+            return [one for item in self.items for one in item.item(name, diagnostics)]
+        return [self.block(name, diagnostics)]
+
+    def item(self, name: str, diagnostics: Diagnostics) -> list[Params]:
+        """It as an item of the list of that name; a list is none."""
+        if self.items is None:
+            return [self.block(name, diagnostics)]
+        diagnostics.error("SK-CONTROL-002", f"found a list in the list {name!r}, allowed are values", self.where)
+        return []
+
+    def block(self, name: str, diagnostics: Diagnostics) -> ParameterBlock:
+        """It as one element of that name."""
+        below = self.below or {}
+        children = [one for key, entry in below.items() for one in entry.params(key, diagnostics)]
+        forms = {key: (entry.form, entry.where) for key, entry in below.items()}
+        is_block = self.below is not None
+        return ParameterBlock(name, self.text, children, self.where, diagnostics, forms, is_block=is_block)
+
+    @property
+    def form(self) -> Form:
+        """What it is written as."""
+        if self.items is not None:
+            return "list"
+        if self.below is not None:
+            return "block"
+        return "value" if self.text or self.is_text else "nothing"
 
     def merged(self, over: Entry) -> Entry:
         """It with what another says about the same key, which goes over it."""
@@ -178,8 +203,12 @@ def _parsed(path: Path, diagnostics: Diagnostics) -> Entry | None:
 
     try:
         text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
         diagnostics.error("SK-CONTROL-002", f"{path} cannot be read: {error}", Where(str(path)))
+        return None
+    except UnicodeDecodeError as error:
+        where = Where(str(path), error.object.count(b"\n", 0, error.start) + 1)
+        diagnostics.error("SK-CONTROL-002", f"{path.name} cannot be read: {error}", where, "save it as UTF-8")
         return None
     try:
         node = _composed(text)
@@ -189,6 +218,8 @@ def _parsed(path: Path, diagnostics: Diagnostics) -> Entry | None:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark is not None else None
         what = getattr(error, "problem", None) or str(error) or "it is nested too deeply"
+        if isinstance(error, yaml.reader.ReaderError):  # it knows the character's place alone
+            line, what = text.count("\n", 0, error.position) + 1, f"the character {chr(error.character)!r} is not text"
         context = f" {error.context}" if getattr(error, "context", None) else ""  # type: ignore[union-attr]
         message = f"{path.name} is not YAML that can be read: {what}{context}"
         diagnostics.error("SK-CONTROL-002", message, Where(str(path), line), "check indentation, quotes and brackets")
@@ -233,20 +264,35 @@ class _Reader:
 
     def _block(self, node: Any, depth: int) -> dict[str, Entry]:
         below: dict[str, Entry] = {}
+        merged: dict[str, Entry] = {}
         for key, value in node.value:
             name = str(getattr(key, "value", ""))
-            if not isinstance(getattr(key, "value", None), str):
+            if not name or not isinstance(getattr(key, "value", None), str):
                 where = Where(self._file, key.start_mark.line + 1)
-                self._diagnostics.error("SK-CONTROL-002", "found a list or block as a name, allowed is a text", where)
+                found = "an empty name" if not name else "a list or block as a name"
+                self._diagnostics.error("SK-CONTROL-002", f"found {found}, allowed is a text", where)
                 continue
             entry = self.entry(value, depth + 1)
+            if key.tag == _MERGE:
+                merged = {**self._merged(entry, key), **merged}
+                continue
             entry.where = Where(self._file, key.start_mark.line + 1, entry.where.serial)
             if name in below:
                 first = below[name].where.line
                 message = f"{name!r} comes twice, in line {first} too; the later one counts"
                 self._diagnostics.warning("SK-CONTROL-004", message, entry.where)
             below[name] = entry
-        return below
+        return {**merged, **below}
+
+    def _merged(self, entry: Entry, key: Any) -> dict[str, Entry]:
+        """What `<<` brings in: the names of a block, or of several, the first of which counts."""
+        found: dict[str, Entry] = {}
+        for one in [entry] if entry.items is None else entry.items:
+            if one.below is None:
+                where = Where(self._file, key.start_mark.line + 1)
+                self._diagnostics.error("SK-CONTROL-002", "found a value after '<<', allowed is a block", where)
+            found = {**(one.below or {}), **found}
+        return found
 
 
 def _text(node: Any) -> str:

@@ -82,8 +82,10 @@ def _holder(sim: Simulation, joints: Sequence[Joint]) -> Task:
     limits = np.array([joint._velocity_limit.min() for joint in owners])
 
     def hold(tick: int) -> None:
-        for place in np.flatnonzero(np.abs(sim.physics.data.qvel.take(dofs)) > limits).tolist():
-            owners[place].clamp_velocity(tick)
+        beyond = np.abs(sim.physics.data.qvel[dofs]) > limits
+        if True in beyond.tolist():  # for so few sooner found than by `any`
+            for place in np.flatnonzero(beyond).tolist():
+                owners[place].clamp_velocity(tick)
 
     return hold
 
