@@ -58,6 +58,7 @@ class _Now:
     """What the drives' modes amount to, one number or truth for each joint; made anew when the modes change."""
 
     modes: Any
+    nothing: Vector
     kp: Vector
     kv: Vector
     pull: Vector
@@ -69,6 +70,7 @@ class _Now:
     is_helped: Mask
     helped: Vector
     direct: Vector
+    all_helped: bool
     all_position: bool
     reach: Vector
     rolls: Any
@@ -76,9 +78,11 @@ class _Now:
     roll_places: Any
     roll_dofs: Any
     roll_stiffness: Vector
-    slack: Vector
-    catch_up: Vector
-    fastest: Vector
+    slacks: list[float]
+    catch_up: list[float]
+    fastest: list[float]
+    of: Any  # the array of groups that `groups` are of
+    groups: list[int]
     has_effort: bool
     has_integral: bool
     offset: Vector
@@ -150,7 +154,7 @@ class Drives:
         """Ties them to a simulation; everything with a position interface holds where it is."""
         self._sim, self._weights = sim, Weights(sim, [joint.scoped for joint in self.joints])
         count = len(self.joints)
-        self.integrals = np.zeros(count)
+        self.integrals, self.groups = np.zeros(count), np.zeros(count, np.intp)
         self._bind()
         self.targets = np.array(sim.mj_data.qpos[self._qpos])
         idle = [POSITION_MODE if POSITION in joint.command_interfaces else FREE for joint in self.joints]
@@ -264,8 +268,9 @@ class Drives:
 
     def _now(self) -> _Now:
         """What the present modes amount to."""
-        if self._cached is not None and self._cached.modes is self.modes:
-            return self._cached
+        cached = self._cached
+        if cached is not None and cached.modes is self.modes and cached.of is self.groups:
+            return cached
         modes, rows = self.modes, np.arange(len(self.modes))
         (kp, kv), bounds = self._gains[rows, modes].T, self._bounds[rows, modes]
         is_position = modes == POSITION_MODE
@@ -276,6 +281,7 @@ class Drives:
         stiffness = np.maximum(kp[rolls], 1e-12)
         self._cached = _Now(
             modes=modes,
+            nothing=np.zeros(len(modes)),
             kp=kp.copy(),
             kv=kv.copy(),
             pull=np.where(is_servo, kp, 0.0),
@@ -287,6 +293,7 @@ class Drives:
             is_helped=is_helped,
             helped=is_helped.astype(float),
             direct=((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float),
+            all_helped=bool(is_helped.all()),
             all_position=bool(is_position.all()),
             reach=np.where(is_position, _PULL * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
             rolls=rolls,
@@ -294,9 +301,11 @@ class Drives:
             roll_places=self._qpos[rolls],
             roll_dofs=self._dofs[rolls],
             roll_stiffness=stiffness,
-            slack=bounds[rolls, 1] / stiffness,
-            catch_up=np.maximum(kv[rolls], 1e-12) / stiffness,
-            fastest=np.where(is_servo, self._fastest, 0.0)[rolls],
+            slacks=(bounds[rolls, 1] / stiffness).tolist(),
+            catch_up=(np.maximum(kv[rolls], 1e-12) / stiffness).tolist(),
+            fastest=np.where(is_servo, self._fastest, 0.0)[rolls].tolist(),
+            of=self.groups,
+            groups=self.groups[rolls].tolist(),
             has_effort=bool((modes >= EFFORT_MODE).any()),
             has_integral=bool(integral[0].any()),
             offset=np.where(is_position, self._law[1], 0.0),
@@ -304,7 +313,7 @@ class Drives:
         return self._cached
 
     def _rebind_if_needed(self) -> None:
-        if self._model is not self._sim.mj_model:
+        if self._model is not self._sim.physics.model:
             self._bind()
 
     def write(self, commands: Vector, period: float) -> None:
@@ -314,25 +323,29 @@ class Drives:
             commands: one for each joint in its mode; NaN for none: a position is held, a velocity or effort is 0.
             period: since the last time [s].
         """
-        if not len(self.joints):
+        if not self.joints:
             return
         self._rebind_if_needed()
-        now, data = self._now(), self._sim.physics.data
-        wanted = commands
+        now, physics = self._now(), self._sim.physics
+        data, wanted = physics.data, commands
         if self._follows:  # a mimic has no command of its own
             wanted = np.where(self._leads, wanted, self._law[0] * wanted[self._leaders] + now.offset)
-        is_given = np.isfinite(wanted)
-        if not is_given.all():
-            wanted = np.where(is_given, wanted, np.where(now.is_position, self.targets, 0.0))
+        if wanted.dot(now.nothing) != 0.0:  # sooner found like this: 0 times what is not finite is not 0
+            wanted = np.where(np.isfinite(wanted), wanted, np.where(now.is_position, self.targets, 0.0))
         reference, rate = self._follow(now, wanted, period)
-        state = now.pull * reference + now.kv * rate + now.helped * self._weights.now()
+        weight = self._weights.now()
+        state = now.pull * reference
+        state += now.kv * rate
+        state += weight if now.all_helped else now.helped * weight
         if now.has_integral:
             state += self._integrate(now, reference, rate, period)
         if now.has_effort:
             state += now.direct * wanted
-        data.act[self._states] = np.minimum(np.maximum(state, -_LARGEST), _LARGEST)
+        if not state.dot(state) < _LARGEST**2:
+            state = np.minimum(np.maximum(state, -_LARGEST), _LARGEST)
+        data.act[self._states] = state
         data.ctrl[self._ids] = now.pull * rate
-        self._sim.physics.changed(CONTROL)
+        physics.changed(CONTROL)
 
     def _follow(self, now: _Now, wanted: Vector, period: float) -> tuple[Vector, Vector]:
         """Where the references are [rad or m], and how fast they move from now on [rad/s or m/s], within the limits."""
@@ -341,35 +354,35 @@ class Drives:
             return targets, np.zeros_like(targets)
         data, most = self._sim.physics.data, self._fastest * period
         # what is blocked, or was put elsewhere, does not whip back: its reference waits where it pulls with all it has
-        place = data.qpos[self._qpos]
-        targets = np.minimum(np.maximum(targets, place - now.reach), place + now.reach)
-        aim = np.minimum(np.maximum(wanted, self._ends[0]), self._ends[1])
-        move = np.minimum(np.maximum(aim - targets, -most), most)
+        place, reach = data.qpos[self._qpos], now.reach
+        targets = np.minimum(np.maximum(targets, place - reach), place + reach)
+        move = np.minimum(np.maximum(wanted, self._ends[0]), self._ends[1])
+        move -= targets
+        move = np.minimum(np.maximum(move, -most), most)
         if now.all_position:
             self.targets = targets + move
             return targets, move / period
-        rolls, rate = now.rolls, move / period
-        led, speed = self._roll(now, wanted[rolls], period)
-        reference = targets.copy()
+        led, speeds = self._roll(now, wanted, period)
+        rolls, rate, reference = now.rolls, move / period, targets
         self.targets = targets + move
         reference[rolls] = self.targets[rolls] = led
-        rate[rolls] = speed
+        rate[rolls] = speeds
         return reference, rate
 
-    def _roll(self, now: _Now, wanted: Vector, period: float) -> tuple[Vector, Vector]:
+    def _roll(self, now: _Now, wanted: Vector, period: float) -> tuple[list[float], list[float]]:
         """The same of those that are not driven by position, `now.rolls`."""
         data, rolls = self._sim.physics.data, now.rolls
-        fastest, stiffness = now.fastest, now.roll_stiffness
-        before = data.ctrl[now.roll_ids] / stiffness
+        before = (data.ctrl[now.roll_ids] / now.roll_stiffness).tolist()
+        targets, speeds = self.targets[rolls].tolist(), wanted[rolls].tolist()
         return lead(
-            self.targets[rolls] + before * period,
-            np.minimum(np.maximum(wanted, -fastest), fastest),
-            place=data.qpos[now.roll_places],
-            turning=data.qvel[now.roll_dofs],
+            [target + was * period for target, was in zip(targets, before, strict=True)],
+            [min(max(speed, -top), top) for speed, top in zip(speeds, now.fastest, strict=True)],
+            places=data.qpos[now.roll_places].tolist(),
+            turning=data.qvel[now.roll_dofs].tolist(),
             before=before,
-            slack=now.slack,
+            slacks=now.slacks,
             catch_up=now.catch_up,
-            groups=self.groups[rolls],
+            groups=now.groups,
         )
 
     def _integrate(self, now: _Now, reference: Vector, rate: Vector, period: float) -> Vector:

@@ -89,6 +89,7 @@ class Hardware:
     holds: bool = True
     _sim: Any = None
     _sources: Any = field(default_factory=lambda: np.zeros(0, np.intp))
+    _unclaimed: Any = None  # where in `_sources` there is none
     _read: frozenset[str] = frozenset()  # state interfaces that somebody reads
     _model: Any = None
     _plan: list[tuple[Any, Any]] = field(default_factory=list)  # (where in `states`, what gives them)
@@ -187,6 +188,7 @@ class Hardware:
             self._sources[k] = self.commands.index(f"{joint.name}/{chosen}") if chosen else -1
             mode = _MODES[chosen] if chosen else self._idle(joint, claimed.get(joint.leader, ""))
             modes.append(SPRING_MODE if mode == EFFORT_MODE and joint.name in springy else mode)
+        self._unclaimed = np.flatnonzero(self._sources < 0)
         self._group()
         self.drives.switch(np.array(modes, np.intp))
 
@@ -212,13 +214,14 @@ class Hardware:
 
     def read(self) -> None:
         """Brings the state interfaces up to the present."""
-        if self._model is not self._sim.mj_model:
+        if self._model is not self._sim.physics.model:
             self._bind()
-        values = self.states.values
+        states = self.states
+        values = states.values
         for rows, reading in self._plan:
             values[rows] = reading()
-        if self._late or self.states.late:
-            self.states.late = list(self._late)
+        if self._late or states.late:
+            states.late = self._late.copy()
 
     def _bind(self) -> None:
         """Plans the readings; another engine's model has other addresses."""
@@ -241,6 +244,7 @@ class Hardware:
             elif kind in _MODES:
                 plan = self._late if kind == EFFORT else self._plan  # efforts are worked out, so only when asked for
                 plan.append((rows, self.reading(kind, places)))
+        self.states.late_places = frozenset(row for rows, _ in self._late for row in rows.tolist())
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
         """What gives the positions, velocities or efforts of joints, as long as the engine's model is the same."""
@@ -262,7 +266,8 @@ class Hardware:
         """Hands the commands to the simulation; `period`: since the last time [s]."""
         if len(self._sources):
             commands = self.commands.values[self._sources]
-            commands[self._sources < 0] = np.nan
+            if len(self._unclaimed):
+                commands[self._unclaimed] = np.nan
             self.drives.write(commands, period)
 
     # ------------------------------------------------------------------ state
@@ -279,6 +284,7 @@ class Hardware:
         (states, commands, owners, sources, self._read), drives = state
         self.states.values, self.commands.values = states.copy(), commands.copy()
         self.owners, self._sources = dict(owners), sources.copy()
+        self._unclaimed = np.flatnonzero(sources < 0)
         self._model = None
         self.drives.modes, self.drives.targets, self.drives.integrals = (one.copy() for one in drives)
         self._group()

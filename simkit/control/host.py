@@ -73,12 +73,12 @@ class ControlHost(ModelPlugin):
         own = self.files.of_node(f"{self.ros.namespace}/{self._manager_name}")
         if own is None or "update_rate" not in (own.below or {}):
             return UPDATE_RATE
-        block = own.params("controller_manager", params.diagnostics)[0]
-        rate = block.number("update_rate", UPDATE_RATE, minimum=1e-3)
+        rate = own.block("controller_manager", params.diagnostics).number("update_rate", UPDATE_RATE, minimum=1e-3)
         steps = 1.0 / builder.world.physics.max_step_size
         if rate > steps * (1.0 + 1e-9):
             message = f"the controller manager's update_rate is {rate:g} Hz, more than the {steps:g} steps a second"
-            params.diagnostics.warning("SK-CONTROL-017", f"{message}; it is updated at every step", block.where)
+            where = (own.below or {})["update_rate"].where
+            params.diagnostics.warning("SK-CONTROL-017", f"{message}; it is updated at every step", where)
         return rate
 
     def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
@@ -89,9 +89,10 @@ class ControlHost(ModelPlugin):
         found = {j.name: dict(j.pids) for c in self.hardware.components for j in c.joints}
         entry = self.files.of_node(f"{self.ros.namespace}/{self.name}")
         if entry is not None and "pid_gains" in (entry.below or {}):
-            block = entry.params(self.name, self.params.diagnostics)[0].block("pid_gains")
+            block = entry.block(self.name, self.params.diagnostics).block("pid_gains")
             for interface in (POSITION, VELOCITY):
-                for gains in block.block(interface).children:
+                of_joints = block.block(interface)
+                for gains in [of_joints.block(one.name) for one in of_joints.children]:
                     if gains.name not in found:
                         near = did_you_mean(gains.name, found)
                         message = f"pid_gains names joint {gains.name!r}, which the hardware does not have"
@@ -108,7 +109,7 @@ class ControlHost(ModelPlugin):
             for uri in [element.value] if element.value.startswith("$(") else element.value.split():
                 path = self._find(uri, builder)
                 if path is None:
-                    message = f"the controllers' parameter file {uri} is not found: no controller of it is loaded"
+                    message = f"the controllers' parameter file {uri[:200]} is not found: no controller of it is loaded"
                     hint = "name its package's folder: --package-path NAME=DIR, or put the file beside the robot's"
                     params.diagnostics.warning("SK-CONTROL-015", message, element.where, hint)
                     continue
@@ -123,16 +124,20 @@ class ControlHost(ModelPlugin):
     def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
         """A file by its URI, else one of that name beside the robot's file, or in a `config` folder there."""
         folder = Path(self.where.file).resolve().parent if self.where.file else None
-        path = builder.find_file(uri, folder)
-        if path is not None and path.is_file():
-            return path
-        name = uri.replace("\\", "/").rpartition("/")[2]
-        places = [] if folder is None else [folder, folder / "config", folder.parent / "config"]
-        return next((place / name for place in places if name and (place / name).is_file()), None)
+        try:
+            path = builder.find_file(uri, folder)
+            if path is not None and path.is_file():
+                return path
+            name = uri.replace("\\", "/").rpartition("/")[2]
+            places = [] if folder is None else [folder, folder / "config", folder.parent / "config"]
+            return next((place / name for place in places if name and (place / name).is_file()), None)
+        except (OSError, ValueError):  # a name that no file can have
+            return None
 
     # ------------------------------------------------------------------ at work
 
     def load(self, parent: Any, params: Params) -> None:
+        from simkit.control.file_faults import report_faults, report_rates
         from simkit.control.manager import ControllerManager
         from simkit.control.manager_services import offer_services
 
@@ -142,7 +147,7 @@ class ControlHost(ModelPlugin):
         self.manager.is_ros_1 = self.is_ros_1
         offer_services(self.manager)
         declared = self.manager.declared()
-        self._report_strays(declared)
+        report_faults(self.manager, params.diagnostics)
         chosen = list(declared) if not self._chosen else []
         for name, element in self._chosen:
             if name in declared:
@@ -152,6 +157,7 @@ class ControlHost(ModelPlugin):
             message = f"<simkit:controllers> names {name!r}, which no parameter file declares with a type"
             params.diagnostics.error("SK-CONTROL-013", message, element.where, near)
         self.manager.start(chosen)
+        report_rates(self.manager, self.before_step_rate, params.diagnostics)
 
     def _stand_apart(self, model: str, params: Params) -> None:
         """Takes the model's name for a namespace where another robot has a manager of this one's name."""
@@ -167,17 +173,6 @@ class ControlHost(ModelPlugin):
 
     def _remember_loaded(self) -> None:
         """Everything it keeps can be copied: there is no need to try."""
-
-    def _report_strays(self, declared: Mapping[str, str]) -> None:
-        """Tells of nodes that the files have parameters for and that nobody is: mostly misspelt controllers."""
-        known = {self._manager_name, *declared, "**", "*"}
-        for file in self.files.files:
-            for pattern, entry in file.nodes:
-                name = pattern.rpartition("/")[2]
-                near = did_you_mean(name, declared)
-                if name not in known and near:
-                    message = f"{file.path.name} has parameters for {name!r}, which no controller manager declares"
-                    self.params.diagnostics.warning("SK-CONTROL-019", message, entry.where, near)
 
     def before_step(self) -> None:
         self.manager.update(self.sim.time_ns)

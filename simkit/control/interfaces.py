@@ -23,6 +23,7 @@ class InterfaceTable:
         names: `<joint or sensor>/<interface>`, such as `arm_1_joint/position`, in the order of the description.
         values: theirs; rad, m, rad/s, m/s, N·m, N; NaN where there is none (yet).
         late: what is only read when somebody asks for it, such as a sensor: where it is, and what reads it.
+        late_places: all places in `values` that may be late.
     """
 
     def __init__(self, names: Iterable[str] = ()) -> None:
@@ -30,6 +31,7 @@ class InterfaceTable:
         self._index = {name: k for k, name in enumerate(self.names)}
         self.values: Vector = np.full(len(self.names), np.nan)
         self.late: list[tuple[Any, Callable[[], Any]]] = []
+        self.late_places: frozenset[int] = frozenset()
 
     def catch_up(self, wanted: frozenset[int]) -> None:
         """Reads what is late and wanted."""
@@ -74,7 +76,7 @@ class Interfaces:
     def values(self) -> Vector:
         """A copy of their values."""
         table = self._table
-        if table.late:
+        if table.late and not table.late_places.isdisjoint(self._wanted):
             table.catch_up(self._wanted)
         found: Vector = table.values[self._where]
         return found

@@ -89,6 +89,7 @@ class ControllerManager:
         self.is_ros_1 = False
         self._last_ns = 0
         self._ends: dict[str, Ends] = {}
+        self._at_work: list[Loaded] | None = None  # the active ones in their order; None after a change
 
     # ------------------------------------------------------------------ what the files say
 
@@ -210,6 +211,7 @@ class ControllerManager:
 
     def _look(self) -> None:
         """Has the hardware read what the active controllers need."""
+        self._at_work = None
         active = (c.controller for c in self.controllers.values() if c.state == "active")
         self.hardware.wants(name for controller in active for name in controller.states.names)
 
@@ -319,9 +321,14 @@ class ControllerManager:
     def update(self, now_ns: int) -> None:
         """Reads the hardware, updates the active controllers, writes the commands."""
         self.hardware.read()
-        for loaded in self.controllers.values():
-            if loaded.state == "active" and (not loaded.controller.update_rate or self._is_due(loaded, now_ns)):
-                loaded.controller.update(now_ns, (now_ns - loaded.last) * 1e-9)
+        if self._at_work is None:
+            self._at_work = [loaded for loaded in self.controllers.values() if loaded.state == "active"]
+        for loaded in self._at_work:
+            controller = loaded.controller
+            if controller.update_rate and not self._is_due(loaded, now_ns):
+                continue
+            if loaded.state == "active":  # still: others may have switched it
+                controller.update(now_ns, (now_ns - loaded.last) * 1e-9)
                 loaded.last = now_ns
         self.hardware.write((now_ns - self._last_ns) * 1e-9)
         self._last_ns = now_ns
@@ -345,7 +352,7 @@ class ControllerManager:
         controllers, handlers, self._last_ns, hardware = state
         for name, ends in self._ends.items():
             ends.handlers = dict(handlers.get(name, {}))
-        self.controllers = {}
+        self.controllers, self._at_work = {}, None
         for name, loaded, kind, where, last, own in controllers:
             loaded.type, loaded.state, loaded.last = kind, where, last
             loaded.controller.set_state(own)

@@ -84,6 +84,11 @@ class Entry:
         return sum(one.leaves() for one in inside) if inside else 1
 
 
+def alone(name: str, entry: Entry, diagnostics: Diagnostics) -> ParameterBlock:
+    """A block with that entry alone in it, whose form is looked at as it is read."""
+    return Entry(entry.where, below={name: entry}).block("parameters", diagnostics)
+
+
 @dataclass(slots=True)
 class ParameterFile:
     """One file as read.

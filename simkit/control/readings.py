@@ -24,8 +24,13 @@ def numbers(params: Params, name: str, default: Sequence[float]) -> list[float]:
 
 
 def names(params: Params, name: str) -> list[str]:
-    """The texts of a list."""
-    return [one.value for one in params.all(name)]
+    """The texts of a list; one that comes twice is an error, as two claims of one interface are."""
+    found = params.all(name)
+    for k, one in enumerate(found):
+        if one.value in [other.value for other in found[:k]]:
+            message = f"{one.value!r} comes twice in {name!r}, allowed is each name once"
+            params.diagnostics.error("SK-PARAM-002", message, one.where)
+    return list(dict.fromkeys(one.value for one in found))
 
 
 def vector(values: Vector) -> Any:

@@ -8,12 +8,8 @@ where it was told to, nor on against a wall; only what its wheels differ by from
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
-
-import numpy as np
-import numpy.typing as npt
-
-from simkit.pose import Vector
 
 _WAIT: Final = 0.02
 """[s] of its way that a joint may lag behind beyond what its effort makes up for; the others stand by then."""
@@ -26,54 +22,74 @@ _FARTHEST: Final = 1e9
 
 
 def lead(
-    led: Vector,
-    speed: Vector,
+    led: Sequence[float],
+    speeds: Sequence[float],
     *,
-    place: Vector,
-    turning: Vector,
-    before: Vector,
-    slack: Vector,
-    catch_up: Vector,
-    groups: npt.NDArray[np.intp],
-) -> tuple[Vector, Vector]:
-    """References of velocity servos and how fast they go on.
+    places: Sequence[float],
+    turning: Sequence[float],
+    before: Sequence[float],
+    slacks: Sequence[float],
+    catch_up: Sequence[float],
+    groups: Sequence[int],
+) -> tuple[list[float], list[float]]:
+    """References of velocity servos and how fast they go on; in plain numbers, as a base has a handful of wheels.
 
     Args:
         led: where the commands have led them [rad or m].
-        speed: commanded from now on [rad/s or m/s].
-        place, turning: of the joints now [rad, rad/s or m, m/s].
+        speeds: commanded from now on [rad/s or m/s].
+        places, turning: of the joints now [rad, rad/s or m, m/s].
         before: how fast the references moved up to now [rad/s or m/s].
-        slack: behind its reference by this, a joint gets its whole effort [rad or m].
+        slacks: behind its reference by this, a joint gets its whole effort [rad or m].
         catch_up: in which a reference would be caught up with [s].
         groups: number of its controller for each joint; 0 is nobody's.
 
     Returns:
-        References and their speeds, each shape (joints,).
+        References and their speeds.
     """
-    slack = np.minimum(slack, _FARTHEST)
-    width = np.maximum(slack, _WAIT * np.abs(speed))
-    most = slack + width
-    lag = np.minimum(np.maximum(led - place, -most), most)
-    # a load lets it sag no faster than this, so what moves faster has not come to rest
-    sagging = np.minimum(slack, _SAG) / catch_up
-    rests = speed == 0.0
-    if rests.all() and not before.any():
-        return place + np.where(np.abs(turning) > sagging, 0.0, lag), speed
-    if rests.any():
-        stops = rests & (before != 0.0)
-        if stops.any():
-            lag = np.where(stops, _across(lag, before, groups), lag)
-        lag = np.where(rests & ~stops & (np.abs(turning) > sagging), 0.0, lag)
-    left = (most - lag * np.sign(speed)) / np.maximum(width, 1e-12)  # parts of the speed that it may still go on with
-    if (left < 1.0).any():
-        pace = np.ones(int(groups.max()) + 1)
-        np.minimum.at(pace, groups, np.maximum(left, 0.0))
-        speed = speed * np.where(groups > 0, pace[groups], np.minimum(np.maximum(left, 0.0), 1.0))
-    return place + lag, speed
+    lags, rooms = [], []
+    for reference, speed, place, slack in zip(led, speeds, places, slacks, strict=True):
+        slack = min(slack, _FARTHEST)
+        width = max(slack, _WAIT * abs(speed))
+        most = slack + width
+        lags.append(min(max(reference - place, -most), most))
+        rooms.append((most, width))
+    is_standing = not any(speeds) and not any(before)
+    if 0.0 in speeds:
+        across = lags if is_standing else _across(lags, before, groups)
+        for k, speed in enumerate(speeds):
+            if speed == 0.0:
+                if before[k] != 0.0:
+                    lags[k] = across[k]
+                # a load lets it sag no faster than this, so what moves faster has not come to rest
+                elif abs(turning[k]) > min(slacks[k], _SAG) / catch_up[k]:
+                    lags[k] = 0.0
+    led = [place + lag for place, lag in zip(places, lags, strict=True)]
+    return led, list(speeds) if is_standing else _paced(speeds, lags, rooms, groups)
 
 
-def _across(lag: Vector, before: Vector, groups: npt.NDArray[np.intp]) -> Vector:
+def _paced(
+    speeds: Sequence[float], lags: Sequence[float], rooms: Sequence[tuple[float, float]], groups: Sequence[int]
+) -> list[float]:
+    """The speeds, less what the slowest of each controller's joints cannot follow."""
+    parts = []  # of the speed that each may still go on with
+    for speed, lag, (most, width) in zip(speeds, lags, rooms, strict=True):
+        behind = lag if speed > 0.0 else -lag if speed < 0.0 else 0.0
+        parts.append(min(max((most - behind) / max(width, 1e-12), 0.0), 1.0))
+    if min(parts, default=1.0) >= 1.0:
+        return list(speeds)
+    pace = {group: min(p for p, g in zip(parts, groups, strict=True) if g == group) for group in set(groups)}
+    return [
+        speed * (pace[group] if group > 0 else part) for speed, part, group in zip(speeds, parts, groups, strict=True)
+    ]
+
+
+def _across(lags: Sequence[float], before: Sequence[float], groups: Sequence[int]) -> list[float]:
     """The part of lags that is across the motion of their controller's joints, which is nothing for a joint alone."""
-    along = np.bincount(groups, lag * before) / np.maximum(np.bincount(groups, before * before), 1e-300)
-    found: Vector = np.where(groups > 0, lag - along[groups] * before, 0.0)
-    return found
+    sums: dict[int, tuple[float, float]] = {}
+    for lag, was, group in zip(lags, before, groups, strict=True):
+        way, square = sums.get(group, (0.0, 0.0))
+        sums[group] = way + lag * was, square + was * was
+    along = {group: way / max(square, 1e-300) for group, (way, square) in sums.items()}
+    return [
+        lag - along[group] * was if group > 0 else 0.0 for lag, was, group in zip(lags, before, groups, strict=True)
+    ]

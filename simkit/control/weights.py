@@ -9,7 +9,6 @@ import mujoco
 import numpy as np
 
 from simkit.pose import Vector
-from simkit.runtime.physics import VELOCITY
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -40,8 +39,9 @@ class Weights:
         if model is not self._model:
             self._model, self._own = model, np.zeros(model.nv)
             self._dofs = np.array([sim.names.joint(name).dofs[0] for name in self._joints], np.intp)
-        if physics.stage < VELOCITY:
-            return np.array(data.qfrc_bias[self._dofs])
+        if physics.fresh_velocities():
+            bias: Vector = data.qfrc_bias[self._dofs]
+            return bias
         # the part of a forward pass that it takes: a tenth of the whole, and the same bits
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)

@@ -25,7 +25,7 @@ __all__ = ["Document", "LoadRequest", "Loader", "Resolver", "find_document", "lo
 @lru_cache(maxsize=1)
 def loader_kinds() -> Mapping[str, type[Loader]]:
     """Every loader by the root element it reads."""
-    return discover("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots)  # type: ignore[type-abstract]
+    return discover("simkit.loaders", "simkit.loaders", Loader, lambda cls: cls.roots, ("roots",))  # type: ignore[type-abstract]
 
 
 def load_scene(

@@ -47,7 +47,8 @@ def plugin_kinds() -> Mapping[str, type[Plugin]]:
     def names(cls: type[Plugin]) -> list[str]:
         return [normalise(name) for name in (*cls.filenames, *cls.names)]
 
-    return discover(("simkit.plugins", "simkit.control.hosts", "simkit.motion"), GROUP, Plugin, names)  # type: ignore[type-abstract]
+    packages = ("simkit.plugins", "simkit.control.hosts", "simkit.motion")
+    return discover(packages, GROUP, Plugin, names, ("filenames", "names"), normalise)  # type: ignore[type-abstract]
 
 
 def find_plugin(

@@ -34,6 +34,7 @@ _BAD = _BAD_POS, _BAD_VEL, _BAD_ACC = [
 ]
 # looked up once: the loop calls them every few microseconds
 mj_step, mj_forward, mj_forward_skip = mujoco.mj_step, mujoco.mj_forward, mujoco.mj_forwardSkip
+mj_fwd_position, mj_fwd_velocity = mujoco.mj_fwdPosition, mujoco.mj_fwdVelocity
 mj_get_state, mj_rne_post_constraint = mujoco.mj_getState, mujoco.mj_rnePostConstraint
 mj_check_pos, mj_check_vel, mj_check_acc = mujoco.mj_checkPos, mujoco.mj_checkVel, mujoco.mj_checkAcc
 
@@ -161,6 +162,22 @@ class Physics:
         self.stage = FRESH
         return self.data
 
+    def fresh_velocities(self) -> bool:
+        """Has all but accelerations computed for the state at this tick; the next step goes on from there.
+
+        Returns:
+            Whether it was done: where trees may sleep the engine wants to do all of a pass at once.
+        """
+        if self.stage < VELOCITY:
+            return True
+        if self.sleep.counts or self.sleep.wants_all_awake or self._integrate is None:
+            return False
+        if self.stage == STALE:
+            mj_fwd_position(self.model, self.data)
+        mj_fwd_velocity(self.model, self.data)
+        self.stage = CONTROL
+        return True
+
     def _hear_controls(self) -> None:
         """Notices controls that were written to the engine's data directly."""
         if not np.array_equal(self._controls, self.data.ctrl):
@@ -196,7 +213,9 @@ class Physics:
         return self._held
 
     def data_of(self, held: HeldState) -> Any:
-        """A second `MjData` with forward pass and accelerations of a held state."""
+        """An `MjData` with forward pass and accelerations of a held state: a second one, unless it is that of now."""
+        if self._held is held and held.tick == self.tick and not (self.sleep.watches or self.shows_applied):
+            return self.fresh_accelerations()  # nothing was written since: the step goes on from it
         if self._second is None or (self._second_of is not None and self._second_of.model is not held.model):
             self._second = mujoco.MjData(held.model)
             self._second_of = None

@@ -24,4 +24,4 @@ def sensor_kinds() -> Mapping[str, type[Sensor]]:
     from simkit.registry import discover
     from simkit.sensors.base import Sensor
 
-    return discover("simkit.sensors", GROUP, Sensor, lambda cls: cls.kinds)  # type: ignore[type-abstract]
+    return discover("simkit.sensors", GROUP, Sensor, lambda cls: cls.kinds, ("kinds",))  # type: ignore[type-abstract]

@@ -18,16 +18,16 @@ def led(
     """Lags of the references and their speeds; joints are at 1 rad."""
     count = len(lags)
     references, found = lead(
-        1.0 + np.array(lags),
-        np.array(speeds, float),
-        place=np.ones(count),
-        turning=np.full(count, turning),
-        before=np.array(before or (0.0,) * count),
-        slack=np.full(count, SLACK),
-        catch_up=np.full(count, 0.1),
-        groups=np.array(groups, np.intp),
+        [1.0 + lag for lag in lags],
+        speeds,
+        places=[1.0] * count,
+        turning=[turning] * count,
+        before=before or (0.0,) * count,
+        slacks=[SLACK] * count,
+        catch_up=[0.1] * count,
+        groups=groups,
     )
-    return references - 1.0, found
+    return np.array(references) - 1.0, found
 
 
 def test_what_follows_is_led_as_commanded() -> None:
@@ -71,13 +71,13 @@ def test_what_wheels_differ_by_from_the_motion_is_made_good_when_they_stop() -> 
 
 def test_an_effort_without_limit_leads_without_limit() -> None:
     references, speeds = lead(
-        np.array([50.0]),
-        np.array([1.0]),
-        place=np.zeros(1),
-        turning=np.zeros(1),
-        before=np.ones(1),
-        slack=np.array([np.inf]),
-        catch_up=np.array([0.1]),
-        groups=np.zeros(1, np.intp),
+        [50.0],
+        [1.0],
+        places=[0.0],
+        turning=[0.0],
+        before=[1.0],
+        slacks=[np.inf],
+        catch_up=[0.1],
+        groups=[0],
     )
     assert (references[0], speeds[0]) == (50, 1)

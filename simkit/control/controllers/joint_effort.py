@@ -146,8 +146,8 @@ class EffortGroupPositionController(_Loops):
         joints = tuple(names(params, "joints"))
         if not any(joints):
             params.text("joints", required=True)
-        given = params.child("gains")
-        if given is None:
+        given = params.block("gains")
+        if not params.has("gains"):
             blocks = [_named(params.block(joint).block("pid"), joint) for joint in joints]
             given = Params("gains", children=blocks, where=params.where, diagnostics=params.diagnostics)
         self._take(joints, given)

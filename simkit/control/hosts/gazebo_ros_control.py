@@ -59,12 +59,10 @@ class GazeboRosControl(ControlHost):
                     found[joint] = self._loop(joint, gains)
         return found
 
-    def _gains_block(self, joint: str, entry: Entry) -> Params:
-        """Gains of a joint; what is no block of them is told."""
-        return Entry(entry.where, below={joint: entry}).block(_GAINS, self.params.diagnostics).block(joint)
-
     def _loop(self, joint: str, entry: Entry) -> Mapping[str, PidGains]:
         """One set of gains is for whichever interface the joint has."""
-        gains = read_gains(self._gains_block(joint, entry))
+        from simkit.control.parameter_files import alone
+
+        gains = read_gains(alone(joint, entry, self.params.diagnostics).block(joint))
         interfaces = self.hardware.joints[joint].command_interfaces
         return {name: gains for name in (POSITION, VELOCITY) if name in interfaces}
