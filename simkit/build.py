@@ -100,7 +100,6 @@ def load(
         raise InputError(f"on_error is 'stop' or 'disable', got {on_error!r}")
     import_engine()
     from simkit.compiler import SpecBuilder
-    from simkit.plugins.actors.stage import with_actors
     from simkit.runtime import Simulation, Structure
     from simkit.sensors.rendering.thread import usable_cores
 
@@ -108,7 +107,10 @@ def load(
     resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
     scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn)
     world = scene.world if sleep else _sleepless(scene.world)
-    world = with_actors(world, lambda uri, folder: resolver.search(uri, folder)[0], diagnostics)
+    if world.actors:
+        from simkit.plugins.actors.stage import with_actors
+
+        world = with_actors(world, lambda uri, folder: resolver.search(uri, folder)[0], diagnostics)
     allowed = [Path(p) for p in plugin_paths]
     if diagnostics.has_errors:
         _look_further(world, diagnostics, allowed, resolver)

@@ -88,7 +88,6 @@ def _order(one: _Found, places: Mapping[str, tuple[_Place, str | None]]) -> _Pla
 
 
 def parts_of_world(world: SceneWorld, builder: Any, diagnostics: Diagnostics, plugin_paths: Sequence[Path]) -> Parts:
-    from simkit.plugins.actors import ActorMover
     from simkit.plugins.classic.services import ClassicServices
     from simkit.plugins.drives.tf import StaticTransforms
     from simkit.plugins.made import Hung
@@ -103,7 +102,11 @@ def parts_of_world(world: SceneWorld, builder: Any, diagnostics: Diagnostics, pl
     for plugin in world.plugins:
         one = _Found(plugin, "world", world, "", lambda sim: sim)
         _add_plugin(parts, one, ((False, plugin.where.serial),), builder, diagnostics, plugin_paths)
-    actors = (ActorMover(),) if world.actors else ()
+    actors: tuple[Plugin, ...] = ()
+    if world.actors:
+        from simkit.plugins.actors import ActorMover
+
+        actors = (ActorMover(),)
     first, last = (ClockPublisher(), StaticTransforms(), *actors), (WorldStats(), WorldServices(), ClassicServices())
     for rank, instance in (*((0, one) for one in first), *((2, one) for one in last)):
         hung = Hung(instance, "", "", world, lambda sim: sim)

@@ -49,7 +49,7 @@ def discover(
     names: Callable[[type[T]], Iterable[str]],
     attributes: Sequence[str] = ("types",),
     spell: Callable[[str], str] = str,
-) -> Mapping[str, type[T]]:
+) -> Kinds[T]:
     """Every class under `packages` and in the entry points `group` that is a `base`, by each name it answers to.
 
     A class that is asked for by name is all that is imported: the names are read from the text of the modules. To go
@@ -100,6 +100,16 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     def __len__(self) -> int:
         return len(self._all)
 
+    @cached_property
+    def written(self) -> Mapping[str, str]:
+        """Each name that a class answers to, as it is written in the class; imports only what computes its names."""
+        literal, computed = self._written
+        modules = (importlib.import_module(module) for module in computed)
+        classes = [*self._foreign, *(cls for module in modules for cls in self._classes(module))]
+        texts = [text for cls in classes for attribute in self._attributes for text in getattr(cls, attribute, ())]
+        found = {name: text for name, (text, _) in literal.items()} | {self._spell(text): text for text in texts}
+        return MappingProxyType(dict(sorted(found.items())))
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({dict(self._all)!r})"
 
@@ -123,7 +133,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
             return self._all.get(name)
         if name not in self._found:
             literal, computed = self._written
-            modules = [*literal.get(name, ()), *computed]
+            modules = [*literal.get(name, ("", ()))[1], *computed]
             own = (cls for module in modules for cls in self._classes(importlib.import_module(module)))
             classes = (cls for source in (own, self._foreign) for cls in source)
             self._found[name] = next((cls for cls in classes if name in self._names(cls)), None)
@@ -136,22 +146,25 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         return tuple(found for root in roots for found in _below(root.__path__, root.__name__))
 
     @cached_property
-    def _written(self) -> tuple[Mapping[str, Sequence[str]], Sequence[str]]:
-        """The modules by the names that their classes write down, and those whose names must be computed."""
-        literal: dict[str, list[str]] = {}
+    def _written(self) -> tuple[Mapping[str, tuple[str, Sequence[str]]], Sequence[str]]:
+        """By each name that classes write down what they write and the modules; and those that compute their names."""
+        literal: dict[str, tuple[str, list[str]]] = {}
         computed = []
         for module, file in self._modules:
             written = self._texts(file)
             if written is None:
                 computed.append(module)
-            for text in dict.fromkeys(map(self._spell, written or ())):
-                literal.setdefault(text, []).append(module)
+            for text in dict.fromkeys(written or ()):
+                literal.setdefault(self._spell(text), (text, []))[1].append(module)
         return literal, computed
 
     def _texts(self, file: Path) -> list[str] | None:
         """What the classes of a file give to the attributes; None where that is more than texts."""
         try:
-            source = file.read_text(encoding="utf-8")
+            content = file.read_bytes()
+            if not any(name in content for name in map(str.encode, self._attributes)):
+                return []
+            source = content.decode().replace("\r\n", "\n")
         except (OSError, ValueError):
             return None
         found: list[str] = []

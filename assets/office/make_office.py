@@ -503,7 +503,7 @@ HEAD = """<?xml version="1.0"?>
   <world name="simple_office_with_people">
 
     <physics name="step_1ms" type="ignored">
-      <max_step_size>0.001</max_step_size>
+      <max_step_size>0.002</max_step_size>
       <real_time_factor>1</real_time_factor>
     </physics>
 

@@ -129,10 +129,17 @@ def motions(file: str) -> Plugin:
     return Plugin("play_motion2", "libsimkit_play_motion.so", lines, "Motions by name, on /play_motion2.")
 
 
+def joint_frames() -> Plugin:
+    lines = ("<publish_frequency>50</publish_frequency>",)
+    about = "The links that joints move, on /tf."
+    return Plugin("robot_state_publisher", "libsimkit_robot_state_publisher.so", lines, about)
+
+
 def tiago_plugins(controllers_file: str, motions_file: str) -> tuple[Plugin, ...]:
     return (
         controllers(controllers_file),
         motions(motions_file),
+        joint_frames(),
         truth("gazebo_ros_p3d", "ground_truth_odom", 100),
         truth("gazebo_ros_odometry", "floating_base_pose_simulated", 1000),
     )

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from arm_links import arm, gripper, rgbd_laser
 from base_links import base_links
-from control import controllers, ros2_control, tiago_plugins, world_odometry
+from control import controllers, joint_frames, ros2_control, tiago_plugins, world_odometry
 from parts import Robot
 from upper_links import head, torso
 from write_sdf import sdf_text
@@ -38,7 +38,7 @@ def tiago_no_arm() -> Robot:
 
 def pmb2() -> Robot:
     about = "The mobile base alone: differential drive on a sprung axle, laser, three sonars, IMU."
-    plugins = (controllers("controllers_base.yaml"), world_odometry())
+    plugins = (controllers("controllers_base.yaml"), joint_frames(), world_odometry())
     control = ros2_control("pmb2", torso_and_head=False, arm=False)
     return Robot("pmb2", "PMB2", about, base_links(), plugins, control)
 

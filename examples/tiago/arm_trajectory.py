@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from moves import ARM, Point, Vector, follow, move, tiago_in
+from moves import ARM, Point, Vector, follow, move, picture_of, tiago_in
 
 START = {"arm_1_joint": 1.0}
 POINTS = (
@@ -82,10 +82,11 @@ def draw(motion: Motion, out: Path) -> None:
 
 
 def main(arguments: list[str]) -> None:
+    picture = picture_of(__doc__ or "", arguments)
     motion = run()
     print(f"result {motion.result.error_code} {motion.result.error_string!r}, tracked within {motion.error:.4f} rad")
-    if arguments:
-        draw(motion, Path(arguments[0]))
+    if picture is not None:
+        draw(motion, picture)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from moves import ARM, FINGERS, Point, Vector, follow, move
+from moves import ARM, FINGERS, Point, Vector, follow, move, picture_of
 
 import simkit
 
@@ -135,6 +135,7 @@ def run(seed: int = 0, hold: float = 5.0, watch: Any = None) -> Carried:
 
 
 def main(arguments: list[str]) -> None:
+    picture = picture_of(__doc__ or "", arguments)
     pictures: list[Any] = []
 
     def watch(sim: simkit.Simulation) -> None:
@@ -143,17 +144,17 @@ def main(arguments: list[str]) -> None:
         view = {"eye": (1.6, -2.2, 1.7), "target": (0.0, 0.1, 0.6), "vertical_fov": 0.75}
         pictures.append(render_view(sim, 400, 300, **view))
 
-    carried = run(watch=watch if arguments else None)
+    carried = run(watch=None if picture is None else watch)
     for part, place in carried.places.items():
         print(f"{part:20s} {place[0]:+.3f} {place[1]:+.3f} {place[2]:+.3f}")
     held, whole = (carried.slips[part] * 1000 for part in ("held", "carried"))
     print(f"slip in the hand: {held:.2f} mm while held, {whole:.2f} mm with the way; tilt {carried.tilt:.4f} rad")
-    if arguments:
+    if picture is not None:
         import cv2
 
         rows = [np.hstack(pictures[i : i + 3]) for i in (0, 3)]
-        cv2.imwrite(arguments[0], np.vstack(rows)[..., ::-1])
-        print(f"wrote {arguments[0]}")
+        cv2.imwrite(str(picture), np.vstack(rows)[..., ::-1])
+        print(f"wrote {picture}")
 
 
 if __name__ == "__main__":

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any, NamedTuple
 
-from moves import ARM, FINGERS, Vector, move, positions_of, tiago_in
+from moves import ARM, FINGERS, Vector, move, picture_of, positions_of, tiago_in
 
 TORSO, HEAD = ("torso_lift_joint",), ("head_1_joint", "head_2_joint")
 EVERY = (*TORSO, *HEAD, *ARM, *FINGERS)
@@ -51,7 +52,8 @@ def run(seed: int = 0) -> list[Moved]:
     return done
 
 
-def main() -> None:
+def main(arguments: list[str]) -> None:
+    picture_of(__doc__ or "", arguments, draws=False)
     for moved in run():
         for name, wanted in moved.wanted.items():
             index = EVERY.index(name)
@@ -59,4 +61,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

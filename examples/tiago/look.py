@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import sys
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from moves import Vector, duration, tiago_in, wait_for
+from moves import Vector, duration, picture_of, tiago_in, wait_for
 
 import simkit
 
@@ -96,15 +95,16 @@ def run(seed: int = 0) -> list[Sight]:
 
 
 def main(arguments: list[str]) -> None:
+    picture = picture_of(__doc__ or "", arguments)
     seen = run()
     for name, view in zip(("ahead", "told where it is", "aside", "led by the picture"), seen, strict=True):
         at = ", ".join(f"{p:.1f}" for p in view.pixel)
         print(f"{name:20s} {math.degrees(view.angle):6.2f} degrees off the ball, which is at pixel {at}")
-    if arguments:
+    if picture is not None:
         import cv2
 
-        cv2.imwrite(arguments[0], np.hstack([view.picture[::2, ::2] for view in seen])[..., ::-1])
-        print(f"wrote {Path(arguments[0])}")
+        cv2.imwrite(str(picture), np.hstack([view.picture[::2, ::2] for view in seen])[..., ::-1])
+        print(f"wrote {picture}")
 
 
 if __name__ == "__main__":

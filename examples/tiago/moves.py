@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +29,25 @@ class Point(NamedTuple):
     seconds: float
     positions: Sequence[float]
     velocities: Sequence[float] = ()
+
+
+def picture_of(about: str, arguments: Sequence[str], *, draws: bool = True) -> Path | None:
+    """Where a script's picture is to go, as its arguments say; `--help` tells what the script does.
+
+    Args:
+        about: its docstring.
+        arguments: all but its name.
+        draws: whether it can draw one.
+    """
+    parser = argparse.ArgumentParser(description=about.partition(": `")[0])
+    if draws:
+        parser.add_argument("picture", nargs="?", type=Path, metavar="OUT.png", help="a picture of it")
+    path: Path | None = getattr(parser.parse_args(arguments), "picture", None)
+    if path is not None and path.suffix.lower() not in (".png", ".jpg"):
+        parser.error(f"{path}: a picture ends in .png or .jpg")
+    if path is not None and not path.resolve().parent.is_dir():
+        parser.error(f"{path}: there is no folder {path.parent}")
+    return path
 
 
 def tiago_in(world: str = "empty", **options: Any) -> simkit.Simulation:

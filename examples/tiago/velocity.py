@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import NamedTuple
 
-from moves import tiago_in
+from moves import picture_of, tiago_in
 
 import simkit
 
@@ -60,7 +61,8 @@ def run(seed: int = 0) -> dict[str, Stretch]:
         return parts
 
 
-def main() -> None:
+def main(arguments: list[str]) -> None:
+    picture_of(__doc__ or "", arguments, draws=False)
     for name, part in run().items():
         print(
             f"{name:16s} {part.forward:+.3f} m ahead, {part.aside:+.4f} m aside, {part.turned:+.3f} rad, "
@@ -69,4 +71,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

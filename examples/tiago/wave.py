@@ -6,10 +6,11 @@ comes a slow way there, and a motion that would leave the limits or hit somethin
 
 from __future__ import annotations
 
+import sys
 from typing import Any, NamedTuple
 
 import numpy as np
-from moves import ARM, Vector, positions_of, tiago_in, wait_for
+from moves import ARM, Vector, picture_of, positions_of, tiago_in, wait_for
 
 import simkit
 
@@ -59,11 +60,12 @@ def arm_of(message: Any) -> Vector:
     return np.array([by_name[name] for name in ARM])
 
 
-def main() -> None:
+def main(arguments: list[str]) -> None:
+    picture_of(__doc__ or "", arguments, draws=False)
     wave = run()
     swing = np.ptp(wave.positions[len(wave.positions) // 2 :, 3])
     print(f"arm_4 swung by {swing:.2f} rad; the arm is back within {np.abs(wave.after - wave.before).max():.4f} rad")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

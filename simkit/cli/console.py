@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import sys
 import traceback
@@ -139,6 +140,12 @@ def guarded(command: Callable[P, Any]) -> Callable[P, None]:
             # Whoever read our output has gone; closing standard output again would complain a second time.
             sys.stdout = None
             raise typer.Exit(0) from None
+        except OSError as error:
+            if error.errno not in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
+                raise
+            sys.stdout = None
+            say(f"error: what was to be written found no room: {error.strerror}")
+            raise typer.Exit(1) from None
         if code:
             raise typer.Exit(int(code))
 

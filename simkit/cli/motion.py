@@ -146,15 +146,13 @@ def _opened(
     from simkit.motion.play import PlayMotion
     from simkit.motion.session import controlled, empty_world_with, players
 
-    for path in motions:
-        if not path.is_file():
-            raise InputError(f"SK-MOTION-001 there is no file of motions {path}", "SK-MOTION-001")
+    _check_files(motions)
     text = world
     if text is None:
         text, folders = empty_world_with(robot or ROBOT)
         options = {**options, "resource_paths": [*options["resource_paths"], *folders]}
     sim = load(text, seed=seed, plugin_paths=plugin_paths, **options)
-    spawned = sim.spawn(robot) if world is not None and robot is not None else None
+    spawned = _spawned(sim, robot) if world is not None and robot is not None else None
     there = players(sim)
     for player in there.values():
         for path in motions:
@@ -177,6 +175,7 @@ def _read(paths: Sequence[Path]) -> list[Motion]:
     from simkit.diagnostics import Diagnostics
     from simkit.motion.reading import read_motions
 
+    _check_files(paths)
     problems = Diagnostics()
     found: dict[str, Motion] = {}
     for path in paths:
@@ -184,6 +183,30 @@ def _read(paths: Sequence[Path]) -> list[Motion]:
     problems.raise_if_errors()
     print_diagnostics(problems, verbose=False)
     return list(found.values())
+
+
+def _check_files(paths: Sequence[Path]) -> None:
+    """Raises where a file of motions is not there, or broken: what it says is not to be missed."""
+    from simkit.diagnostics import Diagnostics
+    from simkit.motion.reading import read_motions
+
+    broken = Diagnostics()
+    for path in paths:
+        if not path.is_file():
+            raise InputError(f"SK-MOTION-001 there is no file of motions {path}", "SK-MOTION-001")
+        read_motions(path, broken)
+    broken.raise_if_errors()
+
+
+def _spawned(sim: Any, robot: str) -> Any:
+    """The robot, put into a world that may have it already."""
+    from simkit.motion.session import players
+
+    there = [scoped for scoped in players(sim) if scoped == Path(robot).stem]
+    if there:
+        message = f"SK-MOTION-010 the world has a robot {there[0]!r} already; leave --robot out"
+        raise InputError(message, "SK-MOTION-010")
+    return sim.spawn(robot)
 
 
 def _joints(names: Sequence[str]) -> str:

@@ -73,14 +73,16 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-CONTROL-003",
         "warning",
-        "a controllers' parameter file is empty, or has a word that is nearly `ros__parameters`",
+        "a controllers' parameter file is empty, declares no controller, or has a word that is nearly "
+        "`ros__parameters`",
         "ROS 2 wants `<node>: ros__parameters: ...`; without that word a file is read as ROS 1's",
         _robot(yaml="# to be written\n"),
     ),
     Code(
         "SK-CONTROL-004",
         "warning",
-        "a name comes twice: a key of a parameter file (the later counts), or a joint of `<ros2_control>` (the first)",
+        "a name comes twice: a key of a parameter file (the later counts), a joint of `<ros2_control>` (the first), or "
+        "one that another plugin drives too",
         "",
         _robot(yaml=_YAML.replace("joints: [elbow]", "joints: [elbow], joints: [elbow]")),
     ),
@@ -112,14 +114,14 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-CONTROL-008",
         "warning",
-        "`<ros2_control>` names a joint or sensor that the model does not have, or one that does not fit",
+        "`<ros2_control>` names a joint, sensor or element that there is not, or one that does not fit",
         "the closest name is given",
         _robot(_JOINT + '<joint name="ellbow"><command_interface name="position"/></joint>'),
     ),
     Code(
         "SK-CONTROL-009",
         "warning",
-        "a command interface that is neither position, velocity nor effort; it is left out",
+        "an interface of a joint that is neither position, velocity nor effort; it is left out",
         "",
         _robot(_JOINT.replace("<command", '<command_interface name="torque"/><command', 1)),
     ),
@@ -133,7 +135,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-CONTROL-011",
         "warning",
-        "a parameter of a controller that is not used",
+        "a parameter of a controller or of the manager that is not used",
         "the closest name is given",
         _robot(yaml=_YAML.replace("[elbow]", "[elbow], jionts: [elbow]")),
     ),
@@ -147,7 +149,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-CONTROL-013",
         "error, warning",
-        "a controller cannot be loaded: its type is not known, or no file declares it",
+        "a controller cannot be loaded: its type is missing or not known, or no file declares it",
         "the closest name is given",
         _robot(yaml=_YAML.replace(_TYPE, "position_controllers/JointGroupPositon")),
     ),
@@ -175,7 +177,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-CONTROL-017",
         "warning",
-        "the controller manager's rate is more than there are steps",
+        "the controller manager's rate is more than there are steps, or a controller's more than the manager's",
         "lower `update_rate`, or `<max_step_size>`",
         _robot(yaml=_YAML.replace("update_rate: 100", "update_rate: 20000")),
     ),

@@ -87,7 +87,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-MOTION-006",
         "warning",
-        "a key of a motion that is not used",
+        "a key of a motion, a setting beside the motions, or a joint in one, that is not used",
         "the closest one is given",
         _with("bend: {joints: [elbow], positions: [0.5], times_from_start: [1.0], mta: {name: Bend}}"),
     ),

@@ -103,8 +103,8 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SK-CONTROL-026",
-        "error",
-        "a gripper action controller names no joint",
+        "error, warning",
+        "a gripper action controller names no joint, or has no gains for the effort that it commands",
         "`joint: gripper_finger_joint`",
         _robot("position_controllers/GripperActionController", goal_tolerance="0.01"),
     ),

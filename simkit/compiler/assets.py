@@ -6,15 +6,18 @@ import hashlib
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import mujoco
 import numpy as np
 
 from simkit.compiler.meshes.files import Pixels, pixels_of
-from simkit.compiler.meshes.part import Floats, Ints
+from simkit.compiler.meshes.part import Floats, Ints, MeshPart
 
 AssetKey = tuple[str, str]
 """(kind, MuJoCo's name)."""
+
+_names: WeakKeyDictionary[MeshPart, dict[bool, str]] = WeakKeyDictionary()
 
 
 class Assets:
@@ -40,6 +43,16 @@ class Assets:
         if self._is_new("mesh", name):
             self._add_mesh(name, mesh_bytes(vertices, faces, uv))
         return name
+
+    def part(self, part: MeshPart, has_uv: bool) -> str:
+        """The triangles of a part as they are; its name is kept, since a part of the cache comes with every load."""
+        uv = part.uv if has_uv else None
+        names = _names.setdefault(part, {})
+        if has_uv not in names:
+            names[has_uv] = "mesh#" + _digest(part.vertices, part.faces, uv)
+        if self._is_new("mesh", names[has_uv]):
+            self._add_mesh(names[has_uv], mesh_bytes(part.vertices, part.faces, uv))
+        return names[has_uv]
 
     def _add_mesh(self, name: str, content: bytes) -> None:
         """A mesh by way of a file in memory: MuJoCo keeps what it made of a file and does not repeat that work.
@@ -142,11 +155,14 @@ def _material_name(*values: Any) -> str:
     return "material#" + _digest(*values) + ("#textured" if texture else "")
 
 
+_written = lru_cache(maxsize=64)(str)  # NumPy takes ten times as long to write a type as to hash it
+
+
 def _digest(*values: Any) -> str:
     digest = hashlib.sha1(usedforsecurity=False)
     for value in values:
         if isinstance(value, np.ndarray):
-            digest.update(f"{value.dtype}{value.shape}".encode())
+            digest.update(f"{_written(value.dtype)}{value.shape}".encode())
             digest.update(np.ascontiguousarray(value).data)
         else:
             digest.update(repr(value).encode())

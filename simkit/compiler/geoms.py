@@ -175,14 +175,20 @@ class GeomWriter:
             once(self.diagnostics, "note", "SK-MESH-013", text, visual.where)
             return
         look = self._drawn(visual, part, pixels if part.uv is not None else None)
-        vertices, faces, uv = part.vertices, part.faces, part.uv if self.assets.has_texture(look["material"]) else None
-        if uv is not None and visual.material is not None:
+        mesh = self._surface(visual, part, self.assets.has_texture(look["material"]))
+        self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
+
+    def _surface(self, visual: SceneVisual, part: MeshPart, is_textured: bool) -> str:
+        """The name of a part's triangles as the visual wears them."""
+        if visual.material is None or not (is_textured or visual.material.double_sided):
+            return self.assets.part(part, is_textured)
+        vertices, faces, uv = part.vertices, part.faces, part.uv if is_textured else None
+        if uv is not None:
             uv = 0.5 + (uv - 0.5) / visual.material.texture_scale
-        if visual.material is not None and visual.material.double_sided:
+        if visual.material.double_sided:
             faces = np.vstack([faces, faces[:, ::-1] + len(vertices)])
             vertices, uv = np.vstack([vertices, vertices]), None if uv is None else np.vstack([uv, uv])
-        mesh = self.assets.surface(vertices, faces, uv)
-        self._add(place, owner, visual.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, **look)
+        return self.assets.surface(vertices, faces, uv)
 
     def _drawn(self, visual: SceneVisual, part: MeshPart | None, pixels: Any) -> dict[str, Any]:
         """Settings of a drawn geom; `pixels` is the file's texture where it can be worn."""

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics
 from simkit.scene import SceneWorld
@@ -104,10 +105,16 @@ def set_extent(model: mujoco.MjModel) -> None:
         model.stat.extent = 1.0
         return
     centres, radii = data.geom_xpos[bounded], model.geom_rbound[bounded]
-    middle = np.median(centres, axis=0)
+    middle = _median(centres)
     distance = np.linalg.norm(centres - middle, axis=1) + radii
-    near = distance <= 20.0 * max(float(np.median(distance)), 0.5)
+    near = distance <= 20.0 * max(float(_median(distance)), 0.5)
     low = (centres - radii[:, None])[near].min(axis=0)
     high = (centres + radii[:, None])[near].max(axis=0)
     model.stat.center[:] = (low + high) / 2
     model.stat.extent = float(np.clip(np.linalg.norm(high - low) / 2, 0.5, 1000.0))
+
+
+def _median(values: npt.NDArray[np.float64]) -> Any:
+    """Along the first axis, as `np.median`, which brings the masked arrays along, 20 ms."""
+    ordered, half = np.sort(values, axis=0), len(values) // 2
+    return ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
+from simkit.control.hardware_words import bound, break_circle, initial, number, report_elements
 from simkit.control.interfaces import EFFORT, POSITION, VELOCITY
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.params import Params
@@ -112,8 +113,9 @@ def describe_hardware(scene: SceneModel, params: Params) -> list[ComponentDescri
     blocks = [*scene.controls, *params.all("ros2_control")]
     for block in blocks:
         block.mark_all_read()
+        report_elements(block, found)
     if blocks:
-        return _without_twins([_component(scene, block, found) for block in blocks], found)
+        return _without_circles(_without_twins([_component(scene, block, found) for block in blocks], found), found)
     if scene.transmissions:
         return [_of_transmissions(scene, found)]
     names = [joint.name for joint in scene.all_joints() if _is_drivable(joint)]
@@ -163,8 +165,8 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
         found.warning("SK-CONTROL-008", f"{message}; it is left out", element.where)
         return None
     words = _words(element)
-    commands = [_interface(one, found) for one in element.all("command_interface")]
-    states = [_interface(one, found) for one in element.all("state_interface")]
+    commands = [_interface(one, joints[name], found) for one in element.all("command_interface")]
+    states = [_interface(one, joints[name], found) for one in element.all("state_interface")]
     pids = {}
     for command in commands:
         plain = command.name.removesuffix("_pid")
@@ -172,11 +174,9 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
         if short and (command.name != plain or f"{short}_kp" in words):
             pids[plain] = _gains_of_joint(words, short, element, found)
     known = [command for command in commands if command.name.removesuffix("_pid") in ALL_THREE]
-    for command in commands:
-        if command not in known:
-            message = f"joint {name!r}: there is no command interface {command.name!r} here, there are {_listed()}"
-            near = did_you_mean(command.name, ALL_THREE)
-            found.warning("SK-CONTROL-009", f"{message}; it is left out", element.where, near)
+    _report_unknown(name, "command", [c.name for c in commands if c not in known], element, found)
+    _report_unknown(name, "state", [one.name for one in states if one.name not in ALL_THREE], element, found)
+    states = [one for one in states if one.name in ALL_THREE]
     leader = words.get("mimic", "")
     if leader and leader not in joints:
         message = f"joint {name!r} mimics {leader!r}, which model {scene.scoped!r} does not have"
@@ -189,13 +189,17 @@ def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescr
         element.where,
         pids,
         leader,
-        _number(words.get("multiplier", "1"), 1.0, element, found),
-        _number(words.get("offset", "0"), 0.0, element, found),
+        number(words.get("multiplier", "1"), 1.0, element, found),
+        number(words.get("offset", "0"), 0.0, element, found),
     )
 
 
-def _listed() -> str:
-    return ", ".join(ALL_THREE)
+def _report_unknown(joint: str, what: str, names: Iterable[str], element: Params, found: Diagnostics) -> None:
+    """Tells of interfaces that no joint has here."""
+    for name in names:
+        message = f"joint {joint!r}: there is no {what} interface {name!r} here, there are {', '.join(ALL_THREE)}"
+        near = did_you_mean(name, ALL_THREE)
+        found.warning("SK-CONTROL-009", f"{message}; it is left out", element.where, near)
 
 
 def _words(element: Params) -> dict[str, str]:
@@ -203,38 +207,30 @@ def _words(element: Params) -> dict[str, str]:
     return {one.attribute("name"): one.value for one in element.all("param")}
 
 
-def _number(text: str, default: float, element: Params, found: Diagnostics) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if math.isnan(value):
-        found.error("SK-PARAM-002", f"found {text!r}, allowed is a number", element.where)
-        return default
-    return value
-
-
-def _interface(element: Params, found: Diagnostics) -> InterfaceDescription:
+def _interface(element: Params, joint: SceneJoint, found: Diagnostics) -> InterfaceDescription:
     words = _words(element)
-    initial = words.get("initial_value", element.attribute("initial_value"))
+    first = words.get("initial_value", element.attribute("initial_value"))
+    name = element.attribute("name")
+    is_place = name == POSITION and element.name == "state_interface"  # the others' first values count for nothing
     return InterfaceDescription(
-        element.attribute("name"),
-        _number(words.get("min", "-inf") or "-inf", -math.inf, element, found),
-        _number(words.get("max", "inf") or "inf", math.inf, element, found),
-        _number(initial, math.nan, element, found) if initial else math.nan,
+        name,
+        bound(words.get("min", ""), -math.inf, element, found),
+        bound(words.get("max", ""), math.inf, element, found),
+        initial(first, joint, element, found) if is_place else math.nan,
     )
 
 
 def _gains_of_joint(words: dict[str, str], short: str, element: Params, found: Diagnostics) -> PidGains:
     """Gains as `<param>`s of a joint: `pos_kp`, `pos_ki`, `pos_kd`, `pos_max_integral_error`."""
 
-    def number(name: str, default: float) -> float:
+    def gain(name: str) -> float:
         text = words.get(f"{short}_{name}", "")
-        return _number(text, default, element, found) if text else default
+        return number(text, 0.0, element, found) if text else 0.0
 
-    i, most = number("ki", 0.0), number("max_integral_error", math.inf)
-    bound = abs(i * most) if i else 0.0
-    return PidGains(number("kp", 0.0), i, number("kd", 0.0), bound, -bound)
+    i, text = gain("ki"), words.get(f"{short}_max_integral_error", "")
+    most = number(text, math.inf, element, found, minimum=0.0) if text else math.inf
+    limit = abs(i * most) if i else 0.0
+    return PidGains(gain("kp"), i, gain("kd"), limit, -limit)
 
 
 def _sensor(element: Params) -> SensorDescription:
@@ -255,6 +251,23 @@ def _without_twins(components: list[ComponentDescription], found: Diagnostics) -
                 continue
             seen.add(joint.name)
             joints.append(joint)
+        kept.append(replace(component, joints=tuple(joints)))
+    return kept
+
+
+def _without_circles(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
+    """A joint that mimics itself, by others or at once, follows nothing."""
+    leaders = {joint.name: joint.leader for component in components for joint in component.joints}
+    kept = []
+    for component in components:
+        joints = []
+        for joint in component.joints:
+            circle = break_circle(joint.name, leaders)
+            if circle:
+                message = f"joint {joint.name!r} mimics {' which mimics '.join(map(repr, [*circle[1:], joint.name]))}"
+                found.warning("SK-CONTROL-008", f"{message}; it follows nothing", joint.where)
+                leaders[joint.name] = ""
+            joints.append(replace(joint, leader="") if circle else joint)
         kept.append(replace(component, joints=tuple(joints)))
     return kept
 

@@ -73,19 +73,17 @@ class _Now:
     all_helped: bool
     all_position: bool
     reach: Vector
-    rolls: Any
-    roll_ids: Any
-    roll_places: Any
-    roll_dofs: Any
-    roll_stiffness: Vector
+    rolling: list[tuple[int, int, int, int, float, float]]  # each one's place, addresses, stiffness and top speed
     slacks: list[float]
     catch_up: list[float]
-    fastest: list[float]
     of: Any  # the array of groups that `groups` are of
     groups: list[int]
     has_effort: bool
     has_integral: bool
     offset: Vector
+    period: float = 0.0  # that `least` and `most` are of: how far references may move in it
+    least: Any = None
+    most: Any = None
 
 
 @dataclass(slots=True)
@@ -279,6 +277,8 @@ class Drives:
         integral = self._integral[rows, modes].T
         rolls = np.flatnonzero(~is_position)
         stiffness = np.maximum(kp[rolls], 1e-12)
+        fastest = np.where(is_servo, self._fastest, 0.0)[rolls]
+        columns = rolls, self._ids[rolls], self._qpos[rolls], self._dofs[rolls], stiffness, fastest
         self._cached = _Now(
             modes=modes,
             nothing=np.zeros(len(modes)),
@@ -296,14 +296,9 @@ class Drives:
             all_helped=bool(is_helped.all()),
             all_position=bool(is_position.all()),
             reach=np.where(is_position, _PULL * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
-            rolls=rolls,
-            roll_ids=self._ids[rolls],
-            roll_places=self._qpos[rolls],
-            roll_dofs=self._dofs[rolls],
-            roll_stiffness=stiffness,
+            rolling=list(zip(*(column.tolist() for column in columns), strict=True)),
             slacks=(bounds[rolls, 1] / stiffness).tolist(),
             catch_up=(np.maximum(kv[rolls], 1e-12) / stiffness).tolist(),
-            fastest=np.where(is_servo, self._fastest, 0.0)[rolls].tolist(),
             of=self.groups,
             groups=self.groups[rolls].tolist(),
             has_effort=bool((modes >= EFFORT_MODE).any()),
@@ -352,33 +347,45 @@ class Drives:
         targets = self.targets
         if period <= 0.0:
             return targets, np.zeros_like(targets)
-        data, most = self._sim.physics.data, self._fastest * period
+        data = self._sim.physics.data
+        if now.period != period:
+            now.period, now.most = period, self._fastest * period
+            now.least = -now.most
         # what is blocked, or was put elsewhere, does not whip back: its reference waits where it pulls with all it has
         place, reach = data.qpos[self._qpos], now.reach
         targets = np.minimum(np.maximum(targets, place - reach), place + reach)
         move = np.minimum(np.maximum(wanted, self._ends[0]), self._ends[1])
         move -= targets
-        move = np.minimum(np.maximum(move, -most), most)
+        move = np.minimum(np.maximum(move, now.least), now.most)
         if now.all_position:
             self.targets = targets + move
             return targets, move / period
         led, speeds = self._roll(now, wanted, period)
-        rolls, rate, reference = now.rolls, move / period, targets
-        self.targets = targets + move
-        reference[rolls] = self.targets[rolls] = led
-        rate[rolls] = speeds
+        rate, ahead, reference = move / period, targets + move, targets
+        for (k, *_), place, speed in zip(now.rolling, led, speeds, strict=True):
+            reference[k] = ahead[k] = place
+            rate[k] = speed
+        self.targets = ahead
         return reference, rate
 
     def _roll(self, now: _Now, wanted: Vector, period: float) -> tuple[list[float], list[float]]:
-        """The same of those that are not driven by position, `now.rolls`."""
-        data, rolls = self._sim.physics.data, now.rolls
-        before = (data.ctrl[now.roll_ids] / now.roll_stiffness).tolist()
-        targets, speeds = self.targets[rolls].tolist(), wanted[rolls].tolist()
+        """The same of those that are not driven by position, `now.rolling`."""
+        data = self._sim.physics.data
+        control, place, turning = data.ctrl.item, data.qpos.item, data.qvel.item
+        target, speed = self.targets.item, wanted.item
+        before, led, speeds, places, turns = [], [], [], [], []
+        for k, actuator, at, dof, stiffness, top in now.rolling:  # a few, so number by number
+            was, fast = control(actuator) / stiffness, speed(k)
+            before.append(was)
+            led.append(target(k) + was * period)
+            speeds.append(top if fast > top else -top if fast < -top else fast)
+            places.append(place(at))
+            turns.append(turning(dof))
         return lead(
-            [target + was * period for target, was in zip(targets, before, strict=True)],
-            [min(max(speed, -top), top) for speed, top in zip(speeds, now.fastest, strict=True)],
-            places=data.qpos[now.roll_places].tolist(),
-            turning=data.qvel[now.roll_dofs].tolist(),
+            led,
+            speeds,
+            places=places,
+            turning=turns,
             before=before,
             slacks=now.slacks,
             catch_up=now.catch_up,

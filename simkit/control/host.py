@@ -57,6 +57,7 @@ class ControlHost(ModelPlugin):
         self.hardware.holds = params.boolean("hold_joints", True)
         self.read_rest(params)
         self.before_step_rate = self.read_rate(params, builder)
+        self._report_driven(builder)
         self.hardware.prepare(builder, self.name, self.read_pids())
 
     # ------------------------------------------------------------------ what the file says
@@ -91,15 +92,36 @@ class ControlHost(ModelPlugin):
         if entry is not None and "pid_gains" in (entry.below or {}):
             block = entry.block(self.name, self.params.diagnostics).block("pid_gains")
             for interface in (POSITION, VELOCITY):
-                of_joints = block.block(interface)
-                for gains in [of_joints.block(one.name) for one in of_joints.children]:
-                    if gains.name not in found:
-                        near = did_you_mean(gains.name, found)
-                        message = f"pid_gains names joint {gains.name!r}, which the hardware does not have"
-                        self.params.diagnostics.warning("SK-CONTROL-008", message, gains.where, near)
-                        continue
-                    found[gains.name][interface] = read_gains(gains)
+                for joint, gains in self.gains_of_joints(block.block(interface)).items():
+                    found.setdefault(joint, {})[interface] = gains
+            block.report_unread("SK-CONTROL-011", "pid_gains")
         return {joint: pids for joint, pids in found.items() if pids}
+
+    def gains_of_joints(self, block: Params) -> dict[str, PidGains]:
+        """Gains in a block by joint; a joint that the hardware does not have is told."""
+        from simkit.control.parameter_block import ParameterBlock
+
+        found = {}
+        forms = block.forms if isinstance(block, ParameterBlock) else {}
+        for name, (_, where) in forms.items():
+            gains = block.block(name)
+            if name in self.hardware.joints:
+                found[name] = read_gains(gains)
+                continue
+            gains.mark_all_read()
+            message = f"pid_gains names joint {name!r}, which the hardware does not have"
+            near = did_you_mean(name, self.hardware.joints)
+            self.params.diagnostics.warning("SK-CONTROL-008", message, where, near)
+        return found
+
+    def _report_driven(self, builder: SpecBuilder) -> None:
+        """Tells of joints that another plugin drives too."""
+        driven = {ref.joint: ref.owner for record in builder.records.values() for ref in record.actuators}
+        for joint in self.hardware.joints.values():
+            if joint.command_interfaces and joint.scoped in driven:
+                message = f"joint {joint.name!r} is driven by plugin {driven[joint.scoped]!r} already: both push it"
+                hint = "leave one of the two plugins out, or the joint out of <ros2_control>"
+                self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
 
     def _read_files(self, params: Params, builder: SpecBuilder) -> Iterator[ParameterFile]:
         from simkit.control.parameter_files import read_parameter_file
@@ -175,7 +197,12 @@ class ControlHost(ModelPlugin):
         """Everything it keeps can be copied: there is no need to try."""
 
     def before_step(self) -> None:
-        self.manager.update(self.sim.time_ns)
+        try:
+            self.manager.update(self.sim.time_ns)
+        except KeyError:
+            if self.scoped.partition("::")[0] in self.sim.models:
+                raise
+            # who heard of it has removed the robot meanwhile: nothing is left to be commanded
 
     def get_state(self) -> dict[str, Any]:
         state = super().get_state()

@@ -16,6 +16,14 @@ VELOCITY: Final = "velocity"
 EFFORT: Final = "effort"
 
 
+def span(places: Sequence[int]) -> Any:
+    """Places of an array as an index: a slice where they follow on each other, which is the quickest."""
+    first, count = (places[0], len(places)) if len(places) else (0, 0)
+    if count and list(places) == list(range(first, first + count)):
+        return slice(first, first + count)
+    return np.array(places, dtype=np.intp)
+
+
 class InterfaceTable:
     """All interfaces of one direction, in one array.
 
@@ -63,8 +71,10 @@ class Interfaces:
     def __init__(self, table: InterfaceTable, names: Sequence[str]) -> None:
         self._table = table
         self.names = tuple(names)
-        self._where = np.array([table.index(name) for name in names], dtype=np.intp)
-        self._wanted = frozenset(self._where.tolist())
+        places = [table.index(name) for name in names]
+        self._wanted = frozenset(places)
+        self._where = span(places)
+        self._is_view = isinstance(self._where, slice)
 
     def __len__(self) -> int:
         return len(self.names)
@@ -79,7 +89,7 @@ class Interfaces:
         if table.late and not table.late_places.isdisjoint(self._wanted):
             table.catch_up(self._wanted)
         found: Vector = table.values[self._where]
-        return found
+        return found.copy() if self._is_view else found
 
     @values.setter
     def values(self, values: Vector | Sequence[float]) -> None:

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from simkit.control.hardware import Hardware
-from simkit.control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.control.interfaces import EFFORT, POSITION, VELOCITY, span
 from simkit.control.pids import Pids
 from simkit.control.trajectory import Setpoint
 from simkit.params import Params
@@ -38,6 +38,7 @@ class JointGroup:
         commanded_joints: those it commands, by the names that their command interfaces have.
         commands, states: interfaces by which it commands and measures.
         places: of the commanded joints among `joints`.
+        span: the same, as the quickest index.
         turning: which turn without end.
         is_closed_loop: whether commands depend on what is measured, by PIDs: velocity alone or effort alone.
         compared: shape (3, 1): 1 for what is both commanded and measured.
@@ -51,6 +52,7 @@ class JointGroup:
     turning: Vector
     is_closed_loop: bool
     compared: Vector
+    span: Any
 
     @classmethod
     def read(
@@ -87,7 +89,7 @@ class JointGroup:
         velocities = VELOCITY in measured and (VELOCITY in by or EFFORT in by)
         accelerations = ACCELERATION in measured and ACCELERATION in by
         compared = np.array([[1.0], [float(velocities)], [float(accelerations)]])
-        return cls(joints, commanded, by, measured, places, turning, is_closed, compared)
+        return cls(joints, commanded, by, measured, places, turning, is_closed, compared, span(places.tolist()))
 
     def __deepcopy__(self, memo: dict[int, Any]) -> JointGroup:
         return self

@@ -53,7 +53,9 @@ class Loaded:
     """A controller with where it stands.
 
     Attributes:
-        due: its number of updates of the manager until the next of its own.
+        controller: itself.
+        type: the name that the file gives its class.
+        state: of its life cycle.
         last: simulated time of its last update [ns].
     """
 
@@ -89,23 +91,25 @@ class ControllerManager:
         self.is_ros_1 = False
         self._last_ns = 0
         self._ends: dict[str, Ends] = {}
-        self._at_work: list[Loaded] | None = None  # the active ones in their order; None after a change
+        # the active ones in their order; None after a change
+        self._at_work: list[tuple[Loaded, Controller]] | None = None
 
     # ------------------------------------------------------------------ what the files say
+
+    @property
+    def node(self) -> str:
+        """Full name of the node whose parameters declare the controllers: in ROS 1 that is the robot's namespace."""
+        return self.namespace if self.is_ros_1 else f"{self.namespace}/{self.name}"
 
     def declared(self) -> dict[str, str]:
         """Controller -> type, as the files declare them, in their order."""
         found: dict[str, str] = {}
-        own = self.files.of_node(self.namespace if self.is_ros_1 else f"{self.namespace}/{self.name}")
+        own = self.files.of_node(self.node)
         for name, entry in (own.below or {}).items() if own is not None else ():
             kind = (entry.below or {}).get("type")
             if kind is not None and kind.text:
                 found[name] = kind.text
         return found
-
-    def type_of(self, name: str) -> str:
-        """The type that the files declare for a controller; empty where none does."""
-        return self.declared().get(name, "")
 
     def _entry(self, name: str) -> Entry | None:
         return self.files.of_node(f"{self.namespace}/{name}")
@@ -123,7 +127,7 @@ class ControllerManager:
         if name in self.controllers:
             return f"a controller named '{name}' was already loaded inside the controller manager"
         entry = self._entry(name)
-        kind = type_name or self.type_of(name)
+        kind = type_name or self.declared().get(name, "")
         if not kind:
             return f"the 'type' param was not defined for '{name}'"
         cls = controller_kinds().get(kind)
@@ -314,7 +318,7 @@ class ControllerManager:
         self._diagnostics = None
 
     def _where(self, name: str) -> Where:
-        own = self.files.of_node(self.namespace if self.is_ros_1 else f"{self.namespace}/{self.name}")
+        own = self.files.of_node(self.node)
         entry = (own.below or {}).get(name) if own is not None else None
         return self.plugin.where if entry is None else entry.where
 
@@ -322,9 +326,8 @@ class ControllerManager:
         """Reads the hardware, updates the active controllers, writes the commands."""
         self.hardware.read()
         if self._at_work is None:
-            self._at_work = [loaded for loaded in self.controllers.values() if loaded.state == "active"]
-        for loaded in self._at_work:
-            controller = loaded.controller
+            self._at_work = [(c, c.controller) for c in self.controllers.values() if c.state == "active"]
+        for loaded, controller in self._at_work:
             if controller.update_rate and not self._is_due(loaded, now_ns):
                 continue
             if loaded.state == "active":  # still: others may have switched it

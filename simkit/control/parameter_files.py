@@ -6,6 +6,7 @@ the parameters themselves below the names of namespaces. Which of the two a file
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -84,11 +85,6 @@ class Entry:
         return sum(one.leaves() for one in inside) if inside else 1
 
 
-def alone(name: str, entry: Entry, diagnostics: Diagnostics) -> ParameterBlock:
-    """A block with that entry alone in it, whose form is looked at as it is read."""
-    return Entry(entry.where, below={name: entry}).block("parameters", diagnostics)
-
-
 @dataclass(slots=True)
 class ParameterFile:
     """One file as read.
@@ -139,9 +135,13 @@ class ParameterFiles:
 
 def matches(pattern: str, name: str) -> bool:
     """Whether a node's full name fits a key of a parameter file: `*` is one part of it, `**` any number of them."""
+    return _expression(pattern).fullmatch(name.strip("/")) is not None
+
+
+@functools.lru_cache(maxsize=1024)
+def _expression(pattern: str) -> re.Pattern[str]:
     parts = [".*" if p == "**" else "[^/]*" if p == "*" else re.escape(p) for p in pattern.strip("/").split("/")]
-    expression = "/".join(parts).replace(".*/", "(.*/)?")
-    return re.fullmatch(expression, name.strip("/")) is not None
+    return re.compile("/".join(parts).replace(".*/", "(.*/)?"))
 
 
 def read_parameter_file(path: Path, diagnostics: Diagnostics) -> ParameterFile | None:

@@ -111,17 +111,33 @@ def frame_pose(sim: Simulation, model: str, name: str, others: Mapping[str, Pose
     Raises:
         InputError: there is no such frame; names the closest.
     """
-    name = name.lstrip("/")
-    if name in _WORLD:
+    if name.lstrip("/") in _WORLD:
         return IDENTITY
-    if others and name in others:
-        return others[name]
+    if others and name.lstrip("/") in others:
+        return others[name.lstrip("/")]
+    link, offset = frame_link(sim, model, name, (*_WORLD, *(others or ())))
+    return sim.link(link).pose @ offset
+
+
+def frame_link(sim: Simulation, model: str, name: str, others: Sequence[str] = ()) -> tuple[str, Pose]:
+    """The link that a frame is fixed to, by its scoped name, and where the frame is on it.
+
+    Args:
+        sim: the simulation.
+        model: scoped name of the model whose frames come first.
+        name: as in `frame_pose`.
+        others: what else it may have been meant for.
+
+    Raises:
+        InputError: there is no such frame; names the closest.
+    """
+    name = name.lstrip("/")
     models = [*(m for m in sim.models.values() if m.scoped == model), *sim.models.values()]
     names: list[str] = []
     for scene in (handle.scene for handle in models):
         for link in scene.all_links():
             if name in (link.name, link.scoped):
-                return sim.link(link.scoped).pose
+                return link.scoped, IDENTITY
             names.append(link.name)
     for scene in (handle.scene for handle in models):
         found = _sensor_frame(sim, scene, name, names)
@@ -129,19 +145,27 @@ def frame_pose(sim: Simulation, model: str, name: str, others: Mapping[str, Pose
             return found
     from simkit.diagnostics import did_you_mean
 
-    near = did_you_mean(name, dict.fromkeys([*names, *_WORLD, *(others or ())]))
+    near = did_you_mean(name, dict.fromkeys([*names, *others]))
     raise InputError(f"there is no frame {name!r}{near and '; ' + near}")
 
 
-def _sensor_frame(sim: Simulation, scene: Any, name: str, names: list[str]) -> Pose | None:
+def is_turned(sim: Simulation, link: str, joint: str) -> bool:
+    """Whether a link is what a joint turns, or fixed to that, or carried by it; both by their scoped names."""
+    parents, body = sim.mj_model.body_parentid, int(sim.names.link(link).body)
+    turning = int(sim.mj_model.jnt_bodyid[sim.mj_model.dof_jntid[sim.names.joint(joint).dofs[0]]])
+    while body > 0 and body != turning:
+        body = int(parents[body])
+    return body == turning
+
+
+def _sensor_frame(sim: Simulation, scene: Any, name: str, names: list[str]) -> tuple[str, Pose] | None:
     for described in scene.all_sensors():
         if described.on_joint or not sim.has_sensor(described.scoped):
             continue
         sensor = sim.sensor(described.scoped)
         optical = sensor.optical_frames()
         if name in (sensor.frame_id, *optical):
-            pose: Pose = sim.link(described.parent).pose @ sensor.scene.pose_link @ optical.get(name, IDENTITY)
-            return pose
+            return described.parent, sensor.scene.pose_link @ optical.get(name, IDENTITY)
         names += [sensor.frame_id, *optical]
     return None
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from simkit import msgs
+from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.pose import Vector
 
@@ -23,13 +24,23 @@ def numbers(params: Params, name: str, default: Sequence[float]) -> list[float]:
     return list(default)
 
 
-def names(params: Params, name: str) -> list[str]:
-    """The texts of a list; one that comes twice is an error, as two claims of one interface are."""
-    found = params.all(name)
+def names(params: Params, name: str, *, required: bool = False) -> list[str]:
+    """The texts of a list; one that comes twice is an error, as two claims of one interface are.
+
+    Args:
+        params: where it stands.
+        name: of the list.
+        required: whether it is an error that there is none, or nothing in it.
+    """
+    before = params.diagnostics.error_count
+    found = [one for one in params.all(name) if one.value or one.children]
     for k, one in enumerate(found):
         if one.value in [other.value for other in found[:k]]:
             message = f"{one.value!r} comes twice in {name!r}, allowed is each name once"
             params.diagnostics.error("SK-PARAM-002", message, one.where)
+    if required and not found and params.diagnostics.error_count == before:
+        near = did_you_mean(name, [one.name for one in params.children if one.name != name])
+        params.error("SK-PARAM-001", f"<{params.name}> needs <{name}>: a list of names", near)
     return list(dict.fromkeys(one.value for one in found))
 
 

@@ -46,13 +46,22 @@ def lead(
     Returns:
         References and their speeds.
     """
-    lags, rooms = [], []
-    for reference, speed, place, slack in zip(led, speeds, places, slacks, strict=True):
-        slack = min(slack, _FARTHEST)
-        width = max(slack, _WAIT * abs(speed))
+    ways, lags, rooms, is_free = [], [], [], True
+    for k, speed in enumerate(speeds):
+        place, slack = places[k], slacks[k]
+        slack = slack if slack < _FARTHEST else _FARTHEST
+        width = _WAIT * (speed if speed > 0.0 else -speed)
+        width = width if width > slack else slack
         most = slack + width
-        lags.append(min(max(reference - place, -most), most))
+        lag = led[k] - place
+        lag = most if lag > most else -most if lag < -most else lag
+        lags.append(lag)
         rooms.append((most, width))
+        ways.append(place + lag)
+        if speed == 0.0 or most - (lag if speed > 0.0 else -lag) < width:
+            is_free = False
+    if is_free:  # the common case: all move, and can follow
+        return ways, list(speeds)
     is_standing = not any(speeds) and not any(before)
     if 0.0 in speeds:
         across = lags if is_standing else _across(lags, before, groups)
@@ -63,8 +72,8 @@ def lead(
                 # a load lets it sag no faster than this, so what moves faster has not come to rest
                 elif abs(turning[k]) > min(slacks[k], _SAG) / catch_up[k]:
                     lags[k] = 0.0
-    led = [place + lag for place, lag in zip(places, lags, strict=True)]
-    return led, list(speeds) if is_standing else _paced(speeds, lags, rooms, groups)
+    ways = [place + lag for place, lag in zip(places, lags, strict=True)]
+    return ways, list(speeds) if is_standing else _paced(speeds, lags, rooms, groups)
 
 
 def _paced(

@@ -10,7 +10,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from simkit.pose import Vector
 
 SECOND: Final = 1_000_000_000
 _TURN: Final = 2.0 * np.pi
+_AHEAD: Final = 32
+"""So many setpoints are worked out at once: arrays of a few numbers each take as long as one of them all."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,8 +39,7 @@ class TrajectoryPoint:
     efforts: Vector | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Setpoint:
+class Setpoint(NamedTuple):
     """Where the joints are to be at one moment.
 
     Attributes:
@@ -67,7 +68,9 @@ class Spline:
             last: after the last piece.
         """
         self.times, self.last = tuple(times), last
-        self._pieces = tuple(_with_derivatives(piece) for piece in pieces)
+        self._begins = np.array(self.times[:-1], np.int64)
+        self._table = _with_derivatives(pieces)
+        self._ahead: dict[int, Vector] = {}
         self._efforts: tuple[tuple[Vector, Vector], ...] = ()
         self._setpoints: tuple[Vector, ...] = ()  # of a spline that does not interpolate
 
@@ -79,18 +82,44 @@ class Spline:
         """When it is over [ns since the start]."""
         return self.times[-1]
 
-    def at(self, now: int) -> Setpoint:
-        """Where the joints are to be `now` [ns since the start]."""
+    def at(self, now: int, step: int = 0) -> Setpoint:
+        """Where the joints are to be at a time.
+
+        Args:
+            now: [ns since the start].
+            step: how much later the next time is going to be asked for [ns]; 0 where nobody knows. It changes no bit.
+        """
+        motion = self._ahead.get(now)
+        if motion is not None and not self._efforts:
+            return Setpoint(motion)
         if now >= self.times[-1]:
             return self.last
+        if self._efforts or self._setpoints:
+            return self._with_effort(now)
+        if step <= 0:
+            return Setpoint(self._motions(np.array([now]))[0])
+        times = np.arange(now, min(now + _AHEAD * step, self.times[-1]), step)
+        self._ahead = dict(zip(times.tolist(), self._motions(times), strict=True))
+        return Setpoint(self._ahead[now])
+
+    def _motions(self, times: Any) -> Vector:
+        """Shape (times, 3, n); number by number, so that the same time has the same bits among whatever others."""
+        pieces = np.maximum(np.searchsorted(self._begins, times, "right") - 1, 0)
+        t = (np.maximum(times - self._begins[pieces], 0) / SECOND)[:, None]
+        table = self._table[:, pieces]
+        motions: Vector = table[-1]
+        for coefficients in table[-2::-1]:
+            motions = motions * t + coefficients
+        return motions.reshape(len(times), 3, -1)
+
+    def _with_effort(self, now: int) -> Setpoint:
+        """The same where there are efforts, or no interpolation."""
         i = max(bisect_right(self.times, now) - 1, 0)
         if self._setpoints:
             return Setpoint(self._setpoints[i], self._effort(i, 1.0))
         t = max(now - self.times[i], 0) / SECOND
-        efforts = self._effort(i, t * SECOND / (self.times[i + 1] - self.times[i])) if self._efforts else None
-        t2 = t * t
-        powers = np.array((1.0, t, t2, t2 * t, t2 * t2, t2 * t2 * t))
-        return Setpoint((powers @ self._pieces[i]).reshape(3, -1), efforts)
+        effort = self._effort(i, t * SECOND / (self.times[i + 1] - self.times[i]))
+        return Setpoint(self._motions(np.array([now]))[0], effort)
 
     def _effort(self, i: int, share: float) -> Vector | None:
         if not self._efforts:
@@ -246,11 +275,15 @@ def _piece(a: TrajectoryPoint, b: TrajectoryPoint) -> Vector:
     return piece
 
 
-def _with_derivatives(piece: Vector) -> Vector:
-    """Coefficients (6, 3 n) of a piece (6, n), of its first and of its second derivative."""
-    degrees = np.arange(6.0)[:, None]
-    table = np.zeros((6, 3, piece.shape[1]))
-    table[:, 0] = piece
-    table[:5, 1] = (degrees * piece)[1:]
-    table[:4, 2] = (degrees * (degrees - 1.0) * piece)[2:]
-    return table.reshape(6, -1)
+def _with_derivatives(pieces: Sequence[Vector]) -> Vector:
+    """Coefficients (powers, pieces, 3 n) of pieces (6, n), of their first and of their second derivatives."""
+    if not len(pieces):
+        return np.zeros((1, 0, 0))
+    stacked, degrees = np.stack(pieces, 1), np.arange(6.0)[:, None, None]
+    table = np.zeros((6, len(pieces), 3, stacked.shape[2]))
+    table[:, :, 0] = stacked
+    table[:5, :, 1] = (degrees * stacked)[1:]
+    table[:4, :, 2] = (degrees * (degrees - 1.0) * stacked)[2:]
+    used = np.flatnonzero(stacked.any(axis=(1, 2)))
+    highest = int(used[-1]) if len(used) else 0
+    return table[: highest + 1].reshape(highest + 1, len(pieces), -1)

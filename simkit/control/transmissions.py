@@ -31,6 +31,7 @@ _KINDS: Final = {
     "DifferentialTransmission": "differential",
     "FourBarLinkageTransmission": "four_bar_linkage",
 }
+_LEAST: Final = 1e-12  # of a reduction; its inverse is the most
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,10 +63,16 @@ def laws(transmissions: Iterable[Transmission], joints: Sequence[str], found: Di
     made = []
     for transmission in transmissions:
         law = _law(transmission)
+        if law is None and transmission.kind not in _KINDS.values():
+            message = f"transmission {transmission.name!r} is of type {transmission.type or transmission.kind!r}"
+            message += f", which is not known; there are {', '.join(_KINDS)}; its actuators are left out"
+            near = did_you_mean(transmission.type.rpartition("/")[2], _KINDS)
+            found.warning("SK-CONTROL-008", message, transmission.where, near)
+            continue
         if law is None:
             counts = f"{len(transmission.joints)} joint(s) and {len(transmission.actuators)} actuator(s)"
             message = f"transmission {transmission.name!r} ({transmission.type or 'of no type'}) has {counts}"
-            hint = "simple has one of each; differential and four-bar linkage have two of each; no reduction is 0"
+            hint = "simple has one of each; the others have two of each, all different; no reduction is 0 or nearly 0"
             found.warning("SK-CONTROL-008", f"{message}; its actuators are left out", transmission.where, hint)
             continue
         missing = [joint for joint in law.joints if joint not in joints]
@@ -86,7 +93,9 @@ def _law(transmission: Transmission) -> Law | None:
     joints, actuators = _by_role(transmission.joints), _by_role(transmission.actuators)
     n_j, n_a = [end.reduction for end in joints], [end.reduction for end in actuators]
     two = len(joints) == len(actuators) == 2
-    if 0.0 in n_j or 0.0 in n_a:
+    if any(not _LEAST <= abs(n) <= 1.0 / _LEAST for n in (*n_j, *n_a)):
+        return None
+    if any(len({end.name for end in ends}) != len(ends) for ends in (joints, actuators)):
         return None
     if transmission.kind == "simple" and len(joints) == len(actuators) == 1:
         motion = np.array([[n_a[0] * n_j[0]]])

@@ -87,7 +87,9 @@ def rows(flat: Sequence[float], width: int) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(flat[k : k + width]) for k in range(0, len(flat), width))
 
 
-def faults(joints: Sequence[str], flat: Sequence[float], times: Sequence[float]) -> str:
+def faults(
+    joints: Sequence[str], flat: Sequence[float], times: Sequence[float], velocities: Sequence[float] = ()
+) -> str:
     """What makes these no motion; empty for nothing."""
     if not joints:
         return "it names no joint"
@@ -99,7 +101,7 @@ def faults(joints: Sequence[str], flat: Sequence[float], times: Sequence[float])
     if len(flat) != len(joints) * len(times):
         counts = f"{len(joints)} joints at {len(times)} times"
         return f"it has {len(flat)} positions, {counts} need {len(joints) * len(times)}"
-    bad = next((v for v in (*flat, *times) if not math.isfinite(v)), None)
+    bad = next((v for v in (*flat, *times, *velocities) if not math.isfinite(v)), None)
     if bad is not None:
         return f"it has a number that is not finite ({bad})"
     if times[0] < 0:

@@ -11,6 +11,7 @@ from simkit.control.host import ControlHost
 
 if TYPE_CHECKING:
     from simkit.runtime import Model, Simulation
+    from simkit.scene.model import Mimic
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,10 +52,16 @@ def _is_of(scoped: str, robot: str) -> bool:
 def unmoved(robot: Model, joints: Sequence[str], movers: Sequence[Mover]) -> list[str]:
     """Which of these joints no active controller moves, itself or by a joint that they mimic."""
     moved = {joint for mover in movers for joint in mover.joints}
-    return [joint for joint in joints if joint not in moved and _leader(robot, joint) not in moved]
+    laws = {joint: mimic_of(robot, joint) for joint in joints if joint not in moved}
+    return [joint for joint, law in laws.items() if law is None or leader_of(law) not in moved]
 
 
-def _leader(robot: Model, joint: str) -> str:
+def mimic_of(robot: Model, joint: str) -> Mimic | None:
+    """How a joint follows another one; None where it follows none."""
     axes = robot.joints[joint].scene.axes if joint in robot.joints else ()
-    mimic = axes[0].mimic if axes else None
-    return "" if mimic is None else mimic.joint.rpartition("::")[2]
+    return axes[0].mimic if axes else None
+
+
+def leader_of(law: Mimic) -> str:
+    """The plain name of the joint that is followed."""
+    return law.joint.rpartition("::")[2]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.motion.limits import beyond_limits, speed_limits
 from simkit.motion.motions import Motion
-from simkit.motion.movers import Mover, unmoved
+from simkit.motion.movers import Mover, leader_of, mimic_of, unmoved
 from simkit.motion.timing import SHORTEST, Course, approach_time, course
 from simkit.pose import Vector
 
@@ -26,6 +26,8 @@ APPROACH_SPEED: Final = 0.5
 _STEPS: Final = {"prismatic": 0.005}  # [m] between two places that are looked at
 _STEP: Final = 0.03  # [rad]
 _THERE: Final = 1e-3  # [rad or m] from the first point, where no way to it is needed
+_TOGETHER: Final = 1e-3  # [rad or m] that a joint may be wanted off the place that it has by the one that it follows
+_LONGEST: Final = 2.0**31 - 1.0  # [s] that the time of a trajectory's point can tell
 
 
 class Refused(Exception):
@@ -81,8 +83,12 @@ def plan(
     beyond = beyond_limits(motion, joints)
     if beyond:
         raise Refused(OTHER_ERROR, f"motion {motion.key!r} leaves the limits: {'; '.join(beyond)}")
+    check_followers(robot, motion)
     start = np.array([float(joint.position) for joint in joints.values()])
     found = course_from(start, motion, speed_limits(motion, joints), approach)
+    if not found.duration <= _LONGEST:
+        said = f"motion {motion.key!r} would take {found.duration:g} s, allowed is up to {_LONGEST:.0f} s"
+        raise Refused(OTHER_ERROR, said)
     if looks_around and not approach.free_joints.issuperset(motion.joints):
         look_around(sim, robot, motion, found, joints, approach.free_joints)
     return found
@@ -101,6 +107,34 @@ def joints_of(robot: Model, names: Sequence[str], movers: Sequence[Mover]) -> di
         verb = "are" if plural else "is"
         raise Refused(MISSING_CONTROLLER, f"Joint{plural} {listed} {verb} not claimed by any active controller")
     return {name: robot.joints[name] for name in names}
+
+
+def with_leaders(robot: Model, motion: Motion) -> Motion:
+    """A motion with the joints that lead those which it names: a joint that follows another one moves by that one."""
+    for name in motion.joints:
+        law = mimic_of(robot, name)
+        if law is None or leader_of(law) in motion.joints or leader_of(law) not in robot.joints or not law.multiplier:
+            continue
+        column = motion.joints.index(name)
+        ratio, rows = law.multiplier, motion.positions
+        places = tuple((*row, (row[column] - law.offset) / ratio + law.reference) for row in rows)
+        speeds = tuple((*row, row[column] / ratio) for row in motion.velocities)
+        motion = replace(motion, joints=(*motion.joints, leader_of(law)), positions=places, velocities=speeds)
+    return motion
+
+
+def check_followers(robot: Model, motion: Motion) -> None:
+    """Raises Refused where a joint that follows another one is to be elsewhere than that one takes it."""
+    for column, name in enumerate(motion.joints):
+        law = mimic_of(robot, name)
+        if law is None or leader_of(law) not in motion.joints:
+            continue
+        lead = motion.joints.index(leader_of(law))
+        for time, row in zip(motion.times, motion.positions, strict=True):
+            there = law.multiplier * (row[lead] - law.reference) + law.offset
+            if abs(row[column] - there) > _TOGETHER:
+                wanted = f"{name} is to be at {row[column]:g} at {time:g} s, but it follows {leader_of(law)}"
+                raise Refused(OTHER_ERROR, f"motion {motion.key!r}: {wanted}, which takes it to {there:g}")
 
 
 def course_from(start: Vector, motion: Motion, limits: Vector, approach: Approach) -> Course:

@@ -13,7 +13,17 @@ from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.motion.limits import beyond_limits, speed_limits
 from simkit.motion.motions import Motion, motion_of_message
 from simkit.motion.movers import movers_of
-from simkit.motion.plan import APPROACH_SPEED, OTHER_ERROR, Approach, Refused, course_from, joints_of, plan, trajectory
+from simkit.motion.plan import (
+    APPROACH_SPEED,
+    OTHER_ERROR,
+    Approach,
+    Refused,
+    course_from,
+    joints_of,
+    plan,
+    trajectory,
+    with_leaders,
+)
 from simkit.motion.reading import MotionFile, read_motions
 from simkit.motion.services import offer_services
 from simkit.motion.timing import STEEPEST
@@ -106,9 +116,12 @@ class PlayMotion(ModelPlugin):
         self.robot = parent
         self._runs: list[_Run] = []
         named = [n for n in parent.joints if any(word in n for word in _GRIPPING)]
-        self._approach = Approach(
-            self._speed, self._shortest, frozenset(named if self._free_joints is None else self._free_joints)
-        )
+        free = named if self._free_joints is None else self._free_joints
+        for name in free:
+            if name not in parent.joints:
+                message = f"exclude_from_planning_joints: {name!r} is no joint of {parent.name!r}"
+                params.diagnostics.warning("SK-MOTION-006", message, self.where, did_you_mean(name, parent.joints))
+        self._approach = Approach(self._speed, self._shortest, frozenset(free))
         for motion in self.known.values():
             self._check(motion, params.diagnostics)
         self._find_names()
@@ -201,6 +214,7 @@ class PlayMotion(ModelPlugin):
 
     def _play(self, goal: GoalHandle, motion: Motion) -> None:
         movers = movers_of(self.sim, self.robot)
+        motion = with_leaders(self.robot, motion)
         needed = [mover for mover in movers if set(mover.joints) & set(motion.joints)]
         names = tuple(mover.name for mover in needed)
         try:
@@ -218,10 +232,10 @@ class PlayMotion(ModelPlugin):
         until = self.sim.time_ns + round((2.0 * found.duration + 1.0) * 1e9)
         run = _Run(goal, motion.key, names, until)
         self._runs.append(run)
-        for k, mover in enumerate(needed):
+        for mover in needed:
             request = trajectory(found, motion, mover, self.robot)
-            heard = self._on_feedback if k == 0 else None
-            run.parts[mover.name] = self.sim.action_table.send(mover.action, request, heard, self._on_part_done)
+            send = self.sim.action_table.send
+            run.parts[mover.name] = send(mover.action, request, self._on_feedback, self._on_part_done)
 
     def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
         """Raises Refused while another motion is being played; in ROS 1 only one with the same controllers counts."""
@@ -270,14 +284,17 @@ class PlayMotion(ModelPlugin):
         self._fail(run, _OF_FOLLOWING.get(code, OTHER_ERROR), text)
 
     def _on_feedback(self, feedback: Any) -> None:
-        """The first controller of a motion says how far it is."""
+        """A controller says how far it is; the first of those that are still at it is passed on."""
         now = self.sim.time_ns
         for run in tuple(self._runs):
+            first = next(iter(run.parts.values()), None)
             if now > run.until_ns:
                 self._fail(run, OTHER_ERROR, "Timeout exceeded while the motion was played")
+            elif first is None or first.feedback is not feedback:
+                continue
             elif _is_ros_1(run.goal):
                 run.goal.publish_feedback(None)
-            elif any(part.feedback is feedback for part in run.parts.values()):
+            else:
                 sec, nanosec = divmod(now, 1_000_000_000)
                 run.goal.publish_feedback({"current_time": {"sec": sec, "nanosec": nanosec}})
 

@@ -7,6 +7,7 @@ another) and `times_from_start`; in ROS 1's `joints` and `points`, each with `po
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -25,6 +26,7 @@ _PLANNERS: Final = ("motion_planner", "approach_planner")
 _SPEEDS: Final = ("approach_velocity", "skip_planning_approach_vel", "approach_vel")
 _SHORTEST: Final = ("approach_min_duration",)
 _EXCLUDED: Final = ("exclude_from_planning_joints",)
+_SETTINGS: Final = (*_SPEEDS, *_SHORTEST, *_EXCLUDED)
 
 
 @dataclass(slots=True)
@@ -77,8 +79,10 @@ def _read(path: Path, _stamp: tuple[int, ...]) -> tuple[MotionFile, tuple[Diagno
                 _read_all(entry, found, said)
             elif name in _PLANNERS:
                 _read_planner(entry, found, said)
-            elif name in (*_SPEEDS, *_SHORTEST, *_EXCLUDED):
+            elif name in _SETTINGS:
                 _read_planner(Entry(block.where, below={name: entry}), found, said)
+            elif near := did_you_mean(name, ("motions", *_PLANNERS, *_SETTINGS)):
+                said.warning("SK-MOTION-006", f"{name!r} is not used", entry.where, near)
     if not found.motions and not said.has_errors:
         hint = "motions stand in a block `motions` below the name of a node"
         said.warning("SK-MOTION-003", f"{path.name} has no motion that can be played", Where(str(path)), hint)
@@ -115,21 +119,38 @@ def _motion(key: str, entry: Entry, diagnostics: Diagnostics) -> Motion:
     below = entry.below
     if below is None:
         raise ValueError(f"found {entry.text!r}, allowed is a block with {', '.join(_KEYS[:3])}")
+    if not key.strip() or not key.isprintable():
+        raise ValueError("it has no name that can be called")
     _report_unknown(f"motion {key!r}", below, _KEYS, diagnostics)
     joints = [one.text for one in _items(below, "joints")]
     if any(not joint for joint in joints):
         raise ValueError("a name in 'joints' is no text")
     if "points" in below:
         times, flat, velocities = _points(key, below["points"], len(joints), diagnostics)
+        for name in ("positions", "times_from_start"):
+            if name in below:
+                message = f"motion {key!r}: {name!r} is not used beside 'points'"
+                diagnostics.warning("SK-MOTION-006", message, below[name].where)
     else:
         flat, times, velocities = _numbers(below, "positions"), _numbers(below, "times_from_start"), ()
-    fault = faults(joints, flat, times)
+    fault = faults(joints, flat, times, [v for row in velocities for v in row])
     if fault:
         raise ValueError(fault)
-    meta = below["meta"].below or {} if "meta" in below else {}
+    meta = _meta(key, below, diagnostics)
     _report_unknown(f"motion {key!r}, 'meta'", meta, _META_KEYS, diagnostics)
-    texts = {name: meta[name].text for name in _META_KEYS if name in meta}
+    texts = {name: " ".join(meta[name].text.split()) for name in _META_KEYS if name in meta}
     return Motion(key, tuple(joints), tuple(times), rows(flat, len(joints)), velocities, where=entry.where, **texts)
+
+
+def _meta(key: str, below: dict[str, Entry], diagnostics: Diagnostics) -> dict[str, Entry]:
+    """What a motion says for people."""
+    entry = below.get("meta")
+    if entry is None:
+        return {}
+    if entry.below is None and (entry.text or entry.items):
+        message = f"motion {key!r}: 'meta' is not used, allowed is a block with {', '.join(_META_KEYS)}"
+        diagnostics.warning("SK-MOTION-006", message, entry.where)
+    return entry.below or {}
 
 
 def _points(
@@ -170,16 +191,22 @@ def _read_planner(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> 
             elif name in _SHORTEST:
                 found.approach_min_duration = _above(inner, name, 0.0, strictly=False)
             elif name in _EXCLUDED:
-                found.excluded_joints = tuple(one.text for one in inner.items or ())
+                found.excluded_joints = _names(inner)
         except ValueError as error:
             diagnostics.warning("SK-MOTION-002", f"{name!r} is left out: {error}", inner.where)
 
 
 def _above(entry: Entry, name: str, least: float, *, strictly: bool) -> float:
     value = _number(entry, name)
-    if value < least or (strictly and value == least):
+    if not math.isfinite(value) or value < least or (strictly and value == least):
         raise ValueError(f"found {value:g}, allowed is a number {'above' if strictly else 'from'} {least:g}")
     return value
+
+
+def _names(entry: Entry) -> tuple[str, ...]:
+    if entry.below is not None or (entry.items is None and entry.text):
+        raise ValueError(f"found {entry.text or 'a block'!r}, allowed is a list of joints")
+    return tuple(one.text for one in entry.items or ())
 
 
 def _items(below: dict[str, Entry], name: str) -> list[Entry]:

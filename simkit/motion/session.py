@@ -71,7 +71,7 @@ def chosen(there: Mapping[str, PlayMotion], name: str | None) -> PlayMotion:
         hint = did_you_mean(name, there) or f"those that do: {listed}"
         raise InputError(f"SK-MOTION-010 no robot {name!r} plays motions; {hint}", "SK-MOTION-010")
     if name is None and not there:
-        hint = "put one there: --robot tiago, or give the one that is there its motions: --motions FILE.yaml"
+        hint = "tiago is one that does; --motions FILE.yaml gives the one that is there some"
         raise InputError(f"SK-MOTION-010 no robot here plays motions; {hint}", "SK-MOTION-010")
     if name is None and len(there) > 1:
         hint = f"--model says which: {listed}"

@@ -14,7 +14,7 @@ from typing import Any
 
 from simkit.errors import MessageError
 from simkit.msgs.forms import form_of
-from simkit.msgs.store import definition, full_name, rihs, type_of, type_store
+from simkit.msgs.store import definition, full_name, rihs, type_of, type_store, types_of
 
 __all__ = [
     "definition",
@@ -31,6 +31,7 @@ __all__ = [
     "type_name",
     "type_of",
     "type_store",
+    "types_of",
 ]
 
 _NS = 1_000_000_000

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, closest
 from simkit.plugins.base import ModelPlugin, ParentKind, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
 from simkit.plugins.ros_names import RosNames
-from simkit.registry import discover
+from simkit.registry import Kinds, discover
 from simkit.scene import ScenePlugin
 
 __all__ = [
@@ -41,7 +41,7 @@ def normalise(name: str) -> str:
 
 
 @functools.cache
-def plugin_kinds() -> Mapping[str, type[Plugin]]:
+def plugin_kinds() -> Kinds[Plugin]:
     """Every known plugin class by each normalised name it answers to; computed once, read-only."""
 
     def names(cls: type[Plugin]) -> list[str]:
@@ -116,8 +116,8 @@ def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
         message = f"{named} is a Gazebo plugin that simkit does not have; it is left out"
         diagnostics.warning("SK-PLUGIN-002", message, plugin.where, "write it in Python: docs/writing_a_plugin.md")
         return
-    spelled = {normalise(f): f for cls in dict.fromkeys(plugin_kinds().values()) for f in (*cls.filenames, *cls.names)}
-    cores = {_core(name): written for name, written in spelled.items()}
+    spelled = plugin_kinds().written
+    cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}
     near = next(filter(None, (closest(_core(name), cores) for name in names)), None)
     if near:
         hint = f"did you mean {cores[near]!r}?"

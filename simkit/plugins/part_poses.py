@@ -34,7 +34,7 @@ class Part:
         child: its own scoped name.
         place: where it always is in that frame; None where it may move.
         handle: the link or model that it is, where it may move.
-        within: the model that it is in; None in the world.
+        within: the model or link that it is in; None in the world.
         moves: whether gz tells it on the topic of moving things where there is another for those at rest.
     """
 
@@ -42,7 +42,7 @@ class Part:
     child: str
     place: Pose | None = None
     handle: Link | Model | None = None
-    within: Model | None = None
+    within: Link | Model | None = None
     moves: bool = False
 
     def __deepcopy__(self, memo: dict[int, object]) -> Part:

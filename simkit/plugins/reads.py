@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import inspect
 import sys
 from collections.abc import Iterator
@@ -30,11 +31,19 @@ def names_read(cls: Any) -> frozenset[str]:
     return frozenset(name for module in modules for name in _asked_for(module))
 
 
-def _asked_for(module: str) -> Iterator[str]:
+def _asked_for(module: str) -> frozenset[str]:
     try:
-        tree = ast.parse(inspect.getsource(sys.modules[module]))
+        return _asked_in(inspect.getsource(sys.modules[module]))
     except (KeyError, OSError, TypeError, SyntaxError, ValueError):
-        return  # made without a source: then nothing is known
+        return frozenset()  # made without a source: then nothing is known
+
+
+@functools.lru_cache(maxsize=256)
+def _asked_in(source: str) -> frozenset[str]:
+    return frozenset(_names_in(ast.parse(source)))
+
+
+def _names_in(tree: ast.Module) -> Iterator[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and _reads(node.func.attr):
             for value in (*node.args[:1], *(k.value for k in node.keywords if k.arg in ("name", "element"))):
@@ -70,5 +79,5 @@ class _Names:
     @property
     def known(self) -> frozenset[str]:
         if isinstance(self._of, ModuleType):
-            return frozenset(_asked_for(self._of.__name__))
+            return _asked_for(self._of.__name__)
         return names_read(type(self._of))

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
+from simkit.msgs.actions import ACTIONS
 from simkit.runtime.audience import callback_name
 from simkit.runtime.topics import absolute
 
@@ -218,7 +219,8 @@ class ActionTable:
             MessageError: an unknown type.
         """
         name = absolute(name)
-        msgs.full_name(f"{type_name}_Goal")
+        if type_name not in ACTIONS:  # what is in there is read when a goal comes
+            msgs.full_name(f"{type_name}_Goal")
         if self._find(name) is not None:
             raise ActionError(f"there is an action {name!r} already")
         action = Action(self._sim, name, type_name, on_goal, on_cancel)

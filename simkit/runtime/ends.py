@@ -59,6 +59,8 @@ class Publisher:
     def publish_later(self, make: Callable[[], Any], work: Any = None) -> Later | None:
         """Publishes what `make()` gives, made at once only where somebody is called back with it.
 
+        On a latched topic that nobody reads it is made for the first one who does.
+
         Args:
             make: gives the message.
             work: what is being done on another thread that `make` waits for.
@@ -66,6 +68,9 @@ class Publisher:
         Returns:
             What was handed out instead of the message; None where it was made.
         """
+        if self.latched and not self._audience.readers and not self._audience.feeds:
+            later = self._last = Later(make, work=work)
+            return later
         if self.is_live:
             self.publish(make())
             return None

@@ -14,6 +14,7 @@ from simkit.runtime.scheduler import Scheduler, Task
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
 
+_WITHIN = 0.999  # of the sum of squares of velocities over their limits
 _LIMIT_GRID = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
 _INFO = "sensor_msgs/msg/CameraInfo"
 _RANGE = "sensor_msgs/msg/Range"
@@ -80,12 +81,17 @@ def _holder(sim: Simulation, joints: Sequence[Joint]) -> Task:
     owners = [joint for joint in joints for _ in joint._plain_dofs]
     # of several axes the least; the joint itself looks closer. Whoever sets one makes a new schedule
     limits = np.array([joint._velocity_limit.min() for joint in owners])
+    shares = np.zeros(sim.mj_model.nv)
+    shares[dofs] = 1.0 / np.maximum(limits, 1e-9)
+    physics = sim.physics
 
     def hold(tick: int) -> None:
-        beyond = np.abs(sim.physics.data.qvel[dofs]) > limits
-        if True in beyond.tolist():  # for so few sooner found than by `any`
-            for place in np.flatnonzero(beyond).tolist():
-                owners[place].clamp_velocity(tick)
+        velocities = physics.data.qvel
+        found = velocities * shares
+        if found.dot(found) < _WITHIN:  # then none of them can be beyond its own
+            return
+        for place in np.flatnonzero(np.abs(velocities[dofs]) > limits).tolist():
+            owners[place].clamp_velocity(tick)
 
     return hold
 

@@ -359,6 +359,8 @@ class TopicBus:
         audience.count()
         for publisher in self._publishers.get(topic, ()):
             if publisher.latched and publisher.active and publisher._last is not None:
+                if type(publisher._last) is Later:
+                    publisher._last = publisher._last.get()
                 subscription.receive(publisher._last)
         self._tell_audience(topic)
         return subscription

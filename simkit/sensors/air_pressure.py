@@ -60,7 +60,6 @@ class AirPressure(AirSensor):
     def prepare(self) -> None:
         self._enter_air(self.options.reference_altitude)
         self.noise = self._make_noise((self.options.pressure,), "air_pressure")
-        self._make_type = msgs.type_of(TYPE)
         if self.sim.world.gazebo_quirks and self.options.reference_altitude:
             message = (
                 "<reference_altitude> is not used: the world asks for Gazebo's behaviour, and Gazebo passes it over"
@@ -86,4 +85,4 @@ class AirPressure(AirSensor):
         variance = self.noise.variance()
         if self.sim.world.gazebo_quirks:
             variance = variance**0.25  # the root of the deviation
-        return self._make_type(msgs.header(time_ns, self.frame_id), reading, variance)
+        return msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading, variance)

@@ -67,7 +67,6 @@ class AirSpeed(AirSensor):
         self._wind: Vector = np.zeros(3) if quirks else np.array(self.sim.world.wind)
         self._unit = _HECTO if quirks else 1.0
         self.noise = self._make_noise((self.options.pressure,), "air_speed")
-        self._make_type = msgs.type_of(TYPE)
 
     def products(self) -> dict[str, Product]:
         return {"air_speed": Product(TYPE, self._message_of)}
@@ -90,4 +89,4 @@ class AirSpeed(AirSensor):
         return Flow(pressure * self._unit, reading.temperature)
 
     def _message_of(self, reading: Flow, time_ns: int) -> Any:
-        return self._make_type(msgs.header(time_ns, self.frame_id), reading.pressure, reading.temperature)
+        return msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading.pressure, reading.temperature)

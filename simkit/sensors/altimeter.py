@@ -68,7 +68,6 @@ class Altimeter(Sensor):
 
     def prepare(self) -> None:
         self.noise = self._make_noise((self.options.position, self.options.velocity), "altimeter")
-        self._make_type = msgs.type_of(TYPE)
 
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)
@@ -101,4 +100,4 @@ class Altimeter(Sensor):
 
     def _message_of(self, reading: Climb, time_ns: int) -> Any:
         header = msgs.header(time_ns, self.frame_id)
-        return self._make_type(header, reading.position, reading.velocity, self.reference)
+        return msgs.type_of(TYPE)(header, reading.position, reading.velocity, self.reference)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneSensor
 
 TYPE = "geometry_msgs/msg/WrenchStamped"
+_TYPES = TYPE, "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3"
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +85,6 @@ class ForceTorque(Sensor):
 
     def prepare(self) -> None:
         self.noise = self._make_noise((*self.options.force, *self.options.torque), "force_torque")
-        names = ("geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3")
-        self._make_types = (msgs.type_of(TYPE), *map(msgs.type_of, names))
 
     def bind(self, compiled: Any) -> None:
         super().bind(compiled)
@@ -139,6 +138,6 @@ class ForceTorque(Sensor):
         return Wrench(values[:3], values[3:])
 
     def _message_of(self, reading: Wrench, time_ns: int) -> Any:
-        stamped, wrench, vector = self._make_types
+        stamped, wrench, vector = msgs.types_of(*_TYPES)
         force, torque = vector(*reading.force.tolist()), vector(*reading.torque.tolist())
         return stamped(msgs.header(time_ns, self.frame_id), wrench(force, torque))

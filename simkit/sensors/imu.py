@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/Imu"
+TYPES = TYPE, "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion"
 Four = tuple[float, float, float, float]
 _NUMBERS = struct.Struct("=31d").unpack  # of what is captured
 _AS_IT_IS: Four = (1.0, 0.0, 0.0, 0.0)
@@ -120,11 +121,6 @@ class Imu(Sensor):
         self._attitude_noise = self._make_noise(options.orientation, "orientation")
         self._more_noise: Noise | None = None
         self._covariances_of: Any = None
-        self._make_types = (
-            msgs.type_of(TYPE),
-            msgs.type_of("geometry_msgs/msg/Vector3"),
-            msgs.type_of("geometry_msgs/msg/Quaternion"),
-        )
         self.measure_against(orientation_of(options.reference, self.scene, self.sim))
 
     def measure_against(self, reference: Vector | Four) -> None:
@@ -248,7 +244,7 @@ class Imu(Sensor):
         self.measure_against(memory[1])
 
     def _message_of(self, reading: ImuReading, time_ns: int) -> Any:
-        imu, vector, quaternion = self._make_types
+        imu, vector, quaternion = msgs.types_of(*TYPES)
         if self._covariances_of is not self.noise.state.interval:
             self._covary()
         of_orientation, of_rate, of_force = self._covariances

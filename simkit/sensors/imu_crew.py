@@ -10,13 +10,14 @@ import numpy as np
 from simkit import msgs
 from simkit.pose import Vector
 from simkit.sensors.crews import Crew, form
-from simkit.sensors.imu import hamilton_product
+from simkit.sensors.imu import TYPES, hamilton_product
 from simkit.sensors.sample import Sample
 
 if TYPE_CHECKING:
     from simkit.sensors.imu import Imu
     from simkit.sensors.sampling import Sampler
 
+_TYPES = *TYPES, "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
 _NUMBERS = 31  # captured of each
 _STRETCH = 64  # samples whose noise is looked up at a time
 _NS = 1_000_000_000
@@ -50,11 +51,6 @@ class ImuCrew(Crew["Imu"]):
         self._references = None if first.is_against_world else np.array(references).T.copy()
         self._is_silent, self._is_white = first.noise.is_silent, first.noise._white is not None
         self._normals, self._first_index, self._seed = np.empty((0, 0, 0)), 0, self.sim.seed
-        self._types = (
-            *first._make_types,
-            msgs.type_of("std_msgs/msg/Header"),
-            msgs.type_of("builtin_interfaces/msg/Time"),
-        )
         self._index = -1
         self._told_of: Any = None
         self._states: list[Any] = []
@@ -93,7 +89,7 @@ class ImuCrew(Crew["Imu"]):
         return True
 
     def _message(self, place: int) -> Any:
-        make, vector, quaternion, header, time = self._types
+        make, vector, quaternion, header, time = msgs.types_of(*_TYPES)
         frame, (of_orientation, of_rate, of_force), has_attitude = self._told[place]
         w, x, y, z, rx, ry, rz, fx, fy, fz = self._rows[place]
         if not has_attitude:

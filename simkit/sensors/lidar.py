@@ -122,7 +122,6 @@ class Lidar(Sensor):
 
     def prepare(self) -> None:
         self.noise = self._make_uniform_noise(self.options.noise, self._fan.count, "ranges")
-        self._scan_type = msgs.type_of(SCAN)
 
     @classmethod
     def team_up(cls, sensors: Sequence[Any]) -> None:
@@ -267,7 +266,7 @@ class Lidar(Sensor):
         else:
             intensities = reading.intensities[first : first + n].astype(np.float32)
             np.maximum(intensities, self.min_intensity, out=intensities)
-        return self._scan_type(
+        return msgs.type_of(SCAN)(
             msgs.header(time_ns, self.frame_id),
             o.horizontal.low,
             o.horizontal.high,

@@ -86,7 +86,6 @@ class Magnetometer(Sensor):
     def prepare(self) -> None:
         world = self.sim.world
         self.noise = self._make_noise(self.options.axes, "magnetometer")
-        self._make_types = (msgs.type_of(TYPE), msgs.type_of("geometry_msgs/msg/Vector3"))
         self._uniform: Vector = np.array(world.magnetic_field)
         self.relocate()
 
@@ -141,7 +140,7 @@ class Magnetometer(Sensor):
         return reading if self.noise.is_silent else self.noise.apply(reading, index)
 
     def _message_of(self, reading: Vector, time_ns: int) -> Any:
-        field, vector = self._make_types
+        field, vector = msgs.types_of(TYPE, "geometry_msgs/msg/Vector3")
         header = msgs.header(time_ns, self.frame_id)
         return field(header, vector(*reading.tolist()), self.noise.covariance())
 

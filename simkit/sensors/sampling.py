@@ -12,6 +12,7 @@ from simkit.sensors.timing import Departures, Flight, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
+    from simkit.runtime.physics import HeldState
     from simkit.runtime.scheduler import Timetable
     from simkit.runtime.topics import Later
 
@@ -44,7 +45,9 @@ class Sampler(abc.ABC):
         self._gathered: list[tuple[int, Any]] = []
         self._revision, self._patience = -1, 0.0
         self._wanted: list[tuple[str, Publisher, bool]] = []
-        self._is_read = self._gathers = self._is_served = False
+        self._is_read = self._gathers = self._is_served = self._is_unseen = False
+        self._skipped = 0  # samples of which nobody has looked at one; only the last can be looked at
+        self._held: tuple[int, HeldState] | None = None  # the tick of that one, and its state
         self._index, self._time_ns = 0, -1
         self._flight: Flight | None = None
         self._departures: Departures | None = None
@@ -148,6 +151,10 @@ class Sampler(abc.ABC):
         sim = self.sim
         if self._revision != sim.bus.revision:
             self._look_who_reads()
+        if self._is_unseen:
+            self._skipped += 1
+            self._held = tick, sim.physics.hold()
+            return
         if self._is_served and self.crew is not None and self.crew.serve(self, tick):
             return
         if self._gathers:
@@ -208,7 +215,7 @@ class Sampler(abc.ABC):
     @property
     def _sample(self) -> Sample | None:
         """The newest sample that has arrived."""
-        if self._gathered:
+        if self._gathered or self._skipped:
             self._catch_up()
         return self._newest
 
@@ -253,10 +260,18 @@ class Sampler(abc.ABC):
         patience = [publisher.patience for _, publisher, _ in self._wanted]
         is_plain = self._flight is None and not (self._is_choosy or self._is_reticent)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
+        changes = self._evolves or self._wandering or self._overrides("_begin")
+        self._is_unseen = not (self._wanted or changes or self._flight)
         self._patience = max(patience, default=0.0)
 
     def _catch_up(self) -> None:
         """Makes samples of what was gathered; what nobody will look at is not published."""
+        if self._held is not None and self._skipped:
+            (tick, held), count = self._held, self._skipped
+            self._skipped, self._held = 0, None
+            self._index += count - 1
+            self._newest = self._begin(tick)
+            self._newest.held = held
         if not self._gathered:
             return
         rows, self._gathered = self._gathered, []

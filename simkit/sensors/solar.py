@@ -87,8 +87,6 @@ class SolarSensor(Sensor):
     def prepare(self) -> None:
         model = replace(self.options.noise, precision=0.0)
         self.noise = self._make_noise((model, model), "angles")
-        names = (TYPE, "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion", NUMBER)
-        self._types = tuple(msgs.type_of(name) for name in (*names, "std_msgs/msg/Bool", "std_msgs/msg/String"))
         self._find_light()
         if self.light is None:
             self._report_missing()
@@ -96,7 +94,7 @@ class SolarSensor(Sensor):
             solar.report_idle(self.scene.params.block("solar"), self.options.view, self.light)
 
     def products(self) -> dict[str, Product]:
-        _, _, _, number, truth_value, text = self._types
+        number, truth_value, text = msgs.types_of(NUMBER, "std_msgs/msg/Bool", "std_msgs/msg/String")
 
         def part(make: Callable[[Any], Any], of: Callable[[SolarReading], Any]) -> Callable[[Any, int], Any]:
             return lambda reading, _: make(of(reading))
@@ -200,7 +198,7 @@ class SolarSensor(Sensor):
         return SolarReading(orientation, reading.is_valid, reading.shadow, reading.incidence, *light)
 
     def _message_of(self, reading: SolarReading, time_ns: int) -> Any:
-        imu, vector, quaternion = self._types[:3]
+        imu, vector, quaternion = msgs.types_of(TYPE, "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion")
         w, x, y, z = (1.0, 0.0, 0.0, 0.0)
         covariance = np.zeros(9)
         if reading.is_valid:

@@ -115,7 +115,6 @@ class Sonar(Sensor):
 
     def prepare(self) -> None:
         self.noise = self._make_noise((self.options.noise,), "range")
-        self._make_type = msgs.type_of(TYPE)
 
     def products(self) -> dict[str, Product]:
         return {"range": Product(TYPE, self._message_of)}

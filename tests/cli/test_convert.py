@@ -338,13 +338,20 @@ OWN = """<sdf version="1.9"><world name="w"><gazebo_quirks>1</gazebo_quirks><sce
 <plugin filename="libgazebo_ros_joint_pose_trajectory.so" name="p"><point_times>from_start</point_times></plugin>
 <plugin filename="gz-sim-pose-publisher-system" name="gz::sim::systems::PosePublisher">
 <pose_type>geometry_msgs/msg/Pose</pose_type></plugin>
+<plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
+<parameters>c.yaml</parameters><controllers>b</controllers>
+<ros2_control name="h" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+<joint name="j"><command_interface name="effort"/><state_interface name="position"/></joint></ros2_control></plugin>
 </model>
+<actor name="a"><person><height>1.7</height></person></actor>
 <plugin filename="gz-sim-python-system-loader-system" name="gz::sim::systems::PythonSystemLoader">
 <module_name>absent</module_name><shadow_gz>true</shadow_gz></plugin></world></sdf>"""
 
 
 def test_elements_of_our_own_come_out_with_their_prefix_and_mean_the_same(here: Path) -> None:
     Path("own.sdf").write_text(OWN)
+    broadcaster = "joint_state_broadcaster/JointStateBroadcaster"
+    Path("c.yaml").write_text(f"controller_manager: {{ros__parameters: {{b: {{type: {broadcaster}}}}}}}\n")
     assert run("convert", "own.sdf", "-o", "again.sdf").exit_code == 0
     root = ElementTree.parse("again.sdf").getroot()
     ours = {e.tag.removeprefix("{urn:simkit}") for e in root.iter() if e.tag.startswith("{urn:simkit}")}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -98,3 +99,26 @@ def test_of_several_robots_one_is_chosen(lab: Path) -> None:
 def test_a_file_of_motions_that_is_not_there(lab: Path) -> None:
     result = motion("play", "nod", "--world", lab, "--motions", "nowhere.yaml")
     assert result.exit_code == 2 and "SK-MOTION-001" in result.stderr
+
+
+def test_a_broken_file_of_motions_stops_before_anything_is_run(lab: Path) -> None:
+    broken = lab.with_name("broken.yaml")
+    broken.write_text("play_motion2: {ros__parameters: {motions: [")
+    for words in (("play", "bow", "--world", lab), ("list", lab)):
+        result = motion(*words, "--motions", broken)
+        assert result.exit_code == 2 and not result.stdout and "SK-CONTROL-002" in result.stderr
+    gone = motion("list", lab.with_name("gone.yaml"))
+    assert gone.exit_code == 2 and "SK-MOTION-001" in gone.stderr
+
+
+def test_a_robot_that_the_world_has_already_is_not_put_there_again() -> None:
+    result = motion("play", "open", "--world", "tiago_table", "--robot", "tiago")
+    assert result.exit_code == 2 and "leave --robot out" in result.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full is Linux's")
+def test_a_full_disk_is_told_in_a_line(lab: Path) -> None:
+    words = [sys.executable, "-m", "simkit", "motion", "list", str(lab)]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=120)
+    assert done.returncode == 1 and "found no room" in done.stderr and "Traceback" not in done.stderr

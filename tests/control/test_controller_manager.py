@@ -219,6 +219,15 @@ def test_a_spawned_robot_is_controlled_too_and_others_may_come_and_go(tmp_path: 
         assert not [name for name in sim.services() if "controller_manager" in name]
 
 
+def test_who_hears_of_a_robot_may_remove_it(tmp_path: Path) -> None:
+    robot = files(tmp_path, arm())
+    with simkit.load("<sdf version='1.9'><world name='w'/></sdf>") as sim:
+        sim.spawn(robot, name="robot")
+        sim.subscribe("/joint_states", lambda _: sim.remove("robot"))
+        sim.run(0.5)
+        assert "robot" not in sim.models
+
+
 def test_a_second_robot_of_the_kind_is_reached_by_its_models_name(tmp_path: Path) -> None:
     robot = files(tmp_path, arm())
     with simkit.load("<sdf version='1.9'><world name='w'/></sdf>") as sim:

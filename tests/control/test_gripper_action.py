@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
+from control_robots import ALL, arm, interfaces, opened, told
 
 from simkit.control.controllers import gripper_action
 from simkit.runtime.actions import GoalStatus
@@ -132,3 +134,12 @@ def test_the_parallel_kind_takes_a_joint_state_with_speed_and_effort() -> None:
 def test_a_gripper_without_a_joint_is_told() -> None:
     _, plugin = gripper({"joint": ""})
     assert [d.code for d in plugin.diagnostics] == ["SK-CONTROL-026"]
+
+
+def test_a_gripper_by_effort_without_gains_is_told(tmp_path: Path) -> None:
+    yaml = (
+        "controller_manager:\n  ros__parameters:\n    grip: {type: effort_controllers/GripperActionController}\n"
+        "grip:\n  ros__parameters: {joint: j1}\n"
+    )
+    with opened(tmp_path, arm(f'<joint name="j1">{interfaces(ALL)}</joint>'), yaml) as sim:
+        assert "gains of joint 'j1' are all 0" in told(sim, "SK-CONTROL-026")[0]

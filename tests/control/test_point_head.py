@@ -161,6 +161,9 @@ def test_a_cancelled_goal_leaves_the_head_where_it_is(sim: Any) -> None:
         ({"target": {"header": {"frame_id": "optcal"}}}, "there is no frame 'optcal'; did you mean 'optical'?"),
         ({"target": {"point": {"x": math.nan}}}, "the target is not a finite point"),
         ({"pointing_frame": "nose"}, "there is no frame 'nose'"),
+        ({"pointing_frame": "neck"}, "the frame 'neck' is not turned by joint 'tilt'"),
+        ({"pointing_frame": "map"}, "the frame 'map' is not turned by joint 'tilt'"),
+        ({"pointing_frame": "base"}, "the frame 'base' is not turned by joint 'tilt'"),
         ({"max_velocity": -1.0}, "max_velocity and min_duration have to be at least 0"),
         (
             {"target": {"header": {"frame_id": "optical"}}, "pointing_frame": "optical"},

@@ -108,3 +108,12 @@ def test_joints_that_turn_without_end_take_the_short_way() -> None:
     turns = whole_turns(np.array([6.0, 6.0]), np.array([0.1, 0.1]), turning)
     np.testing.assert_allclose(turns, [2 * np.pi, 0.0])
     np.testing.assert_allclose(shortest(np.array([6.0, 6.0]), turning), [6.0 - 2 * np.pi, 6.0])
+
+
+def test_a_time_has_the_same_bits_alone_and_among_those_that_are_worked_out_ahead() -> None:
+    ends = [point(1.0, [0.3, 0.7], [0.2, -0.1], [0.1, 0.4]), point(2.5, [1.0, 0.0], [0.0, 0.0], [0.0, 0.0])]
+    step = 7_000_001
+    alone, ahead = Spline.through(START, ends), Spline.through(START, ends)
+    for time in range(0, 2 * SECOND, step):
+        assert alone.at(time).motion.tobytes() == ahead.at(time, step).motion.tobytes()
+    np.testing.assert_array_equal(ahead.at(3 * SECOND, step).motion, ahead.last.motion)

@@ -72,7 +72,7 @@ def positions(sim: Any) -> list[float]:
     return [sim.joint(f"arm::{name}").position for name in JOINTS]
 
 
-@pytest.mark.parametrize("step", [0.001, 0.002])
+@pytest.mark.parametrize("step", [0.001, 0.002, 0.004])
 def test_it_keeps_to_the_trajectory_against_gravity(tmp_path: Path, step: float) -> None:
     sim = arm(tmp_path, step)
     worst: list[float] = []

@@ -36,6 +36,31 @@ def renderer() -> None:
         pytest.skip(str(error))
 
 
+# ---------------------------------------------------------------------- as scripts
+
+
+SCRIPTS = ("velocity", "joints", "arm_trajectory", "look", "wave", "carry")
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_a_script_tells_what_it_does(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    parts = script(name)
+    with pytest.raises(SystemExit) as ended:
+        parts["main"](["--help"])
+    assert ended.value.code == 0 and parts["__doc__"][:30] in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("where", ["nowhere/out.png", "out.gif", "--picture"])
+@pytest.mark.parametrize("name", ["arm_trajectory", "look", "carry"])
+def test_a_picture_that_cannot_be_written_is_told_before_anything_moves(
+    name: str, where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        script(name)["main"]([where])
+    assert ended.value.code == 2 and not list(tmp_path.iterdir())
+
+
 # ---------------------------------------------------------------------- the base
 
 

@@ -300,3 +300,68 @@ def test_a_second_robot_without_a_namespace_plays_under_its_name(tmp_path: Path)
         assert note.message == (
             "robot 'other' plays motions under '/other/play_motion2': '/play_motion2' is another one's"
         )
+
+
+@pytest.mark.parametrize("end", [3e9, 1e300])
+def test_a_time_that_no_trajectory_can_tell_is_refused(sim: Any, end: float) -> None:
+    motion = {"key": "x", "joints": ["wrist"], "positions": [0.2], "times_from_start": [end]}
+    goal = sim.send_goal("/play_motion2/raw", {"motion": motion})
+    sim.run(0.1)
+    assert goal.status.name == "ABORTED" and "motion 'x' would take" in goal.result.error
+
+
+MIMIC = '<mimic joint="right_finger"><multiplier>2</multiplier><offset>0.01</offset><reference>0</reference></mimic>'
+
+
+@pytest.fixture
+def following(tmp_path: Path) -> Any:
+    """The arm, the left finger of which follows the right one: 2 · right + 0.01."""
+    (tmp_path / "controllers.yaml").write_text(arm.CONTROLLERS.replace("[left_finger, right_finger]", "[right_finger]"))
+    (tmp_path / "motions.yaml").write_text(arm.MOTIONS)
+    limit = "<lower>0.0</lower><upper>0.04</upper><effort>60</effort>"
+    text = arm.world(arm.model(extra=arm.play_motion()))
+    left, right = text.split('<joint name="right_finger"')
+    before, after = left.rsplit(limit, 1)
+    left = f"{before}{limit.replace('0.04', '0.1')}{after}".replace("<xyz>0 1 0</xyz>", f"<xyz>0 1 0</xyz>{MIMIC}")
+    (tmp_path / "lab.sdf").write_text(f'{left}<joint name="right_finger"{right}')
+    with simkit.load(tmp_path / "lab.sdf") as sim:
+        yield sim
+
+
+def test_a_joint_that_follows_another_is_moved_by_that_one(following: Any) -> None:
+    motion = {"key": "x", "joints": ["left_finger"], "positions": [0.05], "times_from_start": [1.0]}
+    goal = following.send_goal("/play_motion2/raw", {"motion": motion})
+    following.run(2.0)
+    assert goal.status.name == "SUCCEEDED"
+    assert arm.positions(following, "left_finger", "right_finger") == pytest.approx([0.05, 0.02], abs=1e-3)
+
+
+def test_a_joint_cannot_be_elsewhere_than_the_one_it_follows_takes_it(following: Any) -> None:
+    goal = arm.play(following, "open")  # both at 0.04
+    assert goal.status.name == "ABORTED"
+    assert "left_finger is to be at 0.04 at 0.5 s, but it follows right_finger, which takes it to 0.09" in goal.reason
+
+
+def test_a_motion_is_not_waited_for_without_end(tmp_path: Path) -> None:
+    """The first controller's part is over, the other's never is: its goal has a tolerance and all the time there is."""
+    push = "joints: [left_finger, right_finger, shoulder], positions: [0.005, 0.005, 0.4], times_from_start: [1.0]"
+    wall = arm.box("wall", "0.5 0.15 0.5 0 0 0", "1 0.05 0.3")
+    arm.load(tmp_path, wall, motions=f"{arm.MOTIONS}      push: {{{push}}}\n").close()
+    first, second = (
+        f"    {name}_controller: {{type: joint_trajectory_controller/JointTrajectoryController}}\n"
+        for name in ("arm", "gripper")
+    )
+    strict = "    constraints: {goal_time: 0.0, shoulder: {goal: 0.01}}\ngripper_controller:\n  ros__"
+    text = arm.CONTROLLERS.replace(first + second, second + first)
+    (tmp_path / "controllers.yaml").write_text(text.replace("gripper_controller:\n  ros__", strict))
+    with simkit.load(tmp_path / "lab.sdf") as sim:
+        goal = sim.send_goal("/play_motion2", {"motion_name": "push", "skip_planning": True})
+        sim.run(6.0)
+        assert goal.status.name == "ABORTED" and "Timeout exceeded" in goal.result.error
+
+
+def test_joints_that_are_to_be_free_but_are_none_are_told(tmp_path: Path) -> None:
+    element = "<exclude_from_planning_joints>left_finger rigth_finger</exclude_from_planning_joints>"
+    with arm.load(tmp_path, element=element) as sim:
+        (said,) = [d for d in sim.diagnostics if d.code == "SK-MOTION-006"]
+        assert "'rigth_finger' is no joint of 'arm'" in said.message and "'right_finger'" in said.hint

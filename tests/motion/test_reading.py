@@ -146,3 +146,38 @@ def test_the_planner_says_how_fast_the_first_point_is_approached(tmp_path: Path)
 def test_a_speed_of_nothing_is_left_out(tmp_path: Path) -> None:
     found, said = read(tmp_path, ROS_2 + "        motion_planner: {approach_velocity: 0}\n")
     assert found.approach_velocity is None and "allowed is a number above 0" in said[0]
+
+
+def test_velocities_that_are_not_finite_leave_a_motion_out(tmp_path: Path) -> None:
+    text = ROS_1.replace("time_from_start: 0.5", "time_from_start: 0.5\n            velocities: [.nan, 0.0]")
+    found, said = read(tmp_path, text.replace("_start: 2\n", "_start: 2\n            velocities: [0.0, .inf]\n"))
+    assert not found.motions and "a number that is not finite (nan)" in said[0]
+
+
+@pytest.mark.parametrize("key", ["' '", '"a\\nb"', '"a\\e[31mb"'])
+def test_a_motion_has_a_name_that_can_be_called(tmp_path: Path, key: str) -> None:
+    found, said = read(tmp_path, ROS_2.replace("bow:", f"{key}:"))
+    assert not found.motions and "no name that can be called" in said[0]
+
+
+@pytest.mark.parametrize("value", [".nan", ".inf", "-.inf", "-1", "fast", "[1]"])
+def test_a_speed_that_is_none_is_left_out(tmp_path: Path, value: str) -> None:
+    settings = f"        approach_velocity: {value}\n        approach_min_duration: {value}\n"
+    found, said = read(tmp_path, ROS_2 + settings)
+    assert found.approach_velocity is None and found.approach_min_duration is None
+    assert [text.split()[0] for text in said] == ["SK-MOTION-002"] * 2
+
+
+@pytest.mark.parametrize("value", ["wrist", "{wrist: 1}", "-1"])
+def test_joints_that_are_free_to_touch_are_a_list(tmp_path: Path, value: str) -> None:
+    found, said = read(tmp_path, ROS_2 + f"        exclude_from_planning_joints: {value}\n")
+    assert found.excluded_joints is None and "allowed is a list of joints" in said[0]
+
+
+def test_what_has_no_effect_is_told(tmp_path: Path) -> None:
+    found, said = read(tmp_path, ROS_2 + "        aproach_velocity: 0.2\n")
+    assert found.approach_velocity is None and "did you mean 'approach_velocity'?" in said[0]
+    found, said = read(tmp_path, ROS_2.replace("{name: Bow, usage: demo, description: 'Bends down.'}", "Bow"))
+    assert "bow" in found.motions and "'meta' is not used" in said[0]
+    found, said = read(tmp_path, ROS_1 + "          times_from_start: [1.0]\n")
+    assert found.motions["bow"].times == (0.5, 2.0) and "not used beside 'points'" in said[0]

@@ -116,3 +116,11 @@ def test_without_an_arm_the_head_has_its_motions() -> None:
         assert sim.run_until(lambda _: goal.is_done, timeout=15.0)
         assert goal.status.name == "SUCCEEDED", goal.result.error
         assert float(sim.joint("tiago_no_arm::head_2_joint").position) == pytest.approx(-0.85, abs=5e-3)
+
+
+def test_a_head_that_would_turn_into_the_arm_is_refused(sim: Any, motions: dict[str, Motion]) -> None:
+    robot = sim.model("tiago")
+    robot.set_joint_positions(dict(zip(motions["reach_max"].joints, motions["reach_max"].positions[-1], strict=True)))
+    goal = sim.send_goal("/play_motion2", {"motion_name": "inspect_surroundings"})
+    sim.run(0.1)
+    assert goal.status.name == "ABORTED" and "head_2_link and arm_4_link come" in goal.result.error

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import unquote
@@ -39,8 +40,12 @@ class Companions:
         self.read: dict[str, tuple[int, int] | None] = {}
         self.notes: list[str] = []
         self._pictures: dict[str, Pixels | None] = {}
-        real = Path(os.path.realpath(file))
-        self._roots = (root_of(_normal(file)), Path(os.path.realpath(root_of(_normal(file)))), root_of(real))
+
+    @cached_property
+    def _roots(self) -> tuple[Path, Path, Path]:
+        """The folders of the model that the file belongs to: as written, really, and that of the real file."""
+        written = root_of(_normal(self.file))
+        return written, Path(os.path.realpath(written)), root_of(Path(os.path.realpath(self.file)))
 
     def note(self, text: str) -> None:
         if text not in self.notes and len(self.notes) < MOST_NOTES:

@@ -43,7 +43,11 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
     blocks: dict[tuple[str, str], _Faces] = {}
     libraries: list[str] = []
     group, material, faces = "", "", 0
+    block: _Faces | None = None
     for line in content.splitlines():
+        if line.startswith(b"v "):  # most lines, and as most of them are written
+            positions.append(line[2:])
+            continue
         word, _, rest = line.strip().partition(b" ")
         if b"\t" in word:
             word, _, rest = line.strip().partition(b"\t")
@@ -52,27 +56,26 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
         elif word == b"vt":
             texcoords.append(rest)
         elif word == b"f":
-            block = blocks.setdefault((group, material), _Faces(group, material))
+            if block is None:
+                block = blocks.setdefault((group, material), _Faces(group, material))
             corners = rest.split(b"#")[0].split()
             block.corners += corners
             block.counts.append(len(corners))
-            if b"-" in rest:
-                block.bases.append((len(positions), len(texcoords)))
-            else:
-                block.bases.append((0, 0))
+            block.bases.append((len(positions), len(texcoords)) if b"-" in rest else (0, 0))
             faces += max(0, len(corners) - 2)
             if faces > LARGEST_FACES:
                 raise MeshFileError(f"has more than {LARGEST_FACES} faces")
         elif word in (b"o", b"g"):
-            group = rest.strip().decode("utf-8", "replace")
+            group, block = rest.strip().decode("utf-8", "replace"), None
         elif word == b"usemtl":
-            material = rest.strip().decode("utf-8", "replace")
+            material, block = rest.strip().decode("utf-8", "replace"), None
         elif word == b"mtllib":
             libraries.append(rest.strip().decode("utf-8", "replace"))
     looks = _looks(libraries, companions) if any(m for _, m in blocks) else {}
     points = _rows(positions, 3, "vertices")
     uvs = _rows(texcoords, 2, "texture coordinates")
-    return [part for block in blocks.values() if (part := _part(block, points, uvs, looks, companions)) is not None]
+    found = (_part(one, points, uvs, looks, companions) for one in blocks.values())
+    return [part for part in found if part is not None]
 
 
 def _rows(lines: list[bytes], width: int, what: str) -> Floats:

@@ -15,6 +15,7 @@ Colour = tuple[float, float, float, float]
 
 
 _alone: WeakKeyDictionary[MeshPart, tuple[Floats, Ints]] = WeakKeyDictionary()
+_areas: WeakKeyDictionary[MeshPart, dict[float, bool]] = WeakKeyDictionary()
 
 
 class MeshFileError(Exception):
@@ -101,6 +102,13 @@ _SOME = 64
 
 def has_area(part: MeshPart, least: float) -> bool:
     """Whether the triangles have more than `least` [m²] in all; the first few nearly always do."""
+    known = _areas.setdefault(part, {})
+    if least not in known:
+        known[least] = _has_area(part, least)
+    return known[least]
+
+
+def _has_area(part: MeshPart, least: float) -> bool:
     for faces in (part.faces[:_SOME], part.faces):
         corners = part.vertices[faces]
         area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)

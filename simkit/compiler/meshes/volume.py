@@ -15,10 +15,14 @@ _SAMPLES: Final = 80_000
 
 def volume_of(vertices: Floats, faces: Ints) -> float:
     """Volume of a closed mesh [m³]; 0 for an open one."""
-    import trimesh
-
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    return abs(float(mesh.volume)) if mesh.is_watertight else 0.0
+    corners = faces.astype(np.int64)
+    edges = np.sort(corners[:, (0, 1, 1, 2, 2, 0)].reshape(-1, 2), axis=1)
+    counts = np.unique(edges[:, 0] * len(vertices) + edges[:, 1], return_counts=True)[1]
+    if not len(counts) or (counts != 2).any():
+        return 0.0
+    a, b, c = (np.asarray(vertices, np.float64)[corners[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - b)
+    return abs(float((normals[:, 0] * (a + b + c)[:, 0]).sum() / 6.0))
 
 
 def filled_ratio(vertices: Floats, faces: Ints, sets: list[Floats]) -> float:

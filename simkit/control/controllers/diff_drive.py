@@ -49,6 +49,7 @@ class DiffDriveController(Controller):
         before = self.params.diagnostics.error_count
         options = read_drive_options(self.params, self.plugin.ros.namespace, self._measured)
         self._options = options
+        self._period_ns = max(round(_NS / options.publish_rate), 1) if options.publish_rate > 0 else 0
         self._multipliers = self._read_multipliers(options.is_ros_1)
         if self.params.diagnostics.error_count > before:
             return
@@ -91,7 +92,7 @@ class DiffDriveController(Controller):
 
     def deactivate(self) -> None:
         self._takes = False
-        self._drive(_STILL)
+        self._drive(_STILL, self._sizes())
 
     # ------------------------------------------------------------------ commands
 
@@ -120,7 +121,8 @@ class DiffDriveController(Controller):
         options = self._options
         if now_ns - self._stamp_ns > options.timeout_ns:
             self._command = _STILL
-        self._reckon(now_ns)
+        sizes = self._sizes()
+        self._reckon(now_ns, sizes)
         self._tell(now_ns)
         (ahead, turn), last, before = self._command, self._last, self._before_last
         self._before_last = last
@@ -130,22 +132,22 @@ class DiffDriveController(Controller):
         )
         if self._limited is not None and self._limited.wanted:
             self._limited.publish_later(partial(_twist_stamped, now_ns, options.base_frame, *self._last))
-        self._drive(self._last)
+        self._drive(self._last, sizes)
 
-    def _drive(self, command: tuple[float, float]) -> None:
-        separation, left_radius, right_radius = sizes = self._sizes()
+    def _drive(self, command: tuple[float, float], sizes: tuple[float, float, float]) -> None:
         if self._driven == (command, sizes):
             return  # what was written stays
         self._driven = command, sizes
+        separation, left_radius, right_radius = sizes
         ahead, turn = command
         half, count = turn * separation / 2, len(self._options.left)
         self.commands.values = [(ahead - half) / left_radius] * count + [(ahead + half) / right_radius] * count
 
     # ------------------------------------------------------------------ odometry
 
-    def _reckon(self, now_ns: int) -> None:
+    def _reckon(self, now_ns: int, sizes: tuple[float, float, float]) -> None:
         elapsed = (now_ns - self._reckoned_ns) / _NS
-        separation, left_radius, right_radius = self._sizes()
+        separation, left_radius, right_radius = sizes
         if self._options.open_loop:
             self._odometry.follow(*self._last, elapsed)
         else:
@@ -169,14 +171,16 @@ class DiffDriveController(Controller):
     def _feedback(self) -> tuple[float, float]:
         """Mean of the wheels on either side: angles [rad], or speeds [rad/s]."""
         values, count = self.states.values.tolist(), len(self._options.left)
+        if count == 1:
+            left, right = values
+            return left, right
         return sum(values[:count]) / count, sum(values[count:]) / count
 
     def _tell(self, now_ns: int) -> None:
         """Publishes odometry and its transform, on the grid of the publish rate."""
-        options, rate = self._options, self._options.publish_rate
-        if rate > 0:
-            period_ns = round(_NS / rate)
-            missed = (now_ns - self._told_ns) // max(period_ns, 1)
+        options, period_ns = self._options, self._period_ns
+        if period_ns:
+            missed = (now_ns - self._told_ns) // period_ns
             if missed < 1:
                 return
             self._told_ns += missed * period_ns

@@ -30,9 +30,7 @@ class ForwardCommandController(Controller):
 
     def configure(self) -> None:
         params = self.params
-        joints = names(params, "joints")
-        if not any(joints):
-            params.text("joints", required=True)
+        joints = names(params, "joints", required=True)
         if self.interface is None:
             interface = params.text("interface_name", required=True)
         else:
@@ -78,9 +76,7 @@ class MultiInterfaceForwardCommandController(ForwardCommandController):
     def configure(self) -> None:
         params = self.params
         joint = params.text("joint", required=True)
-        interfaces = names(params, "interface_names")
-        if not any(interfaces):
-            params.text("interface_names", required=True)
+        interfaces = names(params, "interface_names", required=True)
         self._names = [f"{joint}/{interface}" for interface in interfaces]
         self._listen()
 

@@ -49,6 +49,10 @@ class GripperActionController(Controller):
         self._pids: Pids | None = None
         if self.interface == "effort":
             self._pids = Pids.read(params.block("gains"), (self._joint,))
+            if not (self._pids.p.any() or self._pids.i.any()):
+                message = f"gains of joint {self._joint!r} are all 0: no effort is ever given"
+                hint = f"gains: {{{self._joint}: {{p: 100.0, d: 10.0}}}}"
+                params.diagnostics.warning("SK-CONTROL-026", message, params.where, hint)
         self._read_more()
         self.act("~/gripper_cmd", self.action_type, self._on_goal, self._on_cancel)
         self._is_active = False

@@ -48,6 +48,10 @@ class _Loops(Controller):
 
     def _take(self, joints: tuple[str, ...], gains: Params) -> None:
         self._joints = joints
+        for joint in joints:
+            if not gains.block(joint).has("p"):
+                message = f"No p gain specified for joint {joint!r}: nothing would move it"
+                self.params.error("SK-PARAM-001", message, "pid: {p: 100.0, i: 0.0, d: 10.0}")
         self._pids = Pids.read(gains, joints)
         self._wanted = np.full(len(joints), np.nan)
         self._last: Vector | None = None
@@ -143,9 +147,7 @@ class EffortGroupPositionController(_Loops):
 
     def configure(self) -> None:
         params = self.params
-        joints = tuple(names(params, "joints"))
-        if not any(joints):
-            params.text("joints", required=True)
+        joints = tuple(names(params, "joints", required=True))
         given = params.block("gains")
         if not params.has("gains"):
             blocks = [_named(params.block(joint).block("pid"), joint) for joint in joints]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
 from simkit import msgs
 from simkit.control.controller import Controller
+from simkit.control.interfaces import POSITION
 from simkit.control.joint_group import JointGroup
 from simkit.control.pids import Pids
 from simkit.control.reported import Reported
@@ -26,6 +27,9 @@ from simkit.control.trajectory_goals import Rules, read_points
 from simkit.control.trajectory_messages import TRAJECTORY, StateMessages
 from simkit.control.trajectory_options import Constraints, read_pids
 from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime.ends import Publisher
 
 FOLLOW: Final = "control_msgs/action/FollowJointTrajectory"
 QUERY: Final = "control_msgs/srv/QueryTrajectoryState"
@@ -80,10 +84,13 @@ class JointTrajectoryController(Controller):
         self._state_ns = round(SECOND / rate) if rate else 0
         self._read_constraints()
         self._pids = self._read_gains()
+        self._period_ns = 0
         scaling = params.block("speed_scaling")
         self._scaling = scaling.number("initial_scaling_factor", 1.0, minimum=0.0, maximum=_FASTEST)
         self._scaling_state = scaling.text("state_interface", "")
         self._scaling_command = scaling.text("command_interface", "")
+        # whether its commands are places on the way, whatever is measured
+        self._is_plain = self._group.commands == (POSITION,) and not (self._scaling_state or self._scaling_command)
         self._is_active = False
         self._open()
         self._clear()
@@ -118,7 +125,9 @@ class JointTrajectoryController(Controller):
         self.offer("~/query_state", QUERY, self._on_query)
         self.listen("~/speed_scaling_input", SCALING, self._on_scaling)
         self._messages = StateMessages(self._group)
-        self._publishers = [self.advertise(f"~/{name}", StateMessages.STATE) for name in ("controller_state", "state")]
+        self._publishers: list[Publisher] = [
+            self.advertise(f"~/{name}", StateMessages.STATE) for name in ("controller_state", "state")
+        ]
 
     def _clear(self) -> None:
         """As before the first trajectory."""
@@ -146,6 +155,9 @@ class JointTrajectoryController(Controller):
         if self._pids is not None:
             self._pids.restart()
         self._is_active = True
+        # updates that fall on steps come at uneven times; setpoints are as far ahead of each (as in ros2_controllers)
+        rate = self.update_rate or self.plugin.before_step_rate
+        self._period_ns = max(round(SECOND / rate) if rate else 0, round(self.sim.timestep * SECOND))
         self._waiting = _HOLD
         if self._starts_at_command:
             commanded = self._group.commanded(self.commands.values)
@@ -225,11 +237,14 @@ class JointTrajectoryController(Controller):
     # ------------------------------------------------------------------ each period
 
     def update(self, now_ns: int, period: float) -> None:
-        if self._waiting is None and self._is_idle:
-            if self._is_watched(now_ns) and self._command is not None:
-                state = self._group.state(self.states.values)
-                self._publish(now_ns, self._command.motion, state, self._errors(self._command.motion, state))
-            return
+        if self._waiting is None:
+            if self._is_idle:
+                if self._is_watched(now_ns) and self._command is not None:
+                    state = self._group.state(self.states.values)
+                    self._publish(now_ns, self._command.motion, state, self._errors(self._command.motion, state))
+                return
+            if self._is_plain and not self._is_first and self._goes_on(now_ns):
+                return
         state = self._group.state(self.states.values)
         if self._scaling_state:
             factor = float(self.states.values[-1])
@@ -240,6 +255,25 @@ class JointTrajectoryController(Controller):
             self._begin(now_ns, state)
         self._last = now_ns
         self._follow(now_ns, period, state)
+
+    def _goes_on(self, now: int) -> bool:
+        """Commands the next place on the way where nothing else is to be done; whether that was so."""
+        spline, scaling = self._spline, self._scaling
+        if spline is None or (self._watches_path and not self._is_holding):
+            return False
+        passed = round((now - self._last) * scaling)
+        elapsed = self._elapsed + passed
+        if elapsed >= spline.times[-1] or (self._goal is not None and now >= self._next_feedback):
+            return False
+        if now >= self._next_state and self._has_audience():
+            return False
+        self._elapsed, self._last = elapsed, now
+        step = round(self._period_ns * scaling)
+        then = elapsed + step
+        self._command = command = spline.at(then, step if passed == step else 0)
+        self._ahead = then, command
+        self.commands.values = command.motion[0][self._group.span]
+        return True
 
     def _begin(self, now: int, state: Vector) -> None:
         """Takes up the trajectory that waits."""
@@ -286,8 +320,9 @@ class JointTrajectoryController(Controller):
         assert spline is not None
         desired = self._ahead[1] if self._ahead is not None and self._ahead[0] == self._elapsed else None
         desired = spline.at(self._elapsed) if desired is None else desired
-        then = self._elapsed + round(period * SECOND * self._scaling)
-        command = spline.at(then)
+        step = round(self._period_ns * self._scaling)
+        then = self._elapsed + step
+        command = spline.at(then, step if round(period * SECOND) == self._period_ns else 0)
         self._ahead = then, command
         errors = self._errors(desired.motion, state)
         is_over, late = self._elapsed >= spline.end, (self._elapsed - spline.end) / SECOND
@@ -357,9 +392,13 @@ class JointTrajectoryController(Controller):
         joint = self._group.joints[j]
         return f"{joint}: {field} Error: {off[row, j]:f}, {field} Tolerance: {tolerances[row, j]:f}"
 
+    def _has_audience(self) -> bool:
+        here, there = self._publishers
+        return here.wanted or there.wanted
+
     def _is_watched(self, now: int) -> bool:
         """Whether somebody wants the state now."""
-        if now < self._next_state or not any(publisher.wanted for publisher in self._publishers):
+        if now < self._next_state or not self._has_audience():
             return False
         self._next_state = now + self._state_ns
         return True

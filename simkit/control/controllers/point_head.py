@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.control.controller import Controller
-from simkit.control.pointing import Neck, frame_pose
+from simkit.control.pointing import Neck, frame_link, frame_pose, is_turned
 from simkit.control.trajectory import SECOND
 from simkit.errors import InputError
 from simkit.pose import Pose, Vector
@@ -117,7 +117,13 @@ class PointHeadAction(Controller):
         if not (np.abs(axis) <= _FARTHEST).all() or not (length := float(np.linalg.norm(axis))):
             raise InputError("the pointing axis is not a direction")
         tilt = self.hardware.joints[self._joints[1]].joint
-        return request.pointing_frame or self._own_frame or tilt.scene.child_link, axis / length
+        frame = request.pointing_frame or self._own_frame or tilt.scene.child_link
+        is_fixed = frame.lstrip("/") in ("world", "map", *self._odometry_frames())
+        if is_fixed or not is_turned(self.sim, frame_link(self.sim, self.plugin.scoped, frame)[0], tilt.scoped):
+            raise InputError(
+                f"the frame {frame!r} is not turned by joint {self._joints[1]!r}: the head cannot point it"
+            )
+        return frame, axis / length
 
     def _frame(self, name: str) -> Pose:
         return frame_pose(self.sim, self.plugin.scoped, name, self._odometry_frames())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.control.host import ControlHost, read_gains
+from simkit.control.host import ControlHost
 from simkit.control.interfaces import POSITION, VELOCITY
 from simkit.params import Params
 from simkit.plugins.ros_names import RosNames
@@ -13,10 +13,9 @@ from simkit.plugins.ros_names import RosNames
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.control.description import PidGains
-    from simkit.control.parameter_files import Entry
     from simkit.scene import SceneModel
 
-_GAINS: Final = "gazebo_ros_control/pid_gains"
+_NODE: Final = "gazebo_ros_control"
 
 
 class GazeboRosControl(ControlHost):
@@ -52,17 +51,16 @@ class GazeboRosControl(ControlHost):
 
     def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
         found: dict[str, Mapping[str, PidGains]] = {}
-        for place in dict.fromkeys((f"{self.ros.namespace}/{_GAINS}", f"/{_GAINS}")):
+        for place in dict.fromkeys((f"{self.ros.namespace}/{_NODE}", f"/{_NODE}")):
             entry = self.files.of_node(place)
-            for joint, gains in (entry.below or {}).items() if entry is not None else ():
-                if joint in self.hardware.joints and joint not in found:
-                    found[joint] = self._loop(joint, gains)
+            if entry is not None:
+                block = entry.block(_NODE, self.params.diagnostics).block("pid_gains")
+                for joint, gains in self.gains_of_joints(block).items():
+                    found.setdefault(joint, self._loop(joint, gains))
+                block.report_unread("SK-CONTROL-011", "pid_gains")
         return found
 
-    def _loop(self, joint: str, entry: Entry) -> Mapping[str, PidGains]:
+    def _loop(self, joint: str, gains: PidGains) -> Mapping[str, PidGains]:
         """One set of gains is for whichever interface the joint has."""
-        from simkit.control.parameter_files import alone
-
-        gains = read_gains(alone(joint, entry, self.params.diagnostics).block(joint))
         interfaces = self.hardware.joints[joint].command_interfaces
         return {name: gains for name in (POSITION, VELOCITY) if name in interfaces}

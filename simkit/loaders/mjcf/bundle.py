@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Final
-from xml.sax.saxutils import quoteattr
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.loaders.mjcf.assets import placeholder, read_asset
@@ -279,6 +278,8 @@ class _Gatherer:
 
     def _write(self, root: Params, text: list[str]) -> None:
         """The text of an element, one tag a line."""
+        from xml.sax.saxutils import quoteattr  # it brings the network's modules along, 30 ms
+
         stack: list[Params | str] = [root]
         while stack:
             item = stack.pop()

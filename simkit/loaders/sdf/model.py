@@ -10,7 +10,6 @@ from simkit.loaders.sdf.frames import MODEL, Frame, Scope, world_pose
 from simkit.loaders.sdf.include import read_include, written_here
 from simkit.loaders.sdf.joint import end_name, read_joint
 from simkit.loaders.sdf.link import read_link
-from simkit.loaders.sdf.mjcf import build_included
 from simkit.loaders.sdf.names import named, scoped
 from simkit.loaders.sdf.parts import Draft, Part, Source, pose_place, read_pose
 from simkit.loaders.sdf.plugin import read_plugins
@@ -215,6 +214,8 @@ def build_model(draft: Draft, static: bool, workspace: Workspace, base: str = "a
     declared = _is_static(source)
     still = declared or static
     if source.file.mjcf is not None:
+        from simkit.loaders.sdf.mjcf import build_included
+
         return build_included(source.file.mjcf, draft, still, base)
     if source.file.urdf is not None:
         from simkit.loaders.urdf import included  # it reads <gazebo> with the readers of this package

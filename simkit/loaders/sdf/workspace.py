@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.base import MeshReader
-from simkit.loaders.mjcf.document import MjcfFile, open_mjcf
 from simkit.loaders.resolver import NEWEST_SDF, Resolver, sdf_version
 from simkit.loaders.sdf.flattened import nested
-from simkit.loaders.sdf.mjcf import stand_in
 from simkit.loaders.sdf.old import modern
 from simkit.loaders.xml import Document, parse_file
 from simkit.params import Params
+
+if TYPE_CHECKING:
+    from simkit.loaders.mjcf.document import MjcfFile
 
 MAX_INCLUDE_DEPTH = 32
 MAX_MODELS = 20_000
@@ -105,6 +107,9 @@ class Workspace:
 
     def _mjcf(self, document: Document, path: Path, chain: tuple[str, ...]) -> SdfFile | None:
         """An included file in MuJoCo's own format, read and compiled once however often it is included."""
+        from simkit.loaders.mjcf.document import open_mjcf
+        from simkit.loaders.sdf.mjcf import stand_in
+
         if path not in self._mjcf_files:
             found = open_mjcf(document.root, document.path, self.resolver, self.diagnostics)
             root = None if found is None else stand_in(found, self.diagnostics)

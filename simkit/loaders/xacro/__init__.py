@@ -1,5 +1,34 @@
 """xacro: files with macros and expressions, expanded before any other loader sees them."""
 
-from simkit.loaders.xacro.expand import expand, needs_expansion
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from simkit.diagnostics import Diagnostics
+from simkit.loaders.resolver import Resolver
+from simkit.loaders.xml import Document
 
 __all__ = ["expand", "needs_expansion"]
+
+_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+
+
+def needs_expansion(document: Document) -> bool:
+    """Whether a file is xacro: by its name, by its elements, or because it declares the name space and computes."""
+    if document.path is not None and document.path.suffix == ".xacro":
+        return True
+    text = document.text
+    if b"$" in text and b"<![CDATA[" not in text:  # what xacro has written often says `${...}` in comments alone
+        text = _COMMENT.sub(b"", text)
+    computes = b"${" in text or b"$(" in text
+    return b"<xacro:" in text or (computes and "xmlns:xacro" in document.root.attributes)
+
+
+def expand(
+    document: Document, resolver: Resolver, arguments: Mapping[str, str], diagnostics: Diagnostics
+) -> Document | None:
+    """The expanded file; None, with an error recorded, where it cannot be expanded. See `expansion.expand`."""
+    from simkit.loaders.xacro import expansion
+
+    return expansion.expand(document, resolver, arguments, diagnostics)

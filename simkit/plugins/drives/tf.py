@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
@@ -11,7 +12,26 @@ from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
+    from simkit.runtime import Simulation
     from simkit.scene import SceneModel
+
+
+def frame_names(sim: Simulation) -> dict[str, str]:
+    """The frame of each link of each model, by its scoped name; see `StaticTransforms`."""
+    frames: dict[str, str] = {}
+    taken: set[str] = set()
+    for scene in _in_order(sim):
+        links = {link.scoped: link.name for link in scene.all_links()}
+        clash = any(name in taken for name in links.values())
+        mine = {scoped: f"{scene.name}/{name}" if clash else name for scoped, name in links.items()}
+        frames.update(mine)
+        taken.update(mine.values())
+    return frames
+
+
+def _in_order(sim: Simulation) -> list[SceneModel]:
+    """Those that move come first: what stands around takes no name from a robot."""
+    return sorted((handle.scene for handle in sim.models.values()), key=lambda scene: scene.static)
 
 
 class StaticTransforms(WorldPlugin):
@@ -42,16 +62,12 @@ class StaticTransforms(WorldPlugin):
         self._known = names
         found = list(self._all())
         if found:
-            self._static.publish(transforms(0, *found))
+            self._static.publish_later(partial(transforms, 0, *found))
 
     def _all(self) -> Iterator[tuple[str, str, Pose]]:
-        taken: set[str] = set()
-        # those that move come first: what stands around takes no name from a robot
-        for scene in sorted((handle.scene for handle in self.sim.models.values()), key=lambda scene: scene.static):
-            links = {link.scoped: link for link in scene.all_links()}
-            clash = any(link.name in taken for link in links.values())
-            frames = {s: f"{scene.name}/{link.name}" if clash else link.name for s, link in links.items()}
-            taken.update(frames.values())
+        names = frame_names(self.sim)
+        for scene in _in_order(self.sim):
+            frames = {link.scoped: names[link.scoped] for link in scene.all_links()}
             if not scene.static:
                 yield from self._links(scene, frames)
             yield from self._sensors(scene, frames)

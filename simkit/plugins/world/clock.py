@@ -18,8 +18,7 @@ class ClockPublisher(WorldPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         self._clock = self.advertise("/clock", TYPE)
-        self._make = msgs.type_of(TYPE)
 
     def after_step(self) -> None:
         if self._clock.wanted:
-            self._clock.publish(self._make(msgs.time(self.sim.time_ns)))
+            self._clock.publish(msgs.type_of(TYPE)(msgs.time(self.sim.time_ns)))

@@ -20,20 +20,8 @@ from simkit.loaders.xml import Document
 
 MAX_EXPANDED = 50_000
 MAX_COPIED = 300_000
-_COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 _CALL = 5  # what a macro call costs, in elements
 _TOKEN = re.compile(r"(?P<escaped>\$\$+[{(])|(?P<expression>\$\{[^}]*\})|(?P<command>\$\([^)]*\))|[^$]+|\$[^{($]+|\$$")
-
-
-def needs_expansion(document: Document) -> bool:
-    """Whether a file is xacro: by its name, by its elements, or because it declares the name space and computes."""
-    if document.path is not None and document.path.suffix == ".xacro":
-        return True
-    text = document.text
-    if b"$" in text and b"<![CDATA[" not in text:  # what xacro has written often says `${...}` in comments alone
-        text = _COMMENT.sub(b"", text)
-    computes = b"${" in text or b"$(" in text
-    return b"<xacro:" in text or (computes and "xmlns:xacro" in document.root.attributes)
 
 
 def expand(

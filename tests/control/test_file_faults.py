@@ -1,0 +1,118 @@
+"""What a parameter file says that reaches nobody is told, each with its line and the closest name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from control_robots import POSITIONS, arm, opened, states, told
+
+import simkit
+
+TYPE = "      type: position_controllers/JointGroupPositionController\n"
+
+
+@pytest.mark.parametrize(
+    ("instead", "said"),
+    [
+        ("      rate: 1\n", "is not defined"),
+        ("", "is not defined"),
+        ('      type: ""\n', "is empty"),
+        ("      type: [a, b]\n", "is no text"),
+        ("      type: {a: b}\n", "is no text"),
+        (TYPE.replace("type", "tpye"), "is not defined"),
+    ],
+)
+def test_a_controller_without_a_type_is_told(tmp_path: Path, instead: str, said: str) -> None:
+    with opened(tmp_path, yaml=POSITIONS.replace(TYPE, instead)) as sim:
+        assert states(sim) == {"joint_state_broadcaster": "active"}
+        found = next(d for d in sim.diagnostics if d.code == "SK-CONTROL-013")
+        assert found.line in (7, 8)
+        assert f"the 'type' param of controller 'arm_controller' {said}" in found.message
+        assert ("'tpye'" in found.hint) == ("tpye" in instead)
+
+
+def test_a_misspelt_manager_is_told_with_the_closest(tmp_path: Path) -> None:
+    with opened(tmp_path, yaml=POSITIONS.replace("controller_manager:", "controler_manager:")) as sim:
+        assert states(sim) == {}
+        found = next(d for d in sim.diagnostics if d.code == "SK-CONTROL-003")
+        assert "arm.yaml declares no controller for '/controller_manager'" in found.message
+        assert found.hint == "did you mean '/controler_manager'?"
+
+
+def test_a_namespace_that_the_file_does_not_have_is_told(tmp_path: Path) -> None:
+    plugin = "<ros><namespace>/r1</namespace></ros><parameters>arm.yaml</parameters>"
+    with opened(tmp_path, arm(plugin=plugin)) as sim:
+        assert "declares no controller for '/r1/controller_manager'" in told(sim, "SK-CONTROL-003")[0]
+
+
+def test_a_misspelt_parameter_of_the_manager_is_told(tmp_path: Path) -> None:
+    with opened(tmp_path, yaml=POSITIONS.replace("update_rate", "updat_rate")) as sim:
+        assert "<updat_rate> is not used" in told(sim, "SK-CONTROL-011")[0]
+
+
+def test_a_controllers_parameters_beside_its_type_are_told(tmp_path: Path) -> None:
+    with opened(tmp_path, yaml=POSITIONS.replace(TYPE, TYPE + "      joints: [j1]\n")) as sim:
+        assert "'joints' beside the type of 'arm_controller' is not used" in told(sim, "SK-CONTROL-011")[0]
+
+
+def test_a_controller_that_is_to_be_faster_than_its_manager_is_told(tmp_path: Path) -> None:
+    with opened(tmp_path, yaml=POSITIONS + "    update_rate: 500\n") as sim:
+        message = told(sim, "SK-CONTROL-017")[0]
+        assert "'arm_controller' update rate: 500 Hz should be at most the manager's: 100 Hz" in message
+
+
+def test_a_good_file_is_told_nothing_of(tmp_path: Path) -> None:
+    yaml = POSITIONS + "control:\n  ros__parameters: {pid_gains: {position: {j1: {kp: 1000.0}}}}\n"
+    with opened(tmp_path, yaml=yaml) as sim:
+        assert not [d for d in sim.diagnostics if d.severity != "note" and d.code.startswith("SK-CONTROL")]
+
+
+def test_a_joint_that_is_named_twice_stops_the_load(tmp_path: Path) -> None:
+    with pytest.raises(simkit.LoadError, match=r"arm.yaml:11: error SK-PARAM-002: 'j1' comes twice in 'joints'"):
+        opened(tmp_path, yaml=POSITIONS.replace("[j1, j2]", "[j1, j1]"))
+
+
+@pytest.mark.parametrize("joints", ["[]", "", '""', "[~]"])
+def test_a_list_with_nothing_in_it_stops_the_load(tmp_path: Path, joints: str) -> None:
+    with pytest.raises(simkit.LoadError, match="SK-PARAM-001: <arm_controller> needs <joints>: a list of names"):
+        opened(tmp_path, yaml=POSITIONS.replace("[j1, j2]", joints))
+
+
+@pytest.mark.parametrize(("gains", "said"), [("", "No p gain"), ("    gains: 5\n", "found '5' for 'gains'")])
+def test_a_loop_without_gains_stops_the_load(tmp_path: Path, gains: str, said: str) -> None:
+    yaml = POSITIONS.replace("position_controllers", "effort_controllers") + gains
+    hardware = "".join(
+        f'<joint name="{j}"><command_interface name="effort"/><state_interface name="position"/>'
+        '<state_interface name="velocity"/></joint>'
+        for j in ("j1", "j2")
+    )
+    with pytest.raises(simkit.LoadError, match=said):
+        opened(tmp_path, arm(hardware), yaml)
+
+
+def test_gains_of_the_plugin_that_reach_no_joint_are_told(tmp_path: Path) -> None:
+    gains = "{position: {j1: {kp: 1000.0, kq: 1}, j3: {kp: 1}}, velocty: {j1: {kp: 1}}}"
+    with opened(tmp_path, yaml=POSITIONS + f"control:\n  ros__parameters: {{pid_gains: {gains}}}\n") as sim:
+        assert "pid_gains names joint 'j3'" in told(sim, "SK-CONTROL-008")[0]
+        unused = told(sim, "SK-CONTROL-011")
+        assert [word for word in ("<kq>", "<velocty>") if any(word in m for m in unused)] == ["<kq>", "<velocty>"]
+
+
+def test_a_name_that_no_file_can_have_is_not_found(tmp_path: Path) -> None:
+    with opened(tmp_path, arm(plugin=f"<parameters>{'a' * 5000}</parameters>")) as sim:
+        assert "is not found" in told(sim, "SK-CONTROL-015")[0]
+
+
+@pytest.mark.parametrize(("more", "line"), [("# \xe9".encode("latin-1"), 12), (b"\x07", 12)])
+def test_a_character_that_is_none_is_told_with_its_line(tmp_path: Path, more: bytes, line: int) -> None:
+    opened(tmp_path)
+    (tmp_path / "arm.yaml").write_bytes(POSITIONS.encode() + more)
+    with pytest.raises(simkit.LoadError, match=rf"arm.yaml:{line}: error SK-CONTROL-002"):
+        simkit.load(tmp_path / "arm.urdf")
+
+
+def test_two_control_plugins_on_one_robot_are_told(tmp_path: Path) -> None:
+    again = '<gazebo><plugin filename="libgazebo_ros2_control.so" name="second"/></gazebo>'
+    with opened(tmp_path, arm().replace("</robot>", f"{again}</robot>")) as sim:
+        assert "joint 'j1' is driven by plugin 'control' already" in told(sim, "SK-CONTROL-004")[0]

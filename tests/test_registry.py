@@ -1,0 +1,112 @@
+"""Registries: a class is found by the names that its file writes down, and nothing else is imported for it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simkit.control.manager import controller_kinds
+from simkit.loaders import loader_kinds
+from simkit.plugins import plugin_kinds
+from simkit.registry import Kinds, discover
+from simkit.sensors import sensor_kinds
+
+KINDS: tuple[Callable[[], Any], ...] = (plugin_kinds, sensor_kinds, controller_kinds, loader_kinds)
+
+ANIMALS = '''"""A package of its own."""
+
+
+class Animal:
+    called: tuple[str, ...] = ()
+'''
+DOG = """from animals import Animal
+
+names = ("not a class's",)
+
+
+def bark():
+    called = ("nobody",)
+    return called
+
+
+class Dog(Animal):
+    called = (
+        "Dog",  # "Wolf" is another
+        'Hound',
+    )
+
+
+class Cat(Animal):
+    called: tuple[str, ...] = ("Cat",)
+"""
+BIRDS = """from animals import Animal
+
+
+class Bird(Animal):
+    called = tuple(f"bird {n}" for n in range(2))
+"""
+
+
+@pytest.fixture
+def animals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kinds[Any]]:
+    """A registry of the classes in a package of three modules; `broken` cannot be imported."""
+    package = tmp_path / "animals"
+    (package / "feathered").mkdir(parents=True)
+    files = {"__init__": ANIMALS, "dog": DOG, "broken": "raise RuntimeError", "feathered/__init__": ""}
+    for name, text in {**files, "feathered/birds": BIRDS}.items():
+        (package / f"{name}.py").write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    base = __import__("animals").Animal
+    yield discover(
+        "animals", "animals.nobody", base, lambda cls: [n.lower() for n in cls.called], ("called",), str.lower
+    )
+    for name in [n for n in sys.modules if n.partition(".")[0] == "animals"]:
+        del sys.modules[name]
+
+
+@pytest.mark.parametrize("kinds", KINDS)
+def test_every_class_is_found_by_the_names_that_its_file_writes_down(kinds: Callable[[], Any]) -> None:
+    full = kinds()
+    fresh = Kinds(full._packages, full._group, full._base, full._names, full._attributes, full._spell)
+    for name in list(full):
+        assert name in fresh
+        assert fresh[name] is full[name]
+    assert set(fresh.written) == set(full)
+
+
+def test_only_the_module_of_a_class_is_imported_to_find_it(animals: Kinds[Any]) -> None:
+    assert animals["hound"].__name__ == "Dog"
+    assert animals["cat"].__name__ == "Cat"
+    assert "animals.feathered.birds" not in sys.modules
+
+
+def test_names_that_are_computed_are_found_too(animals: Kinds[Any]) -> None:
+    assert animals["bird 1"].__name__ == "Bird"
+    assert animals.written == {"dog": "Dog", "hound": "Hound", "cat": "Cat", "bird 0": "bird 0", "bird 1": "bird 1"}
+
+
+@pytest.mark.parametrize("name", ["wolf", "nobody", "not a class's", ""])
+def test_what_no_class_writes_down_is_not_there(animals: Kinds[Any], name: str) -> None:
+    assert name not in animals
+    with pytest.raises(KeyError):
+        animals[name]
+
+
+def test_two_classes_of_one_name_are_told_when_all_are_gone_through(animals: Kinds[Any], tmp_path: Path) -> None:
+    (tmp_path / "animals" / "broken.py").write_text(DOG)
+    with pytest.raises(RuntimeError, match=r"'dog' is claimed by animals\.\w+ and by animals\.\w+"):
+        len(animals)
+
+
+def test_a_load_imports_neither_the_kinds_that_it_does_not_use_nor_the_message_types() -> None:
+    program = "import sys, simkit; simkit.load('empty'); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    imported = set(done.stdout.split())
+    assert "simkit.plugins.world.clock" in imported
+    unwanted = {"simkit.plugins.gz.thermal", "simkit.sensors.lidar", "rosbags", "scipy", "trimesh", "urllib.request"}
+    assert not unwanted & imported
