@@ -20,6 +20,7 @@ from simkit.pose import Pose
 from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
+    from simkit.control.given_files import GivenFile, Named
     from simkit.runtime import Simulation
     from simkit.runtime.faults import OnError
     from simkit.spawning import Spawn
@@ -64,6 +65,7 @@ def load(
     render_thread: bool | None = None,
     on_error: OnError | None = None,
     spawn: Sequence[str | Spawn] = (),
+    params_files: Named | Sequence[Named] = (),
 ) -> Simulation:
     """Opens a world or a bare model and makes it ready to step.
 
@@ -88,6 +90,9 @@ def load(
             them, and they to "stop".
         spawn: models that come into the world as it is loaded: `"MODEL:x,y,yaw[:name]"`, or `Spawn` objects. MODEL is
             a file or a bare name; unlike what `Simulation.spawn` adds later, they are there after a reset as well.
+        params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2, or
+            `"MODEL=FILE"` for those of one; models that are spawned later read them too. What they say goes over the
+            files that the plugins name themselves.
 
     Returns:
         The simulation at t = 0.
@@ -112,12 +117,18 @@ def load(
 
         world = with_actors(world, lambda uri, folder: resolver.search(uri, folder)[0], diagnostics)
     allowed = [Path(p) for p in plugin_paths]
+    given = _given(params_files, resolver, diagnostics)
     if diagnostics.has_errors:
         _look_further(world, diagnostics, allowed, resolver)
     diagnostics.raise_if_errors()
     builder = SpecBuilder(world, diagnostics)
     builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
+    builder.parameter_files = given
     parts = _all_parts(world, builder, diagnostics, allowed, plugins)
+    if given:
+        from simkit.control.given_files import report_idle
+
+        report_idle(given, [plugin for one in parts.values() for plugin, _ in one.plugins], world, diagnostics)
     diagnostics.raise_if_errors(strict)
     compiled = builder.compile()
     diagnostics.raise_if_errors(strict)
@@ -136,6 +147,15 @@ def load(
         simulation.close()
         raise
     return simulation
+
+
+def _given(named: Named | Sequence[Named], resolver: Resolver, diagnostics: Diagnostics) -> tuple[GivenFile, ...]:
+    """The parameter files that a run is given."""
+    if not named:
+        return ()
+    from simkit.control.given_files import read_given
+
+    return read_given(named, lambda uri: resolver.search(uri, None)[0], diagnostics)
 
 
 def _all_parts(

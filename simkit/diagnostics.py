@@ -74,6 +74,7 @@ class Diagnostics:
     def __init__(self, items: Iterable[Diagnostic] = ()) -> None:
         self._items: dict[Diagnostic, None] = {}
         self._errors = 0
+        self._heir: Diagnostics | None = None
         self.extend(items)
 
     def __iter__(self) -> Iterator[Diagnostic]:
@@ -104,6 +105,8 @@ class Diagnostics:
         if item not in self._items:
             self._items[item] = None
             self._errors += item.severity == "error"
+            if self._heir is not None:
+                self._heir._put(item)
 
     def error(self, code: str, message: str, where: Where = NOWHERE, hint: str = "") -> None:
         self.add("error", code, message, where, hint)
@@ -117,6 +120,11 @@ class Diagnostics:
     def extend(self, items: Iterable[Diagnostic]) -> None:
         for item in items:
             self._put(item)
+
+    def pass_on(self, to: Diagnostics) -> None:
+        """Gives another what was found, and from now on what is found later too."""
+        to.extend(self._items)
+        self._heir = to
 
     def drop(self, items: Iterable[Diagnostic]) -> None:
         """Forgets some that were found."""

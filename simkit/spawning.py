@@ -94,7 +94,7 @@ def add_spawned(
         found = Diagnostics()
         own = _own_pose(spawn.source, resolver, xacro_args)
         model = load_model(spawn.source, found, name=spawn.name, pose=spawn.pose(own), xacro_args=xacro_args)
-        diagnostics.extend(found)
+        found.pass_on(diagnostics)  # also what its plugins find in their own parameters later
         if model is None:
             continue
         if model.name in {*(m.name for m in models), *(a.name for a in world.actors)}:

@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from simkit.cli.console import guarded, out, print_diagnostics, say
-from simkit.cli.options import Force, Json, PackagePaths, PluginPaths, ResourcePaths, Verbose, XacroArgs, source
+from simkit.cli.options import (
+    Force,
+    Json,
+    PackagePaths,
+    ParamsFiles,
+    PluginPaths,
+    ResourcePaths,
+    Verbose,
+    XacroArgs,
+    source,
+)
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -100,6 +110,7 @@ def play(
     package_path: PackagePaths = [],
     plugin_path: PluginPaths = [],
     xacro_arg: XacroArgs = [],
+    params_file: ParamsFiles = [],
 ) -> int:
     """Plays motions: the way to the first point no faster than is safe, then as the file has it."""
     from contextlib import ExitStack
@@ -112,7 +123,7 @@ def play(
         pictures.check_target(picture)
     if record is not None:
         recorder.check_target(record, overwrite=force)
-    options: Any = source(resource_path, package_path, xacro_arg)
+    options: Any = {**source(resource_path, package_path, xacro_arg), "params_files": params_file}
     shown = []
     with ExitStack() as stack:
         sim = stack.enter_context(_opened(world, robot, motions, seed, plugin_path, options, verbose=verbose))

@@ -41,6 +41,14 @@ PluginPaths = Annotated[
     list[Path],
     typer.Option("--plugin-path", help="Allows the Python plugins in that folder; repeatable.", metavar="DIR"),
 ]
+ParamsFiles = Annotated[
+    list[str],
+    typer.Option(
+        "--params-file",
+        help="Controllers and their parameters, for all control plugins or for those of one model; repeatable.",
+        metavar="[MODEL=]FILE.yaml",
+    ),
+]
 Strict = Annotated[bool, typer.Option("--strict", help="Warnings are errors.")]
 Json = Annotated[bool, typer.Option("--json", help="For programs: one JSON value.")]
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Shows every note, not only how many there are.")]

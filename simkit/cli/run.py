@@ -20,6 +20,7 @@ from simkit.cli.options import (
     Base,
     Force,
     PackagePaths,
+    ParamsFiles,
     PluginPaths,
     ResourcePaths,
     Source,
@@ -64,6 +65,7 @@ class Request:
     quiet: bool = False
     watch: bool = False
     spawn: tuple[str, ...] = ()
+    params_files: tuple[str, ...] = ()
     source: Source = field(default_factory=lambda: source((), (), ()))
 
 
@@ -93,6 +95,7 @@ def run(
         list[str],
         typer.Option(help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"),
     ] = [],
+    params_file: ParamsFiles = [],
     strict: Strict = False,
     view: Annotated[bool, typer.Option("--view", help="Opens a viewer.")] = False,
     picture: Annotated[
@@ -122,7 +125,7 @@ def run(
     request = Request(
         world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, _finite(rtf), tuple(set_), strict,
         view, picture, cmd_vel, script, tuple(plugin_path), _on_error(on_plugin_error), verbose, quiet, watch,
-        tuple(spawn), source(resource_path, package_path, xacro_arg, base),
+        tuple(spawn), tuple(params_file), source(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
     return execute(request)
 
@@ -164,6 +167,7 @@ def execute(request: Request) -> int:
             overrides=request.overrides,
             on_error=request.on_plugin_error,
             spawn=request.spawn,
+            params_files=request.params_files,
             **request.source,
         )
         with sim:

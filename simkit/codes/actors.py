@@ -19,7 +19,8 @@ CODES: tuple[Code, ...] = (
         "SK-ACTOR-001",
         "warning",
         "the skin or an animation of an actor that is not there, or that is not a COLLADA file with a skeleton; a "
-        "person of our own stands in for the skin, the skin's own animation for another",
+        "person of our own stands in for the skin, the skin's own animation for another. Or a "
+        "part of one is left out, such as the motion of a bone by other than matrices",
         "name the folder that holds it, or leave the skin out",
         world('<actor name="anna"><skin><filename>model://nobody/walk.dae</filename></skin></actor>'),
     ),

@@ -162,9 +162,9 @@ CODES: tuple[Code, ...] = (
     ),
     Code(
         "SK-CONTROL-015",
-        "warning",
-        "a controllers' parameter file is not found: no controller of it is loaded",
-        "`--package-path NAME=DIR`, or put the file beside the robot's",
+        "error, warning",
+        "a controllers' parameter file is not found: no controller of it is loaded; an error from `--params-file`",
+        "`--package-path NAME=DIR`, put the file beside the robot's, or name it with `--params-file`",
         _robot(plugin="<parameters>package://nowhere/config/none.yaml</parameters>"),
     ),
     Code(
@@ -185,7 +185,7 @@ CODES: tuple[Code, ...] = (
         "SK-CONTROL-018",
         "note",
         "a controllers' plugin names no parameter file, so no controller is loaded",
-        "`<parameters>`, or `<simkit:parameters>` where Gazebo must not see it",
+        "`--params-file FILE`, as a launch file of ROS would load; or `<simkit:parameters>`, which Gazebo does not see",
         _robot(plugin=""),
     ),
     Code(

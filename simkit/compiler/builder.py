@@ -79,11 +79,13 @@ class SpecBuilder:
         spec: MuJoCo's specification. Handles into it die with `copy`; look elements up by name.
         records: what each top-level model put into it, by scoped name; the world's own under the empty name.
         find_file: the file that a URI names beside the file in that folder; None where there is none.
+        parameter_files: what the run was given for the control plugins, which alone know what it is.
     """
 
     def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
         self.world, self.diagnostics = world, diagnostics
         self.find_file: FileFinder = _beside
+        self.parameter_files: tuple[Any, ...] = ()
         self.spec = mujoco.MjSpec()
         self.spec.modelname = world.name
         self.assets = Assets(self.spec)
@@ -407,7 +409,7 @@ class SpecBuilder:
         """An independent builder with the same content: change it, and this one stays what it was."""
         other = SpecBuilder.__new__(SpecBuilder)
         other.world, other.diagnostics = self.world, self.diagnostics
-        other.find_file = self.find_file
+        other.find_file, other.parameter_files = self.find_file, self.parameter_files
         other.spec = self.spec.copy()
         other.assets = Assets(other.spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}

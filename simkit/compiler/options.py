@@ -30,7 +30,12 @@ _MEMORY_MOST: Final = 4 << 30
 
 
 def contact_time_constant(timestep: float) -> float:
-    """Time constant [s] of the one world-wide contact softness."""
+    """Time constant [s] of the one world-wide contact softness.
+
+    A shorter one, or more damping at the same stiffness, lets less slide out of a swinging hand (1.4 instead of 4.3 mm
+    over TIAGo's `reach_floor` at 1 ms), but a body that begins to slide then hops three to four times as high, and a
+    slide down a slope comes out up to 5 % off.
+    """
     return max(0.004, 2.0 * timestep)
 
 

@@ -161,16 +161,24 @@ class Controller(abc.ABC):
             description: what it is, with its unit.
             on_change: called with a new value, between two steps.
         """
-        from simkit.control.live import declare
+        from simkit.plugins.live import declare_at
 
-        return declare(
-            self,
+        plugin, params = self.plugin, self.params
+        *blocks, last = name.split(".")
+        for block in blocks:
+            params = params.block(block)
+        own, model = f"{plugin.ros.namespace}/{self.name}", plugin.scoped.partition("::")[0]
+        return declare_at(
+            plugin,
+            plugin.sim.parameter_table.node_of(plugin, own, f"/{model}/{self.name}"),
             name,
             default,
             minimum=minimum,
             maximum=maximum,
             choices=choices,
             description=description,
+            params=params,
+            element=last,
             on_change=on_change,
         )
 

@@ -19,11 +19,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.drive import drive_gains, felt_inertias
+from simkit.control.drive_modes import FREE, POSITION_MODE, SPRING_MODE, Driven, Loops
 from simkit.control.interfaces import POSITION, VELOCITY
 from simkit.control.rolling import lead
 from simkit.control.weights import Weights
@@ -36,54 +35,7 @@ if TYPE_CHECKING:
     from simkit.control.hardware import HardwareJoint
     from simkit.runtime import Simulation
 
-Mask = npt.NDArray[np.bool_]
-
-FREE, POSITION_MODE, VELOCITY_MODE, EFFORT_MODE, SPRING_MODE = range(5)
-
-_ROLLING: Final = 0.5
-"""Damping of a velocity servo, times step over inertia. Contacts are solved without what the integrator knows of it: a
-wheel slips in proportion (2 mm/s at 1 and 0.8 m/s²)."""
-
-_CATCH_UP: Final = 0.05
-"""[s] in which a velocity servo makes up for what it lost."""
-
-_PULL: Final = 2.0
-"""Times the whole effort that a position servo asks for at most: what damping takes off leaves the whole."""
-
 _LARGEST: Final = 9e9  # controls of 1e10 or more are none for the engine
-
-
-@dataclass(slots=True)
-class _Now:
-    """What the drives' modes amount to, one number or truth for each joint; made anew when the modes change."""
-
-    modes: Any
-    nothing: Vector
-    kp: Vector
-    kv: Vector
-    pull: Vector
-    lowest: Vector
-    highest: Vector
-    integral: tuple[Vector, Vector, Vector]
-    is_position: Mask
-    is_servo: Mask
-    is_helped: Mask
-    helped: Vector
-    direct: Vector
-    all_helped: bool
-    all_position: bool
-    reach: Vector
-    rolling: list[tuple[int, int, int, int, float, float]]  # each one's place, addresses, stiffness and top speed
-    slacks: list[float]
-    catch_up: list[float]
-    of: Any  # the array of groups that `groups` are of
-    groups: list[int]
-    has_effort: bool
-    has_integral: bool
-    offset: Vector
-    period: float = 0.0  # that `least` and `most` are of: how far references may move in it
-    least: Any = None
-    most: Any = None
 
 
 @dataclass(slots=True)
@@ -113,19 +65,15 @@ class Drives:
     _states: Any = None  # addresses of the actuators' states
     _qpos: Any = None
     _dofs: Any = None
-    _gains: Any = None  # (joints, modes, 2): kp and kv
-    _integral: Any = None  # (joints, modes, 3): ki, lowest, highest
-    _is_given: Any = None  # (joints, modes): whether the loop is the file's
-    _bounds: Any = None  # (joints, modes, 2): lowest and highest effort
+    _loops: Any = None
     _leaders: Any = None
     _leads: Any = None
     _law: Any = None  # multiplier and offset (2, joints)
     _ends: Any = None  # lower and upper (2, joints)
     _fastest: Any = None
     _follows: bool = False
-    _calm: Any = None  # (joints, 2): the highest kp and kd that do not ring
     _weights: Any = None
-    _cached: _Now | None = None
+    _cached: Driven | None = None
 
     @classmethod
     def prepare(
@@ -172,9 +120,10 @@ class Drives:
         self._states = np.array(model.actuator_actadr[self._ids], np.intp)
         self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
         self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
-        if self._gains is None:
+        if self._loops is None:
             self._take_limits()
-            self._choose_gains(np.array([b.joint_ids[0] for b in bindings], np.intp))
+            ids = np.array([b.joint_ids[0] for b in bindings], np.intp)
+            self._loops = Loops.choose(model, ids, self.joints, self.pids)
 
     def _take_limits(self) -> None:
         """Limits and laws of mimics, as arrays."""
@@ -186,31 +135,6 @@ class Drives:
         self._ends = np.array([(j.lower, j.upper) for j in joints], float).reshape(-1, 2).T
         self._fastest = np.array([j.max_velocity for j in joints], float)
         self._follows = not self._leads.all()
-
-    def _choose_gains(self, ids: Any) -> None:
-        """kp and kv of every joint as it is driven in each mode: those of the file's loops, else those of a servo."""
-        count, model = len(self.joints), self._model
-        step, limits = float(model.opt.timestep), np.array([joint.max_effort for joint in self.joints], float)
-        self._gains, self._integral = np.zeros((count, 5, 2)), np.zeros((count, 5, 3))
-        self._is_given = np.zeros((count, 5), bool)
-        self._bounds = np.repeat(np.stack((-limits, limits), 1)[:, None], 5, 1)
-        if not count:
-            return
-        least, most = felt_inertias(model, ids)
-        self._calm = np.stack((0.25 * least / step**2, least / step), 1)
-        is_slide = model.jnt_type[ids] == int(mujoco.mjtJoint.mjJNT_SLIDE)
-        self._gains[:, POSITION_MODE] = np.stack(drive_gains(limits, is_slide, least, most, step), 1)
-        damping = _ROLLING * least / step
-        self._gains[:, VELOCITY_MODE] = np.stack((damping / _CATCH_UP, damping), 1)
-        for k, joint in enumerate(self.joints):
-            for mode, interface in ((POSITION_MODE, POSITION), (VELOCITY_MODE, VELOCITY)):
-                given = self.pids.get(joint.name, {}).get(interface)
-                if given:
-                    wanted = (given.p, given.d) if mode == POSITION_MODE else (0.0, given.p)
-                    self._gains[k, mode] = min(wanted[0], least[k] / step**2), min(wanted[1], least[k] / step)
-                    self._integral[k, mode] = given.i, given.i_min, given.i_max
-                    self._bounds[k, mode] = max(given.u_min, -limits[k]), min(given.u_max, limits[k])
-                    self._is_given[k, mode] = True
 
     # ------------------------------------------------------------------ at work
 
@@ -225,12 +149,12 @@ class Drives:
         """
         for k, joint in enumerate(self.joints):
             if joint.name in springs:
-                self._gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._calm[k])
+                self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.calm[k])
 
     def spring_gains(self, joints: Sequence[str]) -> tuple[Vector, Vector]:
         """kp and kd of joints as `soften` has set them."""
         index = {joint.name: k for k, joint in enumerate(self.joints)}
-        kp, kd = self._gains[[index[name] for name in joints], SPRING_MODE].T
+        kp, kd = self._loops.gains[[index[name] for name in joints], SPRING_MODE].T
         return kp.copy(), kd.copy()
 
     def switch(self, modes: Any) -> None:
@@ -256,7 +180,7 @@ class Drives:
         data.ctrl[self._ids[changed]] = 0.0
         sim.physics.changed(CONTROL)
 
-    def _bound(self, now: _Now) -> None:
+    def _bound(self, now: Driven) -> None:
         """Bounds the efforts as the present modes have it."""
         is_bound = np.isfinite(now.lowest) | np.isfinite(now.highest)
         if is_bound.any():
@@ -264,47 +188,13 @@ class Drives:
             limited[self._ids] = is_bound
             ranges[self._ids] = np.clip(np.stack((now.lowest, now.highest), 1), -_LARGEST, _LARGEST)
 
-    def _now(self) -> _Now:
+    def _now(self) -> Driven:
         """What the present modes amount to."""
         cached = self._cached
-        if cached is not None and cached.modes is self.modes and cached.of is self.groups:
+        if cached is not None and cached.modes is self.modes and cached.claims is self.groups:
             return cached
-        modes, rows = self.modes, np.arange(len(self.modes))
-        (kp, kv), bounds = self._gains[rows, modes].T, self._bounds[rows, modes]
-        is_position = modes == POSITION_MODE
-        is_servo = is_position | (modes == VELOCITY_MODE)
-        is_helped = is_servo & ~self._is_given[rows, modes]
-        integral = self._integral[rows, modes].T
-        rolls = np.flatnonzero(~is_position)
-        stiffness = np.maximum(kp[rolls], 1e-12)
-        fastest = np.where(is_servo, self._fastest, 0.0)[rolls]
-        columns = rolls, self._ids[rolls], self._qpos[rolls], self._dofs[rolls], stiffness, fastest
-        self._cached = _Now(
-            modes=modes,
-            nothing=np.zeros(len(modes)),
-            kp=kp.copy(),
-            kv=kv.copy(),
-            pull=np.where(is_servo, kp, 0.0),
-            lowest=bounds[:, 0].copy(),
-            highest=bounds[:, 1].copy(),
-            integral=(integral[0].copy(), integral[1].copy(), integral[2].copy()),
-            is_position=is_position,
-            is_servo=is_servo,
-            is_helped=is_helped,
-            helped=is_helped.astype(float),
-            direct=((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float),
-            all_helped=bool(is_helped.all()),
-            all_position=bool(is_position.all()),
-            reach=np.where(is_position, _PULL * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
-            rolling=list(zip(*(column.tolist() for column in columns), strict=True)),
-            slacks=(bounds[rolls, 1] / stiffness).tolist(),
-            catch_up=(np.maximum(kv[rolls], 1e-12) / stiffness).tolist(),
-            of=self.groups,
-            groups=self.groups[rolls].tolist(),
-            has_effort=bool((modes >= EFFORT_MODE).any()),
-            has_integral=bool(integral[0].any()),
-            offset=np.where(is_position, self._law[1], 0.0),
-        )
+        addresses = self._ids, self._qpos, self._dofs
+        self._cached = Driven.of(self.modes, self.groups, self._loops, addresses, self._fastest)
         return self._cached
 
     def _rebind_if_needed(self) -> None:
@@ -324,7 +214,8 @@ class Drives:
         now, physics = self._now(), self._sim.physics
         data, wanted = physics.data, commands
         if self._follows:  # a mimic has no command of its own
-            wanted = np.where(self._leads, wanted, self._law[0] * wanted[self._leaders] + now.offset)
+            offset = np.where(now.is_position, self._law[1], 0.0)
+            wanted = np.where(self._leads, wanted, self._law[0] * wanted[self._leaders] + offset)
         if wanted.dot(now.nothing) != 0.0:  # sooner found like this: 0 times what is not finite is not 0
             wanted = np.where(np.isfinite(wanted), wanted, np.where(now.is_position, self.targets, 0.0))
         reference, rate = self._follow(now, wanted, period)
@@ -342,7 +233,7 @@ class Drives:
         data.ctrl[self._ids] = now.pull * rate
         physics.changed(CONTROL)
 
-    def _follow(self, now: _Now, wanted: Vector, period: float) -> tuple[Vector, Vector]:
+    def _follow(self, now: Driven, wanted: Vector, period: float) -> tuple[Vector, Vector]:
         """Where the references are [rad or m], and how fast they move from now on [rad/s or m/s], within the limits."""
         targets = self.targets
         if period <= 0.0:
@@ -368,7 +259,7 @@ class Drives:
         self.targets = ahead
         return reference, rate
 
-    def _roll(self, now: _Now, wanted: Vector, period: float) -> tuple[list[float], list[float]]:
+    def _roll(self, now: Driven, wanted: Vector, period: float) -> tuple[list[float], list[float]]:
         """The same of those that are not driven by position, `now.rolling`."""
         data = self._sim.physics.data
         control, place, turning = data.ctrl.item, data.qpos.item, data.qvel.item
@@ -392,7 +283,7 @@ class Drives:
             groups=now.groups,
         )
 
-    def _integrate(self, now: _Now, reference: Vector, rate: Vector, period: float) -> Vector:
+    def _integrate(self, now: Driven, reference: Vector, rate: Vector, period: float) -> Vector:
         """The integral parts of the file's loops, carried on [N·m or N]."""
         data, (ki, lowest, highest) = self._sim.physics.data, now.integral
         error = np.where(now.is_position, reference - data.qpos[self._qpos], rate - data.qvel[self._dofs])

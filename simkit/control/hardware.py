@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.control.drives import EFFORT_MODE, FREE, POSITION_MODE, SPRING_MODE, VELOCITY_MODE, Drives
+from simkit.control.drive_modes import EFFORT_MODE, FREE, POSITION_MODE, SPRING_MODE, VELOCITY_MODE
+from simkit.control.drives import Drives
 from simkit.control.hardware_sensors import HardwareSensor, find_sensor
 from simkit.control.interfaces import EFFORT, POSITION, VELOCITY, InterfaceTable
 from simkit.control.transmissions import Law, laws

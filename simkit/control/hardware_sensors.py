@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final
 
@@ -46,7 +47,15 @@ class HardwareSensor:
         fields = KINDS[self.kind]
         if message is None:
             return np.full(len(interfaces), np.nan)
+        if len(interfaces) > 1 and all(i in fields for i in interfaces):
+            return np.array(_getter(self.kind, interfaces)(message))
         return np.array([attrgetter(fields[i])(message) if i in fields else np.nan for i in interfaces])
+
+
+@cache
+def _getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[Any]:
+    """What takes some interfaces from a message of a kind of sensor."""
+    return attrgetter(*(KINDS[kind][interface] for interface in interfaces))
 
 
 def find_sensor(described: SensorDescription, scene: SceneModel, found: Diagnostics) -> HardwareSensor | None:

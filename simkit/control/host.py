@@ -5,8 +5,7 @@ What it needs is imported when it is used: the plugins of every world are looked
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit.control.interfaces import POSITION, VELOCITY
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
 
 UPDATE_RATE: Final = 100.0
 """[Hz] of a controller manager whose file says nothing."""
+_GIVE: Final = "--params-file FILE, params_files=[FILE] in Python"
 
 
 class ControlHost(ModelPlugin):
@@ -51,8 +51,10 @@ class ControlHost(ModelPlugin):
 
         transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
         self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
-        self.files = ParameterFiles(list(self._read_files(params, builder)))
         self._manager_name = params.text("controller_manager_name", "") or "controller_manager"
+        given = [one.file for one in builder.parameter_files if one.is_for(scene)]
+        files = [*self._read_files(params, builder, any_given=bool(given)), *self._fitted(given, params)]
+        self.files = ParameterFiles(files)
         self._chosen = [(word, one) for one in params.all("controllers") for word in _words(one)]
         self.hardware.holds = params.boolean("hold_joints", True)
         self.read_rest(params)
@@ -123,38 +125,35 @@ class ControlHost(ModelPlugin):
                 hint = "leave one of the two plugins out, or the joint out of <ros2_control>"
                 self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
 
-    def _read_files(self, params: Params, builder: SpecBuilder) -> Iterator[ParameterFile]:
+    def _fitted(self, given: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
+        """The files that the run was given, as this manager looks for what they say."""
+        if given:
+            from simkit.control.given_files import fitted
+
+            for file in given:
+                namespace, name = self.ros.namespace, self._manager_name
+                yield fitted(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
+
+    def _read_files(self, params: Params, builder: SpecBuilder, *, any_given: bool) -> Iterator[ParameterFile]:
         from simkit.control.parameter_files import read_parameter_file
+        from simkit.plugins.lookups import find_file_of
 
         elements = params.all("parameters")
         for element in elements:
             for uri in [element.value] if element.value.startswith("$(") else element.value.split():
-                path = self._find(uri, builder)
+                path = find_file_of(self, uri, builder, ("config", "../config"))
                 if path is None:
                     message = f"the controllers' parameter file {uri[:200]} is not found: no controller of it is loaded"
-                    hint = "name its package's folder: --package-path NAME=DIR, or put the file beside the robot's"
+                    hint = f"name its package's folder: --package-path NAME=DIR, or the file itself: {_GIVE}"
                     params.diagnostics.warning("SK-CONTROL-015", message, element.where, hint)
                     continue
                 read = read_parameter_file(path, params.diagnostics)
                 if read is not None:
                     yield read
-        if not any(element.value for element in elements):
+        if not any_given and not any(element.value for element in elements):
             message = f"plugin {self.name!r} names no parameter file: no controller is loaded"
-            hint = "name one in <parameters>, or in <simkit:parameters> where Gazebo must not see it"
+            hint = f"give what a launch file of ROS would load: {_GIVE}; or name it in <simkit:parameters>"
             params.diagnostics.note("SK-CONTROL-018", message, self.where, hint)
-
-    def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
-        """A file by its URI, else one of that name beside the robot's file, or in a `config` folder there."""
-        folder = Path(self.where.file).resolve().parent if self.where.file else None
-        try:
-            path = builder.find_file(uri, folder)
-            if path is not None and path.is_file():
-                return path
-            name = uri.replace("\\", "/").rpartition("/")[2]
-            places = [] if folder is None else [folder, folder / "config", folder.parent / "config"]
-            return next((place / name for place in places if name and (place / name).is_file()), None)
-        except (OSError, ValueError):  # a name that no file can have
-            return None
 
     # ------------------------------------------------------------------ at work
 

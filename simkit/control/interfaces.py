@@ -43,9 +43,11 @@ class InterfaceTable:
 
     def catch_up(self, wanted: frozenset[int]) -> None:
         """Reads what is late and wanted."""
-        due = [not wanted.isdisjoint(places.tolist()) for places, _ in self.late]
-        now = [one for one, is_due in zip(self.late, due, strict=True) if is_due]
-        self.late[:] = [one for one, is_due in zip(self.late, due, strict=True) if not is_due]
+        now: list[tuple[Any, Callable[[], Any]]] = []
+        later: list[tuple[Any, Callable[[], Any]]] = []
+        for one in self.late:
+            (later if wanted.isdisjoint(one[0].tolist()) else now).append(one)
+        self.late[:] = later
         for places, read in now:
             self.values[places] = read()
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit.control.hardware import Hardware
 from simkit.control.interfaces import EFFORT, POSITION, VELOCITY, span
+from simkit.control.lists import names
 from simkit.control.pids import Pids
 from simkit.control.trajectory import Setpoint
 from simkit.params import Params
@@ -65,7 +66,7 @@ class JointGroup:
             hardware: what there is.
             commands, states: interfaces where the file names none.
         """
-        joints = _names(params, "joints")
+        joints = tuple(names(params, "joints", code=_BAD))
         if not joints:
             params.error(_BAD, "'joints' parameter is empty.", "joints: [arm_1_joint, arm_2_joint]")
         commanded, places = _commanded(params, joints)
@@ -166,22 +167,13 @@ class JointGroup:
         return rest
 
 
-def _names(params: Params, name: str) -> tuple[str, ...]:
-    found = params.all(name)
-    names = [one.value for one in found]
-    for k, one in enumerate(found):
-        if one.value in names[:k]:
-            one.error(_BAD, f"joint {one.value!r} comes twice in '{name}'", "each joint once")
-    return tuple(dict.fromkeys(filter(None, names)))
-
-
 def _commanded(params: Params, joints: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
     """The commanded joints, and their places: all, under the same or other names, or some of them."""
-    names = _names(params, "command_joints") or joints
-    if len(names) == len(joints):
-        return names, np.arange(len(joints))
-    if set(names) <= set(joints):
-        return names, np.array([joints.index(name) for name in names], dtype=np.intp)
+    commanded = tuple(names(params, "command_joints", code=_BAD)) or joints
+    if len(commanded) == len(joints):
+        return commanded, np.arange(len(joints))
+    if set(commanded) <= set(joints):
+        return commanded, np.array([joints.index(name) for name in commanded], dtype=np.intp)
     message = "'command_joints' parameter must have the same size as 'joints' parameter or be a subset of it."
     params.error(_BAD, message, "joints are " + ", ".join(joints))
     return joints, np.arange(len(joints))

@@ -122,12 +122,12 @@ class ControllerManager:
         found: Diagnostics = self.plugin.sim.reports if self._diagnostics is None else self._diagnostics
         return found
 
-    def load(self, name: str, type_name: str = "") -> str:
-        """Makes a controller; returns what is wrong, nothing where all is well."""
+    def load(self, name: str) -> str:
+        """Makes a controller of the type that the files declare; returns what is wrong, nothing where all is well."""
         if name in self.controllers:
             return f"a controller named '{name}' was already loaded inside the controller manager"
         entry = self._entry(name)
-        kind = type_name or self.declared().get(name, "")
+        kind = self.declared().get(name, "")
         if not kind:
             return f"the 'type' param was not defined for '{name}'"
         cls = controller_kinds().get(kind)

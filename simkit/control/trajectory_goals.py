@@ -198,6 +198,20 @@ class Tolerances:
         return changed, ""
 
 
+def worst(off: Vector, tolerances: Vector, joints: Sequence[str]) -> str:
+    """The joint that is furthest beyond its tolerance, in ros2_control's words.
+
+    Args:
+        off: how far each joint is off, shape (3, n): position, velocity, acceleration [rad or m, per s, per s²].
+        tolerances: likewise.
+        joints: their names.
+    """
+    excess = np.where(np.isfinite(tolerances), off - tolerances, -np.inf)
+    row, j = np.unravel_index(int(np.argmax(excess)), excess.shape)
+    field = ("Position", "Velocity", "Acceleration")[row]
+    return f"{joints[int(j)]}: {field} Error: {off[row, j]:f}, {field} Tolerance: {tolerances[row, j]:f}"
+
+
 def _or_none(tolerances: Sequence[float]) -> Vector:
     return np.array([t if t > 0.0 else math.inf for t in tolerances])
 

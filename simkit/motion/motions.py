@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from simkit import msgs
 from simkit.diagnostics import NOWHERE, Where
-
-_NS = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +56,8 @@ class Motion:
 
     def as_info(self) -> dict[str, Any]:
         """The fields of a `play_motion_msgs/msg/MotionInfo`."""
-        sec, nanosec = divmod(round(self.duration * _NS), _NS)
-        return {"name": self.key, "joints": list(self.joints), "duration": {"sec": sec, "nanosec": nanosec}}
+        duration = msgs.duration(round(self.duration * 1e9))
+        return {"name": self.key, "joints": list(self.joints), "duration": duration}
 
 
 def motion_of_message(message: Any) -> Motion:

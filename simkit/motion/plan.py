@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.motion.limits import beyond_limits, speed_limits
 from simkit.motion.motions import Motion
@@ -185,12 +186,11 @@ def trajectory(found: Course, motion: Motion, mover: Mover, robot: Model) -> dic
     at_rest = [0.0] * len(columns)
     points = []
     for k in range(1, len(found.times)):
-        sec, nanosec = divmod(round(float(found.times[k]) * 1e9), 1_000_000_000)
         points.append(
             {
                 "positions": row(found.positions[k], here),
                 "velocities": row(found.velocities[k], at_rest),
-                "time_from_start": {"sec": sec, "nanosec": nanosec},
+                "time_from_start": msgs.duration(round(float(found.times[k]) * 1e9)),
             }
         )
     return {"trajectory": {"joint_names": list(mover.joints), "points": points}}

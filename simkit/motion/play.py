@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit import msgs
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.motion.limits import beyond_limits, speed_limits
 from simkit.motion.motions import Motion, motion_of_message
@@ -29,6 +31,7 @@ from simkit.motion.services import offer_services
 from simkit.motion.timing import STEEPEST
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_file_of
 from simkit.plugins.ros_names import RosNames
 
 if TYPE_CHECKING:
@@ -101,14 +104,11 @@ class PlayMotion(ModelPlugin):
         self._free_joints = tuple(given) if given else said.excluded_joints
 
     def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
-        folder = Path(self.where.file).resolve().parent if self.where.file else None
-        found = builder.find_file(uri, folder)
-        if found is not None and found.is_file():
-            return found
-        name = uri.replace("\\", "/").rpartition("/")[2]
-        near = () if folder is None else (folder, folder / "motions", folder / "config", folder.parent / "motions")
-        places = (Path(uri), *(place / name for place in near if name))
-        return next((place for place in places if place.is_file()), None)
+        """A file by its URI or beside the robot's file, else by its path as it stands (Python's way to name one)."""
+        found = find_file_of(self, uri, builder, ("motions", "config", "../motions"))
+        with suppress(OSError, ValueError):  # a name that no file can have
+            return Path(uri) if found is None and Path(uri).is_file() else found
+        return found
 
     # ------------------------------------------------------------------ at work
 
@@ -295,8 +295,7 @@ class PlayMotion(ModelPlugin):
             elif _is_ros_1(run.goal):
                 run.goal.publish_feedback(None)
             else:
-                sec, nanosec = divmod(now, 1_000_000_000)
-                run.goal.publish_feedback({"current_time": {"sec": sec, "nanosec": nanosec}})
+                run.goal.publish_feedback({"current_time": msgs.time(now)})
 
     def _fail(self, run: _Run, code: int, text: str) -> None:
         self.log.info("%s", text)

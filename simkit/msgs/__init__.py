@@ -8,7 +8,7 @@ msgs.header(sim.time_ns, "imu_link")
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -23,6 +23,7 @@ __all__ = [
     "from_dict",
     "full_name",
     "header",
+    "headers",
     "make",
     "rihs",
     "serialize",
@@ -99,8 +100,15 @@ def duration(ns: int) -> Any:
 
 def header(time_ns: int, frame_id: str) -> Any:
     """A `std_msgs/msg/Header` stamped with `time_ns` [ns]."""
-    types = _stamp_types()
-    return types[2](types[0](*divmod(time_ns, _NS)), frame_id)
+    stamp, _, made = _stamp_types()
+    return made(stamp(time_ns // _NS, time_ns % _NS), frame_id)
+
+
+def headers(time_ns: int) -> Callable[[str], Any]:
+    """What makes `header(time_ns, frame_id)` of a frame, sooner where there are many."""
+    stamp, _, made = _stamp_types()
+    seconds, rest = divmod(time_ns, _NS)
+    return lambda frame_id: made(stamp(seconds, rest), frame_id)
 
 
 def stamp_ns(stamp: Any) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from simkit.params import Params
 from simkit.runtime.parameter_services import offer_parameter_services
 from simkit.runtime.parameters import Parameter
 
@@ -27,15 +28,45 @@ def declare(
     on_change: Callable[[T], None] | None,
 ) -> Parameter[T]:
     """Reads the first value, adds the parameter to the plugin's node, and opens the node's services."""
-    table = plugin.sim.parameter_table
     own = f"{plugin.ros.namespace}/{plugin.name}"
     otherwise = "/" + "/".join(filter(None, (*plugin.scoped.split("::"), plugin.name)))
     # a model has several of one class under one name: then the plugin itself says what tells them apart
     otherwise = getattr(plugin, "node", otherwise)
-    node = table.node_of(plugin, otherwise if "::" in plugin.name else own, otherwise)
+    node = plugin.sim.parameter_table.node_of(plugin, otherwise if "::" in plugin.name else own, otherwise)
+    return declare_at(
+        plugin,
+        node,
+        name,
+        default,
+        minimum=minimum,
+        maximum=maximum,
+        choices=choices,
+        description=description,
+        params=plugin.params,
+        element=element,
+        on_change=on_change,
+    )
+
+
+def declare_at(
+    plugin: Plugin,
+    node: str,
+    name: str,
+    default: T,
+    *,
+    minimum: float | None,
+    maximum: float | None,
+    choices: Sequence[T],
+    description: str,
+    params: Params,
+    element: str,
+    on_change: Callable[[T], None] | None,
+) -> Parameter[T]:
+    """The same at any node, with the first value from an element in `params`."""
+    table = plugin.sim.parameter_table
     if on_change is not None:
         on_change = plugin.sim.faults.guard(plugin, f"its callback for parameter {name!r}", on_change)
-    value: Any = _first_value(plugin, element, default, minimum, maximum, choices)
+    value: Any = _first_value(params, element, default, minimum, maximum, choices)
     is_new = node not in table.nodes()
     parameter = Parameter(
         node,
@@ -49,7 +80,7 @@ def declare(
         owner=plugin,
     )
     if not parameter.is_within(value):
-        plugin.params.error("SK-PARAM-002", f"found <{element}> {value!r}, allowed is {parameter.allowed}")
+        params.error("SK-PARAM-002", f"found <{element}> {value!r}, allowed is {parameter.allowed}")
     table.add(parameter)
     if is_new:
         with plugin.sim.bus.owned_by(plugin):
@@ -58,9 +89,8 @@ def declare(
 
 
 def _first_value(
-    plugin: Plugin, element: str, default: Any, minimum: float | None, maximum: float | None, choices: Sequence[Any]
+    params: Params, element: str, default: Any, minimum: float | None, maximum: float | None, choices: Sequence[Any]
 ) -> Any:
-    params = plugin.params
     if isinstance(default, bool):
         return params.boolean(element, default)
     if isinstance(default, str):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from simkit.diagnostics import did_you_mean
@@ -12,6 +13,8 @@ from simkit.scene import SceneJoint, SceneLink, SceneModel
 T = TypeVar("T")
 
 if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.plugins.base import Plugin
     from simkit.runtime import Light, Simulation
 
 
@@ -75,9 +78,28 @@ def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint 
     return joint
 
 
+def find_file_of(plugin: Plugin, uri: str, builder: SpecBuilder, places: Sequence[str] = ()) -> Path | None:
+    """A file that a plugin names, by its URI, else one of that name beside the file that the plugin is in.
+
+    Args:
+        plugin: whose it is.
+        uri: as written.
+        builder: what finds files.
+        places: further folders that are looked into, from the one of the plugin's file.
+    """
+    folder = Path(plugin.where.file).resolve().parent if plugin.where.file else None
+    try:
+        path = builder.find_file(uri, folder)
+        if path is not None and path.is_file():
+            return path
+        name = uri.replace("\\", "/").rpartition("/")[2]
+        if folder is None or not name:
+            return None
+        return next((file for place in (".", *places) if (file := folder / place / name).is_file()), None)
+    except (OSError, ValueError):  # a name that no file can have
+        return None
+
+
 def numbers(params: Params, name: str, minimum: float | None = None) -> list[float]:
     """The numbers of all elements of that name, in document order."""
-    one_each = (
-        Params(params.name, children=(c,), where=c.where, diagnostics=params.diagnostics) for c in params.all(name)
-    )
-    return [element.number(name, minimum=minimum) for element in one_each]
+    return [one.number(name, minimum=minimum) for one in params.each(name)]

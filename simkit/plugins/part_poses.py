@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -49,22 +49,26 @@ class Part:
         return self
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
+class _Found(NamedTuple):
     """A part in the compiled model.
 
     Attributes:
+        frame, child: as the part has them.
         place: where it is in its frame, where that never changes.
         row, offset: its body among those taken, and its frame in that body's.
         base, back: the body of what it is in (-1 for the world), and that body's frame in its own.
+        is_body, is_base: whether its frame, and that of what it is in, are those of their bodies.
     """
 
-    part: Part
+    frame: str
+    child: str
     place: Seven | None = None
     row: int = -1
     offset: Seven = _HERE
     base: int = -1
     back: Seven = _HERE
+    is_body: bool = False
+    is_base: bool = False
 
 
 class PartPoses:
@@ -78,7 +82,8 @@ class PartPoses:
     def __init__(self, sim: Simulation, parts: Sequence[Part]) -> None:
         self._sim = sim
         self._rows: dict[int, int] = {}
-        self._found = [self._find(part) for part in parts]
+        # as plain tuples, which are soonest gone through
+        self._plan = [self._find(part) for part in parts]
         self._bodies = np.array(list(self._rows), dtype=np.intp)
 
     def take(self) -> Taken:
@@ -86,22 +91,32 @@ class PartPoses:
         data = self._sim.fresh_data()
         return Taken(self, data.xpos[self._bodies], data.xquat[self._bodies])
 
-    def place(self, positions: Vector, quaternions: Vector) -> Iterator[Placed]:
+    def place(self, positions: Vector, quaternions: Vector) -> list[Placed]:
         """The poses when the bodies are here: [m] and (w, x, y, z) in the world, shapes (n, 3) and (n, 4)."""
         world: list[Seven] = [
             (x, y, z, w, i, j, k)
             for (x, y, z), (w, i, j, k) in zip(positions.tolist(), quaternions.tolist(), strict=True)
         ]
-        back: dict[int, Seven] = {}
-        for found in self._found:
-            pose, base = found.place, found.base
-            if pose is None:
-                pose = _product(world[found.row], found.offset)
-                if base >= 0:
-                    if base not in back:
-                        back[base] = _product(found.back, _inverse(world[base]))
-                    pose = _product(back[base], pose)
-            yield found.part.frame, found.part.child, pose
+        backs: list[Seven | None] = [None] * len(world)
+        placed: list[Placed] = []
+        for frame, child, fixed, row, offset, base, back, is_body, is_base in self._plan:
+            if fixed is not None:
+                placed.append((frame, child, fixed))
+                continue
+            pose = world[row]
+            # times one is the same again, unless it is a zero whose sign may turn
+            if not is_body or 0.0 in pose:
+                pose = _product(pose, offset)
+            if base >= 0:
+                there = backs[base]
+                if there is None:
+                    there = _inverse(world[base])
+                    if not is_base or 0.0 in there:
+                        there = _product(back, there)
+                    backs[base] = there
+                pose = _product(there, pose)
+            placed.append((frame, child, pose))
+        return placed
 
     def __deepcopy__(self, memo: dict[int, object]) -> PartPoses:
         return self
@@ -110,21 +125,25 @@ class PartPoses:
 
     def _find(self, part: Part) -> _Found:
         if part.place is not None:
-            return _Found(part, numbers(part.place))
+            return _Found(part.frame, part.child, numbers(part.place))
         assert part.handle is not None
         body, offset = self._spot(part.handle)
         if part.within is None:
             place = numbers(offset)
-            return _Found(part, place) if body == 0 else _Found(part, None, self._row(body), place)
+            if body == 0:
+                return _Found(part.frame, part.child, place)
+            return _Found(part.frame, part.child, None, self._row(body), place, is_body=place == _HERE)
         base, its_offset = self._spot(part.within)
         if body == base:
-            return _Found(part, numbers(its_offset.inverse() @ offset))
+            return _Found(part.frame, part.child, numbers(its_offset.inverse() @ offset))
         weld = self._sim.mj_model.body_weldid
         if weld[body] == weld[base] != 0:  # no joint between them: they are as they were loaded for ever
             place = numbers(part.within.scene.pose_world.inverse() @ part.handle.scene.pose_world)
-            return _Found(part, place)
+            return _Found(part.frame, part.child, place)
         back = numbers(its_offset.inverse())
-        return _Found(part, None, self._row(body), numbers(offset), self._row(base), back)
+        own, rows = numbers(offset), (self._row(body), self._row(base))
+        are_bodies = own == _HERE, back == _HERE
+        return _Found(part.frame, part.child, None, rows[0], own, rows[1], back, *are_bodies)
 
     def _spot(self, handle: Any) -> tuple[int, Pose]:
         """The body that carries a link or a model, and its frame in that of the body."""
@@ -155,13 +174,19 @@ class Taken:
         """The poses, in the order of the parts."""
         placed = self._placed
         if placed is None:
-            placed = self._placed = list(self._poses.place(self._positions, self._quaternions))
+            placed = self._placed = self._poses.place(self._positions, self._quaternions)
         return placed
 
 
 def vector_message(time_ns: int, taken: Taken, others: Sequence[Placed] = ()) -> Any:
     """A `tf2_msgs/msg/TFMessage` of all parts, and others after them."""
-    return msgs.type_of(TRANSFORMS)([stamped(time_ns, *one) for one in (*taken.placed, *others)])
+    message, transform, vector, quaternion = _stamped_types()
+    header = msgs.headers(time_ns)
+    made = [
+        message(header(frame), child, transform(vector(x, y, z), quaternion(i, j, k, w)))
+        for frame, child, (x, y, z, w, i, j, k) in (*taken.placed, *others)
+    ]
+    return msgs.type_of(TRANSFORMS)(made)
 
 
 def stamped(time_ns: int, frame: str, child: str, seven: Seven) -> Any:
@@ -207,5 +232,11 @@ def _product(a: Seven, b: Seven) -> Seven:
 
 def _inverse(pose: Seven) -> Seven:
     x, y, z, w, i, j, k = pose
-    x, y, z, *_ = _product((0.0, 0.0, 0.0, w, -i, -j, -k), (x, y, z, 1.0, 0.0, 0.0, 0.0))
-    return -x, -y, -z, w, -i, -j, -k
+    i, j, k = -i, -j, -k
+    tx, ty, tz = 2 * (j * z - k * y), 2 * (k * x - i * z), 2 * (i * y - j * x)
+    x, y, z = (
+        0.0 + x + w * tx + j * tz - k * ty,
+        0.0 + y + w * ty + k * tx - i * tz,
+        0.0 + z + w * tz + i * ty - j * tx,
+    )
+    return -x, -y, -z, w, i, j, k

@@ -29,8 +29,13 @@ def transmitted_wrench(model: Any, data: Any, binding: JointBinding, point: Vect
         return np.zeros(3), np.zeros(3)
     # the body below the joint in the engine's tree carries the force; it may be the file's parent
     wrench = -data.cfrc_int[body] if binding.is_reversed else data.cfrc_int[body]
-    fx, fy, fz = wrench[3:].tolist()
     # the engine's torques are about the centre of mass of the whole tree
-    x, y, z = (data.subtree_com[model.body_rootid[body]] - point).tolist()
-    lever = np.array((y * fz - z * fy, z * fx - x * fz, x * fy - y * fx))
-    return wrench[3:].copy(), wrench[:3] + lever
+    return wrench[3:].copy(), torque_at(wrench, data.subtree_com[model.body_rootid[body]], point)
+
+
+def torque_at(wrench: Vector, centre: Vector, point: Vector) -> Vector:
+    """The torque about a point [m] of a wrench (torque, force) that is about another, `centre` [m]."""
+    fx, fy, fz = wrench[3:].tolist()
+    x, y, z = (centre - point).tolist()
+    torque: Vector = wrench[:3] + np.array((y * fz - z * fy, z * fx - x * fz, x * fy - y * fx))
+    return torque

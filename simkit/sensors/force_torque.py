@@ -11,7 +11,7 @@ from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector
-from simkit.runtime.transmission import transmitted_wrench
+from simkit.runtime.transmission import torque_at, transmitted_wrench
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, ThreeAxes, read_axes
 
@@ -104,6 +104,8 @@ class ForceTorque(Sensor):
             self._axes_turn = self._offset_rotation
         # for Gazebo's formula: the joint frame in the child link's body
         self._joint_frame = self._link.offset @ joint.pose_child
+        self._is_turned = not np.array_equal(self._axes_turn, np.eye(3))
+        self._viewed: Any = None
 
     def products(self) -> dict[str, Product]:
         return {"forcetorque": Product(TYPE, self._message_of)}
@@ -112,15 +114,30 @@ class ForceTorque(Sensor):
         return {"forcetorque": self._default_topic("forcetorque")}
 
     def measure(self, model: Any, data: Any) -> Wrench:
-        if self.sim.world.gazebo_quirks:
-            force, torque = self._as_gazebo(model, data)
-        else:
-            origin = data.xpos[self._body] + data.xmat[self._body].reshape(3, 3) @ self._offset_position
-            force, torque = transmitted_wrench(model, data, self._joint, origin)
-        axes = data.xmat[self._axes_body].reshape(3, 3) @ self._axes_turn
+        if data is not self._viewed:
+            self._look_at(model, data)
+        if self.sim.world.gazebo_quirks or self._joint.moved_body <= 0:
+            force, torque = self._forces(model, data)
+        else:  # `transmitted_wrench`, of what is looked at
+            wrench = -self._wrench if self._joint.is_reversed else self._wrench
+            force, torque = wrench[3:], torque_at(wrench, self._centre, self._place + self._attitude @ self._arm)
+        axes = self._axes @ self._axes_turn if self._is_turned else self._axes
         if not self.options.from_parent:
             axes = -axes
         return Wrench(force @ axes, torque @ axes)
+
+    def _look_at(self, model: Any, data: Any) -> None:
+        """Chooses what a measurement is made of: views of the data, which are got once."""
+        self._viewed, body, moved = data, self._body, max(self._joint.moved_body, 0)
+        self._wrench, self._centre = data.cfrc_int[moved], data.subtree_com[model.body_rootid[moved]]
+        self._place, self._attitude = data.xpos[body], data.xmat[body].reshape(3, 3)
+        self._arm, self._axes = self._offset_position, data.xmat[self._axes_body].reshape(3, 3)
+
+    def _forces(self, model: Any, data: Any) -> tuple[Vector, Vector]:
+        """What passes through the joint, about the sensor's origin, world axes."""
+        if self.sim.world.gazebo_quirks:
+            return self._as_gazebo(model, data)
+        return transmitted_wrench(model, data, self._joint, self._place + self._attitude @ self._arm)
 
     def _as_gazebo(self, model: Any, data: Any) -> tuple[Vector, Vector]:
         """The same, the lever arm taken in the joint's axes though the force is in the sensor's, world axes."""

@@ -382,7 +382,7 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
         ("SK-CONTROL-042", "has_velocity_limits is true, but there is no max_velocity"),
         ("SK-CONTROL-042", "there is min_acceleration, but there is no max_acceleration"),
         ("SK-PARAM-002", "<max_jerk>-3"),
-        ("SK-PARAM-002", "pose_covariance_diagonal has 2 numbers, allowed are six"),
+        ("SK-PARAM-002", "found 2 numbers in 'pose_covariance_diagonal', allowed are 6"),
         ("SK-PARAM-002", "<cmd_vel_timeout>soon"),
     ):
         assert any(line.startswith(code) and words in line for line in said.splitlines()), (code, words, said)

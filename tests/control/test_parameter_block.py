@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from simkit.control.diff_drive_options import read_drive_options
 from simkit.control.parameter_files import ParameterFiles, read_parameter_file
+from simkit.control.trajectory_options import read_timeout
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 
@@ -86,3 +88,12 @@ def test_merge_keys_bring_in_what_a_block_does_not_say_itself(tmp_path: Path) ->
     assert [params.block("b").number(name) for name in "pi"] == [3.0, 2.0]
     assert [params.block("c").number(name) for name in "pd"] == [4.0, 6.0]
     assert not list(found)
+
+
+def test_a_value_that_has_no_effect_is_told_of_where_it_stands(tmp_path: Path) -> None:
+    params, found = node(tmp_path, "cmd_timeout: 0.2")
+    assert read_timeout(params, 0.5) == 0.0
+    wheels = "left_wheel_names: [l]\nright_wheel_names: [r]\nwheel_separation: 1\nwheel_radius: 0.1\nwheels_per_side: 2"
+    params, driven = node(tmp_path, wheels)
+    read_drive_options(params, "", lambda _left, _right: (None, None))
+    assert [(d.code, d.line) for d in (*found, *driven)] == [("SK-CONTROL-023", 3), ("SK-CONTROL-043", 7)]

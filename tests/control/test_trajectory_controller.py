@@ -1,4 +1,4 @@
-"""ros2_controllers' joint trajectory controller, on joints that do at once what they are told."""
+"""ros2_controllers' joint trajectory controller: following, ends of goals, bad input."""
 
 from __future__ import annotations
 
@@ -7,34 +7,9 @@ from typing import Any
 
 import pytest
 
-from simkit.control.controllers import joint_trajectory, joint_trajectory_ros1
 from simkit.runtime.actions import GoalStatus
-from tests.control.perfect_joints import PerfectJoints, host, trajectory
-
-FOLLOW = "/arm_controller/follow_joint_trajectory"
-TOPIC = "/arm_controller/joint_trajectory"
-BASIC: dict[str, Any] = {
-    "joints": ["a", "b"],
-    "command_interfaces": ["position"],
-    "state_interfaces": ["position", "velocity"],
-}
-CONSTRAINTS = {"goal_time": 0.5, "a": {"trajectory": 0.1, "goal": 0.02}, "b": {"goal": 0.02}}
-START = {"a": 0.0, "b": 0.5}
-
-
-def arm(values: dict[str, Any] | None = None, **options: Any) -> tuple[Any, PerfectJoints]:
-    cls = options.pop("cls", joint_trajectory.JointTrajectoryController)
-    start = options.pop("start", START)
-    return host(cls, {**BASIC, "constraints": CONSTRAINTS, **(values or {})}, start, **options)
-
-
-def send(sim: Any, *points: Any, joints: list[str] | None = None, stamp: float = 0.0, **more: Any) -> Any:
-    return sim.send_goal(FOLLOW, {"trajectory": trajectory(joints or ["a", "b"], *points, stamp=stamp), **more})
-
-
-def codes(plugin: PerfectJoints) -> list[str]:
-    return [d.code for d in plugin.diagnostics]
-
+from tests.control.followers import FOLLOW, TOPIC, arm, codes, send
+from tests.control.perfect_joints import trajectory
 
 # ---------------------------------------------------------------------- following
 
@@ -325,7 +300,7 @@ def test_an_unknown_joint_among_the_tolerances_leaves_them_as_they_are() -> None
     ("values", "message"),
     [
         ({"joints": []}, "'joints' parameter is empty."),
-        ({"joints": ["a", "a"]}, "joint 'a' comes twice in 'joints'"),
+        ({"joints": ["a", "a"]}, "'a' comes twice in 'joints'"),
         ({"command_interfaces": []}, "'command_interfaces' parameter is empty."),
         ({"command_interfaces": ["velocity", "effort"]}, "'command_interfaces' are velocity, effort"),
         ({"state_interfaces": ["velocity"]}, "'state_interfaces' are velocity"),
@@ -337,136 +312,3 @@ def test_parameters_that_cannot_be_are_told_apart(values: dict[str, Any], messag
     _, plugin = arm(values)
     assert "SK-CONTROL-024" in codes(plugin)
     assert any(message in d.message for d in plugin.diagnostics)
-
-
-# ---------------------------------------------------------------------- interfaces
-
-
-def test_by_velocity_alone_a_pid_brings_it_there() -> None:
-    gains = {"a": {"p": 8.0, "ff_velocity_scale": 1.0}, "b": {"p": 8.0, "i": 0.1, "i_clamp": 1.0}}
-    sim, plugin = arm({"command_interfaces": ["velocity"], "gains": gains, "constraints": {}})
-    send(sim, (2.0, [1.0, 0.0], [0.0, 0.0]))
-    sim.run(1.0)
-    assert plugin.position("a") == pytest.approx(0.5, abs=0.01)  # fed forward
-    assert plugin.position("b") > 0.27  # lags
-    sim.run(3.0)
-    assert plugin.position("b") == pytest.approx(0.0, abs=0.02)
-
-
-def test_position_and_velocity_are_commanded_together() -> None:
-    sim, plugin = arm({"command_interfaces": ["velocity", "position"]})
-    send(sim, (1.0, [1.0, 0.5]))
-    sim.run(0.5)
-    assert plugin.commanded[-1] == pytest.approx([0.5, 0.5, 1.0, 0.0])
-
-
-def test_joints_that_are_only_measured_are_followed_by_the_others() -> None:
-    sim, plugin = arm({"command_joints": ["b"]})
-    goal = send(sim, (1.0, [0.0, 1.0]))
-    sim.run(1.1)
-    assert goal.status is GoalStatus.SUCCEEDED
-    assert plugin.commanded[-1] == [1.0]
-
-
-def test_the_kinds_of_ros_1_need_no_interfaces_and_have_their_topic() -> None:
-    values = {"joints": ["a", "b"], "constraints": {}, "command_interfaces": [], "state_interfaces": []}
-    sim, plugin = arm(values, cls=joint_trajectory_ros1.PositionJointTrajectoryController)
-    sim.publish("/arm_controller/command", trajectory(["a", "b"], (1.0, [1.0, 0.0], [0.2, 0.0])))
-    sim.run(1.1)
-    assert plugin.position("a") == 1.0
-
-
-# ---------------------------------------------------------------------- telling
-
-
-def test_its_state_is_told_to_whoever_listens() -> None:
-    sim, _ = arm()
-    told: list[Any] = []
-    sim.subscribe("/arm_controller/controller_state", told.append)
-    send(sim, (1.0, [1.0, 0.5]))
-    sim.run(0.5)
-    last = told[-1]
-    assert list(last.joint_names) == ["a", "b"]
-    assert last.reference.positions[0] == pytest.approx(0.49)
-    assert last.feedback.positions[0] == pytest.approx(0.49)
-    assert last.output.positions[0] == pytest.approx(0.5)
-    assert len(told) == 50
-
-
-def test_where_it_is_to_be_can_be_asked() -> None:
-    sim, _ = arm()
-    sim.run(1.0)
-    send(sim, (1.0, [1.0, 0.5]))
-    sim.run(0.02)
-    answer = sim.call("/arm_controller/query_state", {"time": {"sec": 1, "nanosec": 500_000_000}})
-    assert answer.success and list(answer.name) == ["a", "b"]
-    assert answer.position[0] == pytest.approx(0.5)
-    assert not sim.call("/arm_controller/query_state", {"time": {"sec": 0}}).success
-
-
-def test_a_restored_run_goes_on_as_the_first_did() -> None:
-    sim, plugin = arm()
-    goal = send(sim, (1.0, [1.0, 0.5], [0.0, 0.0]))
-    sim.run(0.3)
-    saved = sim.snapshot()
-    sim.run(0.3)
-    ends = [plugin.position("a")]
-    sim.restore(saved)
-    sim.run(0.3)
-    assert [plugin.position("a")] == ends
-    sim.run(0.5)
-    assert goal.status is GoalStatus.SUCCEEDED
-
-
-def test_tolerances_and_gains_are_live_parameters() -> None:
-    sim, _ = arm(most={"a": 0.005})
-    sim.set_parameter("/arm_controller", "constraints.a.trajectory", 5.0)
-    goal = send(sim, (1.0, [1.0, 0.5]))
-    sim.run(0.9)
-    assert goal.status is GoalStatus.EXECUTING
-    gains = {"a": {"p": 0.0}, "b": {"p": 1.0}}
-    sim, plugin = arm({"command_interfaces": ["velocity"], "gains": gains, "constraints": {}})
-    send(sim, (0.1, [1.0, 0.5], [0.0, 0.0]))
-    sim.run(0.5)
-    assert plugin.position("a") == 0.0
-    sim.set_parameter("/arm_controller", "gains.a.p", 5.0)
-    sim.run(0.5)
-    assert plugin.position("a") > 0.8
-
-
-def test_the_integral_of_a_pid_is_restored_with_the_rest() -> None:
-    gains = {"a": {"i": 2.0}, "b": {"p": 1.0}}
-    sim, plugin = arm({"command_interfaces": ["velocity"], "gains": gains, "constraints": {}})
-    send(sim, (0.1, [1.0, 0.5], [0.0, 0.0]))
-    sim.run(0.3)
-    saved = sim.snapshot()
-    sim.run(0.3)
-    once = plugin.commanded[-1]
-    sim.restore(saved)
-    sim.run(0.3)
-    assert plugin.commanded[-1] == once
-
-
-def test_what_older_files_say_is_understood() -> None:
-    older = {"stop_trajectory_duration": 0.5, "start_with_holding": True, "gains": {"a": {"angle_wraparound": True}}}
-    sim, plugin = arm({**older, "constraints": {}}, start={"a": 6.2, "b": 0.5})
-    assert not codes(plugin)
-    goal = send(sim, (1.0, [0.1, 0.5], [0.0, 0.0]))
-    sim.run(1.1)
-    assert goal.status is GoalStatus.SUCCEEDED
-    assert plugin.position("a") == pytest.approx(0.1 + 2 * math.pi)
-    goal = send(sim, (2.0, [2.0 + 0.1, 0.5]))
-    sim.run(1.0)
-    goal.cancel()
-    sim.run(1.0)
-    assert plugin.position("a") == pytest.approx(2 * math.pi + 0.1 + 1.0 + 1.0 * 0.5 / 2, abs=0.02)
-
-
-def test_numbers_beyond_all_bounds_change_nothing() -> None:
-    sim, plugin = arm()
-    goal = send(sim, (1.0, [1e300, 0.5]))
-    sim.publish("/arm_controller/speed_scaling_input", {"factor": 1e300})
-    sim.run(0.1)
-    assert (goal.status, goal.reason) == (GoalStatus.REJECTED, "The positions at point #0 are not all finite numbers.")
-    assert "allowed is a number from 0 to 1000" in sim.diagnostics[0].message
-    assert plugin.position("a") == 0.0

@@ -228,6 +228,13 @@ def test_an_animation_that_cannot_be_read_leaves_the_skins_own(tmp_path: Path) -
         assert sim.model("a").link("leg").pose.rpy[1] == pytest.approx(np.pi / 4, abs=1e-3)
 
 
+def test_a_bone_that_is_not_moved_by_matrices_is_told_of_once(tmp_path: Path) -> None:
+    turns = skinned_dae().replace('#leg-out-array" count="11" stride="16"', '#leg-out-array" count="44" stride="4"')
+    with simkit.load(skinned(tmp_path, f'<actor name="a">{SWING}</actor>', leg=turns)) as sim:
+        (found,) = [d for d in sim.diagnostics if d.code == "SK-ACTOR-001"]
+        assert "leg.dae moves 'leg/transform' by other than matrices" in found.message
+
+
 # ------------------------------------------------------------------ bad input
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -20,14 +20,9 @@ OFFICE, TABLE, MARKER = "simple_office_with_people", "tiago_table", "tiago_aruco
 
 def maker(name: str) -> ModuleType:
     """A script beside the models, as a module."""
-    import sys
-
-    spec = importlib.util.spec_from_file_location(name, ROOT / "assets" / "office" / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = sys.modules[name] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(ROOT / "assets" / "office"))
+        return importlib.import_module(name)
 
 
 def test_the_files_are_what_their_scripts_write() -> None:

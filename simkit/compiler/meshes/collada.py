@@ -17,10 +17,10 @@ _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans
 
 def read_collada(content: bytes, companions: Companions) -> list[MeshPart]:
     """The parts of the file's scene, in metres. Raises MeshFileError."""
-    return _Collada(_root(content), companions).parts()
+    return ColladaFile(read_root(content), companions).parts()
 
 
-def _root(content: bytes) -> Any:
+def read_root(content: bytes) -> Any:
     """The document without entities: nothing outside of the file is read and nothing in it multiplies."""
     from lxml import etree
 
@@ -40,7 +40,7 @@ def _root(content: bytes) -> Any:
     return root
 
 
-class _Collada:
+class ColladaFile:
     """One document; elements by id, and what has been read of them."""
 
     def __init__(self, root: Any, companions: Companions) -> None:
@@ -86,7 +86,7 @@ class _Collada:
         if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
             raise MeshFileError(f"has nodes nested deeper than {DEEPEST_NODE} or more than {MOST_NODES} of them")
         name = node.get("name") or named
-        matrix = above @ _transform(node)
+        matrix = above @ transform_of(node)
         for child in node.iterfind("{*}node"):
             self._node(child, matrix, name, depth + 1)
         for instance in node.iterfind("{*}instance_node"):
@@ -246,7 +246,7 @@ def strips(counts: Any) -> Any:
     return np.concatenate(out) if out else np.zeros((0, 3), np.int64)
 
 
-def _transform(node: Any) -> Floats:
+def transform_of(node: Any) -> Floats:
     """A node's transform as Gazebo takes it: its matrix alone, else move, then turn, then stretch."""
     found = node.find("{*}matrix")
     if found is not None:

@@ -6,14 +6,14 @@ gaps open where a limb bends. A bone that carries next to nothing (of a finger) 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.meshes.collada import _Collada, _root, _transform
+from simkit.compiler.meshes.collada import ColladaFile, read_root, transform_of
 from simkit.compiler.meshes.files import Companions
 from simkit.compiler.meshes.part import Floats, MeshFileError, MeshPart
 from simkit.compiler.meshes.text import DEEPEST_NODE, LARGEST_FILE, MOST_NODES, integers_of
@@ -59,7 +59,6 @@ class Skin:
     frames: dict[int, Floats]
     unit: float
     notes: tuple[str, ...] = ()
-    length: float = field(default=0.0)
 
 
 def read_skin(file: Path) -> Skin:
@@ -87,7 +86,7 @@ def bone_parts(file: Path, bone: str) -> list[MeshPart]:
 @lru_cache(maxsize=16)
 def _read(file: Path, _version: tuple[int, int]) -> Skin:
     try:
-        return _SkinFile(_root(file.read_bytes()), Companions(file)).skin()
+        return _SkinFile(read_root(file.read_bytes()), Companions(file)).skin()
     except MeshFileError:
         raise
     except OSError as problem:
@@ -96,7 +95,7 @@ def _read(file: Path, _version: tuple[int, int]) -> Skin:
         raise MeshFileError(f"is not a readable skin: {' '.join(str(problem).split())[:200]}") from None
 
 
-class _SkinFile(_Collada):
+class _SkinFile(ColladaFile):
     def skin(self) -> Skin:
         self.bones: list[Bone] = []
         self.of_node: dict[Any, int] = {}
@@ -108,16 +107,13 @@ class _SkinFile(_Collada):
         if not self.bones:
             raise MeshFileError("has no skeleton")
         times, frames = self._animation()
-        length = float(times[-1]) if len(times) else 0.0
-        return Skin(
-            tuple(self.bones), self._pieces(), times, frames, self._unit(), tuple(self.companions.notes), length
-        )
+        return Skin(tuple(self.bones), self._pieces(), times, frames, self._unit(), tuple(self.companions.notes))
 
     def _skeleton(self, node: Any, above: Floats, parent: int, depth: int) -> None:
         self.nodes += 1
         if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
             raise MeshFileError("has too many nodes, or nested too deep")
-        matrix = _transform(node)
+        matrix = transform_of(node)
         if node.get("type") == "JOINT":
             words = [w for w in (node.get("name"), node.get("sid"), node.get("id")) if w]
             self.of_node[node] = len(self.bones)

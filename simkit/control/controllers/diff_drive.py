@@ -11,8 +11,8 @@ import numpy as np
 
 from simkit import msgs
 from simkit.control.controller import Controller
-from simkit.control.drive_odometry import RollingOdometry
-from simkit.control.drive_options import DriveOptions, read_drive_options
+from simkit.control.diff_drive_odometry import RollingOdometry
+from simkit.control.diff_drive_options import DriveOptions, read_drive_options
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
@@ -105,7 +105,7 @@ class DiffDriveController(Controller):
             self._warn("finite", "a command with a number that is not finite is left out")
             return
         header = getattr(message, "header", None)
-        stamp = 0 if header is None else header.stamp.sec * _NS + header.stamp.nanosec
+        stamp = 0 if header is None else msgs.stamp_ns(header.stamp)
         self._command, self._stamp_ns = command, stamp or self.sim.time_ns
 
     def _warn(self, what: str, message: str) -> None:

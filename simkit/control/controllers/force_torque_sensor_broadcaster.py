@@ -9,7 +9,6 @@ import numpy as np
 
 from simkit import msgs
 from simkit.control.controller import Controller
-from simkit.control.readings import vector
 from simkit.params import Params
 
 WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
@@ -34,6 +33,7 @@ class ForceTorqueSensorBroadcaster(Controller):
         given = {part: f"{sensor}/{part}" for part in _PARTS} if sensor else {p: n for p, n in single.items() if n}
         self._names = list(given.values())
         self._cells = [_PARTS.index(part) for part in given]
+        self._is_whole = tuple(given) == _PARTS
         offset, multiplier = params.block("offset"), params.block("multiplier")
         self._offset = np.array([_number(offset, part, 0.0) for part in _PARTS])
         self._multiplier = np.array([_number(multiplier, part, 1.0) for part in _PARTS])
@@ -45,11 +45,15 @@ class ForceTorqueSensorBroadcaster(Controller):
     def update(self, now_ns: int, period: float) -> None:
         if not self._out.wanted:
             return
-        values = np.full(6, np.nan)  # what has no interface is not measured
-        values[self._cells] = self.states.values
-        values = values * self._multiplier + self._offset
-        wrench = msgs.type_of("geometry_msgs/msg/Wrench")(vector(values[:3]), vector(values[3:]))
-        self._out.publish(msgs.type_of(WRENCH)(msgs.header(now_ns, self._frame), wrench))
+        values = self.states.values
+        if not self._is_whole:
+            there, values = values, np.full(6, np.nan)  # what has no interface is not measured
+            values[self._cells] = there
+        values *= self._multiplier
+        values += self._offset
+        stamped, wrench, vector = msgs.types_of(WRENCH, "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3")
+        force, torque = values[:3].tolist(), values[3:].tolist()
+        self._out.publish(stamped(msgs.header(now_ns, self._frame), wrench(vector(*force), vector(*torque))))
 
 
 def _number(block: Params, part: str, default: float) -> float:

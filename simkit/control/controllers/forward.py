@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit.control.controller import Controller
 from simkit.control.interfaces import EFFORT, POSITION, VELOCITY
-from simkit.control.readings import names
+from simkit.control.lists import names
 
 COMMANDS: Final = "std_msgs/msg/Float64MultiArray"
 COMMAND: Final = "std_msgs/msg/Float64"

@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit.control.controller import Controller
 from simkit.control.interfaces import EFFORT, VELOCITY
-from simkit.control.readings import names, numbers
+from simkit.control.lists import names, numbers
 from simkit.control.weights import Weights
 
 _OF_THE_MOTORS: Final = ("motor_torque_constants", "reduction_ratios", "dt")

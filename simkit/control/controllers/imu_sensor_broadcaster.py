@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from simkit import msgs
 from simkit.control.controller import Controller
-from simkit.control.readings import numbers, vector
-from simkit.pose import Vector
+from simkit.control.lists import numbers
 
 IMU: Final = "sensor_msgs/msg/Imu"
 _PARTS: Final = (
@@ -44,19 +43,9 @@ class ImuSensorBroadcaster(Controller):
         values = self.states.values
         if np.isnan(values).any():
             return  # nothing has been measured yet
-        orientation, rate, acceleration = self._covariances
-        self._out.publish(
-            msgs.type_of(IMU)(
-                msgs.header(now_ns, self._frame),
-                _quaternion(values[:4]),
-                np.array(orientation),
-                vector(values[4:7]),
-                np.array(rate),
-                vector(values[7:]),
-                np.array(acceleration),
-            )
-        )
-
-
-def _quaternion(values: Vector) -> Any:
-    return msgs.type_of("geometry_msgs/msg/Quaternion")(*values.tolist())
+        imu, quaternion, vector = msgs.types_of(IMU, "geometry_msgs/msg/Quaternion", "geometry_msgs/msg/Vector3")
+        orientation, rate, acceleration = (np.array(covariance) for covariance in self._covariances)
+        turn, turning, pull = (part.tolist() for part in (values[:4], values[4:7], values[7:]))
+        header = msgs.header(now_ns, self._frame)
+        told = imu(header, quaternion(*turn), orientation, vector(*turning), rate, vector(*pull), acceleration)
+        self._out.publish(told)

@@ -14,8 +14,8 @@ import numpy as np
 from simkit import msgs
 from simkit.control.controller import Controller
 from simkit.control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.control.lists import names
 from simkit.control.pids import Pids
-from simkit.control.readings import names
 from simkit.params import Params
 from simkit.pose import Vector
 

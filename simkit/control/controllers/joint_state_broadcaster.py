@@ -10,7 +10,7 @@ import numpy as np
 from simkit import msgs
 from simkit.control.controller import Controller
 from simkit.control.interfaces import EFFORT, POSITION, VELOCITY
-from simkit.control.readings import names
+from simkit.control.lists import names
 
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 DYNAMIC: Final = "control_msgs/msg/DynamicJointState"

@@ -23,9 +23,9 @@ from simkit.control.trajectory import (
     shortest,
     whole_turns,
 )
-from simkit.control.trajectory_goals import Rules, read_points
+from simkit.control.trajectory_goals import Rules, read_points, worst
 from simkit.control.trajectory_messages import TRAJECTORY, StateMessages
-from simkit.control.trajectory_options import Constraints, read_pids
+from simkit.control.trajectory_options import Constraints, Stopping, read_pids, read_timeout
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -82,7 +82,9 @@ class JointTrajectoryController(Controller):
         self._feedback_ns = round(SECOND / params.number("action_monitor_rate", 20.0, minimum=0.1))
         rate = params.number("state_publish_rate", 0.0, minimum=0.0)
         self._state_ns = round(SECOND / rate) if rate else 0
-        self._read_constraints()
+        self._constraints = Constraints(self, joints)
+        self._timeout = read_timeout(params, self._constraints.tolerances().goal_time)
+        self._stopping = Stopping.read(params, joints)
         self._pids = self._read_gains()
         self._period_ns = 0
         scaling = params.block("speed_scaling")
@@ -94,21 +96,6 @@ class JointTrajectoryController(Controller):
         self._is_active = False
         self._open()
         self._clear()
-
-    def _read_constraints(self) -> None:
-        constraints, joints = self.params.block("constraints"), self._group.joints
-        self._constraints = Constraints(self, joints)
-        self._slows_down = constraints.boolean("decelerate_on_cancel", False)
-        blocks = [constraints.block(joint) for joint in joints]
-        self._decelerations = np.array([b.number("max_deceleration_on_cancel", 0.0, minimum=0.0) for b in blocks])
-        self._stopping = self.params.number("stop_trajectory_duration", 0.0, minimum=0.0)  # ROS 1's
-        self._timeout = self.params.number("cmd_timeout", 0.0, minimum=0.0)
-        goal_time = self._constraints.tolerances().goal_time
-        if 0.0 < self._timeout <= goal_time:
-            message = "Command timeout must be higher than goal_time tolerance"
-            message = f"{message} ({self._timeout:f} vs. {goal_time:f}); there is none now"
-            self.params.diagnostics.warning("SK-CONTROL-023", message, self.params.block("cmd_timeout").where)
-            self._timeout = 0.0
 
     def _read_gains(self) -> Pids | None:
         """PIDs of the commanded joints; None where positions are commanded as they are."""
@@ -284,19 +271,12 @@ class JointTrajectoryController(Controller):
         if isinstance(waiting, Spline):
             self._spline = waiting
         elif isinstance(waiting, str):
-            self._spline = self._hold(state)
+            self._spline = self._stopping.spline(state, has_velocity=self._group.has_velocity_state)
         else:
             self._is_holding = False
             self._start = msgs.stamp_ns(waiting.header.stamp) or now
             self._elapsed = now - self._start
             self._spline = self._through(waiting, state)
-
-    def _hold(self, state: Vector) -> Spline:
-        if self._slows_down and self._group.has_velocity_state and (self._decelerations > 0.0).any():
-            return Spline.stop(state[0], state[1], self._decelerations)
-        if self._stopping > 0.0:
-            return Spline.stop(state[0], state[1], np.abs(state[1]) / self._stopping)
-        return Spline.held(state[0])
 
     def _through(self, message: Any, state: Vector) -> Spline:
         """A trajectory's way from here."""
@@ -342,10 +322,10 @@ class JointTrajectoryController(Controller):
         if self._is_watched(now):
             self._publish(now, desired.motion, state, errors)
         if strays:
-            what = self._worst(off, tolerances.path)
+            what = worst(off, tolerances.path, self._group.joints)
             self._finish(PATH_VIOLATED, "Aborted due to path tolerance violation", what)
         elif is_late:
-            what = self._worst(off, tolerances.goal)
+            what = worst(off, tolerances.goal, self._group.joints)
             self._finish(GOAL_VIOLATED, f"Aborted due to goal_time_tolerance exceeding by {late:f} seconds", what)
         elif is_over and not self._is_holding:
             self._arrive(misses, late)
@@ -385,13 +365,6 @@ class JointTrajectoryController(Controller):
             errors[0] = shortest(errors[0], group.turning)
         return errors
 
-    def _worst(self, off: Vector, tolerances: Vector) -> str:
-        excess = np.where(np.isfinite(tolerances), off - tolerances, -np.inf)
-        row, j = np.unravel_index(int(np.argmax(excess)), excess.shape)
-        field = ("Position", "Velocity", "Acceleration")[row]
-        joint = self._group.joints[j]
-        return f"{joint}: {field} Error: {off[row, j]:f}, {field} Tolerance: {tolerances[row, j]:f}"
-
     def _has_audience(self) -> bool:
         here, there = self._publishers
         return here.wanted or there.wanted
@@ -416,10 +389,9 @@ class JointTrajectoryController(Controller):
         if self._spline is None:
             return {"success": False, "message": "Currently there is no valid trajectory instance."}
         since = msgs.stamp_ns(request.time) - self._start
-        is_over = since >= self._spline.end
         if since < self._spline.times[0]:
             return {"success": False, "message": "Requested sample time precedes trajectory start time."}
-        if is_over and since > self._spline.end and not self._is_holding:
+        if since > self._spline.end and not self._is_holding:
             return {"success": False, "message": "Requested sample time precedes the current trajectory end time."}
         position, velocity, acceleration = self._spline.at(since).motion
         found = {"position": position, "velocity": velocity, "acceleration": acceleration}

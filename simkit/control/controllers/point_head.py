@@ -9,6 +9,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.control.controller import Controller
+from simkit.control.lists import names
 from simkit.control.pointing import Neck, frame_link, frame_pose, is_turned
 from simkit.control.trajectory import SECOND
 from simkit.errors import InputError
@@ -37,7 +38,7 @@ class PointHeadAction(Controller):
     def configure(self) -> None:
         params = self.params
         self._mover = params.text("controller", "head_controller")
-        names = [one.value for one in params.all("joints")]
+        self._joints = tuple(names(params, "joints", code="SK-CONTROL-027"))
         self._enough = params.number("success_angle_threshold", 0.02, minimum=0.0)
         self._own_frame = params.text("pointing_frame", "")
         self._own_axis = np.array(
@@ -46,11 +47,10 @@ class PointHeadAction(Controller):
                 for one, default in zip("xyz", (1.0, 0.0, 0.0), strict=True)
             ]
         )
-        self._joints = tuple(names)
-        if len(names) != 2:
-            message = f"'joints' has {len(names)} names; a neck has two joints, the one nearer the body first"
+        if len(self._joints) != 2:
+            message = f"'joints' has {len(self._joints)} names; a neck has two joints, the one nearer the body first"
             params.error("SK-CONTROL-027", message, "joints: [head_1_joint, head_2_joint]")
-        for name in names:
+        for name in self._joints:
             if name not in self.hardware.joints:
                 message = f"there is no joint {name!r} to turn the head by"
                 params.error("SK-CONTROL-027", message, "there are: " + ", ".join(self.hardware.joints))

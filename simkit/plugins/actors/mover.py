@@ -50,9 +50,10 @@ class ActorMover(WorldPlugin):
         """Puts every moving actor where it is at the time of the simulation."""
         sim = self.sim
         data, moving = sim.mj_data, self._moving()
+        positions, quaternions, now = data.mocap_pos, data.mocap_quat, float(sim.time)
         for cast, places in moving:
-            poses = cast.poses(self._time_of(cast.name))
-            data.mocap_pos[places], data.mocap_quat[places] = poses[:, :3], poses[:, 3:]
+            poses = cast.poses(self._time_of(cast.name, now))
+            positions[places], quaternions[places] = poses[:, :3], poses[:, 3:]
         if moving:
             sim.physics.changed(STALE)
 
@@ -71,16 +72,16 @@ class ActorMover(WorldPlugin):
             self._known = structure, tuple(found)
         return self._known[1]
 
-    def _time_of(self, name: str) -> float:
-        """How long a script has been going [s]; 0 where it waits for its start."""
+    def _time_of(self, name: str, now: float) -> float:
+        """How long a script has been going at a time [s]; 0 where it waits for its start."""
         if name in self._stopped:
             return self._stopped[name]
-        return float(self.sim.time) - self._began[name] if name in self._began else 0.0
+        return now - self._began[name] if name in self._began else 0.0
 
     def _play(self, name: str, request: Any) -> dict[str, Any]:
         if request.data:
             self._stopped.pop(name, None)
             self._began[name] = float(self.sim.time)
         else:
-            self._stopped[name] = self._time_of(name)
+            self._stopped[name] = self._time_of(name, float(self.sim.time))
         return {"success": True, "message": f"{name} {'goes' if request.data else 'stops'}"}

@@ -221,10 +221,16 @@ def _read(actor: SceneActor, uri: str, what: str, find_file: FindFile, diagnosti
         _report(actor, f"its {what} {uri} is not found", diagnostics)
         return None
     try:
-        return read_skin(file)
+        skin = read_skin(file)
     except MeshFileError as problem:
         _report(actor, f"its {what} {uri} {problem}", diagnostics)
         return None
+    told = {d.message for d in diagnostics}  # skin and animation are often one file
+    for note in skin.notes:
+        message = f"actor {actor.name!r}: {uri} {note}"
+        if message not in told:
+            diagnostics.warning("SK-ACTOR-001", message, actor.where)
+    return skin
 
 
 def _report(actor: SceneActor, what: str, diagnostics: Diagnostics) -> None:

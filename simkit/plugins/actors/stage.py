@@ -83,7 +83,9 @@ class Cast:
             return np.asarray(self._resting[number][0 if inside <= 0.0 else 1])
         row, part = self.script.tracks[number].row(inside)
         table = self._going[number]
-        return np.asarray(table[row] * (1.0 - part) + table[row + 1] * part)
+        poses: Floats = table[row] * (1.0 - part)
+        poses += table[row + 1] * part
+        return poses
 
 
 def _in_world(track: Track, rig: Rig | None, rests: bool) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -54,6 +55,7 @@ class GazeboRosP3D(ModelPlugin):
         self._rate = params.number(rate, 0.0, minimum=0)
         self._shift = np.array(_offset(params, "xyz", is_old))
         self._turn = quat_from_rpy(*_offset(params, "rpy", is_old))
+        self._is_shifted = bool(self._shift.any()) or self._turn.tolist() != [1.0, 0.0, 0.0, 0.0]
         self._body = named_link(scene, body, params)
         self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
 
@@ -88,13 +90,16 @@ class GazeboRosP3D(ModelPlugin):
     def _reading(self) -> tuple[Pose, Vector]:
         """Pose with its offset, and the twist: linear (3) and angular (3), both along the axes of the frame."""
         link, base = self._link, self._base
-        pose, linear, angular = link.pose, link.linear_velocity, link.angular_velocity
+        pose, velocity = link.pose, link._velocity()
+        linear, angular = velocity[3:], velocity[:3]
         if base is not None:
             frame, turning = base.pose, base.angular_velocity
             back = quat_conjugate(frame.quaternion)
             carried = base.linear_velocity + np.cross(turning, pose.position - frame.position)
             linear, angular = quat_rotate(back, linear - carried), quat_rotate(back, angular - turning)
             pose = frame.inverse() @ pose
+        if not self._is_shifted and _is_whole(pose):
+            return pose, np.concatenate((linear, angular))
         shifted = Pose(pose.position + self._shift, quat_multiply(self._turn, pose.quaternion))
         return shifted, np.concatenate((linear, angular))
 
@@ -103,6 +108,12 @@ class GazeboRosP3D(ModelPlugin):
             motion = motion + self._deviation * self._stream.normal(index)
         twist = BodyTwist(motion[:3].tolist(), motion[3:].tolist())
         return odometry_message(time_ns, self._frame, self._link.name, pose, twist, self._spread)
+
+
+def _is_whole(pose: Pose) -> bool:
+    """Whether no bit of a pose changes where an offset of nothing is added: no zero has a sign, and it is unit."""
+    turn = pose.quaternion
+    return abs(math.sqrt(turn.dot(turn)) - 1.0) <= 1e-15 and bool(pose.position.all() and turn.all())
 
 
 def _offset(params: Params, kind: str, is_old: bool) -> tuple[float, float, float]:

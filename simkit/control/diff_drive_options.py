@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from simkit.control.drive_limits import RateLimits, read_rate_limits
+from simkit.control.diff_drive_limits import RateLimits, read_rate_limits
+from simkit.control.lists import numbers
 from simkit.params import Params
 from simkit.pose import Vector
 
@@ -120,7 +121,8 @@ def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str,
     count = params.integer("wheels_per_side", 0, minimum=0)
     if count and left and count != len(left):
         message = f"wheels_per_side is {count}, but {keys[0]} names {len(left)}; those named are driven"
-        params.diagnostics.warning("SK-CONTROL-043", message, params.block("wheels_per_side").where)
+        where = (params.child("wheels_per_side") or params).where
+        params.diagnostics.warning("SK-CONTROL-043", message, where)
     return left, right
 
 
@@ -156,17 +158,5 @@ def _frame_prefix(params: Params, namespace: str) -> str:
 
 
 def _covariance(params: Params, name: str) -> Vector:
-    """A covariance by its diagonal: six variances."""
-    values = [element for element in params.all(name) if element.value]
-    numbers = [v for element in values if (v := _variance(element, name)) is not None]
-    if values and len(values) != 6:
-        message = f"{name} has {len(values)} numbers, allowed are six: x, y, z, roll, pitch, yaw"
-        params.diagnostics.error("SK-PARAM-002", message, values[0].where)
-    return np.diag(numbers if len(numbers) == 6 else [0.0] * 6).reshape(36)
-
-
-def _variance(element: Params, name: str) -> float | None:
-    alone = Params(name, children=(element,), where=element.where, diagnostics=element.diagnostics)
-    before = element.diagnostics.error_count
-    value = alone.number(name, minimum=0)
-    return value if element.diagnostics.error_count == before else None
+    """A covariance by its diagonal: the variances of x, y, z, roll, pitch, yaw."""
+    return np.diag(numbers(params, name, [0.0] * 6, minimum=0.0)).reshape(36)

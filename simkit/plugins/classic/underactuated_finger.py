@@ -1,0 +1,136 @@
+"""Finger joints that follow one motor, as a tendon pulls them: PAL's `libgazebo_underactuated_finger.so`."""
+
+from __future__ import annotations
+
+import math
+import weakref
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.diagnostics import Where
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_joint
+from simkit.runtime.physics import CONTROL
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneJoint, SceneModel
+
+_NOISE: Final = 0.02
+"""[rad] that the motor has to turn before its joints hear of it: Gazebo's filter."""
+
+_GAINS: Final = ("p", "i", "d", "i_max", "i_min")
+
+
+class UnderactuatedFinger(ModelPlugin):
+    """Keeps each `<virtualJoint>` at the position of `<actuatedJoint>` over its `<scale_factor>`, within its limits.
+
+    The motor's position counts anew once it is more than 0.02 rad away from the one that counted before. A joint with a
+    whole set of `<pid_gains>` (`p`, `i`, `d`, `i_max`, `i_min`) is pushed by that loop; Gazebo puts the others where
+    they belong at once, whatever they touch, and here a servo brings them there within their effort limit.
+    """
+
+    filenames = ("libgazebo_underactuated_finger.so",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        params.text("actuatedJoint", required=True)
+        motor = params.child("actuatedJoint")
+        found = None if motor is None else _of_one_axis(scene, motor)
+        self._motor = "" if found is None else found.scoped
+        self._servos: list[tuple[str, float, Any]] = []
+        self._loops: list[tuple[str, float, tuple[float, ...]]] = []
+        virtual = params.all("virtualJoint")
+        if not virtual:
+            params.error("SK-PARAM-001", f"plugin {self.name!r} needs a <virtualJoint>")
+        for one in virtual:
+            self._take(one, scene, builder)
+
+    def _take(self, one: Params, scene: SceneModel, builder: SpecBuilder) -> None:
+        """One finger joint."""
+        one.text("name", required=True)
+        named = one.child("name")
+        joint = None if named is None else _of_one_axis(scene, named)
+        scale = one.number("scale_factor", 1.0, required=True)
+        if scale == 0.0:
+            one.error("SK-PARAM-002", "found <scale_factor> 0, allowed is any other number")
+        gains = self._gains(one)
+        if joint is None or scale == 0.0:
+            return
+        if gains is not None:
+            self._loops.append((joint.scoped, scale, gains))
+            return
+        ref = builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
+        self._servos.append((joint.scoped, scale, ref))
+
+    def _gains(self, one: Params) -> tuple[float, ...] | None:
+        """Those of the joint's loop; None where it has no whole set, which Gazebo does not take."""
+        if not one.has("pid_gains"):
+            return None
+        block = one.block("pid_gains")
+        missing = [name for name in _GAINS if not block.has(name)]
+        gains = tuple(block.number(name, 0.0) for name in _GAINS)
+        if not missing:
+            return gains
+        message = f"<pid_gains> without {', '.join(f'<{name}>' for name in missing)} is not taken: a servo is"
+        where: Where = block.where
+        one.diagnostics.warning("SK-PLUGIN-047", message, where, "all of p, i, d, i_max and i_min are needed")
+        return None
+
+    def load(self, parent: Any, params: Params) -> None:
+        sim = self.sim
+        self._actuated = sim.joint(self._motor)
+        self._counts = float(self._actuated.position)
+        joints = [sim.joint(scoped) for scoped, *_ in (*self._servos, *self._loops)]
+        self._moved = joints
+        self._scale = np.array([scale for _, scale, _ in (*self._servos, *self._loops)])
+        self._low = np.array([float(joint.lower) for joint in joints])
+        self._high = np.array([float(joint.upper) for joint in joints])
+        self._targets = np.clip(self._counts / self._scale, self._low, self._high)
+        self._sums = np.zeros(len(self._loops))
+        self._errors = np.zeros(len(self._loops))
+        self._gain = np.array([gains for *_, gains in self._loops]).reshape(-1, len(_GAINS)).T
+        self._seen: Any = _nothing  # the engine's model that the numbers of the servos are of, weakly
+
+    def before_step(self) -> None:
+        now, physics = float(self._actuated.position), self.sim.physics
+        is_new = physics.model is not self._seen()
+        if is_new:  # also after a change of structure
+            self._seen = weakref.ref(physics.model)
+            self._ids = np.array([self.sim.names.actuator(ref) for *_, ref in self._servos], np.intp)
+        if is_new or abs(self._counts - now) > _NOISE:
+            if abs(self._counts - now) > _NOISE:
+                self._counts = now
+            self._targets = np.clip(self._counts / self._scale, self._low, self._high)
+            physics.data.ctrl[self._ids] = self._targets[: len(self._servos)]
+            physics.changed(CONTROL)
+        if self._loops:
+            self._push(physics.model.opt.timestep)
+
+    def _push(self, step: float) -> None:
+        """Efforts of the loops, as ROS's control_toolbox reckons them: the integral's part alone is bounded."""
+        first = len(self._servos)
+        joints = self._moved[first:]
+        error = self._targets[first:] - np.array([float(joint.position) for joint in joints])
+        p, i, d, top, bottom = self._gain
+        self._sums = self._sums + error * step
+        held = np.minimum(np.maximum(i * self._sums, bottom), top)
+        efforts = p * error + held + d * (error - self._errors) / step
+        self._errors = error
+        for joint, effort in zip(joints, efforts.tolist(), strict=True):
+            joint.set_effort(effort)
+
+
+def _nothing() -> None:
+    """Stands for a weak reference to nothing."""
+
+
+def _of_one_axis(scene: SceneModel, named: Params) -> SceneJoint | None:
+    """The joint that an element names; None after an error."""
+    joint = find_joint(scene, named.value, named) if named.value else None
+    if joint is not None and len(joint.axes) != 1:
+        named.error("SK-PLUGIN-003", f"joint {joint.name!r} has {len(joint.axes)} axes, allowed is one")
+        return None
+    return joint

@@ -1,0 +1,162 @@
+"""`--params-file`: controllers of robots whose plugin names no file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from control_robots import CLASSIC, POSITIONS, arm, command, position, states, told
+from test_ros_1_control import ROS_1, transmissions
+from typer.testing import CliRunner
+
+import simkit
+from simkit.cli import app
+from simkit.errors import LoadError
+
+OF_ROS_1 = """
+joint_state_controller: {type: joint_state_controller/JointStateController, publish_rate: 50}
+arm_controller:
+  type: position_controllers/JointGroupPositionController
+  joints: [j1, j2]
+"""
+PIDS = "gazebo_ros_control: {pid_gains: {j1: {p: 100.0, i: 0.0, d: 20.0}}}\n"
+DECLARED = {"joint_state_controller": "running", "arm_controller": "running"}
+
+
+def saved(folder: Path, yaml: str, name: str = "given.yaml") -> Path:
+    path = folder / name
+    path.write_text(dedent(yaml), encoding="utf-8")
+    return path
+
+
+def robot_of_ros_1(namespace: str = "<robotNamespace/>") -> str:
+    return arm("", namespace, ROS_1, more=transmissions("PositionJointInterface"))
+
+
+def sent(sim: simkit.Simulation, topic: str, *values: float) -> None:
+    sim.publish(topic, simkit.msgs.make("std_msgs/msg/Float64MultiArray", data=list(values)))
+
+
+def test_a_robot_of_ros_1_runs_the_controllers_of_a_file_beside_it(tmp_path: Path) -> None:
+    with simkit.load(robot_of_ros_1(), params_files=[saved(tmp_path, OF_ROS_1)]) as sim:
+        assert states(sim) == DECLARED
+        assert not told(sim, "SK-CONTROL-018")
+        sent(sim, "/arm_controller/command", 0.4, -0.2)
+        sim.run(2.0)
+        assert position(sim, "j1", "j2") == pytest.approx([0.4, -0.2], abs=1e-3)
+
+
+def test_a_file_of_ros_1_is_below_the_robots_namespace_whether_it_says_so_or_not(tmp_path: Path) -> None:
+    """As `<group ns="...">` of a launch file puts it there."""
+    plain = saved(tmp_path, OF_ROS_1 + PIDS)
+    inside = saved(tmp_path, "r:\n" + "".join(f"  {line}\n" for line in (OF_ROS_1 + PIDS).splitlines()), "in.yaml")
+    ends = []
+    for path in (plain, inside):
+        with simkit.load(robot_of_ros_1("<robotNamespace>/r</robotNamespace>"), params_files=path) as sim:
+            assert states(sim, "/r/controller_manager") == DECLARED
+            sent(sim, "/r/arm_controller/command", 0.5, 0.0)
+            sim.run(5.0)
+            ends.append(position(sim, "j1")[0])
+    assert ends[0] == ends[1] > 0.51  # its loop has no integral: it gives way to the weight
+
+
+def test_several_files_are_one_and_the_later_goes_over_the_earlier(tmp_path: Path) -> None:
+    over = saved(tmp_path, "arm_controller: {joints: [j2]}\n", "over.yaml")
+    with simkit.load(robot_of_ros_1(), params_files=[saved(tmp_path, OF_ROS_1), over]) as sim:
+        sent(sim, "/arm_controller/command", 0.3)
+        sim.run(2.0)
+        assert position(sim, "j1", "j2") == pytest.approx([0.0, 0.3], abs=1e-3)
+
+
+def test_a_plugin_of_ros_2_takes_it_over_the_file_that_it_names(tmp_path: Path) -> None:
+    saved(tmp_path, POSITIONS, "arm.yaml")
+    (tmp_path / "arm.urdf").write_text(arm(), encoding="utf-8")
+    given = saved(tmp_path, "/arm_controller: {ros__parameters: {joints: [j2]}}\n")
+    with simkit.load(tmp_path / "arm.urdf", params_files=[given]) as sim:
+        command(sim, "arm_controller", 0.3)
+        sim.run(2.0)
+        assert position(sim, "j1", "j2") == pytest.approx([0.0, 0.3], abs=1e-3)
+
+
+def test_a_file_of_ros_2_serves_a_robot_of_ros_1(tmp_path: Path) -> None:
+    for namespace, below in (("<robotNamespace/>", ""), ("<robotNamespace>/r</robotNamespace>", "/r")):
+        with simkit.load(robot_of_ros_1(namespace), params_files=[saved(tmp_path, POSITIONS)]) as sim:
+            assert states(sim, f"{below}/controller_manager") == {
+                "joint_state_broadcaster": "running",
+                "arm_controller": "running",
+            }
+
+
+def test_a_file_of_ros_1_serves_a_robot_of_ros_2_but_for_its_loops(tmp_path: Path) -> None:
+    with simkit.load(arm(plugin="", library=CLASSIC), params_files=[saved(tmp_path, OF_ROS_1 + PIDS)]) as sim:
+        assert states(sim) == dict.fromkeys(DECLARED, "active")
+        assert "gazebo_ros_control has loops for the plugin of ROS 1" in told(sim, "SK-CONTROL-011")[0]
+        command(sim, "arm_controller", 0.4, -0.2)
+        sim.run(2.0)
+        assert position(sim, "j1", "j2") == pytest.approx([0.4, -0.2], abs=1e-3)
+
+
+def test_a_file_may_be_for_one_model_and_for_one_that_comes_later(tmp_path: Path) -> None:
+    path, robot = saved(tmp_path, OF_ROS_1), tmp_path / "r.urdf"
+    robot.write_text(robot_of_ros_1(""), encoding="utf-8")  # the namespace is the model's name
+    spawn = [f"{robot}:0,0,0:one", f"{robot}:0,3,0:two"]
+    with simkit.load("empty", spawn=spawn, params_files=[f"two={path}", ("three", path)]) as sim:
+        assert states(sim, "/one/controller_manager") == {}
+        assert states(sim, "/two/controller_manager") == DECLARED
+        assert "given.yaml is for the model 'three'" in told(sim, "SK-CONTROL-060")[0]
+        sim.spawn(robot, name="three")
+        assert states(sim, "/three/controller_manager") == DECLARED
+        sim.reset()
+        assert states(sim, "/two/controller_manager") == DECLARED
+
+
+def test_a_file_that_nobody_reads_is_told(tmp_path: Path) -> None:
+    path = saved(tmp_path, OF_ROS_1)
+    with simkit.load("empty", params_files=[path]) as sim:
+        assert "no model has a control plugin" in told(sim, "SK-CONTROL-060")[0]
+    with simkit.load(robot_of_ros_1(), params_files=[f"amr={path}"]) as sim:
+        (found,) = (d for d in sim.diagnostics if d.code == "SK-CONTROL-060")
+        assert "'arm'" in found.hint
+        assert "--params-file" in next(d.hint for d in sim.diagnostics if d.code == "SK-CONTROL-018")
+
+
+def test_missing_and_broken_files_stop_the_load_all_in_one_pass(tmp_path: Path) -> None:
+    broken = saved(tmp_path, "arm_controller: [\n")
+    with pytest.raises(LoadError) as raised:
+        simkit.load(robot_of_ros_1(), params_files=[tmp_path / "givn.yaml", broken, "package://nowhere/x.yaml"])
+    found = [d for d in raised.value.diagnostics if d.severity == "error"]
+    assert [d.code for d in found] == ["SK-CONTROL-015", "SK-CONTROL-002", "SK-CONTROL-015"]
+    assert "given.yaml" in found[0].hint
+    assert found[1].file == str(broken)
+
+
+def test_a_file_of_two_robots_is_broken_once(tmp_path: Path) -> None:
+    robot = tmp_path / "r.urdf"
+    robot.write_text(robot_of_ros_1(""), encoding="utf-8")
+    spawn, path = [f"{robot}:0,0,0:one", f"{robot}:0,3,0:two"], saved(tmp_path, "[a]")
+    with pytest.raises(LoadError) as raised:
+        simkit.load("empty", spawn=spawn, params_files=[path, path])
+    assert [d.code for d in raised.value.diagnostics if d.severity == "error"] == ["SK-CONTROL-002"]
+
+
+def test_the_command_line_takes_it(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(robot_of_ros_1(), encoding="utf-8")
+    path = saved(tmp_path, OF_ROS_1)
+    words = ["run", str(tmp_path / "r.urdf"), "--duration", "0.2", "--params-file"]
+    done = CliRunner().invoke(app, [*words, str(path)])
+    assert done.exit_code == 0 and "/joint_states" in done.stdout
+    for word in (f"r={tmp_path}/none.yaml", "none.yaml", str(saved(tmp_path, "a: {", "broken.yaml"))):
+        done = CliRunner().invoke(app, [*words, word])
+        assert done.exit_code == 2 and "SK-CONTROL-0" in done.stderr
+
+
+def test_what_a_plugin_says_of_a_model_that_is_spawned_at_the_load_is_told(tmp_path: Path) -> None:
+    robot, words = tmp_path / "r.urdf", "<parameters>arm.yaml</parameters>"
+    robot.write_text(robot_of_ros_1("<controlPeriode>1</controlPeriode>"), encoding="utf-8")
+    with simkit.load("empty", spawn=[f"{robot}:0,0,0"]) as sim:
+        assert told(sim, "SK-CONTROL-018") and "<controlPeriode>" in told(sim, "SK-PARAM-003")[0]
+    saved(tmp_path, "[a]", "arm.yaml")
+    robot.write_text(robot_of_ros_1(words), encoding="utf-8")
+    with pytest.raises(LoadError, match="SK-CONTROL-002"):
+        simkit.load("empty", spawn=[f"{robot}:0,0,0"])
