@@ -155,7 +155,9 @@ OLD_STATE = f"""<model name="m"><link name="l"/></model>{LIGHT}<state world_name
 ACTOR = f"""<actor name="walker">{POSE}<skin><filename>w.dae</filename><scale>1</scale></skin><animation name="walk">
   <filename>w.dae</filename><scale>1</scale><interpolate_x>1</interpolate_x></animation><script>
   <loop>1</loop><auto_start>1</auto_start><delay_start>0</delay_start><trajectory id="0" type="walk">
-  <tension>0</tension><waypoint><time>0</time>{POSE}</waypoint></trajectory></script></actor>"""
+  <tension>0</tension><waypoint><time>0</time>{POSE}</waypoint></trajectory></script><simkit:person><height>1.7</height>
+  <shirt>0.1 0.2 0.3</shirt><trousers>0.1 0.2 0.3</trousers><skin>0.8 0.6 0.5</skin><hair>0.1 0.1 0.1</hair>
+  </simkit:person></actor>"""
 ROBOT = """<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
 <link name="base"><inertial><origin xyz="0 0 0" rpy="0 0 0"/><mass value="1"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
