@@ -98,7 +98,7 @@ HEAD = """<?xml version="1.0"?>
 <sdf version="1.12" xmlns:simkit="https://simkit">
   <world name="simple_office_with_people">
 
-    <physics name="step_1ms" type="ignored">
+    <physics name="step_2ms" type="ignored">
       <max_step_size>0.002</max_step_size>
       <real_time_factor>1</real_time_factor>
     </physics>

@@ -6,32 +6,17 @@ Lengths m, masses kg, inertias kg m^2, angles rad; forces N, torques N m, dampin
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
+from pathlib import Path
 
-Vector = tuple[float, float, float]
-ZERO: Vector = (0.0, 0.0, 0.0)
+sys.path.append(str(Path(__file__).resolve().parents[1]))  # what the scripts of all robots share
+from robots_text import ZERO, Collision, Look, Plugin, Sensor, Shape, Vector
+
 QUARTER = math.pi / 2
 HALF = math.pi
 PACKAGE = "tiago"
 """The folder of these files is the package and the model that the mesh URIs name."""
-
-
-@dataclass(frozen=True, slots=True)
-class Shape:
-    """A box (x, y, z), cylinder (radius, length) or sphere (radius), or the mesh of that name."""
-
-    kind: str
-    sizes: tuple[float, ...] = ()
-    mesh: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Look:
-    """A colour (red, green, blue) and how much it shines, both from 0 to 1."""
-
-    name: str
-    colour: Vector
-    shine: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,30 +29,12 @@ class Visual:
 
 
 @dataclass(frozen=True, slots=True)
-class Collision:
-    name: str
-    shape: Shape
-    xyz: Vector = ZERO
-    rpy: Vector = ZERO
-
-
-@dataclass(frozen=True, slots=True)
 class Contact:
     """Friction, and stiffness [N/m] and damping [N s/m] of a contact where they are not the default."""
 
     mu: float
     kp: float | None = None
     kd: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Sensor:
-    """A sensor at its link's origin: what SDF has inside `<sensor>`, line by line."""
-
-    name: str
-    kind: str
-    rate: float
-    lines: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,18 +107,8 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True)
-class Plugin:
-    """A plugin of the model, with the elements inside it line by line."""
-
-    name: str
-    filename: str
-    lines: tuple[str, ...]
-    about: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class Robot:
-    """A robot: `control` is its `<ros2_control>` element line by line, `transmissions` those of ROS 1."""
+    """A robot: `control` is its `<ros2_control>` element, line by line."""
 
     name: str
     title: str

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
-from parts import Link, Look, Robot, Shape, Vector
-from write_sdf import MOMENTS, indented, number, numbers, plugin_lines, sensor_lines
+from parts import Link, Robot
+from robots_text import indented, number, numbers, plugin_lines, sensor_lines, urdf_material, urdf_origin, urdf_shape
+from write_sdf import MOMENTS
 
 HEADER = """<?xml version="1.0"?>
 <!--
@@ -19,7 +20,7 @@ HEADER = """<?xml version="1.0"?>
 def urdf_text(robot: Robot) -> str:
     lines = [HEADER.format(title=robot.title, about=robot.about), f'<robot name="{robot.name}">', ""]
     looks = dict.fromkeys(visual.look for link in robot.links for visual in link.visuals)
-    lines += indented((_material(look) for look in looks), 1)
+    lines += indented((urdf_material(look) for look in looks), 1)
     for link in robot.links:
         lines += ["", *indented(_link(link), 1)]
         if link.joint:
@@ -30,29 +31,25 @@ def urdf_text(robot: Robot) -> str:
     return "\n".join([*lines, "  </gazebo>", "", "</robot>"]) + "\n"
 
 
-def _material(look: Look) -> str:
-    return f'<material name="{look.name}"><color rgba="{numbers(look.colour)} 1"/></material>'
-
-
 def _link(link: Link) -> Iterator[str]:
     if link.about:
         yield f"<!-- {link.about} -->"
     yield f'<link name="{link.name}">'
     yield "  <inertial>"
-    yield f"    {_origin(link.centre, (0, 0, 0))}"
+    yield f"    {urdf_origin(link.centre, (0, 0, 0))}"
     yield f'    <mass value="{number(link.mass)}"/>'
     moments = dict(zip(MOMENTS, link.moments, strict=True))
     yield "    <inertia " + " ".join(f'{name}="{number(moments[name])}"' for name in sorted(MOMENTS)) + "/>"
     yield "  </inertial>"
     for collision in link.collisions:
         yield f'  <collision name="{collision.name}">'
-        yield f"    {_origin(collision.xyz, collision.rpy)}"
-        yield f"    <geometry>{_shape(collision.shape)}</geometry>"
+        yield f"    {urdf_origin(collision.xyz, collision.rpy)}"
+        yield f"    <geometry>{urdf_shape(collision.shape)}</geometry>"
         yield "  </collision>"
     for visual in link.visuals:
         yield f'  <visual name="{visual.name}">'
-        yield f"    {_origin(visual.xyz, visual.rpy)}"
-        yield f"    <geometry>{_shape(visual.shape)}</geometry>"
+        yield f"    {urdf_origin(visual.xyz, visual.rpy)}"
+        yield f"    <geometry>{urdf_shape(visual.shape)}</geometry>"
         yield f'    <material name="{visual.look.name}"/>'
         yield "  </visual>"
     yield "</link>"
@@ -62,7 +59,7 @@ def _joint(link: Link) -> Iterator[str]:
     yield f'<joint name="{link.joint}" type="{link.kind}">'
     yield f'  <parent link="{link.parent}"/>'
     yield f'  <child link="{link.name}"/>'
-    yield f"  {_origin(link.xyz, link.rpy)}"
+    yield f"  {urdf_origin(link.xyz, link.rpy)}"
     if link.kind != "fixed":
         yield f'  <axis xyz="{numbers(link.axis)}"/>'
         yield from indented(_limits(link), 1)
@@ -105,17 +102,3 @@ def _extensions(link: Link) -> Iterator[str]:
         for sensor in link.joint_sensors:
             yield from indented(sensor_lines(sensor), 1)
         yield "</gazebo>"
-
-
-def _origin(xyz: Iterable[float], rpy: Vector) -> str:
-    return f'<origin xyz="{numbers(xyz)}" rpy="{numbers(rpy)}"/>'
-
-
-def _shape(shape: Shape) -> str:
-    if shape.kind == "mesh":
-        return f'<mesh filename="package://{shape.mesh}"/>'
-    if shape.kind == "box":
-        return f'<box size="{numbers(shape.sizes)}"/>'
-    names = {"cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.kind]
-    inside = " ".join(f'{name}="{number(v)}"' for name, v in zip(names, shape.sizes, strict=True))
-    return f"<{shape.kind} {inside}/>"

@@ -56,7 +56,7 @@ from furniture_private import (
     wash_stand,
     washing_machine,
 )
-from write_sdf import indented, number, numbers, pose_lines, shape_text
+from robots_text import indented, number, numbers, pose_lines, shape_text
 
 HEIGHT = 2.4
 OUTER, INNER = 0.20, 0.12

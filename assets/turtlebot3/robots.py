@@ -12,10 +12,13 @@ weighs a gram, and not the 1 kg that SDF gives a link without inertia.
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
+from pathlib import Path
 
-Vector = tuple[float, float, float]
-ZERO: Vector = (0.0, 0.0, 0.0)
+sys.path.append(str(Path(__file__).resolve().parents[1]))  # what the scripts of all robots share
+from robots_text import ZERO, Collision, Look, Plugin, Sensor, Shape, Vector
+
 QUARTER = math.pi / 2
 GRIP = 0.6
 """Friction of a rubber tyre on a smooth floor. A flat tread that never slips (the published 100000 is marked as not
@@ -24,46 +27,10 @@ UNBOUNDED_SPEED = 1000.0  # [rad/s] URDF has no wheel without a velocity limit; 
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
-    """A box (x, y, z), cylinder (radius, length) or sphere (radius), or the mesh of that name."""
-
-    kind: str
-    sizes: tuple[float, ...] = ()
-    mesh: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Look:
-    """A colour (red, green, blue) and how much it shines, both from 0 to 1."""
-
-    name: str
-    colour: Vector
-    shine: float
-
-
-@dataclass(frozen=True, slots=True)
 class Visual:
     name: str
     shape: Shape
     look: Look
-
-
-@dataclass(frozen=True, slots=True)
-class Collision:
-    name: str
-    shape: Shape
-    xyz: Vector = ZERO
-    rpy: Vector = ZERO
-
-
-@dataclass(frozen=True, slots=True)
-class Sensor:
-    """A sensor at its link's origin: what SDF has inside `<sensor>`, line by line."""
-
-    name: str
-    kind: str
-    rate: float
-    lines: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,16 +64,6 @@ class Link:
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     sensors: tuple[Sensor, ...] = ()
-    about: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Plugin:
-    """A plugin of the model, with the elements inside it line by line."""
-
-    name: str
-    filename: str
-    lines: tuple[str, ...]
     about: str = ""
 
 

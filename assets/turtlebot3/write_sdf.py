@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
-from robots import UNBOUNDED_SPEED, ZERO, Link, Look, Plugin, Robot, Sensor, Shape
+from robots import UNBOUNDED_SPEED, ZERO, Link, Robot
+from robots_text import indented, number, numbers, plugin_lines, pose_lines, sdf_material, sensor_lines, shape_text
 
 HEADER = """<?xml version="1.0"?>
 <!--
@@ -16,19 +17,6 @@ HEADER = """<?xml version="1.0"?>
 -->"""
 
 JOINTS = {"fixed": "fixed", "wheel": "continuous", "caster": "ball"}
-
-
-def number(value: float) -> str:
-    """The shortest text that reads back as the same number."""
-    return str(int(value)) if value == int(value) else repr(float(value))
-
-
-def numbers(values: Iterable[float]) -> str:
-    return " ".join(number(v) for v in values)
-
-
-def indented(lines: Iterable[str], depth: int) -> list[str]:
-    return ["  " * depth + line for line in lines]
 
 
 def sdf_text(robot: Robot) -> str:
@@ -65,7 +53,7 @@ def _link(link: Link) -> Iterator[str]:
     for visual in link.visuals:
         yield f'  <visual name="{visual.name}">'
         yield f"    <geometry>{shape_text(visual.shape)}</geometry>"
-        yield from indented(_material(visual.look), 2)
+        yield from indented(sdf_material(visual.look), 2)
         yield "  </visual>"
     for sensor in link.sensors:
         yield from indented(sensor_lines(sensor), 1)
@@ -82,47 +70,3 @@ def _joint(link: Link) -> Iterator[str]:
         yield f"    <limit><effort>20</effort><velocity>{number(UNBOUNDED_SPEED)}</velocity></limit>"
         yield "  </axis>"
     yield "</joint>"
-
-
-def pose_lines(xyz: Iterable[float], rpy: Iterable[float]) -> list[str]:
-    """A `<pose>`, none where it is the identity."""
-    values = (*xyz, *rpy)
-    return [f"<pose>{numbers(values)}</pose>"] if any(values) else []
-
-
-def shape_text(shape: Shape) -> str:
-    """The element inside `<geometry>`."""
-    if shape.kind == "mesh":
-        return f"<mesh><uri>model://{shape.mesh}</uri></mesh>"
-    if shape.kind == "box":
-        return f"<box><size>{numbers(shape.sizes)}</size></box>"
-    names = {"cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.kind]
-    inside = "".join(f"<{name}>{number(v)}</{name}>" for name, v in zip(names, shape.sizes, strict=True))
-    return f"<{shape.kind}>{inside}</{shape.kind}>"
-
-
-def _material(look: Look) -> list[str]:
-    colour, shine = numbers(look.colour), numbers((look.shine,) * 3)
-    return [
-        "<material>",
-        f"  <ambient>{colour} 1</ambient><diffuse>{colour} 1</diffuse><specular>{shine} 1</specular>",
-        "</material>",
-    ]
-
-
-def sensor_lines(sensor: Sensor) -> Iterator[str]:
-    """A `<sensor>`, the same in both formats."""
-    yield f'<sensor name="{sensor.name}" type="{sensor.kind}">'
-    yield "  <always_on>true</always_on>"
-    yield f"  <update_rate>{number(sensor.rate)}</update_rate>"
-    yield from indented(sensor.lines, 1)
-    yield "</sensor>"
-
-
-def plugin_lines(plugin: Plugin) -> Iterator[str]:
-    """A `<plugin>`, the same in both formats."""
-    if plugin.about:
-        yield f"<!-- {plugin.about} -->"
-    yield f'<plugin name="{plugin.name}" filename="{plugin.filename}">'
-    yield from indented(plugin.lines, 1)
-    yield "</plugin>"
