@@ -125,7 +125,7 @@ def load(
     builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
     builder.parameter_files = given
     parts = _all_parts(world, builder, diagnostics, allowed, plugins)
-    if given:
+    if given and not diagnostics.has_errors:  # a plugin whose parameters are at fault is not among the parts
         from simkit.control.given_files import report_idle
 
         report_idle(given, [plugin for one in parts.values() for plugin, _ in one.plugins], world, diagnostics)

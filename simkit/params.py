@@ -327,8 +327,12 @@ class Params:
         try:
             return parse(found)
         except ValueError:
-            self._bad(f"<{name}>{found.value}</{name}>", allowed, found.where)
+            self._bad(self._as_written(name, found.value), allowed, found.where)
             return fallback if default is None else default
+
+    def _as_written(self, name: str, value: str) -> str:
+        """How the file has it, for messages."""
+        return f"<{name}>{value}</{name}>"
 
     def _near(self, name: str) -> str:
         return did_you_mean(name, [c.name for c in self.children])

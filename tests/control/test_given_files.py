@@ -121,6 +121,15 @@ def test_a_file_that_nobody_reads_is_told(tmp_path: Path) -> None:
         assert "--params-file" in next(d.hint for d in sim.diagnostics if d.code == "SK-CONTROL-018")
 
 
+def test_a_wrong_value_is_told_as_the_file_has_it_and_the_file_is_not_called_unread(tmp_path: Path) -> None:
+    path = saved(tmp_path, "controller_manager: {ros__parameters: {update_rate: fast}}\n")
+    with pytest.raises(LoadError) as caught:
+        simkit.load("empty", spawn=["tiago:0,0,0"], params_files=[path])
+    said = [d for d in caught.value.diagnostics if d.severity != "note"]
+    assert [d.code for d in said] == ["SK-PARAM-002"]
+    assert "found update_rate: fast, allowed is a number" in said[0].message
+
+
 def test_missing_and_broken_files_stop_the_load_all_in_one_pass(tmp_path: Path) -> None:
     broken = saved(tmp_path, "arm_controller: [\n")
     with pytest.raises(LoadError) as raised:

@@ -31,7 +31,7 @@ def node(folder: Path, text: str) -> tuple[Params, Diagnostics]:
         ("rate: [100, 50]", "found a list for 'rate', allowed is a number"),
         ("rate: []", "found a list for 'rate', allowed is a number"),
         ("rate: {a: 1}", "found a block for 'rate', allowed is a number"),
-        ("rate:", "found <rate></rate>, allowed is a number"),
+        ("rate:", "found rate without a value, allowed is a number"),
     ],
 )
 def test_only_a_value_is_a_number(tmp_path: Path, text: str, told: str) -> None:
