@@ -26,6 +26,7 @@ ROOMS: dict[str, frozenset[str]] = {
     "pytest_plugin": frozenset({"runtime"}),
     "parts": frozenset({"control", "motion", "plugins", "sensors", "runtime", "scene"}),
     "sinks": frozenset({"runtime", "writers"}),
+    "live": frozenset({"runtime"}),
     "fix_inertia": frozenset({"loaders", "compiler", "scene"}),
     "lint": frozenset({"runtime", "compiler", "scene"}),
     "overrides": frozenset({"scene"}),
@@ -39,6 +40,7 @@ ROOMS: dict[str, frozenset[str]] = {
         {
             "authoring",
             "control",
+            "live",
             "motion",
             "build",
             "codes",

@@ -1,0 +1,1 @@
+"""A running simulation and those who talk to it from other processes of the same user."""
