@@ -109,12 +109,16 @@ def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostic
 
 def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
     from simkit.plugins.gazebo_names import KNOWN
+    from simkit.plugins.left_out import LEFT_OUT
 
     names = aliases(plugin)
-    if KNOWN.intersection(names):
+    reason = next((LEFT_OUT[name] for name in names if name in LEFT_OUT), None)
+    if reason is not None or KNOWN.intersection(names):
         named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
-        message = f"{named} is a Gazebo plugin that simkit does not have; it is left out"
-        diagnostics.warning("SK-PLUGIN-002", message, plugin.where, "write it in Python: docs/writing_a_plugin.md")
+        why = f": {reason}" if reason else ""
+        message = f"{named} is a Gazebo plugin that simkit does not have; it is left out{why}"
+        hint = "what there is: docs/catalogue.md; write it in Python: docs/writing_a_plugin.md"
+        diagnostics.warning("SK-PLUGIN-002", message, plugin.where, hint)
         return
     spelled = plugin_kinds().written
     cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}
