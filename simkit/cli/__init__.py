@@ -8,31 +8,41 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.bag import bag
-from simkit.cli.bench import bench
-from simkit.cli.check import check
-from simkit.cli.convert import convert
-from simkit.cli.doctor import doctor
-from simkit.cli.explain import explain
-from simkit.cli.inspect import inspect
-from simkit.cli.motion import motion
-from simkit.cli.plugin import plugin
-from simkit.cli.run import run
-from simkit.cli.vendor import vendor
+from simkit.cli.deferred import Commands, defer
 
 app = typer.Typer(
     name="simkit",
+    cls=Commands,
     help="A robot simulator: Gazebo worlds and robots, stepped by MuJoCo, answering with ROS 2 messages.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for _command in (run, check, explain, inspect, convert, vendor, bench, doctor):
-    app.command()(_command)
-app.add_typer(bag, name="bag")
-app.add_typer(motion, name="motion")
-app.add_typer(plugin, name="plugin")
+COMMANDS = {
+    "run": "Runs a world headless, as fast as it goes.",
+    "check": "Prints every problem of a file, not only the first; runs nothing.",
+    "explain": "Says what a code means, what helps, and shows an input that brings it about.",
+    "inspect": "Shows what a file means once it is resolved.",
+    "convert": "Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file.",
+    "vendor": "Writes a folder that holds a world and everything it names, and that opens anywhere.",
+    "bench": "Times a world and, in the same run, bare MuJoCo on the same compiled model.",
+    "doctor": "Prints what simkit found on this machine, and what helps where something is missing.",
+    "bag": "Recordings: what is in them, new ones, and broken ones mended.",
+    "motion": "Lists the motions that a robot knows by name, and plays them.",
+    "plugin": "Lists plugins, says what one reads and publishes, and begins new ones.",
+    "topic": "Topics of a running simulation, or of a bag.",
+    "service": "Services of a running simulation.",
+    "param": "Live parameters of a running simulation.",
+    "action": "Actions of a running simulation.",
+    "node": "Nodes of a running simulation: its plugins, sensors and clients.",
+    "interface": "Types of messages, services and actions.",
+    "model": "Models of a running simulation.",
+    "tf": "Frames of a running simulation, or of a bag.",
+}
+"""Commands with the line that stands beside each; its module in this folder has its name, and is not read before."""
+
+for _name, _line in COMMANDS.items():
+    defer(app, _name, _line)
 
 
 def _print_version(wanted: bool) -> None:

@@ -1,4 +1,4 @@
-"""`simkit bag`: mends recordings."""
+"""`simkit bag`: what is in a recording; a new one of a running simulation; one played into it; a broken one mended."""
 
 from __future__ import annotations
 
@@ -7,15 +7,50 @@ from typing import Annotated
 
 import typer
 
+from simkit.cli.bag_play import play
+from simkit.cli.bag_record import record
 from simkit.cli.console import guarded, out
-from simkit.cli.options import Force
+from simkit.cli.options import Force, Json
+from simkit.cli.printed import as_json, aside, line, quiet
 
-bag = typer.Typer(help="Mends recordings.", no_args_is_help=True)
+bag = typer.Typer(help="Recordings: what is in them, new ones, and broken ones mended.", no_args_is_help=True)
 
 
 @bag.callback()
 def _group() -> None:
-    """Mends recordings."""
+    """Recordings: what is in them, new ones, and broken ones mended."""
+
+
+@bag.command()
+@quiet
+def info(
+    recording: Annotated[
+        Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
+    ],
+    topic_name: Annotated[
+        bool, typer.Option("--topic-name", "-t", help="Prints the names of the topics only.")
+    ] = False,
+    json_: Json = False,
+) -> int:
+    """Says what is in a recording."""
+    from simkit.sinks.bag_reader import open_bag_to_read
+    from simkit.sinks.bag_text import bag_summary, bag_text
+
+    with open_bag_to_read(recording) as reader:
+        if reader.broken:
+            aside(f"note: {recording}: {reader.broken}")
+        if json_:
+            as_json(bag_summary(reader))
+        elif topic_name:
+            for name in dict.fromkeys(topic.name for topic in reader.topics):
+                line(name)
+        else:
+            line(bag_text(reader))
+    return 0
+
+
+bag.command()(record)
+bag.command()(play)
 
 
 @bag.command()

@@ -43,8 +43,10 @@ def err() -> Console:
 
 
 def say(text: str) -> None:
-    """One line about what is going on."""
-    err().print(text)
+    """One line about what is going on; above what a run shows on a terminal, which listens to `sys.stderr` alone."""
+    if sys.stderr is not None:
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
 
 
 def print_diagnostics(
@@ -141,6 +143,9 @@ def guarded(command: Callable[P, Any]) -> Callable[P, None]:
             sys.stdout = None
             raise typer.Exit(0) from None
         except OSError as error:
+            if error.errno == errno.EIO:  # so does a terminal that is gone
+                sys.stdout = sys.stderr = None
+                raise typer.Exit(0) from None
             if error.errno not in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
                 raise
             sys.stdout = None

@@ -1,10 +1,16 @@
-"""Ctrl-C without a torn file: the first one asks the loop to stop, the second one stops at once."""
+"""Ctrl-C without a torn file: the first one asks the loop to stop, the second one stops at once.
+
+So does the end of the terminal (SIGHUP), unless somebody has it ignored (nohup).
+"""
 
 from __future__ import annotations
 
+import os
 import signal
+import stat
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -30,6 +36,9 @@ class Interrupts:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
                 self._before[number] = signal.signal(number, self._note)
+            hang_up = getattr(signal, "SIGHUP", None)  # Windows has none
+            if hang_up is not None and signal.getsignal(hang_up) is signal.SIG_DFL:
+                self._before[hang_up] = signal.signal(hang_up, self._hang_up)
         return self
 
     def __exit__(
@@ -37,6 +46,16 @@ class Interrupts:
     ) -> None:
         for number, handler in self._before.items():
             signal.signal(number, handler)
+
+    def _hang_up(self, number: int, frame: FrameType | None) -> None:
+        """The terminal is gone: what would still be written to it goes nowhere."""
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for file in (1, 2):
+            with suppress(OSError):
+                if stat.S_ISCHR(os.fstat(file).st_mode):  # isatty says no of a terminal that is gone
+                    os.dup2(nowhere, file)
+        os.close(nowhere)
+        self._note(number, frame)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         if self.exit_code:

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-from collections.abc import Callable
-from contextlib import ExitStack
-from dataclasses import dataclass, field
-from functools import partial
+import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
-from simkit.cli.console import err, guarded, out, print_diagnostics, say
-from simkit.cli.interrupts import Interrupts
-from simkit.cli.loop import Loop
+from simkit.cli.console import guarded, print_diagnostics, say
 from simkit.cli.options import (
     Base,
     Force,
@@ -23,50 +18,38 @@ from simkit.cli.options import (
     ParamsFiles,
     PluginPaths,
     ResourcePaths,
-    Source,
     Strict,
     Verbose,
     World,
     XacroArgs,
     source,
 )
-from simkit.errors import RenderError
+from simkit.cli.run_request import OnError, Request
+from simkit.cli.teleop import KEY_TIMEOUT
 from simkit.sinks.blocked import BlockedPlugins
 
-if TYPE_CHECKING:
-    from simkit.sinks.recorder import Recorder
-    from simkit.sinks.topic_counts import TopicCounter
+_TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 
 
-OnError = Literal["stop", "disable"]
+class RunCommand(TyperCommand):
+    """`--teleop` takes the topic after it, where that is one: a word that begins with a slash and names no file."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Gives `--teleop` the value that it has without a topic."""
+        given: list[str] = []
+        for at, word in enumerate(args):
+            if word == "--":
+                given += args[at:]
+                break
+            if word == "--teleop":
+                follows = args[at + 1] if at + 1 < len(args) else ""
+                if not _TOPIC.fullmatch(follows) or Path(follows).exists():
+                    word = "--teleop="
+            given.append(word)
+        return super().parse_args(ctx, given)
 
 
-@dataclass(frozen=True)
-class Request:
-    """What a run is to do; one field an option."""
-
-    world: str
-    duration: float | None = None
-    seed: int = 0
-    record: Path | None = None
-    topics: tuple[str, ...] = ()
-    skip: tuple[str, ...] = ()
-    force: bool = False
-    rtf: float | None = None
-    overrides: tuple[str, ...] = ()
-    strict: bool = False
-    view: bool = False
-    picture: Path | None = None
-    cmd_vel: str | None = None
-    script: Path | None = None
-    plugin_paths: tuple[Path, ...] = ()
-    on_plugin_error: OnError | None = None
-    verbose: bool = False
-    quiet: bool = False
-    watch: bool = False
-    spawn: tuple[str, ...] = ()
-    params_files: tuple[str, ...] = ()
-    source: Source = field(default_factory=lambda: source((), (), ()))
+COMMAND = RunCommand
 
 
 @guarded
@@ -86,7 +69,22 @@ def run(
         list[str], typer.Option(help="Records all but topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
     force: Force = False,
-    rtf: Annotated[float | None, typer.Option(help="No faster than X times real time.", metavar="X", min=1e-3)] = None,
+    rtf: Annotated[
+        float | None,
+        typer.Option(help="No faster than X times real time; 1 with --teleop and --view.", metavar="X", min=1e-3),
+    ] = None,
+    teleop: Annotated[
+        str | None, typer.Option(help="Drives with the keyboard: who takes velocities there.", metavar="[TOPIC]")
+    ] = None,
+    key_timeout: Annotated[
+        float,
+        typer.Option(help="--teleop stops after so many simulated seconds without a key; inf: never.", metavar="S"),
+    ] = KEY_TIMEOUT,
+    paused: Annotated[bool, typer.Option("--paused", help="Begins paused; space or a service lets it go on.")] = False,
+    step: Annotated[int | None, typer.Option(help="Does N steps, then is paused.", metavar="N", min=0)] = None,
+    name: Annotated[
+        str | None, typer.Option(help="What other terminals call this run; else the world's name.", metavar="NAME")
+    ] = None,
     set_: Annotated[
         list[str],
         typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
@@ -123,9 +121,10 @@ def run(
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     request = Request(
-        world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, _finite(rtf), tuple(set_), strict,
+        world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict,
         view, picture, cmd_vel, script, tuple(plugin_path), _on_error(on_plugin_error), verbose, quiet, watch,
-        tuple(spawn), tuple(params_file), source(resource_path, package_path, xacro_arg, base),
+        tuple(spawn), tuple(params_file), name, teleop, _timeout(key_timeout), paused, step,
+        source(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
     return execute(request)
 
@@ -137,8 +136,15 @@ def _on_error(word: str | None) -> OnError | None:
     return word  # type: ignore[return-value]
 
 
+def _timeout(seconds: float) -> float:
+    """A time to wait that is one."""
+    if not seconds > 0:
+        raise typer.BadParameter(f"{seconds} is not greater than 0", param_hint="--key-timeout")
+    return seconds
+
+
 def _finite(number: float | None) -> float | None:
-    """An infinite duration or real-time factor is none: until Ctrl-C, as fast as it goes."""
+    """An infinite duration is none: until Ctrl-C."""
     return number if number is None or math.isfinite(number) else None
 
 
@@ -149,6 +155,7 @@ def execute(request: Request) -> int:
         SimkitError: what went wrong; the recording up to there is complete by then.
     """
     from simkit.build import load
+    from simkit.cli.run_session import Session, check_keyboard
     from simkit.overrides import check_used
     from simkit.sinks import picture, recorder, viewer
 
@@ -158,6 +165,7 @@ def execute(request: Request) -> int:
         picture.check_target(request.picture)
     if request.view:
         viewer.check_possible()
+    check_keyboard(request)
     with BlockedPlugins(say) as blocked:
         sim = load(
             request.world,
@@ -173,121 +181,4 @@ def execute(request: Request) -> int:
         with sim:
             check_used(sim.diagnostics)
             print_diagnostics(sim.diagnostics, verbose=request.verbose)
-            return _Run(request, sim, blocked).execute()
-
-
-class _Run:
-    """One run of a loaded world."""
-
-    def __init__(self, request: Request, sim: Any, blocked: BlockedPlugins) -> None:
-        self.request, self.sim, self.blocked = request, sim, blocked
-
-    def execute(self) -> int:
-        from simkit.sinks.commands import Commands
-        from simkit.sinks.picture import DrivenPath
-        from simkit.sinks.progress import Progress, Stopwatch
-        from simkit.sinks.recorder import Recorder
-        from simkit.sinks.topic_counts import RENDERED, TopicCounter
-
-        request, sim = self.request, self.sim
-        commands = Commands(sim, self._commands())
-        if request.duration is None:
-            say("running until Ctrl-C (--duration S stops by itself)")
-        driven = DrivenPath(sim) if request.picture is not None else None
-        with ExitStack() as stack:
-            interrupts = stack.enter_context(Interrupts(self.blocked.ask))
-            recording = None
-            if request.record is not None:
-                recording = stack.enter_context(
-                    Recorder(sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip)
-                )
-            counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
-            watch = Stopwatch()
-            progress = stack.enter_context(Progress(sim, counter, request.duration, out()))
-            watchers: list[Any] = [progress.update]
-            if recording is not None:
-                watchers.append(recording.check)
-            if driven is not None:
-                watchers.append(driven.sample)
-            rtf = request.rtf if request.rtf is not None or not request.view else 1.0
-            loop = Loop(sim, commands, interrupts, watchers, rtf=rtf, follow=driven is not None)
-            if request.view:
-                self._open_viewer(stack, loop, watchers)
-            advance = self._watched(loop, interrupts, watchers) if request.watch else loop.run
-            try:
-                advance(request.duration)
-            finally:
-                elapsed = watch.elapsed
-                progress.__exit__(None, None, None)
-                if recording is not None:
-                    recording.close()
-                self._summarise(counter, recording, elapsed)
-        if driven is not None:
-            self._draw(driven)
-        return interrupts.exit_code
-
-    def _commands(self) -> list[Any]:
-        from simkit.sinks.commands import read_script, steady_velocity
-
-        topics = self.sim.topics()
-        found = []
-        if self.request.cmd_vel is not None:
-            found.append(steady_velocity(self.request.cmd_vel, topics))
-        if self.request.script is not None:
-            found += read_script(self.request.script, topics)
-        return found
-
-    def _open_viewer(self, stack: ExitStack, loop: Loop, watchers: list[Any]) -> None:
-        from simkit.sinks.viewer import Viewer
-
-        viewer = stack.enter_context(Viewer(self.sim))
-        watchers.append(viewer.update)
-        loop.keep_going = viewer.is_open
-
-    def _watched(self, loop: Loop, interrupts: Interrupts, watchers: list[Any]) -> Callable[[float | None], Any]:
-        """The same loop, which reloads plugins that are edited."""
-        from simkit.cli.run_watch import Watch
-
-        watch = Watch(self.sim, self.request.plugin_paths, interrupts, waits=self.request.record is None)
-        watchers.append(watch.poll)
-        loop.before_slice = watch.keep
-        return partial(watch.run, loop)
-
-    def _summarise(self, counter: TopicCounter, recording: Recorder | None, elapsed: float) -> None:
-        """Topics with their true rates, then one line, then the hash of the physics state."""
-        from simkit.sinks.progress import rate_text
-
-        sim = self.sim
-        if not self.request.quiet and counter.rows:
-            width = max(len(row.topic) for row in counter.rows)
-            for row in counter.rows:
-                out().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row):>12}  {row.type_name}")
-        factor = sim.time / max(elapsed, 1e-9)
-        line = (
-            f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
-        )
-        if recording is not None:
-            line += f"; {recording.message_count} in {recording.path}"
-        out().print(line)
-        out().print(f"state {state_hash(sim)}")
-
-    def _draw(self, driven: Any) -> None:
-        from simkit.build import render_view
-        from simkit.sinks.picture import save_picture
-
-        path = self.request.picture
-        assert path is not None
-        try:
-            save_picture(self.sim, path, render_view, driven)
-        except RenderError as error:
-            err().print(f"warning: no picture: {error}", style="yellow")
-        else:
-            out().print(f"picture {path}")
-
-
-def state_hash(sim: Any) -> str:
-    """SHA-256 of positions and velocities, as bits: equal for two runs that did the same."""
-    digest = hashlib.sha256()
-    digest.update(sim.mj_data.qpos.tobytes())
-    digest.update(sim.mj_data.qvel.tobytes())
-    return digest.hexdigest()
+            return Session(request, sim, blocked).execute()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from simkit.sinks.topic_counts import TopicCount, TopicCounter
 
 _REFRESH = 0.25  # [s] of wall time between two pictures of the progress
+_REFRESH_LINES = 0.1  # where somebody drives by it
+_RECENT = 1.0  # [s] of wall time
 
 
 class Stopwatch:
@@ -43,11 +46,22 @@ class Progress:
         counter: counts its topics.
         duration: how long it is to run [s]; None where it runs until it is stopped.
         console: where to draw.
+        lines: gives what is shown instead of the topics.
     """
 
-    def __init__(self, sim: Simulation, counter: TopicCounter, duration: float | None, console: Console) -> None:
+    def __init__(
+        self,
+        sim: Simulation,
+        counter: TopicCounter,
+        duration: float | None,
+        console: Console,
+        lines: Callable[[], Sequence[str]] | None = None,
+    ) -> None:
         self._sim, self._counter, self._duration, self._console = sim, counter, duration, console
+        self._lines = lines
+        self._refresh = _REFRESH if lines is None else _REFRESH_LINES
         self._begin = sim.time
+        self._marks = [(0.0, sim.time)]
         self._watch = Stopwatch()
         self._drawn = 0.0
         self._live: Live | None = None
@@ -56,7 +70,11 @@ class Progress:
         if self._console.is_terminal:
             from rich.live import Live
 
-            self._live = Live(self._picture(), console=self._console, auto_refresh=False, transient=True)
+            # what a plugin prints stays where it goes, where that is not the terminal
+            is_both = not self._console.stderr
+            self._live = Live(
+                self._picture(), console=self._console, auto_refresh=False, transient=True, redirect_stdout=is_both
+            )
             self._live.start()
         return self
 
@@ -69,20 +87,35 @@ class Progress:
 
     def update(self) -> None:
         """Draws anew when the last picture is old enough."""
-        if self._live is None or self._watch.elapsed - self._drawn < _REFRESH:
+        if self._live is None or self._watch.elapsed - self._drawn < self._refresh:
             return
         self._drawn = self._watch.elapsed
-        self._live.update(self._picture(), refresh=True)
+        try:
+            self._live.update(self._picture(), refresh=True)
+        except OSError:  # the terminal is gone, and nobody wanted the run to end with it
+            self._live = None
+
+    def _factor(self) -> float:
+        """Simulated time by wall time: of the whole run, or where somebody drives of the last seconds."""
+        now, time = self._watch.elapsed, self._sim.time
+        if self._lines is None:
+            return (time - self._begin) / max(now, 1e-9)
+        if now - self._marks[-1][0] > _RECENT:
+            self._marks = [self._marks[-1], (now, time)]
+        since, begun = self._marks[0]
+        return max(0.0, time - begun) / max(now - since, 1e-9)
 
     def _picture(self) -> RenderableType:
         from rich.console import Group
         from rich.table import Table
         from rich.text import Text
 
-        done = self._sim.time - self._begin
-        factor = done / max(self._watch.elapsed, 1e-9)
+        factor = self._factor()
         end = f" of {self._duration:g}" if self._duration is not None else ""
-        head = Text.assemble((f"t = {self._sim.time:.2f}{end} s", "bold"), f"   {factor:.2f} × real time")
+        state = ("   paused", "bold yellow") if self._sim.paused else f"   {factor:.2f} × real time"
+        head = Text.assemble((f"t = {self._sim.time:.2f}{end} s", "bold"), state)
+        if self._lines is not None:
+            return Group(head, *(Text(line, no_wrap=True, overflow="ellipsis") for line in self._lines()))
         table = Table(box=None, padding=(0, 2, 0, 0))
         table.add_column("topic")
         table.add_column("messages", justify="right")

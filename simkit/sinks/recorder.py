@@ -5,7 +5,7 @@ from __future__ import annotations
 import fnmatch
 import os
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -80,6 +80,7 @@ class Recorder:
         topics: shell patterns of the topics to record; when empty, all but those that the bus has aside (`/stats` and
             what else tells of the whole world).
         skip: shell patterns of topics to leave out.
+        choose: says of a topic whether it is recorded, instead of `topics`.
 
     Raises:
         InputError: SK-BAG-001 the bag exists; SK-BAG-002 it cannot be written.
@@ -93,10 +94,12 @@ class Recorder:
         overwrite: bool = False,
         topics: Sequence[str] = (),
         skip: Sequence[str] = (),
+        choose: Callable[[str], bool] | None = None,
     ) -> None:
         self.path = Path(path)
         self.failure: RecordError | None = None
         self._sim, self._patterns, self._skip = sim, tuple(topics), tuple(skip)
+        self._choose = choose
         self._count = 0
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
         self._taps: dict[str, Any] = {}
@@ -146,13 +149,16 @@ class Recorder:
     def _add(self, topic: str, _: str) -> None:
         if self._bag is None or topic in self._taps:
             return
-        if self._patterns and not any(fnmatch.fnmatchcase(topic, p) for p in self._patterns):
-            return
-        if not self._patterns and topic in self._sim.bus.aside:
+        if not (self._choose or self._is_asked_for)(topic):
             return
         if any(fnmatch.fnmatchcase(topic, p) for p in self._skip):
             return
         self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._take(topic, message), takes_later=True)
+
+    def _is_asked_for(self, topic: str) -> bool:
+        if self._patterns:
+            return any(fnmatch.fnmatchcase(topic, p) for p in self._patterns)
+        return topic not in self._sim.bus.aside
 
     def records(self, topic: str) -> bool:
         """Whether the topic is one of those that are recorded."""

@@ -43,8 +43,12 @@ def test_it_waits_for_a_service_and_then_comes_to_its_end(capfd: pytest.CaptureF
     assert capfd.readouterr().err.count("paused at t=0 s until a service lets it go on") == 1
 
 
-def test_a_pace_that_a_service_asks_for_is_kept_unless_the_user_asked_for_one() -> None:
+def test_the_newest_pace_counts_and_the_users_is_newer_than_what_the_world_asked_for_while_it_was_loaded() -> None:
     with simkit.load(BALL) as sim:
         sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})  # of 1 ms: ten times real time
-        assert Loop(sim, Commands(sim, []), Quiet(), [])._pace() == 10.0  # type: ignore[arg-type]
-        assert Loop(sim, Commands(sim, []), Quiet(), [], rtf=2.0)._pace() == 2.0  # type: ignore[arg-type]
+        Loop(sim, Commands(sim, []), Quiet(), [])  # type: ignore[arg-type]
+        assert sim.pausing.pace == 10.0
+        Loop(sim, Commands(sim, []), Quiet(), [], rtf=2.0)  # type: ignore[arg-type]
+        assert sim.pausing.pace == 2.0
+        sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})
+        assert sim.pausing.pace == 10.0

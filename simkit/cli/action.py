@@ -1,0 +1,204 @@
+"""`simkit action`: the actions of a running simulation, as `ros2 action` shows them and sends goals to them."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.live_options import Ros2Command, Sim
+from simkit.cli.options import Json
+from simkit.cli.printed import absolute, as_json, given, line, none_of, quiet
+from simkit.cli.service import check, made
+from simkit.cli.sources import running
+from simkit.cli.topic_pub import type_and_values
+
+if TYPE_CHECKING:
+    from simkit.live import Client, LiveGoal
+
+_LOOK = 3600.0  # [s] of wall time; a goal takes as long as it takes
+_PATIENCE = 5.0  # [s] of wall time in which a goal that is called off should end
+action = typer.Typer(help="Actions of a running simulation.", no_args_is_help=True)
+Name = Annotated[
+    str,
+    typer.Argument(help="Name of an action.", metavar="ACTION", show_default=False, autocompletion=completion.actions),
+]
+
+
+@action.callback()
+def _group() -> None:
+    """Actions of a running simulation."""
+
+
+@action.command("list", cls=Ros2Command)
+@quiet
+def list_(
+    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
+    count: Annotated[bool, typer.Option("--count-actions", "-c", help="Says only how many.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Lists the actions."""
+    with running(sim) as client:
+        found = dict(sorted(client.actions().items()))
+    if json_:
+        as_json(len(found) if count else [{"name": n, "types": [t]} for n, t in found.items()])
+    elif count:
+        line(str(len(found)))
+    else:
+        for name, type_name in found.items():
+            line(f"{name} [{type_name}]" if show_types else name)
+    return 0
+
+
+@action.command("type", cls=Ros2Command)
+@quiet
+def type_(action: Name, sim: Sim = None, json_: Json = False) -> int:
+    """Prints an action's type."""
+    with running(sim) as client:
+        found = type_of(client, action)
+    if json_:
+        as_json([found])
+    else:
+        line(found)
+    return 0
+
+
+@action.command(cls=Ros2Command)
+@quiet
+def info(
+    action: Name,
+    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
+    count: Annotated[bool, typer.Option("--count", "-c", help="Says only how many.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Says who serves an action."""
+    with running(sim) as client:
+        found = type_of(client, action)
+        nodes = client.ask("nodes")
+    name = absolute(action)
+    node = next((n for n, has in nodes.items() if name in has["actions"]), name.rpartition("/")[0] or name)
+    if json_:
+        as_json({"name": name, "types": [found], "clients": [], "servers": [node]})
+        return 0
+    line(f"Action: {name}\nAction clients: 0\nAction servers: 1")
+    if not count:
+        line(f"    {node} [{found}]" if show_types else f"    {node}")
+    return 0
+
+
+def send_goal(
+    action: Name,
+    action_type: Annotated[
+        str | None,
+        typer.Argument(
+            help="Its type, which need not be said.",
+            metavar="[TYPE]",
+            show_default=False,
+            autocompletion=completion.action_types,
+        ),
+    ] = None,
+    goal: Annotated[
+        str | None,
+        typer.Argument(
+            help="The goal as YAML: '{order: 5}'.",
+            metavar="[GOAL]",
+            show_default=False,
+            autocompletion=completion.goal_values,
+        ),
+    ] = None,
+    stdin: Annotated[bool, typer.Option("--stdin", help="Reads the goal from standard input.")] = False,
+    feedback: Annotated[bool, typer.Option("--feedback", "-f", help="Prints the feedback.")] = False,
+    timeout: Annotated[
+        float | None, typer.Option("--timeout", help="Calls it off after so long (wall time).", metavar="S", min=0)
+    ] = None,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Sends a goal and waits for its end; Ctrl-C calls it off."""
+    action_type, goal = type_and_values(action_type, goal)
+    fields = given(sys.stdin.read() if stdin else goal or "{}", "the goal")
+    with running(sim) as client:
+        found = type_of(client, action)
+        check(action_type, found, absolute(action))
+        return _Sending(client, json_, feedback).send(absolute(action), made(f"{found}_Goal", fields), timeout)
+
+
+action.command("send_goal", cls=Ros2Command)(quiet(send_goal))
+action.command("send", cls=Ros2Command, help="The same as send_goal.")(quiet(send_goal))
+
+
+class _Sending:
+    """One goal, from its sending to its end."""
+
+    def __init__(self, client: Client, json_: bool, feedback: bool) -> None:
+        self._client, self._json, self._feedback = client, json_, feedback
+
+    def send(self, name: str, goal: Any, timeout: float | None) -> int:
+        self._say("Waiting for an action server to become available...")
+        self._say(f"Sending goal:\n     {_yaml(goal)}")
+        handle = self._client.send_goal(name, goal, self._on_feedback if self._feedback else None)
+        try:
+            handle.wait_accepted(_LOOK)
+            if handle.status.name == "REJECTED":
+                self._say(f"Goal was rejected{': ' + handle.reason if handle.reason else '.'}")
+                return self._ended(handle, 0)
+            self._say(f"Goal accepted with ID: {handle.id:032x}\n")
+            if not handle.wait(_LOOK if timeout is None else timeout):
+                self._call_off(handle)
+        except KeyboardInterrupt:
+            self._call_off(handle)
+            self._ended(handle, 0)
+            raise
+        return self._ended(handle, 0)
+
+    def _call_off(self, handle: LiveGoal) -> None:
+        self._say("Canceling goal...")
+        handle.cancel()
+        self._say("Goal canceled." if handle.wait(_PATIENCE) else "The goal goes on: its action does not stop it.")
+
+    def _ended(self, handle: LiveGoal, code: int) -> int:
+        from simkit.msgs.text import plain
+
+        result = handle.result
+        if self._json:
+            found = None if result is None else plain(result)
+            as_json({"status": handle.status.name, "reason": handle.reason, "result": found})
+        elif handle.is_done and handle.status.name != "REJECTED":
+            line(f"Result:\n    {_yaml(result)}")
+            line(f"Goal finished with status: {handle.status.name}")
+        return code
+
+    def _on_feedback(self, message: Any) -> None:
+        from simkit.msgs.text import plain
+
+        if self._json:
+            as_json({"feedback": plain(message)})
+        else:
+            line(f"Feedback:\n    {_yaml(message)}")
+
+    def _say(self, text: str) -> None:
+        if not self._json:
+            line(text)
+
+
+def _yaml(message: Any) -> str:
+    from simkit.msgs.text import yaml_of
+
+    return yaml_of(message)
+
+
+def type_of(client: Any, name: str) -> str:
+    """The type of an action.
+
+    Raises:
+        InputError: SK-CLI-037 there is none of that name.
+    """
+    actions = client.actions()
+    wanted = absolute(name)
+    if wanted not in actions:
+        raise none_of("action", wanted, actions, "SK-CLI-037", f"the simulation {client.info.get('name', '')!r}")
+    return str(actions[wanted])

@@ -1,0 +1,194 @@
+"""`simkit bag record`: a bag of a simulation that runs in another terminal."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.interrupts import Interrupts
+from simkit.cli.live_options import Sim
+from simkit.cli.options import Force, Json
+from simkit.cli.printed import absolute, as_json, aside, is_hidden, quiet
+from simkit.cli.sources import LiveSource, running
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.cli.sources import LiveFeed
+    from simkit.sinks.mcap_bag import McapBag
+
+_DEPTH = 20_000  # messages of a topic that wait while the disk is busy
+_LOOK = 0.2  # [s] of wall time between two looks at Ctrl-C
+_NEW = 1.0  # [s] of wall time between two looks for new topics
+
+
+@quiet
+def record(
+    topics: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Topics to record.", metavar="[TOPIC]...", show_default=False, autocompletion=completion.topics
+        ),
+    ] = None,
+    all_: Annotated[bool, typer.Option("--all", "-a", help="All topics, those that come later too.")] = False,
+    regex: Annotated[
+        str | None, typer.Option("--regex", "-e", help="Topics that this fits.", metavar="REGEX", show_default=False)
+    ] = None,
+    exclude: Annotated[
+        str | None,
+        typer.Option("--exclude-regex", "--exclude", "-x", help="But not these.", metavar="REGEX", show_default=False),
+    ] = None,
+    topics_too: Annotated[
+        list[str], typer.Option("--topics", help="The same as arguments; repeatable.", metavar="TOPIC")
+    ] = [],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="x.mcap one file, else a rosbag2 folder.", metavar="OUT", show_default=False
+        ),
+    ] = None,
+    duration: Annotated[
+        float | None, typer.Option("--duration", "-d", help="Ends after so long (simulated).", metavar="S", min=0)
+    ] = None,
+    hidden: Annotated[bool, typer.Option("--include-hidden-topics", help="Hidden ones too.")] = False,
+    storage: Annotated[str, typer.Option("--storage", "-s", help="mcap is all there is.", metavar="mcap")] = "mcap",
+    force: Force = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Records topics of a running simulation until Ctrl-C; `simkit run --record` loses nothing at any speed."""
+    from simkit.sinks.recorder import open_bag
+
+    named = [absolute(t) for t in (*(topics or ()), *topics_too)]
+    wanted = _Wanted(named, all_, _pattern(regex, "--regex"), _pattern(exclude, "--exclude-regex"), hidden)
+    if storage != "mcap":
+        raise InputError(f"SK-CLI-018 --storage: found {storage!r}, allowed is mcap", "SK-CLI-018")
+    target = output or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
+    with running(sim) as client:
+        recording = _Recording(LiveSource(client), wanted, duration)
+        with Interrupts() as stop:
+            bag = open_bag(target, overwrite=force)
+            try:
+                recording.run(bag, stop)
+            finally:
+                bag.close()
+    summary = {"path": str(target), "messages": bag.span.count, "topics": len(bag.channels), "lost": recording.lost}
+    if json_:
+        as_json(summary)
+    else:
+        aside(f"{target}: {bag.span.count} messages on {len(bag.channels)} topics")
+        if recording.lost:
+            aside(f"note: {recording.lost} messages came faster than they were written; simkit run --record loses none")
+    return stop.exit_code
+
+
+def _pattern(text: str | None, option: str) -> re.Pattern[str] | None:
+    try:
+        return None if text is None else re.compile(text)
+    except re.error as error:
+        raise InputError(f"SK-CLI-031 {option}: {text!r} is no regular expression: {error}", "SK-CLI-031") from None
+
+
+class _Wanted:
+    """Which topics are recorded."""
+
+    def __init__(
+        self,
+        named: list[str],
+        all_: bool,
+        regex: re.Pattern[str] | None,
+        exclude: re.Pattern[str] | None,
+        hidden: bool,
+    ) -> None:
+        if not named and not all_ and regex is None:
+            text = "no topics to record; name them, or --all, or --regex"
+            raise InputError(f"SK-CLI-018 {text}", "SK-CLI-018")
+        self._named, self._all, self._regex, self._exclude, self._hidden = set(named), all_, regex, exclude, hidden
+        self.named = named
+
+    def __contains__(self, topic: str) -> bool:
+        if self._exclude is not None and self._exclude.search(topic):
+            return False
+        if topic in self._named:
+            return True
+        if is_hidden(topic) and not self._hidden:
+            return False
+        return self._all or (self._regex is not None and bool(self._regex.search(topic)))
+
+
+class _Recording:
+    """Writes what comes on the wanted topics."""
+
+    def __init__(self, source: LiveSource, wanted: _Wanted, duration: float | None) -> None:
+        self._source, self._wanted, self._duration = source, wanted, duration
+        self._feeds: dict[str, LiveFeed] = {}
+        self._latched: set[str] = set()
+        self._looked = -_NEW
+        there = source.topics()
+        for name in wanted.named:
+            if name not in there:
+                from simkit.diagnostics import did_you_mean
+
+                hint = did_you_mean(name, there)
+                aside(f"note: {name} is not there yet{'; ' + hint if hint else ''}")
+
+    @property
+    def lost(self) -> int:
+        """How many messages were dropped."""
+        return sum(feed.lost for feed in self._feeds.values())
+
+    def run(self, bag: McapBag, stop: Interrupts) -> None:
+        """Records to the end of the simulation, or until asked to stop."""
+        begun_ns: int | None = None
+        while not stop.exit_code:
+            self._subscribe(bag)
+            came = self._source_pump()
+            for received in came:
+                begun_ns = received.time_ns if begun_ns is None else min(begun_ns, received.time_ns)
+                if self._duration is not None and received.time_ns - begun_ns > self._duration * 1e9:
+                    return
+                channel = bag.channel(received.topic, received.type_name, received.topic in self._latched)
+                bag.write_raw(channel, received.data, received.time_ns)
+            if not came and any(feed.is_over for feed in self._feeds.values()):
+                return
+            if self._duration is not None and begun_ns is not None and not came:
+                now_ns = int(self._source.client.state()["time_ns"])
+                if now_ns - begun_ns > self._duration * 1e9:
+                    return
+
+    def _source_pump(self) -> list[Any]:
+        """What has come, in the order of times."""
+        if not self._feeds:
+            time.sleep(_LOOK)
+            return []
+        found: list[Any] = []
+        first = True
+        for feed in self._feeds.values():
+            while (received := feed.take(_LOOK if first and not found else 0.0)) is not None:
+                found.append(received)
+                first = False
+            if feed.is_over:
+                break
+        for feed in self._feeds.values() if any(f.is_over for f in self._feeds.values()) else ():
+            feed.is_over = True
+            while (received := feed.take(0.0)) is not None:
+                found.append(received)
+        return sorted(found, key=lambda r: int(r.time_ns))
+
+    def _subscribe(self, bag: McapBag) -> None:
+        """Looks for topics that are wanted and new."""
+        if time.monotonic() - self._looked < _NEW:
+            return
+        self._looked = time.monotonic()
+        for name, entry in self._source.topics().items():
+            if name in self._wanted and name not in self._feeds:
+                aside(f"[INFO] [rosbag2_recorder]: Subscribed to topic '{name}'")
+                self._feeds[name] = self._source.feed([name], _DEPTH)
+                if any(end.latched for end in entry.publishers):
+                    self._latched.add(name)
+                for end in entry.publishers[:1] or entry.subscribers[:1]:
+                    bag.channel(name, end.types[0], end.latched)  # listed though nothing may come

@@ -1,0 +1,153 @@
+"""`simkit interface`: message, service and action types, as `ros2 interface` shows them."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.live_options import Bag
+from simkit.cli.options import Json
+from simkit.cli.printed import as_json, line, quiet
+from simkit.errors import InputError, MessageError
+
+_KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
+interface = typer.Typer(help="Types of messages, services and actions.", no_args_is_help=True)
+TypeName = Annotated[
+    str,
+    typer.Argument(
+        help="Such as geometry_msgs/msg/Twist; - reads it from standard input.",
+        metavar="TYPE",
+        show_default=False,
+        autocompletion=completion.interfaces,
+    ),
+]
+
+
+@interface.callback()
+def _group() -> None:
+    """Types of messages, services and actions."""
+
+
+@interface.command("list")
+@quiet
+def list_(
+    only_msgs: Annotated[bool, typer.Option("--only-msgs", "-m", help="Message types only.")] = False,
+    only_srvs: Annotated[bool, typer.Option("--only-srvs", "-s", help="Service types only.")] = False,
+    only_actions: Annotated[bool, typer.Option("--only-actions", "-a", help="Action types only.")] = False,
+    json_: Json = False,
+) -> int:
+    """Lists the types that simkit knows."""
+    from simkit.msgs.written import names
+
+    wanted = {"msg": only_msgs, "srv": only_srvs, "action": only_actions}
+    kinds = [(kind, title) for kind, title in _KINDS if wanted[kind] or not any(wanted.values())]
+    if json_:
+        as_json({kind: names(kind) for kind, _ in kinds})
+        return 0
+    for kind, title in kinds:
+        line(f"{title}:")
+        for name in names(kind):
+            line(f"    {name}")
+    return 0
+
+
+@interface.command()
+@quiet
+def packages(json_: Json = False) -> int:
+    """Lists the packages that the types are of."""
+    from simkit.msgs.written import names
+
+    found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in names(kind)})
+    if json_:
+        as_json(found)
+    else:
+        for name in found:
+            line(name)
+    return 0
+
+
+@interface.command()
+@quiet
+def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=False)], json_: Json = False) -> int:
+    """Lists the types of a package."""
+    from simkit.cli.printed import none_of
+    from simkit.msgs.written import names
+
+    known = [n for kind, _ in _KINDS for n in names(kind)]
+    found = [n for n in known if n.split("/")[0] == name]
+    if not found:
+        raise none_of("package", name, sorted({n.split("/")[0] for n in known}), "SK-CLI-032", "simkit")
+    if json_:
+        as_json(found)
+    else:
+        for one in found:
+            line(one)
+    return 0
+
+
+@interface.command()
+@quiet
+def show(
+    type_: TypeName,
+    all_comments: Annotated[bool, typer.Option("--all-comments", help="With comments, those of parts too.")] = False,
+    no_comments: Annotated[bool, typer.Option("--no-comments", help="Without comments.")] = False,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Prints the definition of a type, with those of its parts below."""
+    from simkit.msgs.written import show as text_of
+
+    name = _read(type_)
+    try:
+        if bag is None:
+            text = text_of(name, comments=not no_comments, all_comments=all_comments)
+        else:
+            text = _of_bag(name, bag, comments=not no_comments, all_comments=all_comments)
+    except MessageError as error:
+        raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
+    if json_:
+        as_json({"type": name, "definition": text})
+    else:
+        line(text)
+    return 0
+
+
+def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> str:
+    """The definition as a bag has it."""
+    from simkit.msgs.written import show as text_of
+    from simkit.sinks.bag_reader import open_bag_to_read
+
+    with open_bag_to_read(str(bag)) as reader:
+        package_name, _, short = name.partition("/")
+        long = name if name.count("/") == 2 else f"{package_name}/msg/{short}"
+        return text_of(long, comments=comments, all_comments=all_comments, store=reader.store_of(long))
+
+
+@interface.command()
+@quiet
+def proto(
+    type_: TypeName,
+    no_quotes: Annotated[bool, typer.Option("--no-quotes", help="Without quotes around it.")] = False,
+    json_: Json = False,
+) -> int:
+    """Prints a message with every field, to be filled in."""
+    from simkit.msgs.text import dump
+    from simkit.msgs.written import prototype
+
+    try:
+        found = prototype(_read(type_))
+    except MessageError as error:
+        raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
+    if json_:
+        as_json(found)
+    else:
+        text = dump(found)
+        line(text if no_quotes else f'"{text}"')
+    return 0
+
+
+def _read(type_name: str) -> str:
+    return sys.stdin.readline().strip() if type_name == "-" else type_name

@@ -1,0 +1,154 @@
+"""`simkit model`: where the models of a running simulation are, their links and joints."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.live_options import Sim
+from simkit.cli.options import Json
+from simkit.cli.printed import as_json, line, none_of, quiet
+from simkit.cli.sources import running
+
+model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
+Model = Annotated[
+    str,
+    typer.Argument(
+        help="Name of a model; nested ones with ::.",
+        metavar="MODEL",
+        show_default=False,
+        autocompletion=completion.models,
+    ),
+]
+
+
+@model.callback()
+def _group() -> None:
+    """Models of a running simulation."""
+
+
+@model.command("list")
+@quiet
+def list_(
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="With poses, links and joints.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Lists the models."""
+    with running(sim) as client:
+        names: list[str] = client.models()
+        found = {name: client.model(name) for name in names} if verbose else {}
+    if json_:
+        as_json(list(found.values()) if verbose else names)
+        return 0
+    for name in names:
+        if not verbose:
+            line(name)
+            continue
+        one = found[name]
+        counts = f"{_counted(one['links'], 'link')}, {_counted(one['joints'], 'joint')}"
+        line(f"{name}: {_pose_text(one['pose'])} ({'static, ' if one.get('static') else ''}{counts})")
+    return 0
+
+
+def _counted(found: Any, what: str) -> str:
+    return f"{len(found)} {what}{'' if len(found) == 1 else 's'}"
+
+
+@model.command()
+@quiet
+def pose(
+    model: Model,
+    link: Annotated[
+        str | None,
+        typer.Argument(help="One of its links.", metavar="[LINK]", show_default=False, autocompletion=completion.links),
+    ] = None,
+    links: Annotated[bool, typer.Option("--links", "-l", help="All its links too.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Prints a pose in the world: x y z [m], roll pitch yaw [rad]."""
+    with running(sim) as client:
+        found = _model(client, model)
+    if link is not None:
+        if link not in found["links"]:
+            raise none_of("link", link, found["links"], "SK-CLI-038", f"model {model!r}")
+        rows = {f"{model}::{link}": found["links"][link]["pose"]}
+    else:
+        rows = {model: found["pose"]}
+        if links:
+            rows |= {f"{model}::{n}": one["pose"] for n, one in found["links"].items()}
+    if json_:
+        as_json(rows if links else next(iter(rows.values())))
+        return 0
+    width = max(map(len, rows))
+    for name, at in rows.items():
+        line(f"{name:<{width}}  {_pose_text(at)}" if links else _pose_text(at))
+    return 0
+
+
+def _pose_text(pose: Any) -> str:
+    numbers = [*pose["position"], *pose["rpy"]]
+    x, y, z, roll, pitch, yaw = (f"{n + 0.0:.6f}" for n in numbers)
+    return f"xyz {x} {y} {z} rpy {roll} {pitch} {yaw}"
+
+
+@model.command()
+@quiet
+def joint(
+    model: Model,
+    joint: Annotated[
+        str | None,
+        typer.Argument(
+            help="One of its joints; all where not given.",
+            metavar="[JOINT]",
+            show_default=False,
+            autocompletion=completion.joints,
+        ),
+    ] = None,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Prints the state of joints: position, velocity, effort [rad, rad/s, N·m or m, m/s, N]."""
+    with running(sim) as client:
+        found = _model(client, model)["joints"]
+    if joint is not None and joint not in found:
+        raise none_of("joint", joint, found, "SK-CLI-038", f"model {model!r}")
+    rows = found if joint is None else {joint: found[joint]}
+    if json_:
+        as_json(rows if joint is None else rows[joint])
+        return 0
+    if not rows:
+        line(f"{model} has no joints")
+        return 0
+    width, kinds = max(map(len, rows)), max(len(str(r["type"])) for r in rows.values())
+    for name, one in rows.items():
+        state = "  ".join(f"{key} {_numbers(one[key])}" for key in ("position", "velocity", "effort"))
+        line(f"{name:<{width}}  {one['type']:<{kinds}}  {state}")
+    return 0
+
+
+def _numbers(value: Any) -> str:
+    if isinstance(value, list):
+        return "[" + ", ".join(_numbers(v) for v in value) + "]"
+    return f"{value + 0.0:.6f}"
+
+
+def _model(client: Any, name: str) -> dict[str, Any]:
+    """The state of a model.
+
+    Raises:
+        InputError: SK-CLI-038 there is none of that name.
+    """
+    from simkit.live import LiveClosed, LiveError
+
+    try:
+        found: dict[str, Any] = client.model(name)
+    except LiveClosed:
+        raise
+    except LiveError:
+        names = client.models()
+        raise none_of("model", name, names, "SK-CLI-038", f"the simulation {client.info['name']!r}") from None
+    return found

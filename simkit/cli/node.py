@@ -1,0 +1,85 @@
+"""`simkit node`: plugins and sensors of a running simulation as the nodes they would be, as `ros2 node` shows them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.live_options import Ros2Command, Sim
+from simkit.cli.options import Json
+from simkit.cli.printed import absolute, as_json, is_hidden, line, none_of, quiet
+from simkit.cli.sources import running
+
+node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)
+Hidden = Annotated[bool, typer.Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
+
+
+@node.callback()
+def _group() -> None:
+    """Nodes of a running simulation: its plugins, sensors and clients."""
+
+
+@node.command("list", cls=Ros2Command)
+@quiet
+def list_(
+    hidden: Hidden = False,
+    count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Says only how many.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Lists the nodes."""
+    with running(sim) as client:
+        found = node_names(client, hidden=hidden)
+    if json_:
+        as_json(len(found) if count else found)
+    else:
+        for name in [str(len(found))] if count else found:
+            line(name)
+    return 0
+
+
+@node.command(cls=Ros2Command)
+@quiet
+def info(
+    node: Annotated[
+        str,
+        typer.Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.all_nodes),
+    ],
+    hidden: Hidden = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Says what a node publishes, takes and offers."""
+    with running(sim) as client:
+        nodes: dict[str, dict[str, Any]] = client.ask("nodes")
+        where = f"the simulation {client.info['name']!r}"
+    wanted = absolute(node)
+    if wanted not in nodes:
+        raise none_of("node", wanted, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", where)
+    found = nodes[wanted]
+    if json_:
+        as_json({"name": wanted, **found})
+        return 0
+    line(wanted)
+    for title, key in (
+        ("Subscribers", "subscribers"),
+        ("Publishers", "publishers"),
+        ("Service Servers", "services"),
+        ("Service Clients", ""),
+        ("Action Servers", "actions"),
+        ("Action Clients", ""),
+    ):
+        line(f"  {title}:")
+        rows = [(n, t) for n, t in sorted(found.get(key, {}).items()) if hidden or not is_hidden(n)]
+        for name, types in rows:
+            line(f"    {name}: {', '.join(types)}")
+        if not rows:
+            line()
+    return 0
+
+
+def node_names(client: Any, *, hidden: bool = False) -> list[str]:
+    """Names of the nodes, sorted."""
+    return sorted(name for name in client.ask("nodes") if hidden or not is_hidden(name))

@@ -1,0 +1,278 @@
+"""`simkit param`: the live parameters of a running simulation, as `ros2 param` shows and changes them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.live_options import Ros2Command, Sim
+from simkit.cli.options import Json
+from simkit.cli.param_values import KINDS, parameters_of_file, typed, value_of
+from simkit.cli.printed import absolute, as_json, aside, line, none_of, quiet
+from simkit.cli.sources import running
+from simkit.errors import InputError
+
+_LIST = "/list_parameters"
+param = typer.Typer(help="Live parameters of a running simulation.", no_args_is_help=True)
+Node = Annotated[
+    str, typer.Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.nodes)
+]
+Names = Annotated[
+    list[str],
+    typer.Argument(
+        help="Names of parameters.", metavar="NAME...", show_default=False, autocompletion=completion.parameters
+    ),
+]
+Name = Annotated[
+    str,
+    typer.Argument(
+        help="Name of a parameter.", metavar="NAME", show_default=False, autocompletion=completion.parameters
+    ),
+]
+
+
+@param.callback()
+def _group() -> None:
+    """Live parameters of a running simulation."""
+
+
+@param.command("list", cls=Ros2Command)
+@quiet
+def list_(
+    node: Annotated[
+        str | None,
+        typer.Argument(help="Only of this one.", metavar="[NODE]", autocompletion=completion.nodes, show_default=False),
+    ] = None,
+    param_type: Annotated[bool, typer.Option("--param-type", help="Shows the types too.")] = False,
+    prefix: Annotated[
+        list[str], typer.Option("--param-prefixes", help="Only names that begin so; repeatable.", metavar="PREFIX")
+    ] = [],
+    filter_: Annotated[
+        str | None, typer.Option("--filter", help="Only names this regular expression fits.", metavar="REGEX")
+    ] = None,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Lists nodes with parameters and these."""
+    wanted = _pattern(filter_)
+    found: dict[str, dict[str, str]] = {}
+    with running(sim) as client:
+        for name in parameter_nodes(client) if node is None else [_node(client, node)]:
+            names = sorted(client.call(name + _LIST, {"prefixes": prefix}).result.names)
+            names = [n for n in names if wanted is None or wanted.search(n)]
+            types = client.call(f"{name}/get_parameter_types", {"names": names}).types if names else []
+            found[name] = {n: KINDS[int(t)] for n, t in zip(names, types, strict=True)}
+    if json_:
+        as_json(found)
+        return 0
+    for name, parameters in found.items():
+        if node is None:
+            line(f"{name}:")
+        for parameter, kind in parameters.items():
+            line(f"  {parameter} (type: {kind})" if param_type else f"  {parameter}")
+    return 0
+
+
+def _pattern(text: str | None) -> Any:
+    import re
+
+    try:
+        return None if text is None else re.compile(text)
+    except re.error as error:
+        raise InputError(f"SK-CLI-031 --filter: {text!r} is no regular expression: {error}", "SK-CLI-031") from None
+
+
+@param.command(cls=Ros2Command)
+@quiet
+def get(
+    node: Node,
+    name: Name,
+    hide_type: Annotated[bool, typer.Option("--hide-type", help="The value alone.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Prints the value of a parameter."""
+    with running(sim) as client:
+        full = _node(client, node)
+        found = _known(client, full, [name])[0]
+    value = value_of(found)
+    if json_:
+        as_json(value)
+    elif hide_type:
+        line(str(value))
+    else:
+        kind = KINDS[int(found.type)]
+        label = kind.removesuffix(" array").capitalize()
+        line(f"{label} {'values are' if kind.endswith('array') else 'value is'}: {_shown(value, kind)}")
+    return 0
+
+
+def _shown(value: Any, kind: str) -> str:
+    code = {"double array": "d", "integer array": "q"}.get(kind)
+    return f"array('{code}', {value!r})" if code and value else f"array('{code}')" if code else str(value)
+
+
+@param.command("set", cls=Ros2Command, context_settings={"ignore_unknown_options": True})
+@quiet
+def set_(
+    node: Node,
+    pairs: Annotated[
+        list[str],
+        typer.Argument(
+            help="Names and values: p_gain 12.5.",
+            metavar="NAME VALUE...",
+            show_default=False,
+            autocompletion=completion.parameters,
+        ),
+    ],
+    atomic: Annotated[bool, typer.Option("--atomic", help="All of them or none.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Changes parameters; exit code 2 where one is refused."""
+    if len(pairs) % 2:
+        text = f"found {len(pairs)} words, allowed are pairs: name value [name value ...]"
+        raise InputError(f"SK-CLI-031 the parameters: {text}", "SK-CLI-031")
+    values = list(zip(pairs[::2], [typed(text) for text in pairs[1::2]], strict=True))
+    with running(sim) as client:
+        return _set(client, _node(client, node), values, atomic, json_)
+
+
+def _set(client: Any, node: str, values: list[tuple[str, Any]], atomic: bool, json_: bool) -> int:
+    request = {"parameters": [{"name": n, "value": v} for n, v in values]}
+    if atomic:
+        results = [client.call(f"{node}/set_parameters_atomically", request).result]
+    else:
+        results = client.call(f"{node}/set_parameters", request).results
+    if json_:
+        as_json([{"successful": bool(r.successful), "reason": r.reason} for r in results])
+    for (name, _), result in zip(values, results, strict=not atomic):
+        if json_:
+            break
+        head = f"{name}: " if len(values) > 1 and not atomic else ""
+        what = "parameters atomically" if atomic else "parameter"
+        good, bad = f"{head}Set {what} successful", f"{head}Setting {what} failed"
+        reason = f": {result.reason}" if result.reason else ""
+        (line if result.successful else aside)((good if result.successful else bad) + reason)
+    return 0 if all(r.successful for r in results) else 2
+
+
+@param.command(cls=Ros2Command)
+@quiet
+def delete(node: Node, name: Name, sim: Sim = None, json_: Json = False) -> int:
+    """Deletes a parameter, which no node here allows."""
+    with running(sim) as client:
+        full = _node(client, node)
+        _known(client, full, [name])
+    text = f"Deleting parameter failed: {name} is declared by {full}, which needs it"
+    if json_:
+        as_json({"successful": False, "reason": text.partition(": ")[2]})
+    else:
+        aside(text)
+    return 2
+
+
+@param.command(cls=Ros2Command)
+@quiet
+def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> int:
+    """Says what parameters are, and what they take."""
+    from simkit.msgs.text import plain
+
+    with running(sim) as client:
+        full = _node(client, node)
+        _known(client, full, names)
+        found = client.call(f"{full}/describe_parameters", {"names": names}).descriptors
+    if json_:
+        as_json([plain(d) | {"type": KINDS[int(d.type)]} for d in found])
+        return 0
+    for one in found:
+        line(f"Parameter name: {one.name}\n  Type: {KINDS[int(one.type)]}")
+        if one.description:
+            line(f"  Description: {one.description}")
+        line("  Constraints:")
+        if one.read_only:
+            line("    Read only: true")
+        for bounds in [*one.floating_point_range, *one.integer_range][:1]:
+            line(f"    Min value: {bounds.from_value}\n    Max value: {bounds.to_value}")
+            if bounds.step:
+                line(f"    Step: {bounds.step}")
+        if one.additional_constraints:
+            line(f"    Additional constraints: {one.additional_constraints}")
+    return 0
+
+
+@param.command(cls=Ros2Command)
+@quiet
+def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
+    """Prints all parameters of a node as a parameter file."""
+    from simkit.msgs.text import dump as as_yaml
+
+    with running(sim) as client:
+        full = _node(client, node)
+        names = sorted(client.call(full + _LIST, {}).result.names)
+        values = client.call(f"{full}/get_parameters", {"names": names}).values
+    tree: dict[str, Any] = {}
+    for name, value in zip(names, values, strict=True):
+        *above, last = name.split(".")
+        place = tree
+        for part in above:
+            place = place.setdefault(part, {})
+        place[last] = value_of(value)
+    found = {full: {"ros__parameters": tree}}
+    if json_:
+        as_json(found)
+    else:
+        line(as_yaml(found))
+    return 0
+
+
+@param.command(cls=Ros2Command)
+@quiet
+def load(
+    node: Node,
+    file: Annotated[Path, typer.Argument(help="A parameter file.", metavar="FILE.yaml", show_default=False)],
+    no_wildcard: Annotated[
+        bool, typer.Option("--no-use-wildcard", help="Leaves out what stands for all: /**.")
+    ] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Takes the values of a parameter file for a node; exit code 2 where one is refused."""
+    with running(sim) as client:
+        full = _node(client, node)
+        values = parameters_of_file(file, full, wildcard=not no_wildcard)
+        request = {"parameters": [{"name": n, "value": v} for n, v in values]}
+        results = client.call(f"{full}/set_parameters", request).results
+    rows = [(n, bool(r.successful), str(r.reason)) for (n, _), r in zip(values, results, strict=True)]
+    if json_:
+        as_json([{"name": n, "successful": good, "reason": reason} for n, good, reason in rows])
+    for name, good, reason in () if json_ else rows:
+        text = f"Set parameter {name} {'successful' if good else 'failed'}{': ' + reason if reason else ''}"
+        (line if good else aside)(text)
+    return 0 if all(good for _, good, _ in rows) else 2
+
+
+def parameter_nodes(client: Any) -> list[str]:
+    """Nodes that have parameters, sorted."""
+    return sorted(name.removesuffix(_LIST) for name in client.services() if name.endswith(_LIST))
+
+
+def _node(client: Any, name: str) -> str:
+    nodes = parameter_nodes(client)
+    wanted = absolute(name)
+    if wanted not in nodes:
+        raise none_of("node with parameters", wanted, nodes, "SK-CLI-034", f"the simulation {client.info['name']!r}")
+    return wanted
+
+
+def _known(client: Any, node: str, names: list[str]) -> list[Any]:
+    """The values of parameters, which are there."""
+    values = list(client.call(f"{node}/get_parameters", {"names": names}).values)
+    for name, value in zip(names, values, strict=True):
+        if not int(value.type):
+            there = client.call(node + _LIST, {}).result.names
+            raise none_of("parameter", name, sorted(there), "SK-CLI-034", f"node {node}")
+    return values

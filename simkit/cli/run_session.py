@@ -1,0 +1,185 @@
+"""A run of a loaded world, from its first slice to its summary."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit.cli.console import err, out, say
+from simkit.cli.interrupts import Interrupts
+from simkit.cli.loop import Loop
+from simkit.cli.run_end import draw, summarise
+from simkit.cli.run_request import Request
+from simkit.errors import InputError
+from simkit.sinks.blocked import BlockedPlugins
+
+if TYPE_CHECKING:
+    from simkit.cli.keyboard import Keyboard, WindowsKeyboard
+    from simkit.cli.teleop import Teleop
+    from simkit.sinks.progress import Progress
+    from simkit.sinks.topic_counts import TopicCounter
+
+
+def check_keyboard(request: Request) -> None:
+    """Says before a run why nobody can drive.
+
+    Raises:
+        InputError: SK-CLI-050 there is no terminal.
+    """
+    from simkit.cli.keyboard import keyboard_of
+
+    if request.teleop is not None and keyboard_of(sys.stdin) is None:
+        raise InputError(
+            "SK-CLI-050 --teleop reads keys, and standard input is no terminal\n"
+            "    help: --cmd-vel V,W or --script FILE.yaml drive without one, simkit topic pub from another terminal",
+            "SK-CLI-050",
+        )
+
+
+class Session:
+    """One run of a loaded world.
+
+    Args:
+        request: what it is to do.
+        sim: the simulation.
+        blocked: tells of plugins that keep it waiting.
+    """
+
+    def __init__(self, request: Request, sim: Any, blocked: BlockedPlugins) -> None:
+        self.request, self.sim, self.blocked = request, sim, blocked
+        self._teleop: Teleop | None = None
+
+    def execute(self) -> int:
+        """Runs it to its end; the exit code."""
+        from simkit.sinks.commands import Commands
+        from simkit.sinks.picture import DrivenPath
+        from simkit.sinks.progress import Stopwatch
+        from simkit.sinks.recorder import Recorder
+        from simkit.sinks.topic_counts import RENDERED, TopicCounter
+
+        request, sim = self.request, self.sim
+        commands, self._teleop = Commands(sim, self._commands()), self._driver()
+        if request.duration is None:
+            say("running until Ctrl-C (--duration S stops by itself)")
+        driven = DrivenPath(sim) if request.picture is not None else None
+        with ExitStack() as stack:
+            interrupts = stack.enter_context(Interrupts(self.blocked.ask))
+            recording = None
+            if request.record is not None:
+                recording = stack.enter_context(
+                    Recorder(sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip)
+                )
+            counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
+            keyboard = self._keyboard()
+            watch = Stopwatch()
+            progress = stack.enter_context(self._progress(counter))
+            watchers: list[Any] = [progress.update]
+            if recording is not None:
+                watchers.append(recording.check)
+            if driven is not None:
+                watchers.append(driven.sample)
+            loop = Loop(sim, commands, interrupts, watchers, rtf=request.pace, follow=driven is not None)
+            if request.view:
+                self._open_viewer(stack, loop, watchers)
+            if keyboard is not None:
+                stack.enter_context(keyboard)
+                self._listen_to(keyboard, loop)
+            self._serve(stack, loop)
+            self._hold()
+            advance = self._watched(loop, interrupts, watchers) if request.watch else loop.run
+            try:
+                advance(request.duration)
+            finally:
+                elapsed = watch.elapsed
+                progress.__exit__(None, None, None)
+                if recording is not None:
+                    recording.close()
+                summarise(sim, counter, recording, elapsed, quiet=request.quiet)
+        if driven is not None and request.picture is not None:
+            draw(sim, request.picture, driven)
+        return interrupts.exit_code
+
+    # ------------------------------------------------------------------ who drives
+
+    def _commands(self) -> list[Any]:
+        from simkit.sinks.commands import read_script, steady_velocity
+
+        topics = self.sim.topics()
+        found = []
+        if self.request.cmd_vel is not None:
+            found.append(steady_velocity(self.request.cmd_vel, topics))
+        if self.request.script is not None:
+            found += read_script(self.request.script, topics)
+        return found
+
+    def _driver(self) -> Teleop | None:
+        from simkit.cli.teleop import Teleop
+        from simkit.cli.teleop_target import find_target
+
+        if self.request.teleop is None:
+            return None
+        return Teleop(self.sim, find_target(self.sim, self.request.teleop), self.request.key_timeout)
+
+    def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
+        """The terminal's, where somebody drives or sees what keys do: a pager that shows our output has its own."""
+        from simkit.cli.keyboard import keyboard_of
+
+        if self._teleop is None and (sys.stdout is None or sys.stdout.closed or not sys.stdout.isatty()):
+            return None
+        return keyboard_of(sys.stdin)
+
+    def _listen_to(self, keyboard: Keyboard | WindowsKeyboard, loop: Loop) -> None:
+        """Lets keys pause, step and drive the run."""
+        from simkit.cli.run_keys import RunKeys
+
+        keys = RunKeys(self.sim, keyboard, self._teleop)
+        loop.poll_keys, loop.on_pause = keys.poll, keys.say_paused
+        if self._teleop is not None:
+            loop.senders.append(self._teleop)
+
+    def _progress(self, counter: TopicCounter) -> Progress:
+        from simkit.cli.teleop_line import DriverLine
+        from simkit.sinks.progress import Progress
+
+        if self._teleop is None:
+            return Progress(self.sim, counter, self.request.duration, out())
+        console = out() if out().is_terminal else err()
+        return Progress(self.sim, counter, self.request.duration, console, DriverLine(self.sim, self._teleop).lines)
+
+    def _hold(self) -> None:
+        """Has the run begin paused, or be so after some steps."""
+        if self.request.step is not None:
+            self.sim.pausing.step(self.request.step)
+        elif self.request.paused:
+            self.sim.paused = True
+
+    # ------------------------------------------------------------------ who looks on
+
+    def _open_viewer(self, stack: ExitStack, loop: Loop, watchers: list[Any]) -> None:
+        from simkit.sinks.viewer import Viewer
+
+        viewer = stack.enter_context(Viewer(self.sim))
+        watchers.append(viewer.update)
+        loop.keep_going = viewer.is_open
+
+    def _serve(self, stack: ExitStack, loop: Loop) -> None:
+        """Lets other terminals talk to the run."""
+        from simkit.live.server import serve
+
+        loop.server, note = serve(self.sim, self.request.name)
+        if loop.server is None:
+            say(note)
+        else:
+            stack.enter_context(loop.server)
+
+    def _watched(self, loop: Loop, interrupts: Interrupts, watchers: list[Any]) -> Callable[[float | None], Any]:
+        """The same loop, which reloads plugins that are edited."""
+        from simkit.cli.run_watch import Watch
+
+        watch = Watch(self.sim, self.request.plugin_paths, interrupts, waits=self.request.record is None)
+        watchers.append(watch.poll)
+        loop.before_slice = watch.keep
+        return partial(watch.run, loop)

@@ -1,0 +1,193 @@
+"""`simkit topic`: what is said on the topics of a running simulation, or was in a bag, as `ros2 topic` shows it."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Annotated, Any
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.live_options import Bag, Ros2Command, Sim, Topic
+from simkit.cli.options import Json
+from simkit.cli.printed import as_json, is_hidden, line, quiet
+from simkit.cli.sources import End, TopicEntry, opened, topic_of
+from simkit.cli.topic_echo import echo
+from simkit.cli.topic_pub import pub
+from simkit.cli.topic_rates import bw, delay, hz
+from simkit.errors import MessageError
+
+topic = typer.Typer(help="Topics of a running simulation, or of a bag.", no_args_is_help=True)
+
+
+@topic.callback()
+def _group() -> None:
+    """Topics of a running simulation, or of a bag."""
+
+
+Hidden = Annotated[
+    bool, typer.Option("--include-hidden-topics", "-a", "--all", help="Shows those with a part that begins with _ too.")
+]
+
+
+@topic.command("list", cls=Ros2Command)
+@quiet
+def list_(
+    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Says who publishes and who takes.")] = False,
+    count: Annotated[bool, typer.Option("--count-topics", "--count", "-c", help="Says only how many.")] = False,
+    hidden: Hidden = False,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Lists the topics."""
+    with opened(sim, bag) as source:
+        found = [t for t in source.topics().values() if hidden or not is_hidden(t.name)]
+    if json_:
+        as_json(len(found) if count else [_row(t, show_ends=verbose) for t in found])
+    elif count:
+        line(str(len(found)))
+    elif verbose:
+        for word, end in (("Published", "publisher"), ("Subscribed", "subscriber")):
+            line(f"{word} topics:")
+            for entry in found:
+                number = len(entry.publishers if end == "publisher" else entry.subscribers)
+                if number:
+                    types = ", ".join(entry.types)
+                    line(f" * {entry.name} [{types}] {number} {end}{'s' if number > 1 else ''}")
+            line()
+    else:
+        for entry in found:
+            line(f"{entry.name} [{', '.join(entry.types)}]" if show_types else entry.name)
+    return 0
+
+
+def _row(entry: TopicEntry, *, show_ends: bool) -> dict[str, Any]:
+    row: dict[str, Any] = {"name": entry.name, "types": list(entry.types)}
+    if show_ends:
+        row |= {"publishers": [_end(e) for e in entry.publishers], "subscribers": [_end(e) for e in entry.subscribers]}
+    return row
+
+
+def _end(end: End) -> dict[str, Any]:
+    return {"node": end.node, "types": list(end.types), "latched": end.latched}
+
+
+@topic.command(cls=Ros2Command)
+@quiet
+def info(
+    topic: Topic,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Says who they are, with their quality.")] = False,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Says of what type a topic is, and how many publish it and take it."""
+    with opened(sim, bag) as source:
+        entry = topic_of(source, topic)
+    if json_:
+        as_json(_row(entry, show_ends=True))
+        return 0
+    gap = "\n" if verbose else ""
+    line(f"Type: {entry.types[0] if len(entry.types) == 1 else list(entry.types)}{gap}")
+    for word, ends, kind in (
+        ("Publisher", entry.publishers, "PUBLISHER"),
+        ("Subscription", entry.subscribers, "SUBSCRIPTION"),
+    ):
+        line(f"{word} count: {len(ends)}{gap}")
+        if verbose:
+            for number, end in enumerate(ends):
+                for type_name in end.types:
+                    line(_endpoint(entry.name, end, type_name, kind, number) + gap)
+    return 0
+
+
+def _endpoint(topic_name: str, end: End, type_name: str, kind: str, number: int) -> str:
+    """Everything about one end, as rclpy writes it."""
+    from simkit import msgs
+
+    space, _, name = (end.node or "_NODE_NAME_UNKNOWN_").rpartition("/")
+    unknown = "_NODE_NAMESPACE_UNKNOWN_" if not end.node else "/"
+    try:
+        known = msgs.rihs(type_name)
+    except MessageError:
+        known = "INVALID"
+    digest = hashlib.sha256(f"{topic_name} {end.node} {kind} {type_name} {number}".encode()).digest()[:16]
+    return "\n".join(
+        (
+            f"Node name: {name}",
+            f"Node namespace: {space or unknown}",
+            f"Topic type: {type_name}",
+            f"Topic type hash: {known}",
+            f"Endpoint type: {kind}",
+            f"GID: {'.'.join(f'{b:02x}' for b in digest)}",
+            "QoS profile:",
+            "  Reliability: RELIABLE",
+            f"  History (Depth): KEEP_LAST ({1 if end.latched else 10})",
+            f"  Durability: {'TRANSIENT_LOCAL' if end.latched else 'VOLATILE'}",
+            "  Lifespan: Infinite",
+            "  Deadline: Infinite",
+            "  Liveliness: AUTOMATIC",
+            "  Liveliness lease duration: Infinite",
+        )
+    )
+
+
+@topic.command("type", cls=Ros2Command)
+@quiet
+def type_(topic: Topic, sim: Sim = None, bag: Bag = None, json_: Json = False) -> int:
+    """Prints a topic's type."""
+    with opened(sim, bag) as source:
+        entry = topic_of(source, topic)
+    if json_:
+        as_json(list(entry.types))
+    else:
+        for name in entry.types:
+            line(name)
+    return 0
+
+
+@topic.command(cls=Ros2Command)
+@quiet
+def find(
+    topic_type: Annotated[
+        str,
+        typer.Argument(
+            help="Such as geometry_msgs/msg/Twist.",
+            metavar="TYPE",
+            show_default=False,
+            autocompletion=completion.message_types,
+        ),
+    ],
+    count: Annotated[bool, typer.Option("--count-topics", "--count", "-c", help="Says only how many.")] = False,
+    hidden: Hidden = False,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Lists the topics of a type."""
+    package, _, short = topic_type.partition("/")
+    wanted = {topic_type, f"{package}/msg/{short}"}
+    with opened(sim, bag) as source:
+        found = [t.name for t in source.topics().values() if wanted & _all_types(t)]
+    found = [name for name in found if hidden or not is_hidden(name)]
+    if json_:
+        as_json(len(found) if count else found)
+    elif count:
+        line(str(len(found)))
+    else:
+        for name in found:
+            line(name)
+    return 0
+
+
+def _all_types(entry: TopicEntry) -> set[str]:
+    return {*entry.types, *(t for end in (*entry.publishers, *entry.subscribers) for t in end.types)}
+
+
+topic.command(cls=Ros2Command)(echo)
+topic.command(cls=Ros2Command)(hz)
+topic.command(cls=Ros2Command)(bw)
+topic.command(cls=Ros2Command)(delay)
+topic.command(cls=Ros2Command)(pub)

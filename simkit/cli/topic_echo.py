@@ -1,0 +1,194 @@
+"""`simkit topic echo`: messages as they come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli import completion
+from simkit.cli.live_options import Bag, Sim, Topic
+from simkit.cli.options import Json
+from simkit.cli.printed import as_json, aside, line, quiet
+from simkit.cli.sources import Feed, Received, Source, opened, topic_of, wait_for
+from simkit.errors import InputError, MessageError
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+    from simkit.msgs.text import Style
+
+TRUNCATE = 128
+_ENDS = "---"
+
+
+@quiet
+def echo(
+    topic: Topic,
+    message_type: Annotated[
+        str | None,
+        typer.Argument(
+            help="The topic's type, which need not be said.",
+            metavar="[TYPE]",
+            show_default=False,
+            autocompletion=completion.topic_types,
+        ),
+    ] = None,
+    once: Annotated[bool, typer.Option("--once", help="Ends behind the first message.")] = False,
+    field: Annotated[
+        str | None,
+        typer.Option(
+            "--field",
+            help="Only this part: pose.pose.position, ranges[0].",
+            metavar="FIELD",
+            autocompletion=completion.fields,
+        ),
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="All numbers with commas between, a message a line.")] = False,
+    no_arr: Annotated[bool, typer.Option("--no-arr", help="Arrays by type and length only.")] = False,
+    no_str: Annotated[bool, typer.Option("--no-str", help="Texts by length only.")] = False,
+    flow_style: Annotated[bool, typer.Option("--flow-style", help="A message a line.")] = False,
+    full_length: Annotated[bool, typer.Option("--full-length", "-f", help="Cuts no long arrays and texts.")] = False,
+    truncate_length: Annotated[
+        int, typer.Option("--truncate-length", "-l", help="Cuts longer ones.", metavar="N", min=0)
+    ] = TRUNCATE,
+    raw: Annotated[bool, typer.Option("--raw", help="The bytes.")] = False,
+    filter_: Annotated[
+        str | None,
+        typer.Option("--filter", help="Only those m for which this Python is true: m.data > 2.", metavar="EXPR"),
+    ] = None,
+    info: Annotated[bool, typer.Option("--include-message-info", help="With the time of each.")] = False,
+    no_lost: Annotated[bool, typer.Option("--no-lost-messages", help="Does not tell of lost messages.")] = False,
+    timeout: Annotated[
+        float | None, typer.Option("--timeout", help="Ends after so long (wall time).", metavar="S", min=0)
+    ] = None,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Prints the messages of a topic; of a bag, all that were recorded."""
+    from simkit.msgs.text import Style
+
+    style = Style(None if full_length or json_ else truncate_length, no_arr, no_str, flow_style)
+    until = None if timeout is None else time.monotonic() + timeout
+    with opened(sim, bag) as source:
+        entry = topic_of(source, topic) if message_type is None else wait_for(source, topic, until)
+        check_type(message_type, entry.types, entry.name)
+        show = _Shown(source, style, field, csv, raw, json_, info, filtered(filter_))
+        source.prepare(entry)
+        return _echoed(source.feed([entry.name]), show, once=once, until=until, tells_lost=not no_lost)
+
+
+def _echoed(feed: Feed, show: _Shown, *, once: bool, until: float | None, tells_lost: bool) -> int:
+    lost = 0
+    while True:
+        received = feed.take(None if until is None else max(0.0, until - time.monotonic()))
+        if received is None:
+            return 0
+        if show(received) and once:
+            return 0
+        if tells_lost and feed.lost > lost:
+            aside(f"A message was lost!!!\n\ttotal count change:{feed.lost - lost}\n\ttotal count: {feed.lost}")
+            lost = feed.lost
+
+
+def check_type(said: str | None, types: tuple[str, ...], topic: str) -> None:
+    """Raises where a topic is of another type than was said.
+
+    Raises:
+        InputError: SK-CLI-032 it is, or it has several and none was said.
+    """
+    if said is None:
+        return
+    package, _, short = said.partition("/")
+    if not {said, f"{package}/msg/{short}"} & set(types):
+        raise InputError(f"SK-CLI-032 {topic} is of type {', '.join(types)}, found {said!r}", "SK-CLI-032")
+
+
+def filtered(expression: str | None) -> Callable[[Any], bool] | None:
+    """Whether a message `m` is one of those that are wanted; the expression is Python, as with ROS 2.
+
+    Raises:
+        InputError: SK-CLI-033 it is none.
+    """
+    if expression is None:
+        return None
+    try:
+        code = compile(expression, "--filter", "eval")
+    except (SyntaxError, ValueError) as error:
+        raise InputError(
+            f"SK-CLI-033 --filter: {expression!r} is no Python expression: {error}", "SK-CLI-033"
+        ) from None
+
+    def wanted(message: Any) -> bool:
+        try:
+            return bool(eval(code, {"m": message}))
+        except Exception as error:  # noqa: BLE001 (the user's own)
+            text = f"SK-CLI-033 --filter: {expression!r} fails with this message: {error!r}"
+            raise InputError(text, "SK-CLI-033") from None
+
+    return wanted
+
+
+class _Shown:
+    """Prints one message after the other; whether it did."""
+
+    def __init__(
+        self,
+        source: Source,
+        style: Style,
+        field: str | None,
+        csv: bool,
+        raw: bool,
+        json_: bool,
+        info: bool,
+        wanted: Callable[[Any], bool] | None,
+    ) -> None:
+        self._source, self._style, self._field, self._wanted = source, style, field, wanted
+        self._csv, self._raw, self._json, self._info = csv, raw, json_, info
+
+    def __call__(self, received: Received) -> bool:
+        from simkit.msgs.text import part
+
+        if self._raw:
+            line(str(received.data))
+            line(_ENDS)
+            return True
+        store = self._source.store(received.type_name)
+        message, node = self._source.decode(received), None
+        if self._field is not None:
+            try:
+                message, node = part(message, self._field, store)
+            except MessageError as error:
+                raise InputError(f"SK-CLI-033 --field: {error}", "SK-CLI-033") from None
+        if self._wanted is not None and not self._wanted(message):
+            return False
+        self._print(received, message, node, store)
+        return True
+
+    def _print(self, received: Received, message: Any, node: Any, store: Typestore | None) -> None:
+        from simkit.msgs.text import csv_of, field_text, is_message, plain_value, yaml_of
+
+        style = self._style
+        seconds = received.time_ns * 1e-9
+        if self._json:
+            value = plain_value(message, style, store)
+            as_json({"time": seconds, "message": value} if self._info else value)
+            return
+        if not is_message(message):
+            if self._info:
+                line(f"---Got new message, print info:---\n{{'received_timestamp': {received.time_ns}}}")
+                line("---Message data:---")
+            line(field_text(message, node, store))
+            line(_ENDS)
+        elif self._csv:
+            text = csv_of(message, style, store)
+            line(f"{received.time_ns},{text}" if self._info else text)
+        else:
+            if self._info:
+                line(f"received_timestamp: {received.time_ns}")
+                line(_ENDS)
+            line(yaml_of(message, style, store).rstrip("\n"))
+            line(_ENDS)

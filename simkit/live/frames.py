@@ -1,0 +1,114 @@
+"""What goes over the socket: frames of a length, a kind and a body, all numbers little-endian.
+
+frame    length of the body [bytes] (uint32), kind (uint8), body
+ASK      length of the JSON text (uint32), {"id": n, "ask": question, …}, CDR of a request where there is one
+ANSWER   the same, {"id": n, "ok": value} or {"id": n, "error": text, "code": SK-…}, CDR of a response
+TELL     the same, something that nobody asked for: {"tell": "hello" | "goal" | "bye" | "type", …}
+MESSAGE  to the simulation: number of the publisher (uint32), CDR
+         from the simulation: number of the subscription, number of the type (uint32 both), time [ns] (int64),
+         messages of this subscription that were dropped so far (uint64), CDR
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any, Final
+
+from simkit.live.errors import BadFrame
+
+PROTOCOL: Final = 1
+ASK, ANSWER, TELL, MESSAGE = 1, 2, 3, 4
+HEAD: Final = struct.Struct("<IB")
+MARK: Final = struct.Struct("<IIqQ")
+NUMBER: Final = struct.Struct("<I")
+LARGEST_IN: Final = 16 << 20  # [bytes] of a frame to the simulation
+LARGEST_OUT: Final = 256 << 20  # [bytes] of a frame from it
+
+
+def plain(value: Any) -> Any:
+    """What JSON does not know, as something that it does."""
+    if hasattr(value, "tolist"):  # of NumPy, arrays and numbers
+        return value.tolist()
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        return list(value)
+    if isinstance(value, (set, frozenset)):
+        return sorted(value)
+    raise TypeError(f"{type(value).__name__} cannot be sent")
+
+
+def worded(kind: int, content: dict[str, Any], data: bytes = b"") -> bytes:
+    """A frame of JSON, with or without CDR behind it."""
+    text = json.dumps(content, default=plain, separators=(",", ":")).encode()
+    return b"".join((HEAD.pack(4 + len(text) + len(data), kind), NUMBER.pack(len(text)), text, data))
+
+
+def message_to(number: int, data: bytes) -> bytes:
+    """A message to the simulation."""
+    return b"".join((HEAD.pack(4 + len(data), MESSAGE), NUMBER.pack(number), data))
+
+
+def read_words(body: bytes) -> tuple[dict[str, Any], bytes]:
+    """The JSON of a frame's body, and what stands behind it.
+
+    Raises:
+        BadFrame: it is none.
+    """
+    if len(body) < 4:
+        raise BadFrame("a frame of JSON is shorter than the length of its text")
+    end = 4 + NUMBER.unpack_from(body)[0]
+    if end > len(body):
+        raise BadFrame("the JSON text of a frame is longer than the frame")
+    try:
+        content = json.loads(body[4:end])
+    except (ValueError, RecursionError) as error:
+        raise BadFrame(f"a frame is not JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise BadFrame("the JSON of a frame is no object")
+    return content, body[end:]
+
+
+class FrameReader:
+    """Cuts what arrives into frames.
+
+    Args:
+        largest: [bytes] of a body that is accepted.
+        kinds: of frame that are accepted.
+    """
+
+    def __init__(self, largest: int, kinds: tuple[int, ...]) -> None:
+        self._largest, self._kinds = largest, kinds
+        self._buffer = bytearray()
+        self._begin = 0
+
+    def feed(self, data: bytes | memoryview) -> None:
+        """Takes in what has arrived."""
+        if self._begin:
+            del self._buffer[: self._begin]
+            self._begin = 0
+        self._buffer += data
+
+    @property
+    def is_in_frame(self) -> bool:
+        """Whether a part of a frame is there, or a whole one."""
+        return len(self._buffer) > self._begin
+
+    def next(self) -> tuple[int, bytes] | None:
+        """The kind and the body of the next whole frame; None before it is there.
+
+        Raises:
+            BadFrame: it is of an unknown kind, or larger than allowed.
+        """
+        buffer, begin = self._buffer, self._begin
+        if len(buffer) - begin < 5:
+            return None
+        length, kind = HEAD.unpack_from(buffer, begin)
+        if kind not in self._kinds:
+            raise BadFrame(f"a frame of kind {kind}, allowed is {' or '.join(map(str, self._kinds))}")
+        if length > self._largest:
+            raise BadFrame(f"a frame of {length} bytes, allowed are {self._largest}")
+        end = begin + 5 + length
+        if len(buffer) < end:
+            return None
+        self._begin = end
+        return kind, bytes(memoryview(buffer)[begin + 5 : end])

@@ -1,0 +1,167 @@
+"""Where the sockets of running simulations are: a folder that only their user may enter, a file for each.
+
+The folder is `$XDG_RUNTIME_DIR/simkit`, or `simkit-<uid>` among the temporary files where there is no such place.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import socket
+import stat
+import struct
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Final
+
+SUFFIX: Final = ".sock"
+BACKLOG: Final = 64
+_LONGEST_NAME = 48  # a path of a socket has room for about 100 bytes
+_LIVING = frozenset({errno.EAGAIN, errno.EINPROGRESS, errno.EACCES, errno.EPERM})
+
+
+class NoPlace(Exception):
+    """There is no place for a socket; says why."""
+
+
+def is_possible() -> bool:
+    """Whether this system's Python has sockets that are files."""
+    return hasattr(socket, "AF_UNIX") and hasattr(os, "getuid")
+
+
+def folders() -> list[Path]:
+    """Where sockets may be, the preferred one first."""
+    if not is_possible():
+        return []
+    found = [Path(tempfile.gettempdir()) / f"simkit-{os.getuid()}"]
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    if runtime and Path(runtime).is_absolute():
+        found.insert(0, Path(runtime) / "simkit")
+    return found
+
+
+def fault_of(folder: Path) -> str:
+    """Why sockets in a folder are not to be trusted; empty where they are."""
+    try:
+        found = os.lstat(folder)
+    except OSError as error:
+        return f"{folder}: {error.strerror}"
+    if not stat.S_ISDIR(found.st_mode):
+        return f"{folder} is no folder"
+    if found.st_uid != os.getuid():
+        return f"{folder} belongs to another user"
+    if found.st_mode & 0o077:
+        return f"{folder} is open to others (mode {stat.S_IMODE(found.st_mode):o}, allowed is 700)"
+    return ""
+
+
+def open_folder() -> Path:
+    """A folder for a socket, made where it is not there.
+
+    Raises:
+        NoPlace: none can be used.
+    """
+    if not is_possible():
+        raise NoPlace("this system's Python has no local sockets")
+    faults = []
+    for folder in folders():
+        with suppress(OSError):
+            folder.mkdir(0o700)
+        fault = fault_of(folder)
+        if not fault and not os.access(folder, os.W_OK):
+            fault = f"{folder} is not writable"
+        if not fault:
+            return folder
+        faults.append(fault)
+    raise NoPlace("; ".join(faults))
+
+
+def file_name(name: str) -> str:
+    """A name as one that every file system takes."""
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip(".")[:_LONGEST_NAME] or "simulation"
+
+
+def bind(name: str) -> tuple[socket.socket, str, Path]:
+    """A socket that listens, under this name or, where a living simulation has it, the name with `_2`, `_3`, ….
+
+    Raises:
+        NoPlace: there is no place for it.
+    """
+    folder, wanted = open_folder(), file_name(name)
+    try:
+        with _locked(folder):
+            for path in folder.glob("*" + SUFFIX):
+                if not is_living(path):
+                    path.unlink(missing_ok=True)  # of one who died
+            for number in range(1, 1000):
+                free = wanted if number == 1 else f"{wanted}_{number}"
+                path = folder / (free + SUFFIX)
+                if not is_living(path):
+                    return _listening(path), free, path
+    except OSError as error:
+        raise NoPlace(f"{folder}: {error.strerror or error}") from None
+    raise NoPlace(f"{folder}: every name from {wanted} to {wanted}_999 is taken")
+
+
+def _listening(path: Path) -> socket.socket:
+    made = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        before = os.umask(0o177)
+        try:
+            made.bind(str(path))
+        finally:
+            os.umask(before)
+        made.listen(BACKLOG)
+        made.setblocking(False)
+    except OSError:
+        made.close()
+        raise
+    return made
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Keeps two simulations that begin at the same time from taking the same name."""
+    import fcntl
+
+    handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def is_living(path: Path) -> bool:
+    """Whether somebody listens at a socket."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as caller:
+        caller.setblocking(False)
+        try:
+            caller.connect(str(path))
+        except OSError as error:
+            return error.errno in _LIVING
+    return True
+
+
+def sockets() -> list[Path]:
+    """The sockets in folders that can be trusted, of the living and of the dead."""
+    found: dict[str, Path] = {}
+    for folder in folders():
+        if not fault_of(folder):
+            for path in sorted(folder.glob("*" + SUFFIX)):
+                found.setdefault(path.name, path)
+    return [found[name] for name in sorted(found)]
+
+
+def peer_of(connection: socket.socket) -> tuple[int | None, int | None]:
+    """Process and user at the other end of a connection; None for what the system does not tell."""
+    option = getattr(socket, "SO_PEERCRED", None)
+    if option is not None:
+        pid, uid, _ = struct.unpack("3i", connection.getsockopt(socket.SOL_SOCKET, option, 12))
+        return pid, uid
+    with suppress(OSError, struct.error):  # struct xucred of the BSDs: version, user, …
+        return None, struct.unpack_from("II", connection.getsockopt(0, 1, 76))[1]
+    return None, None

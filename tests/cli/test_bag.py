@@ -1,0 +1,97 @@
+"""`simkit bag`, and the commands that read one instead of a simulation."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import simkit
+from simkit.sinks.recorder import Recorder
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory: pytest.TempPathFactory, yard_world: str) -> Path:
+    path = tmp_path_factory.mktemp("bags") / "drive.mcap"
+    with simkit.load(yard_world) as sim, Recorder(sim, path):
+        sim.publish("/cmd_vel", {"linear": {"x": 0.5}})
+        sim.run(1.0)
+    return path
+
+
+def test_topics_of_a_bag_are_read_as_those_of_a_simulation(bag: Path, simkit_line: Any) -> None:
+    at = ("--bag", str(bag))
+    assert "/odom [nav_msgs/msg/Odometry]\n" in simkit_line("topic", "list", "-t", *at).stdout
+    told = "Type: nav_msgs/msg/Odometry\nPublisher count: 1\nSubscription count: 0\n"
+    assert simkit_line("topic", "info", "/odom", *at).stdout == told
+    rows = simkit_line("topic", "echo", "/imu", "--field", "header.stamp", "--json", *at).stdout.splitlines()
+    assert len(rows) == 51 and json.loads(rows[-1]) == {"sec": 1, "nanosec": 0}
+    rate = json.loads(simkit_line("topic", "hz", "/imu", "--json", *at).stdout)
+    assert rate["rate"] == pytest.approx(50.0, abs=0.2) and rate["window"] == 50
+    assert simkit_line("topic", "bw", "/imu", *at).stdout.count("from 51 messages") == 1
+    assert simkit_line("topic", "find", "sensor_msgs/msg/Imu", *at).stdout == "/imu\n"
+    assert simkit_line("tf", "tree", *at).stdout.startswith("odom\n  base\n")
+    place = json.loads(simkit_line("tf", "echo", "odom", "base", "--json", *at).stdout)
+    assert place["translation"][0] == pytest.approx(0.5, abs=0.06)
+    shown = simkit_line("interface", "show", "std_msgs/msg/Header", *at).stdout
+    assert shown.startswith("builtin_interfaces/Time stamp\n\tint32 sec\n")
+    assert "SK-CLI-030" in simkit_line("topic", "echo", "/odm", *at).stderr
+    assert "SK-CLI-018" in simkit_line("topic", "list", "--sim", "x", *at).stderr
+
+
+def test_info_says_what_is_in_a_bag(bag: Path, simkit_line: Any) -> None:
+    assert simkit_line("bag", "info", str(bag)).stdout.startswith("\nFiles:             drive.mcap\nBag size: ")
+    assert "/odom" in simkit_line("bag", "info", str(bag), "--topic-name").stdout.split()
+    assert json.loads(simkit_line("bag", "info", str(bag), "--json").stdout)["complete"] is True
+    missing = simkit_line("bag", "info", "no_such.mcap")
+    assert missing.exit_code == 2 and "SK-CLI-035" in missing.stderr
+
+
+def test_a_running_simulation_is_recorded(start: Any, simkit_line: Any, tmp_path: Path) -> None:
+    start()
+    target = tmp_path / "rec"
+    found = simkit_line("bag", "record", "/odom", "/imu", "/cmd_vel", "-o", str(target), "--duration", "0.5")
+    assert found.exit_code == 0
+    assert "[INFO] [rosbag2_recorder]: Subscribed to topic '/imu'" in found.stderr
+    summary = json.loads(simkit_line("bag", "info", str(target), "--json").stdout)
+    counts = {t["name"]: t["count"] for t in summary["topics"]}
+    assert counts["/imu"] in (25, 26) and counts["/cmd_vel"] == 0
+    again = simkit_line("bag", "record", "-a", "-o", str(target), "--duration", "0.1")
+    assert again.exit_code == 2 and "SK-BAG-001" in again.stderr
+    assert "SK-CLI-018" in simkit_line("bag", "record", "-o", str(tmp_path / "x")).stderr
+
+
+def test_the_commands_of_a_bag_drive_the_robot_again(bag: Path, start: Any, simkit_line: Any) -> None:
+    live = start()
+    before = float(live.sim.model("rover").pose.position[0])
+    played = simkit_line("bag", "play", str(bag), "--json")
+    assert json.loads(played.stdout) == {"messages": 1, "topics": ["/cmd_vel"]}
+    simkit_line("topic", "hz", "/odom", "--duration", "0.3")
+    simkit_line("service", "call", "/pause_physics")
+    assert float(live.sim.model("rover").pose.position[0]) > before + 0.01
+    assert "SK-CLI-018" in simkit_line("bag", "play", str(bag), "--remap", "x").stderr
+    assert "SK-CLI-030" in simkit_line("bag", "play", str(bag), "--topics", "/cmd_vl").stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no such signals there")
+def test_an_interrupt_ends_a_recording_that_is_whole(start: Any, simkit_line: Any, tmp_path: Path) -> None:
+    start()
+    target = tmp_path / "rec.mcap"
+    words = ["bag", "record", "-a", "-x", "camera", "-o", str(target), "--sim", "yard"]
+    main = "from simkit.cli import main; main()"
+    with subprocess.Popen([sys.executable, "-c", main, *words], stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        while "/odom" not in running.stderr.readline():
+            pass
+        simkit_line("topic", "hz", "/odom", "--duration", "0.5")
+        running.send_signal(signal.SIGINT)
+        _, told = running.communicate(timeout=20)
+    assert running.returncode == 130 and "messages on" in told
+    summary = json.loads(simkit_line("bag", "info", str(target), "--json").stdout)
+    assert summary["complete"] and {t["name"]: t["count"] for t in summary["topics"]}["/odom"] > 0

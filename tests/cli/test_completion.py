@@ -1,0 +1,99 @@
+"""What a shell completes: names of the running simulation and of bags; nothing, and no error, where none answers."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from simkit.cli import app
+
+MAIN = "from simkit.cli import main; main()"
+
+
+def completed(line: str) -> list[str]:
+    """What bash offers behind a line."""
+    words = line.split()
+    at = len(words) if line.endswith(" ") else len(words) - 1
+    result = CliRunner().invoke(
+        app,
+        [],
+        prog_name="simkit",
+        env={"_SIMKIT_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(at)},
+    )
+    return [text for text in result.output.splitlines() if text]
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("simkit to", ["topic"]),
+        ("simkit topic ec", ["echo"]),
+        ("simkit topic echo /o", ["/odom"]),
+        ("simkit topic echo od", ["odom"]),
+        ("simkit topic echo /odom --field pose.po", ["pose.pose"]),
+        ("simkit topic echo /odom --field pose.pose.position.", [f"pose.pose.position.{c}" for c in "xyz"]),
+        ("simkit topic pub /cmd_vel ", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]),
+        ("simkit topic find sensor_msgs/msg/Im", ["sensor_msgs/msg/Image", "sensor_msgs/msg/Imu"]),
+        ("simkit service call /la", ["/lamp"]),
+        ("simkit service call /lamp ", ["std_srvs/srv/SetBool"]),
+        ("simkit service call /lamp std_srvs/srv/SetBool ", ["{data: false}"]),
+        ("simkit action send_goal /c", ["/countdown"]),
+        ("simkit action send_goal /countdown example_interfaces/action/Fibonacci ", ["{order: 0}"]),
+        ("simkit param get /T", ["/Tuner"]),
+        ("simkit param get /Tuner p", ["p_gain"]),
+        ("simkit node info /Cou", ["/Countdown"]),
+        ("simkit model pose r", ["rover"]),
+        ("simkit model joint rover l", ["left_wheel"]),
+        ("simkit model pose rover ri", ["right"]),
+        ("simkit tf echo b", ["base"]),
+        ("simkit topic list --sim y", ["yard"]),
+    ],
+)
+def test_names_are_completed(line: str, offered: list[str], yard: Any) -> None:
+    assert completed(line) == offered
+
+
+def test_without_a_simulation_nothing_is_offered_and_nothing_said(place: Any) -> None:
+    assert completed("simkit topic echo /o") == []
+    assert completed("simkit topic echo --bag no_such.mcap /o") == []
+
+
+def test_a_shell_can_be_taught(place: Any) -> None:
+    assert "_SIMKIT_COMPLETE" in CliRunner().invoke(app, ["--show-completion", "bash"], prog_name="simkit").output
+    assert typer.main.get_command(app).name == "simkit"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no such signals there")
+def test_an_interrupt_ends_a_command_without_a_word(yard: Any) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", MAIN, "topic", "echo", "/imu", "--csv", "--sim", "yard"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as running:
+        assert running.stdout is not None and running.stderr is not None
+        assert running.stdout.readline()
+        running.send_signal(signal.SIGINT)
+        _, told = running.communicate(timeout=20)
+    assert running.returncode == 130
+    assert told == b""
+
+
+def test_a_reader_that_goes_away_ends_a_command_without_a_word(yard: Any) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", MAIN, "topic", "echo", "/imu", "--csv", "--sim", "yard"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as running:
+        assert running.stdout is not None and running.stderr is not None
+        assert running.stdout.readline()
+        running.stdout.close()
+        told = running.stderr.read()
+        assert running.wait(20) == 0
+    assert told == b""

@@ -1,0 +1,61 @@
+"""The code of the page on live simulations runs, beside a TurtleBot3 that runs; so does one of another process."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import simkit
+from simkit.live import connect, questions
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "live.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+
+
+def test_every_block_of_the_page_runs(run: Callable[..., Any], capsys: pytest.CaptureFixture[str]) -> None:
+    alone = [block for block in BLOCKS if "Server" in block]
+    with simkit.load("turtlebot3_world") as sim, run(sim):
+        for block in BLOCKS:
+            if block not in alone:
+                exec(compile(block, "live.md", "exec"), {"__name__": "__main__"})
+    printed = capsys.readouterr().out
+    assert "sensor_msgs/msg/LaserScan" in printed and "SK-SERVICE-001" in printed
+    for block in alone:
+        exec(compile(block, "live.md", "exec"), {"__name__": "__main__"})
+
+
+def test_the_page_has_every_question() -> None:
+    table = PAGE[PAGE.index("| question |") :]
+    assert set(questions.QUESTIONS) == set(
+        re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M)))
+    )
+
+
+def test_a_run_of_another_process_is_talked_to_and_ends_as_it_would_without(court_text: str, tmp_path: Path) -> None:
+    world = tmp_path / "court.sdf"
+    world.write_text(court_text, encoding="utf-8")
+    command = [sys.executable, "-m", "simkit", "run", str(world), "--duration", "2", "--quiet"]
+    root = str(Path(__file__).resolve().parents[2])
+    environment = {**os.environ, "PYTHONPATH": root}
+    plain = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
+    paused = subprocess.Popen([*command, "--paused"], stdout=subprocess.PIPE, text=True, env=environment)
+    try:
+        with connect(timeout=20.0, wait=20.0) as client:
+            imu = client.subscribe("/imu")
+            client.control("resume")
+            assert len(list(imu)) + imu.lost >= 150
+        assert paused.wait(20.0) == 0
+        assert paused.stdout is not None
+        assert paused.stdout.read().splitlines()[-1] == plain.splitlines()[-1], "the hash of the state"
+    finally:
+        if paused.poll() is None:
+            paused.send_signal(signal.SIGKILL)
+        paused.communicate()

@@ -1,0 +1,82 @@
+"""Sockets lie where only their user can reach them, and no name is ever taken from the living."""
+
+from __future__ import annotations
+
+import os
+import socket
+import stat
+from pathlib import Path
+
+import pytest
+
+import simkit
+from simkit.live import place
+from simkit.live.finding import simulations
+from simkit.live.server import Server, serve
+
+
+def test_folder_and_socket_are_open_to_their_user_alone(court: simkit.Simulation, sockets: Path) -> None:
+    with Server(court) as server:
+        assert server.path == sockets / "court.sock"
+        assert stat.S_IMODE(os.lstat(sockets).st_mode) == 0o700
+        found = os.lstat(server.path)
+        assert stat.S_ISSOCK(found.st_mode) and stat.S_IMODE(found.st_mode) == 0o600
+    assert not server.path.exists()
+
+
+def test_a_folder_that_others_may_enter_is_not_used(court: simkit.Simulation, sockets: Path) -> None:
+    sockets.mkdir(mode=0o700)
+    sockets.chmod(0o755)
+    with Server(court) as server:
+        assert server.path.parent.name == f"simkit-{os.getuid()}"
+        server.path.parent.chmod(0o777)
+        other, note = serve(court)
+        assert other is None
+        assert "SK-LIVE-009" in note and "is open to others (mode 777, allowed is 700)" in note
+        assert simulations() == [], "sockets in such a folder are not trusted either"
+
+
+def test_a_link_instead_of_the_folder_is_not_followed(sockets: Path, tmp_path: Path) -> None:
+    sockets.symlink_to(tmp_path)
+    assert place.fault_of(sockets) == f"{sockets} is no folder"
+    assert place.open_folder() != sockets
+
+
+def test_the_socket_of_one_who_died_is_replaced(court: simkit.Simulation, sockets: Path) -> None:
+    sockets.mkdir(mode=0o700)
+    for name in ("court", "other"):
+        with socket.socket(socket.AF_UNIX) as dead:
+            dead.bind(str(sockets / f"{name}.sock"))
+    assert simulations() == []
+    with Server(court) as server:
+        assert server.name == "court"
+        assert place.is_living(server.path)
+        found = [(s.name, s.pid, s.world) for s in simulations()]
+        assert found == [("court", os.getpid(), "")], "it says its world once it is polled"
+        assert [path.name for path in sockets.glob("*.sock")] == ["court.sock"]
+
+
+@pytest.mark.parametrize(
+    ("name", "file"),
+    [("lab/../x y", "lab_.._x_y"), ("Büro", "B_ro"), ("..", "simulation"), ("", "simulation"), ("a" * 99, "a" * 48)],
+)
+def test_any_name_becomes_one_of_a_file(name: str, file: str) -> None:
+    assert place.file_name(name) == file
+
+
+def test_a_path_that_is_too_long_is_a_note_and_no_end(
+    court: simkit.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deep = tmp_path / ("d" * 90)
+    deep.mkdir()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(deep))
+    server, note = serve(court)
+    assert server is None and note.startswith("note SK-LIVE-009: no other terminal can talk to this run: ")
+
+
+def test_where_there_are_no_local_sockets_the_run_goes_on_without(
+    court: simkit.Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(socket, "AF_UNIX")
+    assert serve(court)[0] is None
+    assert simulations() == []
