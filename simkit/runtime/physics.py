@@ -8,8 +8,8 @@ stepping k-1 times, gives the bits of k steps.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
 
 import mujoco
 import numpy as np
@@ -55,19 +55,39 @@ def _hear_engine(text: str) -> None:
 class HeldState:
     """The physics state of one tick, kept so that a reading can be made of it later."""
 
-    __slots__ = ("model", "tick", "values")
+    __slots__ = ("model", "runs", "tick", "values")
 
-    def __init__(self, tick: int, model: Any, values: npt.NDArray[np.float64]) -> None:
-        self.tick, self.model, self.values = tick, model, values
+    def __init__(self, tick: int, model: Any, values: npt.NDArray[np.float64], runs: Any = None) -> None:
+        self.tick, self.model, self.values, self.runs = tick, model, values, runs
 
     def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
         return self
+
+
+class ContactLaw(Protocol):
+    """What changes contacts in every forward pass, once velocities are known and before forces are."""
+
+    model: Any
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is anything to change; else the engine goes on by itself."""
+
+    def shape(self, data: Any, runs: Any = None) -> None:
+        """Changes the contacts of data of its model; with surfaces running as they do now, or as `runs` once told."""
+
+    def solve(self, data: Any) -> None:
+        """Solves for the forces, after that."""
+
+    def runs(self) -> Any:
+        """How surfaces run now."""
 
 
 class Physics:
     """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date.
 
     Attributes:
+        contact_law: what changes the contacts, if anything does; of the present model.
         edition: another number after everything that was written, which steps do not count as.
     """
 
@@ -82,6 +102,7 @@ class Physics:
         """Other engine objects (after a spawn, a removal, a restore)."""
         self.model, self.data = model, data
         self.sleep = Sleep(model, data, self._may_sleep)
+        self.contact_law: ContactLaw | None = None
         self.stage = STALE
         self.edition += 1
         self.one_shot = False
@@ -130,6 +151,12 @@ class Physics:
             for changed in np.flatnonzero((self.standing != before).any(axis=1)):
                 self.changed_body(CONTROL, int(changed))
 
+    def changed_surface(self) -> None:
+        """Says that a surface runs otherwise than before: whatever may lie on it wakes."""
+        if self.sleep.is_drowsy or (self.data.tree_asleep >= 0).any():
+            self.sleep.wake_all()
+        self.changed(STALE)
+
     def changed_model(self) -> None:
         """Says that the model itself is about to be written to: everything wakes."""
         self.sleep.wake_all()
@@ -152,7 +179,10 @@ class Physics:
         if self.hears_controls:
             self._hear_controls()
         stage = self.stage
-        if stage == STALE:
+        law = self._law
+        if law is not None:
+            self._forward_by_law(law)
+        elif stage == STALE:
             if self.sleep.wants_all_awake:
                 self.sleep.forward()
             else:
@@ -175,8 +205,33 @@ class Physics:
         if self.stage == STALE:
             mj_fwd_position(self.model, self.data)
         mj_fwd_velocity(self.model, self.data)
+        law = self._law
+        if law is not None:
+            law.shape(self.data)
         self.stage = CONTROL
         return True
+
+    @property
+    def _law(self) -> ContactLaw | None:
+        """What changes contacts now."""
+        law = self.contact_law
+        return law if law is not None and law.acts else None
+
+    def _forward_by_law(self, law: ContactLaw) -> None:
+        """What is missing of the forward pass, with contacts as a law has them."""
+        model, data, stage = self.model, self.data, self.stage
+        if stage == FRESH:
+            return
+        if stage > CONTROL and not self.fresh_velocities():
+            # where trees may sleep, all of a pass at once, and its forces again
+            if self.sleep.wants_all_awake:
+                self.sleep.forward()
+            elif stage == STALE:
+                mj_forward(model, data)
+            else:
+                mj_forward_skip(model, data, _SKIP[stage], 1)
+            law.shape(data)
+        law.solve(data)
 
     def _hear_controls(self) -> None:
         """Notices controls that were written to the engine's data directly."""
@@ -209,7 +264,8 @@ class Physics:
                 data.qfrc_applied[:], data.xfrc_applied[:] = applied, pushed
             else:
                 mj_get_state(self.model, data, values, _HELD)
-            self._held = HeldState(self.tick, self.model, values)
+            law = self.contact_law
+            self._held = HeldState(self.tick, self.model, values, None if law is None else law.runs())
         return self._held
 
     def data_of(self, held: HeldState) -> Any:
@@ -222,6 +278,9 @@ class Physics:
         if self._second_of is not held:
             mujoco.mj_setState(held.model, self._second, held.values, _HELD)
             mujoco.mj_forward(held.model, self._second)
+            if self.contact_law is not None and self.contact_law.model is held.model:
+                self.contact_law.shape(self._second, held.runs)
+                self.contact_law.solve(self._second)
             mujoco.mj_rnePostConstraint(held.model, self._second)
             self._second_of = held
         return self._second
@@ -270,7 +329,8 @@ class Physics:
 
     def single(self) -> None:
         """One step."""
-        if self.stage == STALE and not (self.one_shot or self.shows_applied or self.sleep.watches):
+        plain = self._law is None and not (self.one_shot or self.shows_applied or self.sleep.watches)
+        if plain and self.stage == STALE:
             mj_step(self.model, self.data)
             self.tick += 1
         else:
@@ -307,6 +367,10 @@ class Physics:
         if self.hears_controls:
             self._hear_controls()
         model, data, stage = self.model, self.data, self.stage
+        law = self._law
+        if law is not None and self._integrate is not None:
+            self._steps_by_law(law, self._integrate, count)
+            return
         if stage != STALE and self._integrate is not None:
             if stage:
                 mj_forward_skip(model, data, _SKIP[stage], 1)
@@ -318,6 +382,19 @@ class Physics:
         else:
             mj_step(model, data, count)
         self.stage = STALE
+        self.tick += count
+
+    def _steps_by_law(self, law: ContactLaw, integrate: Callable[[Any, Any], None], count: int) -> None:
+        """Steps one by one, with contacts as a law has them."""
+        model, data = self.model, self.data
+        for _ in range(count):
+            if self.stage == STALE:
+                mj_check_pos(model, data)
+                mj_check_vel(model, data)
+            self._forward_by_law(law)
+            mj_check_acc(model, data)
+            integrate(model, data)
+            self.stage = STALE
         self.tick += count
 
     def _clear_one_shot(self) -> None:

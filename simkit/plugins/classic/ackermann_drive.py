@@ -1,0 +1,186 @@
+"""Ackermann drive of Gazebo Classic: `libgazebo_ros_ackermann_drive.so`.
+
+A command is the speed (`linear.x`) and the angle of a wheel in the middle (`angular.z`). Controllers push the
+steering's joints and the rear wheels' at every update, for one step, as Classic's do: their gains are of efforts of a
+single step. Where it differs from Gazebo Classic on purpose: `<publish_steerangle>`, of which its documentation speaks,
+is there.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, command_of
+from simkit.plugins.drives.outputs import DriveOutputs, Told
+from simkit.plugins.drives.steering import find_turning, steering_angles
+from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.joints.axes import JointAxis
+from simkit.plugins.joints.pid import Pid
+from simkit.plugins.once import Once
+from simkit.scene import Cylinder, Sphere
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneJoint, SceneLink, SceneModel
+
+_FLOAT = "std_msgs/msg/Float32"
+_WHEELS = ("front_left_joint", "front_right_joint", "rear_left_joint", "rear_right_joint")
+_STEERING = ("left_steering_joint", "right_steering_joint")
+
+
+class GazeboRosAckermannDrive(ModelPlugin):
+    """Steers the front wheels and drives the rear ones of a car from `cmd_vel`; odometry is the world's truth.
+
+    The distance between the axles, that between the front wheels and the rear wheels' radius are those of the wheels'
+    collisions, as in Classic.
+    """
+
+    filenames = ("libgazebo_ros_ackermann_drive.so",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._canonical = scene.canonical_link
+        self._read(params)
+        named = {name.replace("_joint", " wheel").replace("_", " "): [params.text(name, name)] for name in _WHEELS}
+        wheels = [joint for joints in find_wheels(scene, named, params).values() for joint in joints]
+        steering = [find_turning(scene, params.text(name, name), "steered wheel", params) for name in _STEERING]
+        self._turned = [joint for joint in steering if joint is not None]
+        self._wheels = wheels
+        if len(wheels) == len(_WHEELS) and len(self._turned) == len(_STEERING):
+            self._measure(scene, wheels, params)
+        self._hand: Any = self._prepare_hand(scene, params, builder)
+
+    def _read(self, params: Params) -> None:
+        self._most_speed = params.number("max_speed", 20.0, minimum=0)
+        self._most_steer = params.number("max_steer", 0.6, minimum=1e-6, maximum=1.5)
+        hand = params.number("max_steering_angle", 7.85, minimum=1e-6)
+        self._ratio = self._most_steer / hand
+        self._rate = params.number("update_rate", 100.0, minimum=0)
+        self._gains = {name: _read_pid(params, name) for name in ("left_steering", "right_steering", "linear_velocity")}
+        self._tells_distance = params.boolean("publish_distance", False)
+        self._tells_angle = params.boolean("publish_steerangle", False)
+        x, y = (params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy")
+        self._told = Told(
+            odometry_topic="odom",
+            odometry_frame=params.text("odometry_frame", "odom"),
+            base_frame=params.text("robot_base_frame", "base_footprint"),
+            odometry=params.boolean("publish_odom", False),
+            odometry_tf=params.boolean("publish_odom_tf", False),
+            wheel_tf=params.boolean("publish_wheel_tf", False),
+            joint_states=False,
+            covariance=(x, y, params.number("covariance_yaw", 1e-3, minimum=0)),
+        )
+
+    def _measure(self, scene: SceneModel, wheels: list[SceneJoint], params: Params) -> None:
+        """Radius of the rear wheels, and where all are."""
+        links = {link.scoped: link for link in scene.all_links()}
+        found = [links[joint.child_link] for joint in wheels]
+        bare = [link.name for link in found if not link.collisions]
+        if bare:
+            names = ", ".join(map(repr, bare))
+            params.error("SK-PLUGIN-093", f"the drive measures its wheels, and {names} has no collision")
+            return
+        shape = found[3].collisions[0].geometry
+        if not isinstance(shape, (Cylinder, Sphere)):
+            kind = type(shape).__name__.lower()
+            message = f"the drive measures its wheels, and that of {found[3].name!r} is a {kind}"
+            params.error("SK-PLUGIN-093", f"{message}; allowed is a cylinder or a sphere")
+            return
+        self._radius = shape.radius
+        front_left, front_right, rear_left, rear_right = (_centre(link) for link in found)
+        self._width = math.dist(front_left, front_right)
+        middles = [
+            [(a + b) / 2 for a, b in zip(*pair, strict=True)]
+            for pair in ((front_left, front_right), (rear_left, rear_right))
+        ]
+        self._base = math.dist(*middles)
+        if self._base <= 0.0:
+            params.error("SK-PLUGIN-093", "the front and the rear wheels are at the same place; there is no wheel base")
+
+    def _prepare_hand(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> Any:
+        """The servo of the driver's wheel, where there is one; Classic's default is no demand."""
+        name = params.text("steering_wheel_joint", "steering_wheel_joint")
+        there = any(name in (joint.name, joint.scoped) for joint in scene.all_joints())
+        if not (params.has("steering_wheel_joint") or there):
+            return None
+        joint = find_turning(scene, name, "steering wheel", params)
+        return joint and builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        self.before_step_rate = self.after_step_rate = self._rate
+        self._axes = [JointAxis(self.sim.joint(joint.scoped)) for joint in (*self._turned, *self._wheels[2:])]
+        self._true = TrueMotion(parent, self.sim.link(self._canonical))
+        self._pids = {name: Pid.of(numbers) for name, numbers in self._gains.items()}
+        self._command = (0.0, 0.0)
+        self._last_ns = self.sim.time_ns
+        self._distance = 0.0
+        self._place = self._true.place()[:2]
+        self.listen("cmd_vel", COMMAND_TYPES, self._on_command)
+        self._outputs = DriveOutputs(self, self._told, [*self._turned, *self._wheels])
+        self._distance_out = self.advertise("distance", _FLOAT) if self._tells_distance else None
+        self._angle_out = self.advertise("steerangle", _FLOAT) if self._tells_angle else None
+
+    def _on_command(self, message: Any) -> None:
+        command = command_of(message)
+        if command is None:
+            self.once.not_finite()
+        else:
+            self._command = command
+
+    # ------------------------------------------------------------------ commands
+
+    def before_step(self) -> None:
+        """Pushes the joints for one step."""
+        now = self.sim.time_ns
+        elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
+        if elapsed <= 0.0:
+            elapsed = 1.0 / self._rate if self._rate > 0 else self.period
+        speed, angle = self._command
+        left, right, rear_left, rear_right = self._axes
+        target = max(-self._most_speed, min(self._most_speed, speed)) / self._radius
+        push = self._pids["linear_velocity"].update(rear_right.velocity - target, elapsed)
+        angle = max(-self._most_steer, min(self._most_steer, math.copysign(angle, angle * math.copysign(1.0, speed))))
+        wanted = steering_angles(math.tan(angle), self._base, self._width)
+        for axis, name, goal in zip((left, right), ("left_steering", "right_steering"), wanted, strict=True):
+            axis.push(self._pids[name].update(axis.position - goal, elapsed))
+        for axis in (rear_left, rear_right):
+            axis.push(push)
+        if self._hand is not None:
+            self.sim.set_control(self._hand, self._steered() / self._ratio)
+
+    def _steered(self) -> float:
+        """Angle of the steering, in the mean of both wheels [rad]."""
+        return (self._axes[0].position + self._axes[1].position) / 2
+
+    # ------------------------------------------------------------------ readings
+
+    def after_step(self) -> None:
+        """Odometry, transforms, distance and angle."""
+        place = self._true.place()[:2]
+        self._distance += math.dist(place, self._place)
+        self._place = place
+        if self._outputs.wants_odometry:
+            self._outputs.tell(*self._true.state())
+        for out, value in ((self._distance_out, self._distance), (self._angle_out, self._steered())):
+            if out is not None and out.wanted:
+                out.publish_later(partial(msgs.make, _FLOAT, data=value))
+
+
+def _read_pid(params: Params, name: str) -> dict[str, float]:
+    """Gains (p, i, d), bounds of the integral (least, most), and of the output where there are some."""
+    p, i, d = params.vector3(f"{name}_pid_gain", (0.0, 0.0, 0.0))
+    least, most = params.vector(f"{name}_i_range", 2, (0.0, 0.0))
+    numbers = {"p_gain": p, "i_gain": i, "d_gain": d, "i_min": least, "i_max": most}
+    return {**numbers, "cmd_min": 0.0, "cmd_max": -1.0, "cmd_offset": 0.0}
+
+
+def _centre(link: SceneLink) -> tuple[float, float, float]:
+    """Of the first collision, in the world at load time [m]."""
+    x, y, z = (link.pose_world @ link.collisions[0].pose_link).position.tolist()
+    return x, y, z

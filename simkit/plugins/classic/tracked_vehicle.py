@@ -1,0 +1,227 @@
+"""Tracked vehicles of Gazebo Classic: `libSimpleTrackedVehiclePlugin.so`, `libWheelTrackedVehiclePlugin.so`."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit import msgs
+from simkit.compiler.friction import MU_MOST, coefficients_of, priority_of
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.belts import belt_of, needs_direction, report_nothing_to_run
+from simkit.plugins.drives.odometry import COMMAND_TYPES, command_of
+from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.lookups import find_link
+from simkit.plugins.once import Once
+from simkit.pose import IDENTITY
+from simkit.runtime.surface import Belt, Run
+from simkit.scene import Cylinder, SceneJoint, SceneLink
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+_SIDES = ("left", "right")
+_STRAIGHT, _STANDING = 0.1, 0.1  # rate of turning [rad/s] and speed [m/s] below which Gazebo takes them for none
+_SPEEDS = "geometry_msgs/msg/Vector3"
+
+
+class _TrackedVehicle(ModelPlugin):
+    """What both have: commands in, speeds of the tracks out.
+
+    Commands: `/<robot_namespace>/cmd_vel` takes a Twist that turns left for a positive rate, as everywhere in ROS;
+    `/<robot_namespace>/cmd_vel_twist` one that turns right, as Gazebo's own topic does. The last command holds.
+    """
+
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._namespace = params.text("robot_namespace", scene.name).strip("/")
+        self._efficiency = params.number("steering_efficiency", 0.5, minimum=1e-6)
+        self._separation = params.number("tracks_separation", 0.4, minimum=1e-6)
+        self._fastest = params.number("max_linear_speed", 1.0, minimum=1e-6)
+        self._fastest_turn = params.number("max_angular_speed", 1.0, minimum=0)
+        self._asked = [
+            min(MU_MOST, params.number(name, minimum=0)) if params.has(name) else None
+            for name in ("track_mu", "track_mu2")
+        ]
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        own = valid_topic(f"/{self._namespace}") if self._namespace else ""
+        self.listen(f"{own}/cmd_vel", COMMAND_TYPES, partial(self._on_command, 1.0))
+        self.listen(f"{own}/cmd_vel_twist", COMMAND_TYPES, partial(self._on_command, -1.0))
+        self._told = self.advertise(f"{own}/tracks_speed", _SPEEDS)
+
+    def _on_command(self, sense: float, message: Any) -> None:
+        command = command_of(message)
+        if command is None:
+            self.once.not_finite()
+            return
+        ahead = _clamped(command[0], self._fastest)
+        half = sense * _clamped(command[1], self._fastest_turn) * self._separation / 2 / self._efficiency
+        left, right = _clamped(ahead - half, self._fastest), _clamped(ahead + half, self._fastest)
+        self.drive(left, right)
+        self._told.publish(msgs.type_of(_SPEEDS)(left, right, 0.0))
+
+    def drive(self, left: float, right: float) -> None:
+        """Has the tracks run at these speeds [m/s]."""
+        raise NotImplementedError
+
+    def rub(self, link: SceneLink, mu: float) -> None:
+        """Gives the collisions of a link a coefficient of friction, in the engine's model."""
+        geoms = list(self.sim.names.link(link.scoped).geoms)
+        self.sim.touch("geom_friction")[geoms, 0] = mu
+        self.sim.touch("geom_priority")[geoms] = priority_of(mu)
+        self.sim.physics.changed_model()
+
+
+class SimpleTrackedVehiclePlugin(_TrackedVehicle):
+    """Tracks whose surface runs: `<left_track>` and `<right_track>`, with flippers on either side.
+
+    In a turn the surfaces' way is bent to circles round the point that the vehicle is to turn about.
+    """
+
+    filenames = ("libSimpleTrackedVehiclePlugin.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        super().prepare(scene, params, builder)
+        params.integer("collide_without_contact_bitmask", 1)  # a way round ODE's categories
+        body = self._link("body", scene, params)
+        self._body = "" if body is None else body.scoped
+        self._tracks: list[tuple[SceneLink, int]] = []
+        for number, side in enumerate(_SIDES):
+            found = [self._link(f"{side}_track", scene, params)]
+            found += [find_link(scene, one.value, one) for one in params.all(f"{side}_flipper")]
+            self._tracks += [(link, number) for link in found if link is not None]
+        for link, _ in self._tracks:
+            report_nothing_to_run(link, params)
+
+    def _link(self, element: str, scene: SceneModel, params: Params) -> SceneLink | None:
+        name, named = params.text(element, required=True), params.child(element)
+        return None if named is None or not name else find_link(scene, name, named)
+
+    def _friction(self, link: SceneLink) -> tuple[float, float] | None:
+        """Along and across the belt, where the plugin asks for any; what it leaves open is as the file has it."""
+        if self._asked == [None, None] or not link.collisions:
+            return None
+        of_file = coefficients_of(link.collisions[0].surface)
+        along, across = (old if new is None else new for new, old in zip(self._asked, of_file, strict=True))
+        return along, across
+
+    def load(self, parent: Any, params: Params) -> None:
+        super().load(parent, params)
+        links = [link for link, _ in self._tracks]
+        self._rubs = [self._friction(link) for link in links]
+        for link, friction in zip(links, self._rubs, strict=True):
+            if friction is not None:
+                self.rub(link, max(friction))
+        directed = [needs_direction(link) or friction for link, friction in zip(links, self._rubs, strict=True)]
+        self._stands = [Run(0.0) if one else None for one in directed]
+        self._runs: list[Run | None] = list(self._stands)
+        self._speeds = (0.0, 0.0)
+        self.before_step_rate = 1e-9
+        self.sim.friction.add_belts(self, self._belts)
+
+    def _belts(self) -> list[Belt]:
+        def now(index: int) -> Run | None:
+            return self._runs[index]
+
+        return [
+            belt_of(self.sim, link.scoped, IDENTITY, partial(now, i), friction)
+            for i, ((link, _), friction) in enumerate(zip(self._tracks, self._rubs, strict=True))
+        ]
+
+    def drive(self, left: float, right: float) -> None:
+        self._speeds = left, right
+        self._run()
+        pace = None if self._turn() is not None else 1e-9  # in a turn the centre goes along with the vehicle
+        if pace != self.before_step_rate:
+            self.before_step_rate = pace
+            self.sim.reschedule()
+
+    def _turn(self) -> float | None:
+        """Distance of the point that it turns round, to the left [m]; None where it drives straight."""
+        left, right = self._speeds
+        ahead, turning = (left + right) / 2, (right - left) * self._efficiency / self._separation
+        if abs(turning) < _STRAIGHT:
+            return None
+        return 0.0 if abs(ahead) < _STANDING else ahead / turning
+
+    def before_step(self) -> None:
+        """In a turn: the point that it turns round is where the vehicle is now."""
+        self._run()
+
+    def _run(self) -> None:
+        turn, centre = self._turn(), None
+        if turn is not None and self._body:
+            pose = self.sim.link(self._body).pose
+            x, y, z = (pose.position + pose.matrix[:, 1] * turn).tolist()
+            centre = x, y, z
+        runs = [
+            Run(self._speeds[side], centre) if self._speeds[side] else stands
+            for (_, side), stands in zip(self._tracks, self._stands, strict=True)
+        ]
+        if runs != self._runs:
+            self._runs = runs
+            self.sim.physics.changed_surface()
+
+
+class WheelTrackedVehiclePlugin(_TrackedVehicle):
+    """Tracks made of wheels: `<left_joint>` and `<right_joint>`, any number of each, driven at the track's speed.
+
+    A wheel's radius is that of its cylinder, else of its sphere.
+    """
+
+    filenames = ("libWheelTrackedVehiclePlugin.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        super().prepare(scene, params, builder)
+        torque = params.number("max_torque", 5.0, minimum=0)
+        named = {f"{side} wheel": [one.value for one in params.all(f"{side}_joint")] for side in _SIDES}
+        for side in _SIDES:
+            if not named[f"{side} wheel"]:
+                params.text(f"{side}_joint", required=True)
+        wheels = find_wheels(scene, named, params)
+        links = {link.scoped: link for link in scene.all_links()}
+        self._links: list[SceneLink] = []
+        self._servos: list[tuple[Any, int, float]] = []
+        for number, joints in enumerate(wheels.values()):
+            for joint in joints:
+                link = links[joint.child_link]
+                radius = self._radius(link, joint, params)
+                servo = builder.add_velocity_servo(joint.scoped, max_effort=torque, owner=self.name)
+                self._links.append(link)
+                self._servos.append((servo, number, radius))
+        given = [mu for mu in self._asked if mu is not None]
+        self._mu = min(given) if given else None
+        if len(set(given)) > 1:
+            message = "<track_mu> and <track_mu2> of wheels differ: the smaller one is used both ways"
+            params.diagnostics.warning("SK-PLUGIN-103", message, params.where)
+
+    def _radius(self, link: SceneLink, joint: SceneJoint, params: Params) -> float:
+        sizes = [c.geometry.radius for c in link.collisions if isinstance(c.geometry, Cylinder)]
+        sizes = sizes or [r for c in link.collisions if (r := float(getattr(c.geometry, "radius", 0.0) or 0.0)) > 0.0]
+        if not sizes:
+            message = f"link {link.name!r} of joint {joint.name!r} has no round collision: no radius is known"
+            params.error("SK-PLUGIN-102", message)
+            return 1.0
+        return max(sizes)
+
+    def load(self, parent: Any, params: Params) -> None:
+        super().load(parent, params)
+        if self._mu is not None:
+            for link in self._links:
+                self.rub(link, self._mu)
+
+    def drive(self, left: float, right: float) -> None:
+        speeds = left, right
+        for servo, side, radius in self._servos:
+            self.sim.set_control(servo, speeds[side] / radius)
+
+
+def _clamped(value: float, most: float) -> float:
+    return max(-most, min(most, value)) if math.isfinite(value) else 0.0

@@ -1,0 +1,233 @@
+"""gz's Ackermann steering: `gz::sim::systems::AckermannSteering`."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import (
+    COMMAND_TYPES,
+    ODOMETRY,
+    TRANSFORMS,
+    command_of,
+    odometry_message,
+    transforms,
+)
+from simkit.plugins.drives.steering import AckermannOdometry, find_turning, steering_angles
+from simkit.plugins.drives.travel import joint_angles
+from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.gz.diff_drive import speed_limits
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+_STRAIGHT = 1e-3  # rate of turning [rad/s] below which gz drives straight on
+_NEVER = 1e-9  # [Hz]
+_SIDES = ("left", "right")
+
+
+class AckermannSteering(ModelPlugin):
+    """Steers two front wheels and drives wheels behind them (or all) from `/model/<model>/cmd_vel`.
+
+    With `<steering_only>` it steers alone, by an angle on `/model/<model>/steer_angle`, or with `<use_actuator_msg>` by
+    position number `<actuator_number>` on `/actuators`. Odometry is by the wheels' turns and the steering's angles; it
+    starts at zero, in the middle of the rear axle.
+    """
+
+    filenames = ("gz-sim-ackermann-steering-system",)
+    drives = True
+    names = ("gz::sim::systems::AckermannSteering",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._only = params.boolean("steering_only", False)
+        self._base = params.number("wheel_base", 1.0, minimum=1e-6)
+        self._separation = params.number("wheel_separation", 1.0, minimum=1e-6)
+        self._limit = params.number("steering_limit", 0.5, minimum=1e-6, maximum=math.pi / 2)
+        self._limits = speed_limits(params)
+        self._canonical = scene.canonical_link
+        self._steering = [self._prepare_steering(f"{side}_steering_joint", scene, params, builder) for side in _SIDES]
+        self._width = self._radius = 1.0
+        self._driven: list[list[str]] = [[], []]
+        self._motors: list[list[Any]] = [[], []]
+        self.after_step_rate = _NEVER
+        if not self._only:
+            self._width = params.number("kingpin_width", 0.8, minimum=1e-6)
+            self._radius = params.number("wheel_radius", 0.2, minimum=1e-6)
+            # gz publishes at every step where the frequency is zero
+            self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
+            self._prepare_wheels(scene, params, builder)
+
+    def _prepare_steering(
+        self, element: str, scene: SceneModel, params: Params, builder: SpecBuilder
+    ) -> list[tuple[str, Any]]:
+        """Joints of one side's steering, and their servos."""
+        named = params.all(element)
+        if not named:
+            params.text(element, required=True)
+        found = [find_turning(scene, one.value, "steered wheel", one) for one in named]
+        joints = [joint for joint in found if joint is not None]
+        return [
+            (j.scoped, builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name))
+            for j in joints
+        ]
+
+    def _prepare_wheels(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        named = {f"{side} wheel": [one.value for one in params.all(f"{side}_joint")] for side in _SIDES}
+        for side in _SIDES:
+            if not named[f"{side} wheel"]:
+                params.text(f"{side}_joint", required=True)
+        wheels = find_wheels(scene, named, params)
+        self._driven = [[joint.scoped for joint in joints] for joints in wheels.values()]
+        self._motors = [
+            [builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name) for j in joints]
+            for joints in wheels.values()
+        ]
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        what = "speed of the steering per error of its angle [1/s]"
+        self._gain = self.declare("steer_p_gain", 1.0, minimum=0.0, maximum=1e6, description=what)
+        self._read_rest_of_gains(params)
+        self._target: tuple[float, float] = (0.0, 0.0)  # speed ahead, and rate of turning or angle
+        self._last: tuple[float, float] = (0.0, 0.0)
+        self._before_last: tuple[float, float] = (0.0, 0.0)
+        self._rims = [0.0, 0.0]
+        self._turners = [self.sim.joint(joints[0][0]) for joints in self._steering]
+        self._turns = [0.0, 0.0]
+        self._listen(parent.name, params)
+        if self._only:
+            return
+        self._wheels = [self.sim.joint(joints[0]) for joints in self._driven]
+        self._odometry = AckermannOdometry(self._radius, self._base, self.period)
+        link = self._canonical.rsplit("::", 1)[-1]
+        self._frame = params.text("frame_id", f"{parent.name}/odom")
+        self._child = params.text("child_frame_id", f"{parent.name}/{link}")
+        topic = valid_topic(params.text("odom_topic", f"/model/{parent.name}/odometry"))
+        self._odom = self.advertise(topic, ODOMETRY)
+        self._tf = self.advertise(valid_topic(params.text("tf_topic", f"/model/{parent.name}/tf")), TRANSFORMS)
+
+    def _read_rest_of_gains(self, params: Params) -> None:
+        """Of gz's controller, which begins anew at every step: i and d are further proportional parts."""
+        i, d = (params.number(f"steer_{name}_gain", 0.0, minimum=0) for name in "id")
+        least, most = params.number("steer_i_min", 0.0), params.number("steer_i_max", 0.0)
+        self._integral, self._slope = (i, least, most), d
+        self._bounds = params.number("steer_cmd_min", -1000.0), params.number("steer_cmd_max", 1000.0)
+        self._offset = params.number("steer_cmd_offset", 0.0)
+
+    def _listen(self, model: str, params: Params) -> None:
+        by_message = params.boolean("use_actuator_msg", False)
+        self._number = params.integer("actuator_number", 0, minimum=0)
+        topic = "/actuators" if by_message else f"/model/{model}/steer_angle"
+        if not self._only:
+            topic = f"/model/{model}/cmd_vel"
+        if params.has("sub_topic"):
+            topic = f"/model/{model}/{params.text('sub_topic')}"
+        topic = valid_topic(params.text("topic", topic))
+        if not self._only:
+            self.listen(topic, COMMAND_TYPES, self._on_command)
+        elif by_message:
+            self.listen(topic, "actuator_msgs/msg/Actuators", self._on_actuators)
+        else:
+            self.listen(topic, ("std_msgs/msg/Float64", "std_msgs/msg/Float32"), self._on_angle)
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_command(self, message: Any) -> None:
+        command = command_of(message)
+        if command is None:
+            self.once.not_finite()
+        else:
+            self._target = command
+
+    def _on_angle(self, message: Any) -> None:
+        self._steer(float(message.data))
+
+    def _on_actuators(self, message: Any) -> None:
+        if self._number >= len(message.position):
+            count = len(message.position)
+            self.log.warning("a message with %d positions has none of number %d; it is left out", count, self._number)
+        else:
+            self._steer(float(message.position[self._number]))
+
+    def _steer(self, angle: float) -> None:
+        if math.isfinite(angle):
+            self._target = (0.0, angle)
+        else:
+            self.once.not_finite()
+
+    def before_step(self) -> None:
+        """Takes the limited command one step further, and turns wheels and steering."""
+        if not self._only:
+            self._odometry.note(joint_angles((*self._wheels, *self._turners)))
+        speeds = tuple(
+            limiter.limit(target, last, before, self.period)
+            for limiter, target, last, before in zip(
+                self._limits, self._target, self._last, self._before_last, strict=True
+            )
+        )
+        forward, turn = speeds
+        if self._only:
+            turn = max(-self._limit, min(self._limit, turn))
+            angles = steering_angles(math.tan(turn), self._base, self._separation)
+        else:
+            slope = self._slope_of(forward, turn)
+            angles = steering_angles(slope, self._base, self._width)
+            self._drive(forward, slope)
+        self._before_last, self._last = self._last, (forward, turn)
+        for side, (joint, angle) in enumerate(zip(self._turners, angles, strict=True)):
+            speed = self._correction(joint_angles((joint,))[0] - angle)
+            if speed != self._turns[side]:
+                self._turns[side] = speed
+                for _, servo in self._steering[side]:
+                    self.sim.set_control(servo, speed)
+
+    def _slope_of(self, forward: float, turn: float) -> float:
+        """Tangent of the steering in the middle for a speed and a rate of turning, within the limit."""
+        if abs(turn) < _STRAIGHT:
+            return 0.0
+        tightest = self._base / math.sin(self._limit)
+        radius = forward / turn
+        if forward == 0.0 or abs(radius) < tightest:
+            # standing it steers as if to go ahead
+            radius = math.copysign(tightest, turn if forward == 0.0 else radius)
+        return self._base / radius
+
+    def _drive(self, forward: float, slope: float) -> None:
+        """Turns the driven wheels, the outer ones faster."""
+        share = self._separation * slope / (2 * self._base)
+        for side, part in enumerate((1 - share, 1 + share)):
+            rim = forward * part
+            if rim != self._rims[side]:
+                self._rims[side] = rim
+                for motor in self._motors[side]:
+                    self.sim.set_control(motor, rim / self._radius)
+
+    def _correction(self, error: float) -> float:
+        """Speed of the steering for an error of its angle."""
+        i, least, most = self._integral
+        summed = i * error * self.period
+        if most >= least:
+            summed = max(least, min(most, summed))
+        speed = self._offset - self._gain.value * error - summed - self._slope * error / self.period
+        low, high = self._bounds
+        return max(low, min(high, speed)) if high >= low else speed
+
+    # ------------------------------------------------------------------ readings
+
+    def after_step(self) -> None:
+        """Odometry and its transform."""
+        if self._only:
+            return
+        now, odometry = self.sim.time_ns, self._odometry
+        odometry.reckon(joint_angles((*self._wheels, *self._turners)))
+        pose = odometry.pose
+        if self._odom.wanted:
+            self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, odometry.twist))
+        if self._tf.wanted:
+            self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))

@@ -1,0 +1,185 @@
+"""gz's tracked vehicle: `gz::sim::systems::TrackedVehicle`, which tells track controllers how fast to run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import (
+    COMMAND_TYPES,
+    ODOMETRY,
+    TRANSFORMS,
+    command_of,
+    odometry_message,
+    transforms,
+)
+from simkit.plugins.drives.track_odometry import TrackOdometry
+from simkit.plugins.gz.track_controller import CENTRE, SPEED, read_limiter
+from simkit.plugins.heard import publish_while_heard
+from simkit.plugins.lookups import find_link, named_link
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+_NEVER = 1e-9  # [Hz]
+_STRAIGHT = 1e-6  # rate of turning [rad/s] below which it drives straight, and speed [m/s] below which on the spot
+_STILL = 1e-6  # change of a speed in a step below which the tracks are not told again
+_SIDES = ("left", "right")
+
+
+@dataclass(frozen=True, slots=True)
+class _Track:
+    """A track's link and the topics that its controller listens to."""
+
+    link: str
+    velocity_topic: str
+    centre_topic: str
+
+
+class TrackedVehicle(ModelPlugin):
+    """Drives tracks, each with a `TrackController` of its own, from `/model/<model>/cmd_vel`.
+
+    A track turns the vehicle by skidding, so for a rate of turning it runs faster than a wheel would: by one over
+    `<steering_efficiency>`, also told on `/model/<model>/steering_efficiency`. All tracks hear round which point the
+    vehicle is to turn. Odometry on `/model/<model>/odometry` is what wheels at these speeds would say.
+    """
+
+    filenames = ("gz-sim-tracked-vehicle-system",)
+    names = ("gz::sim::systems::TrackedVehicle",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        own = params.has("body_link")
+        self._body = named_link(scene, "body_link", params) if own else scene.canonical_link
+        self._sides = [self._read_side(f"{side}_track", scene, params) for side in _SIDES]
+        self._separation = params.number("tracks_separation", 1.0, minimum=1e-6)
+        self._efficiency = params.number("steering_efficiency", 0.5, minimum=1e-6)
+        params.number("tracks_height", 0.2, minimum=1e-6)  # gz's odometry divides by it and multiplies again
+        self._limiters = [read_limiter(params.block(name)) for name in ("linear_velocity", "angular_velocity")]
+        self._odometry_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
+        if params.boolean("debug", False):
+            params.diagnostics.note("SK-PLUGIN-100", "<debug> of a tracked vehicle draws nothing here", params.where)
+
+    def _read_side(self, element: str, scene: SceneModel, params: Params) -> list[_Track]:
+        found = params.all(element)
+        if not found:
+            params.text(element, required=True)
+        tracks = []
+        for one in found:
+            name = one.text("link", required=True)
+            named = one.child("link")
+            if named is not None and name:
+                find_link(scene, name, named)
+            prefix = f"/model/{scene.name}/link/{name}"
+            velocity = valid_topic(one.text("velocity_topic", f"{prefix}/track_cmd_vel"))
+            centre = one.text("center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
+            tracks.append(_Track(name, velocity, valid_topic(centre)))
+        return tracks
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        self.after_step_rate = _NEVER
+        model = parent.name
+        link = self._body.rsplit("::", 1)[-1]
+        self._frame = params.text("frame_id", f"{model}/odom")
+        self._child = params.text("child_frame_id", f"{model}/{link}")
+        self._target, self._is_new = (0.0, 0.0), False
+        self._last, self._before_last = (0.0, 0.0), (0.0, 0.0)
+        self._odometry = TrackOdometry(self._separation, self.sim.time_ns)
+        self._tracks = [
+            [(self.advertise(t.velocity_topic, SPEED), self.advertise(t.centre_topic, CENTRE[0])) for t in side]
+            for side in self._sides
+        ]
+        own = f"/model/{model}"
+        self.listen(valid_topic(params.text("topic", f"{own}/cmd_vel")), COMMAND_TYPES, self._on_command)
+        efficiency = valid_topic(params.text("steering_efficiency_topic", f"{own}/steering_efficiency"))
+        self.listen(efficiency, SPEED, self._on_efficiency)
+        self._odom = self.advertise(valid_topic(params.text("odom_topic", f"{own}/odometry")), ODOMETRY)
+        self._tf = self.advertise(valid_topic(params.text("tf_topic", f"{own}/tf")), TRANSFORMS)
+        for publisher, method in ((self._odom, "publish_odometry"), (self._tf, "publish_transform")):
+            publish_while_heard(self, publisher, self._odometry_rate, method)
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_command(self, message: Any) -> None:
+        command = command_of(message)
+        if command is None:
+            self.once.not_finite()
+        else:
+            self._target = command
+            self._begin()
+
+    def _on_efficiency(self, message: Any) -> None:
+        efficiency = float(message.data)
+        if math.isfinite(efficiency) and efficiency > 0.0:
+            self._efficiency = efficiency
+            self._begin()
+        else:
+            self.once.left_out("efficiency", "a steering efficiency that is not a positive number is left out")
+
+    def _begin(self) -> None:
+        self._is_new = True
+        if self.after_step_rate is not None:
+            self.after_step_rate = None
+            self.sim.reschedule()
+
+    def after_step(self) -> None:
+        """Takes the limited speeds one step towards the command, and tells the tracks, for the next step."""
+        step = self.period
+        speeds = tuple(
+            limiter.limit(target, last, before, step)
+            for limiter, target, last, before in zip(
+                self._limiters, self._target, self._last, self._before_last, strict=True
+            )
+        )
+        changes = any(abs(now - last) > _STILL for now, last in zip(speeds, self._last, strict=True))
+        tells, self._is_new = self._is_new or changes, False
+        rests = speeds == self._last == self._before_last
+        self._before_last, self._last = self._last, (speeds[0], speeds[1])
+        if tells:
+            self._tell(*self._last)
+        elif rests:
+            self.after_step_rate = _NEVER
+            self.sim.reschedule()
+
+    def _tell(self, ahead: float, turning: float) -> None:
+        half = turning * self._separation / (2.0 * self._efficiency)
+        left, right = ahead - half, ahead + half
+        self._odometry.drive(left, right, self.sim.time_ns)
+        x, y, z = self._centre(ahead, turning)
+        number, vector = msgs.type_of(SPEED), msgs.type_of(CENTRE[0])
+        for side, speed in zip(self._tracks, (left, right), strict=True):
+            for velocity, centre in side:
+                velocity.publish(number(speed))
+                centre.publish(vector(x, y, z))
+
+    def _centre(self, ahead: float, turning: float) -> tuple[float, float, float]:
+        """The point of the world that it turns round [m]; infinitely far where it drives straight."""
+        if abs(turning) < _STRAIGHT:
+            return math.inf, math.inf, math.inf
+        pose = self.sim.link(self._body).pose
+        radius = 0.0 if abs(ahead) < _STRAIGHT else ahead / turning
+        x, y, z = (pose.position + pose.matrix[:, 1] * radius).tolist()
+        return x, y, z
+
+    # ------------------------------------------------------------------ readings
+
+    def publish_odometry(self) -> None:
+        """Odometry of the speeds that the tracks were told."""
+        now = self.sim.time_ns
+        pose, twist = self._odometry.at(now)
+        self._odom.publish_later(partial(odometry_message, now, self._frame, self._child, pose, twist))
+
+    def publish_transform(self) -> None:
+        """The same as a transform."""
+        now = self.sim.time_ns
+        pose, _ = self._odometry.at(now)
+        self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))

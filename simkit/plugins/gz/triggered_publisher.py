@@ -1,0 +1,247 @@
+"""gz's messages that answer messages: `gz::sim::systems::TriggeredPublisher`."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import MessageError
+from simkit.gzpython.msgs import message_class
+from simkit.gzpython.msgs.matching import TOLERANCE, Matcher
+from simkit.gzpython.msgs.message import CLASSES, Message
+from simkit.gzpython.msgs.ros import from_ros, to_ros, twins_of
+from simkit.gzpython.msgs.services import TAKEN, call
+from simkit.gzpython.msgs.text_form import parse
+from simkit.msgs.monitors import STATUS
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.gz.performer_detector import DETAILS, pose_of_status
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_NEVER: Final = 1e-9  # [Hz]
+_MS: Final = 1_000_000  # [ns]
+
+
+@dataclass(frozen=True)
+class _Output:
+    """What is published, by whom."""
+
+    publisher: Any
+    message: Message
+    ros: str
+
+
+@dataclass(frozen=True)
+class _Request:
+    """A service that is called, with what, and what its answer is in gz."""
+
+    service: str
+    message: Message
+    answer: type[Message]
+
+
+class TriggeredPublisher(WorldPlugin):
+    """Publishes messages, and calls services, whenever a message comes that meets every `<match>`.
+
+    Messages are written in protobuf's text form and named by their types in gz. A message is met between two steps;
+    what answers it goes out at once, or at the first step at or after `<delay_ms>` of simulated time.
+    """
+
+    filenames = ("gz-sim-triggered-publisher-system",)
+    names = ("gz::sim::systems::TriggeredPublisher",)
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self.once = Once(self)
+        self._due: deque[int] = deque()  # [ns]
+        self.before_step_rate = _NEVER
+        self._delay = max(0, params.integer("delay_ms", 0, maximum=10**12)) * _MS
+        self._outputs = [out for element in params.all("output") if (out := self._read_output(element)) is not None]
+        self._requests = [r for element in params.all("service") if (r := self._read_request(element)) is not None]
+        if not params.all("output") and not params.all("service"):
+            params.error("SK-PARAM-001", f"plugin {self.name!r} needs an <output> or a <service>")
+        inputs = params.all("input")
+        if not inputs:
+            params.text("input", required=True)
+        for extra in inputs[1:]:
+            message = f"plugin {self.name!r} takes one <input>; another is not used"
+            params.diagnostics.warning("SK-PLUGIN-124", message, extra.where, "a plugin for each input")
+            extra.mark_all_read()
+        if inputs:
+            self._read_input(inputs[0])
+
+    # ------------------------------------------------------------------ parameters
+
+    def _read_input(self, element: Params) -> None:
+        kind, topic = self._kind(element, "type"), _topic(element)
+        matchers = element.all("match")
+        if kind is None or not topic:
+            for one in matchers:
+                one.mark_all_read()
+            return
+        self._kind_heard = kind
+        self._matchers = [m for one in matchers if (m := self._read_match(kind, one)) is not None]
+        if matchers and not any(one.value for one in matchers):
+            element.error("SK-PARAM-002", "found no <match> with a text, allowed is one, or none at all")
+            return
+        if kind is CLASSES["Pose"] and any(one.attributes.get("field", "").startswith("header.") for one in matchers):
+            # a stamped pose has no place for what gz has in the header beside the frame
+            self.listen(topic + DETAILS, STATUS, self._on_status)
+            return
+        known, twins = self.sim.topics().get(topic), [twin.ros for twin in twins_of(kind)]
+        self.listen(topic, sorted(twins, key=lambda ros: ros != known), self._on_message)
+
+    def _read_match(self, kind: type[Message], element: Params) -> Matcher | None:
+        field, logic = element.attribute("field"), element.attribute("logic_type", "positive")
+        tolerance = _tolerance(element)
+        if logic not in ("positive", "negative"):
+            found = f'<match logic_type="{logic}">'
+            element.error("SK-PARAM-002", f"found {found}, allowed is positive or negative")
+            return None
+        if not element.value:
+            message = f"plugin {self.name!r}: a <match> without a text has no effect"
+            element.diagnostics.warning("SK-PLUGIN-124", message, element.where)
+            return None
+        try:
+            return Matcher(kind, element.value, field, tolerance, logic == "positive")
+        except MessageError as error:
+            element.error("SK-PLUGIN-121", f"<match>{_short(element.value)}</match>: {error}")
+            return None
+
+    def _read_output(self, element: Params) -> _Output | None:
+        kind, topic = self._kind(element, "type"), _topic(element)
+        if kind is None or not topic:
+            return None
+        message = _message(kind, element.value, element, "<output>")
+        if message is None:
+            return None
+        known, twins = self.sim.topics().get(topic), [twin.ros for twin in twins_of(kind)]
+        ros = known if known in twins else twins[0]
+        return _Output(self.advertise(topic, ros), message, ros)
+
+    def _read_request(self, element: Params) -> _Request | None:
+        name, text = element.attribute("name"), element.attribute("reqMsg")
+        element.attribute("timeout")  # [ms]; a service answers at once
+        kind, answer = self._kind(element, "reqType", TAKEN), self._kind(element, "repType", CLASSES)
+        if not name:
+            element.error("SK-PARAM-001", "<service> needs a name=: the service's")
+        if kind is None or answer is None or not name:
+            return None
+        message = _message(kind, text, element, "reqMsg")
+        return None if message is None else _Request(valid_topic(name), message, answer)
+
+    def _kind(self, element: Params, attribute: str, known: Any = None) -> type[Message] | None:
+        """The message class that an attribute names; None after an error."""
+        written = element.attribute(attribute)
+        if not written:
+            element.error("SK-PARAM-001", f'<{element.name}> needs {attribute}=: a type such as "gz.msgs.Boolean"')
+            return None
+        package, _, name = written.rpartition(".")
+        listed = [one for one in CLASSES if _has_twin(one)] if known is None else list(known)
+        if name in listed and package in ("gz.msgs", "ignition.msgs"):
+            return message_class(name)
+        hint = did_you_mean(name, listed) or f"allowed are {', '.join(sorted(listed))} of gz.msgs"
+        element.diagnostics.error(
+            "SK-PLUGIN-120",
+            f'<{element.name} {attribute}="{written}">: no message of that type can come or go here',
+            element.where,
+            hint,
+        )
+        return None
+
+    # ------------------------------------------------------------------ what comes
+
+    def _on_message(self, message: Any) -> None:
+        self._hear(from_ros(self._kind_heard, message) if self._matchers else None)
+
+    def _on_status(self, message: Any) -> None:
+        self._hear(pose_of_status(message))
+
+    def _hear(self, message: Message | None) -> None:
+        if message is not None and not all(matcher.meets(message) for matcher in self._matchers):
+            return
+        if self._delay == 0:
+            self._answer()
+            return
+        self._due.append(self.sim.time_ns + self._delay)
+        self._set_pace()
+
+    def reset(self) -> None:
+        self.sim.reschedule()
+
+    def before_step(self) -> None:
+        while self._due and self._due[0] <= self.sim.time_ns:
+            self._due.popleft()
+            self._answer()
+        self._set_pace()
+
+    def _set_pace(self) -> None:
+        """Looks at the time at every step only while something waits for it."""
+        pace = None if self._due else _NEVER
+        if pace != self.before_step_rate:
+            self.before_step_rate = pace
+            self.sim.reschedule()
+
+    def _answer(self) -> None:
+        for out in self._outputs:
+            if out.publisher.wanted:
+                out.publisher.publish(to_ros(out.message, out.ros))
+        for request in self._requests:
+            was_taken, answer = call(self.sim, request.service, request.message, request.answer)
+            if not was_taken:
+                hint = did_you_mean(request.service, self.sim.services())
+                message = f"there is no service {request.service!r} that takes its request"
+                self.once.warn("SK-PLUGIN-122", request.service, message, hint)
+            elif "data" in request.answer.FIELDS and answer.data is False:
+                message = f"service {request.service!r} was called and did not succeed"
+                self.once.warn("SK-PLUGIN-122", f"{request.service} failed", message)
+
+
+def _has_twin(name: str) -> bool:
+    try:
+        return bool(twins_of(CLASSES[name]))
+    except MessageError:
+        return False
+
+
+def _topic(element: Params) -> str:
+    """The topic that an element names; empty after an error."""
+    written = element.attribute("topic")
+    topic = valid_topic(written)
+    if topic == "/":
+        element.error("SK-PARAM-001", f"<{element.name}> needs a topic=: a topic's name, found {written!r}")
+        return ""
+    return topic
+
+
+def _tolerance(element: Params) -> float:
+    text = element.attribute("tol", str(TOLERANCE))
+    try:
+        tolerance = float(text)
+    except ValueError:
+        tolerance = -1.0
+    if not tolerance >= 0.0:
+        element.error("SK-PARAM-002", f'found <match tol="{text}">, allowed is a number of at least 0')
+        return TOLERANCE
+    return tolerance
+
+
+def _message(kind: type[Message], text: str, element: Params, what: str) -> Message | None:
+    try:
+        message = parse(kind, text)
+        for twin in twins_of(kind)[:1] if _has_twin(kind.__name__) else ():
+            to_ros(message, twin.ros)  # what the type cannot hold is said now
+    except MessageError as error:
+        element.error("SK-PLUGIN-121", f"{what} {_short(text)}: {error}")
+        return None
+    return message
+
+
+def _short(text: str) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= 80 else text[:77] + "..."

@@ -1,0 +1,354 @@
+"""Friction that differs along and across a direction, and contacts that slip with the force on them.
+
+MuJoCo's contacts have two coefficients, along two tangents that it chooses by the normal alone. Gazebo's have them
+along `<fdir1>`, which turns with a link: a wheel with rollers holds along them and rolls across. And Gazebo's contacts
+may slip: their surfaces pass each other at a speed of compliance times force (ODE's `slip1`, `slip2` [m/s/N]).
+
+So between the engine's pass over positions and velocities and its solving for forces, the contacts of such collisions
+get their tangents and coefficients, and their friction the softness that lets it slip. It is done in every forward
+pass (`Physics.contact_law`), whoever asks for it: no reader makes a difference. `softness` makes them soft.
+"""
+
+from __future__ import annotations
+
+import math
+import weakref
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.compiler.friction import coefficients_of, has_direction, slips_of
+from simkit.runtime.physics import STALE
+from simkit.runtime.softness import Softness
+from simkit.runtime.surface import Belt, Flow, Surfaces
+
+if TYPE_CHECKING:
+    from simkit.compiler.names import LinkBinding, NameMap
+    from simkit.runtime.parts import Structure
+    from simkit.runtime.simulation import Simulation
+    from simkit.scene import SceneCollision
+
+Floats = npt.NDArray[np.float64]
+Numbers = list[float]
+
+_ELLIPTIC = mujoco.mjtCone.mjCONE_ELLIPTIC
+_NO_ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+_SHARED = "directed friction"
+_UPRIGHT = 1e-2  # of the square of a direction: with less of it along a surface it has none there
+
+
+@dataclass(frozen=True, slots=True)
+class SlippingWheel:
+    """A wheel whose contacts slip the more the faster it turns.
+
+    Attributes:
+        link, joint: scoped names of the wheel and of the joint that it turns on.
+    """
+
+    link: str
+    joint: str
+
+
+Slips = Callable[[], Floats]
+"""Of each wheel the compliances across (along its axle) and ahead, per turning rate [m/N], shape (n, 2)."""
+
+
+class DirectedFriction:
+    """The directed and slipping contacts of a simulation; where there are none it costs nothing."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._wheels: weakref.WeakKeyDictionary[Any, tuple[tuple[SlippingWheel, ...], Slips]]
+        self._wheels = weakref.WeakKeyDictionary()
+        self._belts: weakref.WeakKeyDictionary[Any, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
+
+    def bind(self, structure: Structure) -> None:
+        """Finds what collides in a directed way in a structure."""
+        table = self._table(structure)
+        there = {id(plugin) for part in structure.parts.values() for plugin, _ in part.plugins}
+        for owner, (wheels, slips) in self._wheels.items():
+            if id(owner) in there:
+                table.add_wheels(owner, wheels, slips)
+        for owner, belts in self._belts.items():
+            if id(owner) in there:
+                table.add_belts(owner, belts())
+        self._sim.physics.contact_law = table if table else None
+
+    def add_belts(self, owner: Any, belts: Callable[[], Sequence[Belt]]) -> None:
+        """Has surfaces run from now on, for as long as their plugin is there.
+
+        Args:
+            owner: the plugin.
+            belts: gives them in the present engine model.
+        """
+        self._belts[owner] = belts
+        table = self._table(self._sim.structure)
+        table.add_belts(owner, belts())
+        self._sim.physics.contact_law = table
+        self._sim.physics.changed(STALE)
+
+    def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: Slips) -> None:
+        """Has the contacts of wheels slip from now on, for as long as their plugin is there.
+
+        Args:
+            owner: the plugin.
+            wheels: of its model.
+            slips: asked in every forward pass, so that they are part of the plugin's state.
+        """
+        self._wheels[owner] = tuple(wheels), slips
+        table = self._table(self._sim.structure)
+        table.add_wheels(owner, wheels, slips)
+        self._sim.physics.contact_law = table
+        self._sim.physics.changed(STALE)
+
+    def owners(self) -> list[Any]:
+        """The plugins whose wheels slip, of those that are there."""
+        there = {id(plugin) for part in self._sim.structure.parts.values() for plugin, _ in part.plugins}
+        return [owner for owner in self._wheels if id(owner) in there]
+
+    def _table(self, structure: Structure) -> _Table:
+        compiled = structure.compiled
+        made: _Table = compiled.names.shared(_SHARED, lambda: _Table(compiled.model, compiled.names))
+        return made
+
+
+@dataclass(slots=True)
+class _Row:
+    """What a collision asks for; the first direction is `axis` in the frame of `body`.
+
+    Attributes:
+        mu: friction along and across.
+        slip: compliances along and across [m/s/N].
+        tree: the kinematic tree that it is part of.
+        dof: of the wheel's turning, whose rate its slips are multiplied with; -1 for none.
+    """
+
+    geoms: list[int]
+    body: int
+    axis: Numbers
+    mu: tuple[float, float]
+    slip: tuple[float, float]
+    tree: int
+    dof: int = -1
+
+
+class _Table:
+    """What one compiled model has of them, and how its contacts are changed."""
+
+    def __init__(self, model: Any, names: NameMap) -> None:
+        self.model, self._names = model, names
+        self._rows: dict[str, _Row] = {}
+        self._sources: dict[int, tuple[list[int], Slips]] = {}
+        self._softness = Softness(model)
+        self.surfaces, self._belts = Surfaces(model), set[int]()
+        for link in names.links.values():
+            for collision in link.scene.collisions:
+                surface = collision.surface
+                if has_direction(surface) or any(slips_of(surface)):
+                    self._rows[collision.scoped] = self._of_surface(link, collision)
+        self._arrange()
+
+    def __bool__(self) -> bool:
+        return bool(self._rows or self._belts)
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is anything that may have to be done."""
+        return bool(self._rows) or self.surfaces.run
+
+    def add_belts(self, owner: Any, belts: Sequence[Belt]) -> None:
+        """Surfaces that run; a second time nothing more."""
+        if id(owner) not in self._belts:
+            self._belts.add(id(owner))
+            for belt in belts:
+                self.surfaces.add(belt)
+                self._rub(belt)
+
+    def _rub(self, belt: Belt) -> None:
+        """Gives the collisions of a belt the friction that its plugin asks for."""
+        if belt.friction is None:
+            return
+        for scoped in dict.fromkeys(self._names.geom_owner(geom)[1] for geom in belt.geoms):
+            geoms = [geom for geom in belt.geoms if self._names.geom_owner(geom)[1] == scoped]
+            old = self._rows.get(scoped)
+            slip = (0.0, 0.0) if old is None else old.slip
+            tree = int(self.model.body_treeid[belt.body])
+            self._rows[scoped] = _Row(geoms, belt.body, list(belt.axle), belt.friction, slip, tree)
+        self._arrange()
+
+    def _of_surface(self, link: LinkBinding, collision: SceneCollision) -> _Row:
+        surface = collision.surface
+        frame = _frame_of(surface.fdir1_frame, link.scoped, self._names)
+        body, offset = (link.body, link.offset @ collision.pose_link) if frame is None else (frame.body, frame.offset)
+        axis = (offset.matrix @ np.array(surface.fdir1)).tolist()
+        tree = int(self.model.body_treeid[link.body])
+        return _Row(self._geoms(link, collision), body, axis, coefficients_of(surface), slips_of(surface), tree)
+
+    def _geoms(self, link: LinkBinding, collision: SceneCollision) -> list[int]:
+        return [geom for geom in link.geoms if self._names.geom_owner(geom)[1] == collision.scoped]
+
+    def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: Slips) -> None:
+        """Lets them slip; a second time nothing more."""
+        if id(owner) in self._sources:
+            return
+        keys = []
+        for wheel in wheels:
+            link, joint = self._names.link(wheel.link), self._names.joint(wheel.joint)
+            collision = link.scene.collisions[0]
+            row = self._rows.get(collision.scoped)
+            number = joint.joint_ids[0]
+            body, axis = int(self.model.jnt_bodyid[number]), self.model.jnt_axis[number].tolist()
+            if row is None:
+                mu, tree = coefficients_of(collision.surface), int(self.model.body_treeid[link.body])
+                row = _Row(self._geoms(link, collision), body, axis, mu, (0.0, 0.0), tree)
+                self._rows[collision.scoped] = row
+            elif not has_direction(collision.surface):
+                row.body, row.axis = body, axis
+            row.dof = joint.dofs[0]
+            keys.append(collision.scoped)
+        order = list(self._rows)
+        self._sources[id(owner)] = ([order.index(key) for key in keys], slips)
+        self._arrange()
+
+    def _arrange(self) -> None:
+        rows = list(self._rows.values())
+        self._list = rows
+        self._row_of = [-1] * (self.model.ngeom + 1)  # the last for -1: no geom
+        for number, row in enumerate(rows):
+            for geom in row.geoms:
+                self._row_of[geom] = number
+        self._slip: Floats = np.array([row.slip for row in rows], float).reshape(-1, 2)
+        self._dof = np.array([row.dof for row in rows], int)
+        self._may_slip = bool(self._slip.any() or self._sources)
+
+    # ------------------------------------------------------------------ in a forward pass
+
+    def runs(self) -> Any:
+        """How belts run now."""
+        return self.surfaces.runs()
+
+    def shape(self, data: Any, runs: Any = None) -> None:
+        """Gives the contacts of such collisions their tangents, coefficients and softness."""
+        model, flow = self.model, self.surfaces.look(data, runs)
+        if not data.ncon:
+            return
+        found = self._find(data.contact)
+        if not found:
+            if flow is not None:
+                self.surfaces.carry(data)
+                mujoco.mj_referenceConstraint(model, data)
+            return
+        self._direct(data, found, flow)
+        self.surfaces.carry(data)
+        mujoco.mj_makeConstraint(model, data)
+        slips = self._slips(data) if self._may_slip else []
+        soft = []
+        if any(map(any, slips)):
+            soft = [(number, self._list[row].tree, slips[row]) for number, row, _ in found if any(slips[row])]
+        is_elliptic = model.opt.cone == _ELLIPTIC
+        if is_elliptic and soft:
+            self._softness.soften(data, soft)
+        if not model.opt.disableflags & _NO_ISLANDS:
+            mujoco.mj_island(model, data)
+        mujoco.mj_projectConstraint(model, data)
+        mujoco.mj_referenceConstraint(model, data)
+        if soft and not is_elliptic:
+            for number, _, slip in soft:
+                self._softness.soften_pyramid(data, number, slip)
+
+    def _find(self, contact: Any) -> list[tuple[int, int, int]]:
+        """Those that it is about: contact, row and the other geom."""
+        row_of, found = self._row_of, []
+        for number, (first, second) in enumerate(contact.geom.tolist()):
+            row, other = row_of[first], second
+            if row < 0:
+                row, other = row_of[second], first
+            if row >= 0:
+                found.append((number, row, other))
+        if found:
+            acts, dims = contact.efc_address.tolist(), contact.dim.tolist()
+            found = [one for one in found if acts[one[0]] >= 0 and dims[one[0]] > 1]
+        return found
+
+    def solve(self, data: Any) -> None:
+        """The rest of a forward pass, after `shape`."""
+        self.surfaces.solve(data)
+
+    def _direct(self, data: Any, found: list[tuple[int, int, int]], flow: Flow | None = None) -> None:
+        """Turns the tangents of contacts and sets their coefficients; lists are quicker here than arrays of three."""
+        contact, which = data.contact, [number for number, _, _ in found]
+        frames, frictions = contact.frame[which].tolist(), contact.friction[which, :2].tolist()
+        flows = contact.surfacevel[which].tolist() if self.model.flg_surfacevel else None
+        # a belt's friction is along its own way, not along <fdir1>
+        along = {} if flow is None else dict(zip(flow.numbers.tolist(), flow.directions.tolist(), strict=True))
+        for index, (_, row, other) in enumerate(found):
+            asked, friction = self._list[row], frictions[index]
+            # what is there may be less: what velocity control carries slides freely
+            most = min(*friction, float(self.model.geom_friction[other, 0]) if other >= 0 else math.inf)
+            frictions[index] = [max(min(mu, most), mujoco.mjMINMU) for mu in asked.mu]
+            frame = frames[index]
+            axis = along.get(found[index][0]) or _product(data.xmat[asked.body].tolist(), asked.axis)
+            turned = _turned(frame, axis)
+            if turned is frame:  # no direction there: as where the file gives none
+                frictions[index] = [min(frictions[index])] * 2
+            if flows is not None:
+                _turn_flow(flows[index], frame, turned)
+            frames[index] = turned
+        contact.frame[which] = frames
+        contact.friction[which, :2] = frictions
+        if flows is not None:
+            contact.surfacevel[which] = flows
+
+    def _slips(self, data: Any) -> list[Numbers]:
+        """Compliances of all rows [m/s/N]."""
+        slips = self._slip
+        if self._sources:
+            slips = slips.copy()
+            for rows, source in self._sources.values():
+                slips[rows] += np.abs(data.qvel[self._dof[rows]])[:, None] * source()
+        found: list[Numbers] = slips.tolist()
+        return found
+
+
+def _frame_of(name: str, link: str, names: NameMap) -> LinkBinding | None:
+    """The link that a direction is given in, by its name in the scope of the collision's link; None for its own."""
+    if not name:
+        return None
+    scope = link.rpartition("::")[0]
+    return names.links.get(f"{scope}::{name}" if scope else name)
+
+
+def _turned(frame: Numbers, wanted: Numbers) -> Numbers:
+    """A contact's frame (normal and two tangents, (9,)) whose first tangent is along a direction.
+
+    The frame as it was where the direction stands on the surface.
+    """
+    nx, ny, nz = frame[:3]
+    x, y, z = wanted
+    over = x * nx + y * ny + z * nz
+    fx, fy, fz = x - over * nx, y - over * ny, z - over * nz
+    square = fx * fx + fy * fy + fz * fz
+    if square <= _UPRIGHT * (x * x + y * y + z * z):
+        return frame
+    length = math.sqrt(square)
+    fx, fy, fz = fx / length, fy / length, fz / length
+    return [nx, ny, nz, fx, fy, fz, ny * fz - nz * fy, nz * fx - nx * fz, nx * fy - ny * fx]
+
+
+def _turn_flow(flow: Numbers, before: Numbers, after: Numbers) -> None:
+    """Takes the speed of a surface along the tangents of one frame over to those of another."""
+    one, two = flow[:2]
+    over = [one * a + two * b for a, b in zip(before[3:6], before[6:], strict=True)]
+    flow[0] = sum(a * b for a, b in zip(over, after[3:6], strict=True))
+    flow[1] = sum(a * b for a, b in zip(over, after[6:], strict=True))
+
+
+def _product(matrix: Numbers, vector: Numbers) -> Numbers:
+    """A row-major matrix (9,) times a vector (3,)."""
+    a, b, c, d, e, f, g, h, i = matrix
+    x, y, z = vector
+    return [a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z]
