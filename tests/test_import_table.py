@@ -19,7 +19,7 @@ ROOMS: dict[str, frozenset[str]] = {
     "earth": frozenset({"scene"}),
     "sensors": frozenset({"runtime", "compiler", "scene", "earth"}),
     "gzpython": frozenset({"runtime", "scene", "earth"}),
-    "plugins": frozenset({"runtime", "compiler", "scene", "earth", "gzpython"}),
+    "plugins": frozenset({"runtime", "compiler", "scene", "earth", "gzpython", "sinks"}),
     "control": frozenset({"plugins", "runtime", "compiler", "scene"}),
     "motion": frozenset({"control", "plugins", "runtime", "compiler", "scene"}),
     "authoring": frozenset({"plugins", "gzpython", "sensors", "runtime", "scene"}),

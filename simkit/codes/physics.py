@@ -108,7 +108,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-PHYS-006",
         "warning",
-        "`slip1`, `slip2` are not used",
+        "`slip1`, `slip2` differ without `<fdir1>`",
         "",
         surface("<friction><ode><mu>1</mu><mu2>1</mu2><slip1>0.1</slip1></ode></friction>"),
     ),

@@ -91,20 +91,43 @@ def _int32(bits: int) -> int:
     return bits - (1 << 32) if bits >= 1 << 31 else bits
 
 
+def has_direction(surface: Surface) -> bool:
+    """Whether friction or slip of a surface differ along and across a direction that it gives."""
+    along, across = coefficients_of(surface, has_one=True)
+    return any(surface.fdir1) and (along != across or surface.slip1 != surface.slip2)
+
+
+def coefficients_of(surface: Surface, *, has_one: bool | None = None) -> tuple[float, float]:
+    """Sliding friction along and across the direction, as far as the engine takes it; without one twice the smaller."""
+    mu, mu2 = (min(max(0.0, m), MU_MOST) if math.isfinite(m) else MU_MOST for m in (surface.mu, surface.mu2))
+    if has_one is None:
+        has_one = has_direction(surface)
+    return (mu, mu2) if has_one else (min(mu, mu2), min(mu, mu2))
+
+
+def slips_of(surface: Surface) -> tuple[float, float]:
+    """How fast a surface slips per force [m/s/N], along and across its direction; nothing where that is not known."""
+    slips = max(0.0, surface.slip1), max(0.0, surface.slip2)
+    return slips if slips[0] == slips[1] or any(surface.fdir1) else (0.0, 0.0)
+
+
 def _sliding(surface: Surface, diagnostics: Diagnostics) -> float:
-    mu, mu2 = (max(0.0, m) if math.isfinite(m) else MU_MOST for m in (surface.mu, surface.mu2))
-    if mu > MU_MOST or mu2 > MU_MOST:
-        diagnostics.note("SK-PHYS-002", f"friction coefficient {max(mu, mu2):g} is taken as {MU_MOST:g}", surface.where)
-        mu, mu2 = min(mu, MU_MOST), min(mu2, MU_MOST)
+    """The larger coefficient of a surface with a direction: its contacts get both as the run goes."""
+    most = max((m if math.isfinite(m) else MU_MOST for m in (surface.mu, surface.mu2)), default=0.0)
+    if most > MU_MOST:
+        diagnostics.note("SK-PHYS-002", f"friction coefficient {most:g} is taken as {MU_MOST:g}", surface.where)
+    mu, mu2 = coefficients_of(surface, has_one=True)
+    if has_direction(surface):
+        return max(mu, mu2)
     if mu != mu2:
         diagnostics.warning(
             "SK-PHYS-005",
             f"friction differs along (mu {mu:g}) and across (mu2 {mu2:g}): the smaller one is used both ways",
             surface.where,
         )
-    if surface.slip1 or surface.slip2:
+    if surface.slip1 != surface.slip2:
         diagnostics.warning(
-            "SK-PHYS-006", "slip1 and slip2 are not used: contacts do not slip with the force", surface.where
+            "SK-PHYS-006", "slip1 and slip2 differ and there is no <fdir1>: they are not used", surface.where
         )
     return min(mu, mu2)
 

@@ -116,6 +116,11 @@ class ControlHost(ModelPlugin):
             self.params.diagnostics.warning("SK-CONTROL-008", message, where, near)
         return found
 
+    def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Those [m/s, rad/s] of the controller that takes velocities on a topic; None where none says."""
+        asked = (getattr(one.controller, "speed_bounds", None) for one in self.manager.controllers.values())
+        return next((found for ask in asked if ask is not None and (found := ask(topic)) is not None), None)
+
     def _report_driven(self, builder: SpecBuilder) -> None:
         """Tells of joints that another plugin drives too."""
         driven = {ref.joint: ref.owner for record in builder.records.values() for ref in record.actuators}

@@ -13,7 +13,6 @@ from functools import cache
 from typing import Any
 
 from simkit.errors import MessageError
-from simkit.msgs.forms import form_of
 from simkit.msgs.store import definition, full_name, rihs, type_of, type_store, types_of
 
 __all__ = [
@@ -38,13 +37,21 @@ __all__ = [
 _NS = 1_000_000_000
 
 
+@cache
+def _forms() -> Callable[[str], Any]:
+    """What fills messages; it needs NumPy, which those who only ask a simulation something do without."""
+    from simkit.msgs.forms import form_of
+
+    return form_of
+
+
 def make(type_name: str, /, **fields: Any) -> Any:
     """A message; fields left out are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
 
     Raises:
         MessageError: an unknown type or field (the closest is named), or a value that does not fit.
     """
-    return form_of(type_name).build(fields)
+    return _forms()(type_name).build(fields)
 
 
 def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
@@ -56,7 +63,7 @@ def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
     first: MessageError | None = None
     for name in type_names:
         try:
-            return form_of(name).build(values)
+            return _forms()(name).build(values)
         except MessageError as error:
             first = first or error
     if first is None:

@@ -45,6 +45,11 @@ ros_gz_interfaces/JointWrench[] wrenches
 std_msgs/Header header
 ros_gz_interfaces/Contact[] contacts
 """,
+    "gazebo_msgs/msg/WheelSlip": """
+string[] name
+float64[] lateral_slip
+float64[] longitudinal_slip
+""",
     "gazebo_msgs/msg/ContactState": """
 string info
 string collision1_name

@@ -11,6 +11,7 @@ from simkit.errors import MessageError
 from simkit.msgs.actions import ACTIONS, MESSAGES
 from simkit.msgs.controller_manager import MESSAGES as CONTROL_MESSAGES
 from simkit.msgs.extras import DEFINITIONS
+from simkit.msgs.monitors import MESSAGES as MONITOR_MESSAGES
 from simkit.msgs.services import SERVICES
 from simkit.msgs.world import MESSAGES as WORLD_MESSAGES
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 
-_MESSAGES = {**MESSAGES, **CONTROL_MESSAGES, **WORLD_MESSAGES}
+_MESSAGES = {**MESSAGES, **CONTROL_MESSAGES, **WORLD_MESSAGES, **MONITOR_MESSAGES}
 _SERVICE_ENDS, _ACTION_ENDS = ("Request", "Response"), ("Goal", "Result", "Feedback")
 _USED = re.compile(r"^(\w+/\w+)", re.MULTILINE)
 

@@ -134,6 +134,11 @@ float64[] fudge_factor
 float64[] fmax
 float64[] vel
 """,
+    "simkit_msgs/msg/Wind": """
+std_msgs/Header header
+geometry_msgs/Vector3 linear_velocity
+bool enable_wind
+""",
     "simkit_msgs/msg/SceneEntity": """
 ros_gz_interfaces/Entity entity
 string parent
@@ -186,6 +191,14 @@ ros_gz_interfaces/Light light
 bool success
 string status_message
 """,
+    "simkit_msgs/srv/SetWheelSlip": """
+ros_gz_interfaces/Entity entity
+float64 slip_compliance_lateral
+float64 slip_compliance_longitudinal
+---
+bool success
+string status_message
+""",
     "simkit_msgs/srv/SetMaterialColor": """
 ros_gz_interfaces/MaterialColor material_color
 ---
@@ -210,6 +223,11 @@ ros_gz_interfaces/Entity entity
 ---
 bool success
 string status_message
+""",
+    "simkit_msgs/srv/WindInfo": """
+---
+simkit_msgs/Wind wind
+geometry_msgs/Vector3 velocity
 """,
     "simkit_msgs/srv/GenerateWorldSdf": """
 ---

@@ -68,7 +68,7 @@ _CLASSIC: Final = (
     ),
     (
         "it hands a model to another program over a socket, or to a hand in a window",
-        "ArduCopterPlugin gazebo_ros_hand_of_god gazebo_ros_harness HarnessPlugin",
+        "ArduCopterPlugin gazebo_ros_harness HarnessPlugin",
     ),
     (
         "it is a demonstration of Gazebo's own, without topics",
@@ -80,9 +80,9 @@ _CLASSIC: Final = (
     (
         "what it does in Gazebo Classic's own messages, the plugin of gazebo_ros_pkgs or gz-sim of that name does here",
         """
-        gazebo_ros_camera_utils ActorPlugin DiffDrivePlugin ElevatorPlugin ForceTorquePlugin GimbalSmall2dPlugin
+        gazebo_ros_camera_utils ActorPlugin DiffDrivePlugin ForceTorquePlugin GimbalSmall2dPlugin
         GravityCompensationPlugin JointControlPlugin JointTrajectoryPlugin PressurePlugin SkidSteerDrivePlugin
-        VariableGearboxPlugin VehiclePlugin LinearBatteryConsumerPlugin
+        VariableGearboxPlugin VehiclePlugin
         """,
     ),
 )

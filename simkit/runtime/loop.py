@@ -106,12 +106,18 @@ class Loop:
             _stop_at_the_end()
             tick = physics.tick
             stop = min(self._target, before.next, sense.next, after.next)
-            has_every = before.every or after.every or sense.every
-            if has_every and stop - tick > 1:
+            has_every = bool(before.every or after.every or sense.every)
+            if has_every and stop - tick > 1 and not bus.inbox:
                 self._walk(stop - 1)
                 continue
             if bus.inbox:
                 bus.deliver_inputs()
+                if self._is_outdated:  # what an input changes counts from this step on, whatever else is due when
+                    self._refill()
+                    tick, has_every = physics.tick, bool(before.every or after.every or sense.every)
+                    stop = min(self._target, before.next, sense.next, after.next)
+                if bus.inbox:  # what an input sent is taken with the next step
+                    stop = tick + 1
             if before.every or before.next <= tick:
                 for task in before.due(tick):
                     task(tick)
@@ -141,10 +147,8 @@ class Loop:
         physics, bus = self._physics, self._bus
         before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]
         tick = physics.tick
-        while tick < stop and not self._is_outdated and not self._halts:
+        while tick < stop and not (self._is_outdated or self._halts or bus.inbox):
             _stop_at_the_end()
-            if bus.inbox:
-                bus.deliver_inputs()
             for task in before:
                 task(tick)
             physics.single()

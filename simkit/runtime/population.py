@@ -215,6 +215,7 @@ class Population:
         sim.entities.bind(structure)
         sim.labels.bind(structure)
         sim.temperatures.bind(structure)
+        sim.friction.bind(structure)
         sim.stand_wrenches(are_applied=True)
         sim.set_active(sim.faults.living(structure))
         for sensor in structure.all_sensors():

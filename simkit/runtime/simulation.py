@@ -10,6 +10,7 @@ from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError, SimulationDiverged
 from simkit.runtime.clock import Clock
 from simkit.runtime.contents import Contents
+from simkit.runtime.directed_friction import DirectedFriction
 from simkit.runtime.divergence import name_drivers
 from simkit.runtime.engine_access import EngineAccess
 from simkit.runtime.entities import Entities
@@ -27,6 +28,7 @@ from simkit.runtime.schedule import fill
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.snapshot import Snapshot, bring_back, promise, take
 from simkit.runtime.temperatures import Temperatures
+from simkit.runtime.wind import Wind
 from simkit.runtime.world_control import WorldControl
 from simkit.runtime.wrenches import StandingWrenches
 from simkit.scene import SceneWorld
@@ -40,6 +42,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
     Attributes:
         labels: what segmentation and bounding box cameras call things, by scoped name of a model or a visual.
         temperatures: what thermal cameras see, by scoped name of a model, a link or a visual.
+        wind: how the air moves.
         faults: what becomes of plugins that raise, and which of them are left out.
         render_thread: whether pictures of cameras are drawn beside the physics where nobody waits for them; to be
             changed at any time, for it changes no message.
@@ -68,6 +71,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self.originals: dict[str, Any] = {}
         self._exact_limits: list[Joint] = []
         self._standing = StandingWrenches(self)
+        self.wind = Wind(world)
         self._closed = False
         self.open_world(self)
         self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
@@ -75,6 +79,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self.entities = Entities(self, world)
         self.labels = Labels(self)
         self.temperatures = Temperatures(self)
+        self.friction = DirectedFriction(self)
         self._population = Population(self, load_model, make_parts)
         self._population.adopt(structure)
         self._population.start(list(structure.parts.values()), diagnostics)

@@ -149,6 +149,7 @@ class TopicBus:
             table[end.topic].remove(end)
         self._audience(end.topic).feeds = bool(self._listeners.get(end.topic))
         self._tell_audience(end.topic)
+        self._tidy(end.topic)
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Leaves only the ends of these owners (and those without one) in use."""
@@ -373,6 +374,13 @@ class TopicBus:
             audience.readers.remove(subscription)
             audience.count()
             self._tell_audience(subscription.topic)
+            self._tidy(subscription.topic)
+
+    def _tidy(self, topic: str) -> None:
+        """Forgets a topic that has no end any more: others come, with other names, for as long as a run goes on."""
+        if not (self._publishers.get(topic) or self._listeners.get(topic) or self._audience(topic).readers):
+            for table in (self._publishers, self._listeners, self._audiences):
+                table.pop(topic, None)
 
     def _announce(self, topic: str, type_name: str) -> None:
         for watcher in self._watchers:

@@ -94,6 +94,7 @@ class WorldControl(Aspect):
             sensor.take_held()  # what was held was measured under the old one
         sim.physics.changed_model()
         sim.mj_model.opt.gravity[:] = numbers
+        sim.reschedule()  # whoever counts on it asks to be called
 
     # ------------------------------------------------------------------ models
 

@@ -43,6 +43,8 @@ class Surface:
         patch_radius, surface_radius: of the torsional model [m]; the patch counts where `use_patch_radius`.
         torsional_slip: slip of the torsional friction, for engines that have it.
         rolling: coefficient of rolling friction (Bullet's); None where not given.
+        slip1, slip2: how fast a contact slips along and across `fdir1` [m/s/N].
+        fdir1_frame: the link that `fdir1` is given in; empty for the collision's own frame.
     """
 
     mu: float = 1.0
@@ -68,6 +70,7 @@ class Surface:
     use_patch_radius: bool = True
     torsional_slip: float = 0.0
     rolling: float | None = None
+    fdir1_frame: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,8 @@ def read_options(params: Params) -> AirSpeedOptions:
 class AirSpeed(AirSensor):
     """`air_speed`: ½ρv·|v| with the speed v of the air along the sensor's x and its density ρ there.
 
-    The air moves with the world's `<wind>`; the sensor's velocity is that of its own origin, lever arm included.
+    The air moves with the world's wind, the gusts of a wind plugin included; the sensor's velocity is that of its own
+    origin, lever arm included.
     """
 
     kinds = ("air_speed",)
@@ -64,7 +65,7 @@ class AirSpeed(AirSensor):
     def prepare(self) -> None:
         self._enter_air()
         quirks = self.sim.world.gazebo_quirks
-        self._wind: Vector = np.zeros(3) if quirks else np.array(self.sim.world.wind)
+        self._is_calm = quirks
         self._unit = _HECTO if quirks else 1.0
         self.noise = self._make_noise((self.options.pressure,), "air_speed")
 
@@ -78,9 +79,15 @@ class AirSpeed(AirSensor):
         body = self._body
         rotation = data.xmat[body].reshape(3, 3)
         velocity = point_velocity(model, data, body, rotation @ self._offset_position)
-        speed = float((velocity - self._wind) @ (rotation @ self._offset_rotation[:, 0]))
+        speed = float((velocity - self._wind(data)) @ (rotation @ self._offset_rotation[:, 0]))
         air = self._column.at(self._height(data))
         return Flow(0.5 * air.density * speed * abs(speed), air.temperature)
+
+    def _wind(self, data: Any) -> Vector:
+        """Velocity of the air [m/s] in the step that led to a state, shape (3,); Gazebo's sensor knows of none."""
+        if self._is_calm:
+            return np.zeros(3)
+        return np.array(self.sim.wind.at(max(round(data.time / self.sim.timestep) - 1, 0)))
 
     def perturb(self, reading: Flow, index: int) -> Flow:
         if self.noise.is_silent:

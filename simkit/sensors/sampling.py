@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 _MOST_ROWS = 64  # gathered before samples are made of them
 
 
+def _always() -> bool:
+    return True
+
+
 class Sampler(abc.ABC):
     """What of a sensor has to do with its samples; the rest is `simkit.sensors.base.Sensor`."""
 
@@ -54,6 +58,11 @@ class Sampler(abc.ABC):
         # what a kind does not override is not called at every sample
         self._is_choosy, self._is_reticent = self._overrides("accepts"), self._overrides("tells")
         self._evolves = self._overrides("evolve")
+        self._is_on: Callable[[], bool] = _always
+
+    def only_while(self, is_on: Callable[[], bool]) -> None:
+        """Has due times give samples only while `is_on()`: there is none of a sensor without power."""
+        self._is_on, self._is_choosy = is_on, True
 
     def _overrides(self, method: str) -> bool:
         return getattr(type(self), method) is not getattr(Sampler, method)
@@ -146,7 +155,7 @@ class Sampler(abc.ABC):
         """The due tick: measures and publishes where somebody reads, else keeps the physics state."""
         if self._flight is not None and not self._receive(self._flight, tick):
             return
-        if self._is_choosy and not self.accepts(tick):
+        if self._is_choosy and not (self._is_on() and self.accepts(tick)):
             return
         sim = self.sim
         if self._revision != sim.bus.revision:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,14 +11,12 @@ import numpy.typing as npt
 
 from simkit.params import Params
 from simkit.runtime.topics import Publisher
+from simkit.runtime.writable import ALLOWED, allowed_folder
 from simkit.sensors.pictures import TYPE, pixels_of
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
-
-ALLOWED = "SIMKIT_SAVE_PATH"
-"""Environment variable: folders, separated as in PATH, where worlds may save pictures, beside the working directory."""
 
 MOST = 100_000
 """Pictures of one camera in a run."""
@@ -51,18 +48,6 @@ def read_save(block: Params) -> Path | None:
         hint = f"a path below the working directory, or the folder's name in the environment variable {ALLOWED}"
         save.diagnostics.warning("SK-SENSOR-009", message, where, hint)
     return folder
-
-
-def allowed_folder(path: str) -> Path | None:
-    """The folder, with every symbolic link followed; None where it may not be written to."""
-    try:
-        folder = Path(path).resolve()
-        roots = [Path.cwd(), *(Path(root) for root in os.environ.get(ALLOWED, "").split(os.pathsep) if root)]
-        if any(folder.is_relative_to(root.resolve()) for root in roots):
-            return folder
-    except (OSError, RuntimeError, ValueError):  # no such place: a loop of links, a name with a zero byte
-        pass
-    return None
 
 
 class SavedPictures(Publisher):

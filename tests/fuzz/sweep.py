@@ -90,6 +90,18 @@ SUN = """<light name="sun" type="directional"><irradiance>800</irradiance></ligh
 PLACE = """<spherical_coordinates><latitude_deg>46.5</latitude_deg><longitude_deg>6.6</longitude_deg>
   <elevation>400</elevation></spherical_coordinates>"""
 DRIVE = "<left_joint>a</left_joint><right_joint>b</right_joint>"
+_FOUR = "".join(
+    f'<link name="w{n}"/><joint name="{n}" type="revolute"><parent>l</parent><child>w{n}</child><axis/></joint>'
+    for n in "abcd"
+)
+MECANUM = f"""<link name="l"/>{_FOUR}<plugin filename="gz-sim-mecanum-drive-system" name="p">
+  <front_left_joint>a</front_left_joint><front_right_joint>b</front_right_joint><back_left_joint>c</back_left_joint>
+  <back_right_joint>d</back_right_joint><wheel_separation>1</wheel_separation><wheelbase>1</wheelbase>
+  <wheel_radius>0.1</wheel_radius><odom_publish_frequency>50</odom_publish_frequency></plugin>"""
+SLIP = f"""<link name="l"/><link name="w">{MASS}<collision name="c">{BOX}</collision></link><joint name="a"
+  type="revolute"><parent>l</parent><child>w</child><axis/></joint><plugin filename="gz-sim-wheel-slip-system" name="p">
+  <wheel link_name="w"><slip_compliance_lateral>1</slip_compliance_lateral><wheel_normal_force>10</wheel_normal_force>
+  <slip_compliance_longitudinal>1</slip_compliance_longitudinal><wheel_radius>0.1</wheel_radius></wheel></plugin>"""
 PLUGINS = {
     "gz-sim-diff-drive-system": f"""{DRIVE}<wheel_separation>1</wheel_separation><wheel_radius>0.1</wheel_radius>
       <odom_publish_frequency>50</odom_publish_frequency><max_velocity>1</max_velocity><min_velocity>-1</min_velocity>
@@ -97,7 +109,29 @@ PLUGINS = {
       <max_angular_jerk>1</max_angular_jerk>""",
     "gz-sim-diff-drive-system ": f"""{DRIVE}<wheel_separation>1</wheel_separation><wheel_radius>0.1</wheel_radius>
       {ODOMETRY_NOISE}""",
+    "gz-sim-ackermann-steering-system": f"""{DRIVE}<left_steering_joint>a</left_steering_joint>
+      <right_steering_joint>b</right_steering_joint><wheel_base>1</wheel_base><kingpin_width>1</kingpin_width>
+      <wheel_separation>1</wheel_separation><wheel_radius>0.1</wheel_radius><steering_limit>0.5</steering_limit>
+      <steer_p_gain>1</steer_p_gain><steer_i_gain>0</steer_i_gain><steer_d_gain>0</steer_d_gain>
+      <steer_i_max>0</steer_i_max><steer_i_min>0</steer_i_min><steer_cmd_max>10</steer_cmd_max>
+      <steer_cmd_min>-10</steer_cmd_min><steer_cmd_offset>0</steer_cmd_offset>""",
+    "gz-sim-ackermann-steering-system ": """<steering_only>1</steering_only><use_actuator_msg>1</use_actuator_msg>
+      <actuator_number>0</actuator_number><left_steering_joint>a</left_steering_joint>
+      <right_steering_joint>b</right_steering_joint>""",
     "gz-sim-touchplugin-system": """<target>l</target><time>0.1</time><namespace>n</namespace><enabled>1</enabled>""",
+    "gz-sim-linearbatteryplugin-system": """<battery_name>b</battery_name><voltage>12</voltage><capacity>1</capacity>
+      <open_circuit_voltage_constant_coef>12</open_circuit_voltage_constant_coef><initial_charge>1</initial_charge>
+      <open_circuit_voltage_linear_coef>-3</open_circuit_voltage_linear_coef><resistance>0.06</resistance>
+      <smooth_current_tau>1</smooth_current_tau><power_load>5</power_load><enable_recharge>1</enable_recharge>
+      <charging_time>1</charging_time><start_draining>1</start_draining>""",
+    "libLinearBatteryPlugin.so": """<link_name>l</link_name><battery_name>b</battery_name><capacity>1</capacity>
+      <open_circuit_voltage_constant_coef>12</open_circuit_voltage_constant_coef><initial_charge>1</initial_charge>
+      <open_circuit_voltage_linear_coef>-3</open_circuit_voltage_linear_coef><resistance>0.06</resistance>
+      <smooth_current_tau>1</smooth_current_tau>""",
+    "gz-sim-kinetic-energy-monitor-system": """<link_name>l</link_name>
+      <kinetic_energy_threshold>1</kinetic_energy_threshold>""",
+    "gz-sim-performer-detector-system": """<geometry><box><size>1 1 1</size></box></geometry>
+      <pose>0 0 1 0 0 0</pose>""",
     "gz-sim-joint-controller-system": """<joint_name>a</joint_name><initial_velocity>1</initial_velocity>
       <use_force_commands>1</use_force_commands><p_gain>1</p_gain><i_gain>1</i_gain><d_gain>1</d_gain><i_max>1</i_max>
       <i_min>-1</i_min><cmd_max>1</cmd_max><cmd_min>-1</cmd_min><cmd_offset>0</cmd_offset>""",
@@ -118,6 +152,27 @@ PLUGINS = {
       <gaussian_noise>0.1</gaussian_noise>""",
     "gz-sim-apply-link-wrench-system": """<persistent><entity_name>m::l</entity_name><entity_type>link</entity_type>
       <force>1 0 0</force><torque>0 0 1</torque></persistent>""",
+    "gz-sim-lift-drag-system": """<link_name>l</link_name><cla>4</cla><cda>0.1</cda><cma>0.1</cma>
+      <alpha_stall>0.3</alpha_stall><cla_stall>-1</cla_stall><cda_stall>1</cda_stall><cma_stall>0</cma_stall><a0>0.1</a0>
+      <air_density>1.2</air_density>
+      <area>1</area><cp>0 0 0</cp><forward>1 0 0</forward><upward>0 0 1</upward><radial_symmetry>0</radial_symmetry>
+      <reversible>1</reversible><control_joint_name>a</control_joint_name><cm_delta>0.1</cm_delta>
+      <control_joint_rad_to_cl>4</control_joint_rad_to_cl>""",
+    "libBuoyancyPlugin.so": """<fluid_density>1000</fluid_density><link name="l"><volume>1</volume>
+      <center_of_volume>0 0 0</center_of_volume></link>""",
+    "gz-sim-track-controller-system": """<link>l</link><track_orientation>0 0 1</track_orientation>
+      <odometry_publish_frequency>50</odometry_publish_frequency><max_command_age>1</max_command_age>
+      <min_velocity>-1</min_velocity><max_velocity>1</max_velocity><min_acceleration>-1</min_acceleration>
+      <max_acceleration>1</max_acceleration><min_jerk>-1</min_jerk><max_jerk>1</max_jerk><debug>0</debug>""",
+    "gz-sim-tracked-vehicle-system": """<left_track><link>l</link></left_track><right_track><link>l</link></right_track>
+      <tracks_separation>1</tracks_separation><tracks_height>0.2</tracks_height>
+      <steering_efficiency>0.5</steering_efficiency><odom_publish_frequency>50</odom_publish_frequency>
+      <linear_velocity><max_velocity>1</max_velocity></linear_velocity>
+      <angular_velocity><min_acceleration>-1</min_acceleration></angular_velocity><debug>0</debug>""",
+    "libSimpleTrackedVehiclePlugin.so": """<body>l</body><left_track>l</left_track><right_track>l</right_track>
+      <steering_efficiency>0.5</steering_efficiency><tracks_separation>0.4</tracks_separation>
+      <max_linear_speed>1</max_linear_speed><max_angular_speed>1</max_angular_speed><track_mu>1</track_mu>
+      <track_mu2>0.5</track_mu2><collide_without_contact_bitmask>1</collide_without_contact_bitmask>""",
     "gz-sim-joint-state-publisher-system": "<update_rate>50</update_rate>",
     "libgazebo_ros_joint_state_publisher.so": "<update_rate>50</update_rate><joint_name>a</joint_name>",
     "libgazebo_ros_diff_drive.so": f"""{DRIVE}<num_wheel_pairs>1</num_wheel_pairs><wheel_separation>1</wheel_separation>
@@ -126,6 +181,36 @@ PLUGINS = {
       <covariance_x>0.1</covariance_x><covariance_y>0.1</covariance_y><covariance_yaw>0.1</covariance_yaw>""",
     "libsolar_sensor.so": """<light_name>sun</light_name><gaussian_noise>0.1</gaussian_noise>
       <update_rate>50</update_rate>""",
+    "gz-sim-trajectory-follower-system": """<link_name>l</link_name><force>1</force><torque>1</torque><loop>1</loop>
+      <range_tolerance>0.5</range_tolerance><bearing_tolerance>2</bearing_tolerance><zero_vel_on_bearing_reached>1
+      </zero_vel_on_bearing_reached><waypoints><waypoint>1 2</waypoint></waypoints>""",
+    "gz-sim-trajectory-follower-system ": "<link_name>l</link_name><circle><radius>2</radius></circle>",
+    "gz-sim-trajectory-follower-system  ": """<link_name>l</link_name><line><direction>1</direction><length>2</length>
+      </line>""",
+    "gz-sim-drive-to-pose-controller-system": """<linear_p_gain>1</linear_p_gain><angular_p_gain>2</angular_p_gain>
+      <linear_deviation>0.1</linear_deviation><angular_deviation>0.05</angular_deviation>""",
+    "libgazebo_ros_elevator.so": """<lift_joint>a</lift_joint><door_joint>b</door_joint><floor_height>3</floor_height>
+      <door_wait_time>5</door_wait_time><bottom_floor>0</bottom_floor><top_floor>4</top_floor>""",
+    "libgazebo_ros_vacuum_gripper.so": "<link_name>l</link_name><max_distance>0.1</max_distance>",
+    "libgazebo_ros_vacuum_gripper.so ": """<bodyName>l</bodyName><topicName>t</topicName><maxDistance>0.1</maxDistance>
+      <maxForce>20</maxForce><minDistance>0.01</minDistance>""",
+    "libgazebo_ros_hand_of_god.so": "<link_name>l</link_name><kl>200</kl><ka>200</ka>",
+}
+_COURSE = f"<time_for_rise>1</time_for_rise>{NOISE}"
+_FLOATING = f"""<model name="m"><link name="l"><enable_wind>1</enable_wind>{MASS}
+  <collision name="c">{BOX}</collision></link></model><plugin name="p" """
+AIR = {
+    "wind": f"""{_FLOATING} filename="gz-sim-wind-effects-system"><horizontal><magnitude>{_COURSE}<sin>
+      <amplitude_percent>0.1</amplitude_percent><period>9</period></sin></magnitude><direction>{_COURSE}<sin>
+      <amplitude>5</amplitude><period>9</period></sin></direction></horizontal><vertical>{_COURSE}</vertical>
+      <force_approximation_scaling_factor><when xge="-9" xlt="9"><k>1</k><px>0 0 0 1</px><qy>0 1 0 1</qy>
+      <rz>0 0 0 1</rz></when></force_approximation_scaling_factor></plugin>""",
+    "wind factor": f"""{_FLOATING} filename="gz-sim-wind-effects-system"><force_approximation_scaling_factor>2
+      </force_approximation_scaling_factor></plugin>""",
+    "water": f"""{_FLOATING} filename="gz-sim-buoyancy-system">
+      <uniform_fluid_density>1000</uniform_fluid_density></plugin>""",
+    "sea": f"""{_FLOATING} filename="gz-sim-buoyancy-system"><graded_buoyancy><default_density>1000</default_density>
+      <density_change><above_depth>0</above_depth><density>1</density></density_change></graded_buoyancy></plugin>""",
 }
 WORLD = """<physics name="p"><max_step_size>0.001</max_step_size><real_time_factor>1</real_time_factor>
   <real_time_update_rate>1000</real_time_update_rate><update_rate>1000</update_rate><max_contacts>10</max_contacts><ode><solver><iters>50</iters>
@@ -158,6 +243,14 @@ ACTOR = f"""<actor name="walker">{POSE}<skin><filename>w.dae</filename><scale>1<
   <tension>0</tension><waypoint><time>0</time>{POSE}</waypoint></trajectory></script><simkit:person><height>1.7</height>
   <shirt>0.1 0.2 0.3</shirt><trousers>0.1 0.2 0.3</trousers><skin>0.8 0.6 0.5</skin><hair>0.1 0.1 0.1</hair>
   </simkit:person></actor>"""
+ELEVATOR = """<link name="l"/><link name="floor_0"/><link name="w"/><joint name="lift" type="prismatic">
+  <parent>l</parent><child>w</child><axis/></joint><joint name="door_0" type="prismatic"><parent>l</parent>
+  <child>floor_0</child><axis><limit><upper>1</upper></limit></axis></joint><plugin name="p"
+  filename="gz-sim-elevator-system"><update_rate>10</update_rate><state_publish_rate>5</state_publish_rate>
+  <open_door_wait_duration>5</open_door_wait_duration></plugin>"""
+FOLLOWER = """<model name="m"><static>1</static><link name="l"/></model><actor name="walker"><plugin name="p"
+  filename="gz-sim-follow-actor-system"><target>m</target><velocity>1</velocity><min_distance>1</min_distance>
+  <max_distance>4</max_distance><animation_x_vel>2</animation_x_vel></plugin></actor>"""
 ROBOT = """<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
 <link name="base"><inertial><origin xyz="0 0 0" rpy="0 0 0"/><mass value="1"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
@@ -212,6 +305,10 @@ def documents() -> dict[str, str]:
         "state.sdf": _world(STATE),
         "old state.sdf": _world(OLD_STATE),
         "actor.sdf": _world(ACTOR),
+        "follower.sdf": _world(FOLLOWER),
+        "elevator.sdf": _model(ELEVATOR),
+        "mecanum.sdf": _model(MECANUM),
+        "slip.sdf": _model(SLIP),
         "light.sdf": _world(LIGHT),
         "include.sdf": _world("<include><uri>model://sun</uri><pose>0 0 1 0 0 0</pose><static>1</static></include>"),
         "robot.urdf": ROBOT,
@@ -252,6 +349,7 @@ def documents() -> dict[str, str]:
             <axis>{axis}</axis>{second}{inside.get(kind, "")}</joint>"""
         )
     found["sun.sdf"] = _world(SUN)
+    found |= {f"{name}.sdf": _world(text) for name, text in AIR.items()}
     for kind, block in {**SENSORS, **JOINT_SENSORS}.items():
         plain = kind.strip()
         name = f'type="custom" gz:type="{plain}"' if plain in OUR_OWN else f'type="{plain}"'

@@ -122,3 +122,32 @@ def test_topics_can_be_named() -> None:
         world("<topic>/push</topic><topic_persistent>/lean</topic_persistent><topic_clear>/stop</topic_clear>")
     )
     assert {"/push", "/lean", "/stop"} <= set(sim.topics())
+
+
+def test_an_entity_can_be_meant_by_its_id() -> None:
+    sim = simkit.load(world())
+    scene = sim.call("/world/w/scene/info")
+    numbers = {e.entity.name: e.entity.id for e in scene.entities}
+    by_id = command("", 0, force=(10, 0, 0))
+    by_id["entity"]["id"] = next(number for name, number in numbers.items() if name.endswith("two::body"))
+    sim.publish("/world/w/wrench", by_id)
+    sim.step()
+    assert sim.link("two::body").linear_velocity[0] == pytest.approx(10 / 2 * 0.001)
+
+
+def test_what_cannot_be_pushed_is_left_alone() -> None:
+    sim = simkit.load(world())
+    sim.publish("/world/w/wrench", command("two::body", 3, force=(float("nan"), 0, 0)))
+    sim.publish("/world/w/wrench/persistent", command("two::body", 3, torque=(float("inf"), 0, 0)))
+    sim.publish("/world/w/wrench", command("two::body", 4, force=(1, 0, 0)))
+    sim.publish("/world/w/wrench", command("", 0, force=(1, 0, 0)))
+    sim.step(10)
+    assert np.linalg.norm(sim.link("two::body").linear_velocity) == 0.0
+    assert [d.code for d in sim.diagnostics] == ["SK-PLUGIN-041"]
+
+
+def test_a_name_may_begin_with_the_worlds() -> None:
+    sim = simkit.load(world())
+    sim.publish("/world/w/wrench", command("w::two", 2, force=(10, 0, 0)))
+    sim.step()
+    assert sim.link("two::body").linear_velocity[0] == pytest.approx(10 / 2 * 0.001)

@@ -73,6 +73,13 @@ class DiffDriveController(Controller):
         self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_tf else None
         self._limited = self.advertise("~/cmd_vel_out", _STAMPED) if options.publish_limited else None
 
+    def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Least and greatest speed ahead [m/s] and rate of turning [rad/s] of commands; None of other topics."""
+        if topic not in (self.plugin.ros.topic(self.topic(name)) for name in ("~/cmd_vel", "~/cmd_vel_unstamped")):
+            return None
+        linear, angular = self._options.linear, self._options.angular
+        return (linear.least, linear.most), (angular.least, angular.most)
+
     def command_interfaces(self) -> Sequence[str]:
         return [f"{name}/velocity" for name in (*self._options.left, *self._options.right)]
 

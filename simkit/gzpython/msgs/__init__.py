@@ -22,6 +22,7 @@ Int32 header:Header data:i
 UInt32 header:Header data:i
 Int64 header:Header data:i
 Float_V header:Header data:f[]
+Int32_V header:Header data:i[]
 Double_V header:Header data:f[]
 StringMsg header:Header data:s
 Empty unused:b
@@ -41,7 +42,7 @@ NavSat header:Header latitude_deg:f longitude_deg:f altitude:f velocity_east:f v
 Magnetometer header:Header field_tesla:Vector3d
 FluidPressure header:Header pressure:f variance:f
 Altimeter header:Header vertical_position:f vertical_velocity:f vertical_reference:f
-BatteryState header:Header voltage:f current:f charge:f capacity:f percentage:f
+BatteryState header:Header voltage:f current:f charge:f capacity:f percentage:f power_supply_status:i
 Axis xyz:Vector3d position:f velocity:f force:f
 Joint header:Header name:s id:i parent:s child:s pose:Pose axis1:Axis axis2:Axis
 Model header:Header name:s id:i joint:Joint[] pose:Pose
@@ -60,6 +61,8 @@ define(_DEFINITIONS)
 _ENTITY_TYPES: Final = ("NONE", "LIGHT", "MODEL", "LINK", "VISUAL", "COLLISION", "SENSOR", "JOINT", "ACTOR", "WORLD")
 for _number, _kind in enumerate(_ENTITY_TYPES):
     setattr(CLASSES["Entity"], _kind, _number)  # as in `Entity.MODEL`
+for _number, _kind in enumerate(("UNKNOWN", "CHARGING", "DISCHARGING", "NOT_CHARGING", "FULL")):
+    setattr(CLASSES["BatteryState"], _kind, _number)
 _ONE_WORD: Final = ("LaserScan", "NavSat", "StringMsg")
 
 

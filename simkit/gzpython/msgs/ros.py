@@ -28,6 +28,7 @@ StringMsg std_msgs/msg/String data
 Empty std_msgs/msg/Empty
 Float_V ros_gz_interfaces/msg/Float32Array data
 Double_V std_msgs/msg/Float64MultiArray data
+Int32_V std_msgs/msg/Int32MultiArray data
 Time builtin_interfaces/msg/Time sec nsec=nanosec
 Clock rosgraph_msgs/msg/Clock sim=clock
 Color std_msgs/msg/ColorRGBA r g b a
@@ -47,7 +48,7 @@ NavSat sensor_msgs/msg/NavSatFix header frame_id<header.frame_id latitude_deg=la
 Magnetometer sensor_msgs/msg/MagneticField header field_tesla=magnetic_field
 FluidPressure sensor_msgs/msg/FluidPressure header pressure=fluid_pressure variance
 Altimeter ros_gz_interfaces/msg/Altimeter header vertical_position vertical_velocity vertical_reference
-BatteryState sensor_msgs/msg/BatteryState header voltage current charge capacity percentage
+BatteryState sensor_msgs/msg/BatteryState header voltage current charge capacity percentage power_supply_status
 Actuators actuator_msgs/msg/Actuators header position velocity normalized
 Entity ros_gz_interfaces/msg/Entity id name type
 EntityWrench ros_gz_interfaces/msg/EntityWrench header entity wrench

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from simkit.errors import InputError
 from simkit.gzpython.msgs.message import Message
 from simkit.gzpython.msgs.ros import fields_of
+
+TAKEN: Final = ("WorldControl", "EntityFactory", "Entity", "Pose", "Boolean", "Empty")
+"""Messages that are known as requests."""
 
 
 def call(sim: Any, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
@@ -44,4 +47,8 @@ def _fields(request: Any) -> dict[str, Any]:
         return {"entity": {name: getattr(request, name) for name in ("id", "name", "type")}}
     if kind == "Pose":
         return {"entity": {"name": request.name, "id": request.id, "type": 2}, "pose": fields_of(request)}
+    if kind == "Boolean":
+        return {"data": request.data}
+    if kind == "Empty":
+        return {}
     raise InputError(f"simkit has no service that takes gz.msgs.{kind}")

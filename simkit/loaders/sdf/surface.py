@@ -42,7 +42,16 @@ def read_surface(collision: Params) -> Surface:
         use_patch_radius=twist.boolean("use_patch_radius", True),
         torsional_slip=twist.block("ode").number("slip", 0.0),
         rolling=rolling,
+        fdir1_frame=_direction_frame(ode),
     )
+
+
+def _direction_frame(ode: Params) -> str:
+    """The link that `<fdir1>` is given in, as Gazebo's own attribute says."""
+    found = ode.child("fdir1")
+    if found is None:
+        return ""
+    return found.attribute("gz:expressed_in") or found.attribute("ignition:expressed_in")
 
 
 def _friction(block: Params, name: str, default: float) -> float:

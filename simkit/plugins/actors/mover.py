@@ -64,7 +64,7 @@ class ActorMover(WorldPlugin):
             found = []
             for model in structure.models.values():
                 cast = model.moved_by
-                if isinstance(cast, Cast) and cast.moves:
+                if isinstance(cast, Cast) and cast.moves and not cast.is_led:
                     places = [structure.compiled.names.link(link.scoped).mocap for link in model.links]
                     in_a_row = places == list(range(places[0], places[0] + len(places)))
                     at = slice(places[0], places[0] + len(places)) if in_a_row else np.array(places, dtype=np.intp)

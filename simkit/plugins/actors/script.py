@@ -68,6 +68,23 @@ class Track:
         return before, row - before
 
 
+class Stride(Track):
+    """A walk on the spot that no script tells, for the parts of who walks.
+
+    Args:
+        kind: the animation that plays.
+        distance: the way behind, shape (n,) [m].
+        speed: [m/s]
+        seconds: of the animation for each metre.
+    """
+
+    def __init__(self, kind: str, distance: Floats, speed: float, seconds: float) -> None:
+        rows = len(distance)
+        self.type, self.length, self.moves = kind, 0.0, True
+        self.poses = np.tile((0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0), (rows, 1))
+        self.times, self.distance, self.speed = distance * seconds, distance, np.full(rows, speed)
+
+
 class Script:
     """The ways of one actor, one after the other.
 

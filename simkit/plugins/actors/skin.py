@@ -11,7 +11,7 @@ import numpy as np
 from simkit.compiler.meshes.part import MeshFileError
 from simkit.compiler.meshes.skin import Skin, read_skin
 from simkit.diagnostics import Diagnostics
-from simkit.plugins.actors.script import Floats, Script, Track
+from simkit.plugins.actors.script import Floats, Script, Stride, Track
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Animation, Mesh, SceneActor, SceneLink, SceneModel, SceneVisual
 
@@ -76,13 +76,16 @@ def _times(clip: Clip, track: Track) -> Floats:
     """Time in the animation at each row of a track."""
     length = clip.length
     x = clip.root[:, 0]
-    if clip.follows_x and track.moves and x[-1] - x[0] > 1e-3:
+    by_way = clip.follows_x and track.moves and not isinstance(track, Stride)
+    if by_way and x[-1] - x[0] > 1e-3:
         return np.asarray(np.interp(np.mod(track.distance, x[-1] - x[0]) + x[0], np.maximum.accumulate(x), clip.times))
     return np.mod(track.times, length) if length > 0.0 else np.zeros_like(track.times)
 
 
 def dressed(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel | None:
     """The actor in its own skin; None where there is none that can be read, which is reported."""
+    from simkit.plugins.actors.stage import is_led
+
     if not actor.skin:
         return None
     skin = _read(actor, actor.skin, "skin", find_file, diagnostics)
@@ -97,14 +100,15 @@ def dressed(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) ->
     first = next(iter(clips.values()))
     script = Script(actor, 0.0 if actor.trajectories and actor.trajectories[0].waypoints else first.length)
     base = script.pose(0.0)
-    at_the_hips = any(t.moves for t in script.tracks) and _AT_THE_HIPS[0] <= base.position[2] <= _AT_THE_HIPS[1]
+    goes = is_led(actor) or any(t.moves for t in script.tracks)
+    at_the_hips = goes and _AT_THE_HIPS[0] <= base.position[2] <= _AT_THE_HIPS[1]
     return _model(actor, skin, file, carrying, script, SkinRig(clips, at_the_hips))
 
 
 def _model(actor: SceneActor, skin: Skin, file: Path, carrying: list[int], script: Script, rig: SkinRig) -> SceneModel:
-    from simkit.plugins.actors.stage import Cast, model_of
+    from simkit.plugins.actors.stage import Cast, is_led, model_of
 
-    cast = Cast(actor.name, script, rig)
+    cast = Cast(actor.name, script, rig, is_led(actor))
     poses = cast.poses(0.0)
     sizes = [_size(m) for m in _worlds(skin, {i: bone.rest[None] for i, bone in enumerate(skin.bones)}, 1)]
     links = [SceneLink(_ROOT, f"{actor.name}::{_ROOT}", Pose(poses[0, :3], poses[0, 3:]))]

@@ -25,6 +25,7 @@ from simkit.scene import (
 FindFile = Callable[[str, Path | None], Path | None]
 
 _ROOT: Final = "link"
+_LEADERS: Final = frozenset(("gz-sim-follow-actor-system", "gz::sim::systems::FollowActor"))
 _AT_THE_HIPS: Final = (0.5, 1.5)
 """[m] over the ground: where a script's way lies if it is that of the hips, as with Gazebo's own skins."""
 
@@ -62,16 +63,17 @@ class Cast:
         name: its name.
         script: its ways.
         rig: how its parts lie; None where it has none that move against its origin.
+        is_led: whether a plugin of its own takes it where it goes.
 
     Attributes:
-        moves: whether anything of it ever moves.
+        moves: whether anything of it ever moves by its script.
     """
 
-    def __init__(self, name: str, script: Script, rig: Rig | None) -> None:
-        self.name, self.script = name, script
+    def __init__(self, name: str, script: Script, rig: Rig | None, is_led: bool = False) -> None:
+        self.name, self.script, self.rig, self.is_led = name, script, rig, is_led
         self.moves = script.moves or (rig is not None and script.length > 0.0)
-        self._going = [_in_world(track, rig, False) for track in script.tracks]
-        self._resting = [table[[0, -1]] for table in (_in_world(t, rig, True) for t in script.tracks)]
+        self._going = [in_world(track, rig, False) for track in script.tracks]
+        self._resting = [table[[0, -1]] for table in (in_world(t, rig, True) for t in script.tracks)]
 
     def __deepcopy__(self, memo: dict[int, object]) -> Cast:
         return self
@@ -88,7 +90,7 @@ class Cast:
         return poses
 
 
-def _in_world(track: Track, rig: Rig | None, rests: bool) -> Floats:
+def in_world(track: Track, rig: Rig | None, rests: bool) -> Floats:
     """Poses of all links in the world, shape (rows, n, 7)."""
     origin = track.poses[:, None, :]
     if rig is None:
@@ -126,8 +128,17 @@ def staged(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> 
     """An actor's model as it stands at the start; `moved_by` is its `Cast`."""
     from simkit.plugins.actors.skin import dressed
 
+    if is_led(actor):  # its script does not move it, as in gz
+        actor = replace(actor, trajectories=())
     worn = dressed(actor, find_file, diagnostics)
     return worn if worn is not None else _person(actor, Script(actor))
+
+
+def is_led(actor: SceneActor) -> bool:
+    """Whether a plugin of its own takes the actor where it goes."""
+    from simkit.plugins import aliases
+
+    return any(alias in _LEADERS for plugin in actor.plugins for alias in aliases(plugin))
 
 
 def _check(actor: SceneActor, diagnostics: Diagnostics) -> None:
@@ -148,8 +159,8 @@ def _person(actor: SceneActor, script: Script) -> SceneModel:
     scale = looks.height / person.HEIGHT
     pose = script.pose(0.0)
     drop = 1.0 if _AT_THE_HIPS[0] <= pose.position[2] <= _AT_THE_HIPS[1] else 0.0
-    rig = WalkingPerson(scale, drop) if script.moves else None
-    cast, model = Cast(actor.name, script, rig), actor.name
+    rig = WalkingPerson(scale, drop) if script.moves or is_led(actor) else None
+    cast, model = Cast(actor.name, script, rig, is_led(actor)), actor.name
     if rig is None:
         lies = person.still(_sits(actor))
         pieces = [(p, lies[p.part] @ p.pose) for p in person.FIGURE]

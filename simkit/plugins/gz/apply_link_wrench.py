@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
@@ -11,6 +12,8 @@ import numpy as np
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
+from simkit.plugins.once import Once
+from simkit.plugins.world.entities import Refused, entity_of
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -18,7 +21,7 @@ if TYPE_CHECKING:
 
 ENTITY: Final = "ros_gz_interfaces/msg/Entity"
 ENTITY_WRENCH: Final = "ros_gz_interfaces/msg/EntityWrench"
-_MODEL, _LINK = 2, 3
+_ANY, _MODEL, _LINK = 0, 2, 3
 _TYPES: Final = {"model": _MODEL, "link": _LINK}
 _NEVER: Final = 1e-9  # [Hz]
 
@@ -38,13 +41,14 @@ class ApplyLinkWrench(WorldPlugin):
 
     `<persistent>` elements and messages on `/world/<world>/wrench/persistent` push at every step until the entity is
     named on `/world/<world>/wrench/clear`; a message on `/world/<world>/wrench` pushes in the next step only. An entity
-    that is not there is waited for.
+    that is not there is waited for. Messages name an entity, or give its id.
     """
 
     filenames = ("gz-sim-apply-link-wrench-system",)
     names = ("gz::sim::systems::ApplyLinkWrench",)
 
     def load(self, parent: Simulation, params: Params) -> None:
+        self.once = Once(self)
         self._verbose = params.boolean("verbose", True)
         self._persistent = [w for e in params.all("persistent") if (w := self._read(e)) is not None]
         self._stand()
@@ -93,6 +97,8 @@ class ApplyLinkWrench(WorldPlugin):
 
     def _on_wrench(self, message: Any) -> None:
         wrench = self._of(message)
+        if wrench is None:
+            return
         link = self._target(wrench.name, wrench.type)
         if link is None:
             self.log.warning("%s: there is no entity %r to push", self.name, wrench.name)
@@ -101,19 +107,26 @@ class ApplyLinkWrench(WorldPlugin):
         self._say("pushes %s for one step", wrench.name)
 
     def _on_persistent(self, message: Any) -> None:
-        self._persistent = [*self._persistent, self._of(message)]
-        self._say("pushes %s until it is cleared", message.entity.name)
+        wrench = self._of(message)
+        if wrench is None:
+            return
+        self._persistent = [*self._persistent, wrench]
+        self._say("pushes %s until it is cleared", wrench.name)
         self._stand()
 
     def _on_clear(self, message: Any) -> None:
-        cleared = self._target(message.name, message.type)
+        found = self._entity(message)
+        if found is None:
+            return
+        name, kind = found
+        cleared = self._target(name, kind)
         kept = []
         for wrench in self._persistent:
             target = self._target(wrench.name, wrench.type)
-            is_same = target is cleared if cleared is not None else wrench.name == message.name
+            is_same = target is cleared if cleared is not None else wrench.name == name
             if not is_same:
                 kept.append(wrench)
-        self._say("no longer pushes %s", message.name)
+        self._say("no longer pushes %s", name)
         self._persistent = kept
         self._stand()
 
@@ -122,8 +135,27 @@ class ApplyLinkWrench(WorldPlugin):
 
     # ------------------------------------------------------------------ inside
 
-    def _of(self, message: Any) -> _Wrench:
-        return _Wrench(message.entity.name, message.entity.type, *(_xyz(v) for v in _parts(message.wrench)))
+    def _of(self, message: Any) -> _Wrench | None:
+        found = self._entity(message.entity)
+        force, torque = _xyz(message.wrench.force), _xyz(message.wrench.torque)
+        if not all(map(math.isfinite, (*force, *torque))):
+            self.once.not_finite("a wrench")
+            return None
+        return None if found is None else _Wrench(*found, force, torque)
+
+    def _entity(self, entity: Any) -> tuple[str, int] | None:
+        """Name and type of what a message means; None, and a line in the log, where that cannot be pushed."""
+        if entity.type not in (_ANY, _MODEL, _LINK):
+            self.log.warning("%s: only models and links can be pushed, found type %d", self.name, entity.type)
+            return None
+        if entity.name:
+            return entity.name.removeprefix(f"{self.sim.world.name}::"), entity.type
+        try:
+            kind, name = entity_of(self.sim, entity, tuple(_TYPES))
+        except Refused as error:
+            self.log.warning("%s: %s", self.name, error)
+            return None
+        return name, _TYPES[kind]
 
     def _stand(self, *, are_applied: bool = False) -> None:
         """Sets all wrenches that last; asked again at every step only while an entity is waited for."""
@@ -145,10 +177,6 @@ class ApplyLinkWrench(WorldPlugin):
     def _say(self, text: str, name: str) -> None:
         if self._verbose:
             self.log.info("%s: " + text, self.name, name)
-
-
-def _parts(wrench: Any) -> tuple[Any, Any]:
-    return wrench.force, wrench.torque
 
 
 def _xyz(vector: Any) -> tuple[float, float, float]:

@@ -145,6 +145,11 @@ class DiffDrive(ModelPlugin):
 
     # ------------------------------------------------------------------ commands
 
+    def speed_bounds(self, _: str) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Least and greatest speed ahead [m/s] and rate of turning [rad/s] that commands are held to."""
+        linear, angular = self._limits
+        return linear.velocity, angular.velocity
+
     def _on_command(self, message: Any) -> None:
         command = command_of(message)
         if command is None:

@@ -21,6 +21,8 @@ _COLOURS = {"background_color": "background", "ambient_light": "ambient"}
 class SensorsSystem(Plugin):
     """Tells cameras the colours of background and ambient light, in place of the scene's; the rest simkit does anyway.
 
+    With `<disable_on_drained_battery>` cameras and GPU lidars of a model rest while its battery is empty.
+
     The colours are taken by `with_sensors_colours`, before anything is built.
     """
 
@@ -28,9 +30,11 @@ class SensorsSystem(Plugin):
     lets_sleep = True
     filenames = ("gz-sim-sensors-system",)
     names = ("gz::sim::systems::Sensors",)
+    stops_without_power = False
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
-        given = {child.name for child in params.children}
+        given = {child.name for child in params.children} - {"disable_on_drained_battery"}
+        self.stops_without_power = params.boolean("disable_on_drained_battery", False)
         params.mark_all_read()
         used: list[str] = []
         beaten: list[str] = []

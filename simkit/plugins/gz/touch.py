@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from simkit import msgs
@@ -19,59 +20,37 @@ BOOL: Final = "std_msgs/msg/Bool"
 _NEVER: Final = 1e-9  # [Hz]
 
 
-class TouchPlugin(ModelPlugin):
-    """Says once that its model has touched a target for a while without a break, then rests until it is enabled again.
+class Touching(ModelPlugin):
+    """What gz's and Classic's share: how long a target has been touched without a break."""
 
-    What counts are the collisions that contact sensors on the model's links watch (or those named in `<collision>`,
-    with `<create_contact_sensor_for_collision>` also without a sensor), and every collision whose scoped name contains
-    `<target>`. Other things may be touched meanwhile, as in gz.
-    """
-
-    filenames = ("gz-sim-touchplugin-system",)
-    names = ("gz::sim::systems::TouchPlugin",)
     reads_contacts: ClassVar[bool] = True
+    message_type: ClassVar[str] = BOOL
+    is_exclusive: ClassVar[bool] = False  # whether touching anything else is a break
+    _target: str
+    _duration: int  # [ns]
+    _links: frozenset[str]
+    _world: str
+    _is_enabled: bool
+    _touched: Any
 
-    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+    def _read_common(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._target = params.text("target", required=True)
         duration = params.number("time", required=True, minimum=0.0, maximum=1e9)
-        self._duration = round(duration * 1e9)  # [ns]
+        self._duration = round(duration * 1e9)
         self._topic = valid_topic(params.text("namespace", required=True))
         if self._topic == "/" and params.has("namespace"):
             params.error("SK-PARAM-002", "found a <namespace> without a letter or digit, allowed is a topic's name")
         self._links = frozenset(link.scoped for link in scene.links)
-        collisions = [c for link in scene.links for c in link.collisions]
-        self._named = self._find(collisions, scene, params)
-        self._may_create = params.boolean("create_contact_sensor_for_collision", False)
         self._is_enabled = params.boolean("enabled", False)
         self._world = builder.world.name
 
-    def _find(self, collisions: list[SceneCollision], scene: SceneModel, params: Params) -> tuple[str, ...]:
-        """Scoped names of the collisions that `<collision>` names."""
-        found: dict[str, None] = {}
-        for element in params.all("collision"):
-            same = [c.scoped for c in collisions if f"::{c.scoped}".endswith(f"::{element.value}")]
-            found.update(dict.fromkeys(same))
-            if not same:
-                listed = [c.name for c in collisions]
-                shown = ", ".join(map(repr, listed)) or "none"
-                message = f"model {scene.scoped!r} has no collision {element.value!r}; it has: {shown}"
-                element.error("SK-PLUGIN-003", message, did_you_mean(element.value, listed))
-        return tuple(found)
-
-    def load(self, parent: Any, params: Params) -> None:
-        self._touched = self.advertise(f"{self._topic}/touched", BOOL)
-        self.listen(f"{self._topic}/enable", BOOL, self._on_enable)
-        sensors = [s for s in self.sim.sensors.values() if s.kind == "contact" and s.scene.parent in self._links]
-        watched = [name for sensor in sensors for name in sensor.collisions]
-        if self._named:
-            watched = [name for name in self._named if self._may_create or name in watched]
+    def _watch(self, watched: Iterable[str], params: Params) -> None:
+        """Opens the topics and begins to look at collisions."""
+        self._touched = self.advertise(f"{self._topic}/touched", self.message_type)
+        self.listen(f"{self._topic}/enable", self.message_type, self._on_enable)
         self._watched = frozenset(watched)
         self._since = -1  # [ns]; -1 while it does not touch
         self._set_pace()
-        if not self._watched:
-            message = f"plugin {self.name!r}: no contact sensor watches a collision of model {parent.name!r}"
-            hint = "put a contact sensor on its link, or name <collision> and <create_contact_sensor_for_collision>"
-            params.diagnostics.warning("SK-SENSOR-043", f"{message}; it never touches", self.where, hint)
         names = collisions_of(self.sim.compiled).names
         if not any(self._is_target(name) for name in names):
             message = f"plugin {self.name!r}: no collision has {self._target!r} in its name; one is waited for"
@@ -83,25 +62,31 @@ class TouchPlugin(ModelPlugin):
 
     def after_step(self) -> None:
         sim = self.sim
-        own, target = sim.names.shared(f"touch {id(self)}", self._masks)
+        own, target, model = sim.names.shared(f"touch {id(self)}", self._masks)
         found = touches(sim.mj_model, sim.fresh_data(), own)
         if found is None or not target[found.geoms].any():
             self._since = -1
             return
+        if self.is_exclusive:
+            one, other = found.geoms.T
+            if not ((target[one] & model[other]) | (model[one] & target[other])).all():
+                self._since = -1
+                return
         now = sim.time_ns
         if self._since < 0:
             self._since = now
         if now - self._since > self._duration:
-            self._touched.publish(msgs.type_of(BOOL)(True))
+            self._touched.publish(msgs.make(self.message_type, data=True if self.message_type == BOOL else 1))
             self._enable(False)
 
     # ------------------------------------------------------------------ inside
 
-    def _masks(self) -> tuple[Bools, Bools]:
-        """Which geoms are watched, and which are targets."""
+    def _masks(self) -> tuple[Bools, Bools, Bools]:
+        """Which geoms are watched, which are targets, and which are of this model."""
         collisions = collisions_of(self.sim.compiled)
         targets = {name for name in collisions.names if self._is_target(name)}
-        return collisions.mask(self._watched), collisions.mask(targets)
+        own = {name for name in collisions.names if name.startswith(f"{self.scoped}::")}
+        return collisions.mask(self._watched), collisions.mask(targets), collisions.mask(own)
 
     def _is_target(self, scoped: str) -> bool:
         """Whether the target is part of a collision's name, as simkit or as gz writes it.
@@ -126,3 +111,45 @@ class TouchPlugin(ModelPlugin):
         if pace != self.after_step_rate:
             self.after_step_rate = pace
             self.sim.reschedule()
+
+
+class TouchPlugin(Touching):
+    """Says once that its model has touched a target for a while without a break, then rests until it is enabled again.
+
+    What counts are the collisions that contact sensors on the model's links watch (or those named in `<collision>`,
+    with `<create_contact_sensor_for_collision>` also without a sensor), and every collision whose scoped name contains
+    `<target>`. Other things may be touched meanwhile, as in gz.
+    """
+
+    filenames = ("gz-sim-touchplugin-system",)
+    names = ("gz::sim::systems::TouchPlugin",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._read_common(scene, params, builder)
+        collisions = [c for link in scene.links for c in link.collisions]
+        self._named = self._find(collisions, scene, params)
+        self._may_create = params.boolean("create_contact_sensor_for_collision", False)
+
+    def _find(self, collisions: list[SceneCollision], scene: SceneModel, params: Params) -> tuple[str, ...]:
+        """Scoped names of the collisions that `<collision>` names."""
+        found: dict[str, None] = {}
+        for element in params.all("collision"):
+            same = [c.scoped for c in collisions if f"::{c.scoped}".endswith(f"::{element.value}")]
+            found.update(dict.fromkeys(same))
+            if not same:
+                listed = [c.name for c in collisions]
+                shown = ", ".join(map(repr, listed)) or "none"
+                message = f"model {scene.scoped!r} has no collision {element.value!r}; it has: {shown}"
+                element.error("SK-PLUGIN-003", message, did_you_mean(element.value, listed))
+        return tuple(found)
+
+    def load(self, parent: Any, params: Params) -> None:
+        sensors = [s for s in self.sim.sensors.values() if s.kind == "contact" and s.scene.parent in self._links]
+        watched = [name for sensor in sensors for name in sensor.collisions]
+        if self._named:
+            watched = [name for name in self._named if self._may_create or name in watched]
+        if not watched:
+            message = f"plugin {self.name!r}: no contact sensor watches a collision of model {parent.name!r}"
+            hint = "put a contact sensor on its link, or name <collision> and <create_contact_sensor_for_collision>"
+            params.diagnostics.warning("SK-SENSOR-043", f"{message}; it never touches", self.where, hint)
+        self._watch(watched, params)

@@ -11,6 +11,7 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
+from simkit.plugins.drives.slipping_wheels import set_compliances
 from simkit.plugins.world.entities import (
     KINDS,
     Refused,
@@ -46,6 +47,7 @@ _TABLE: Final = {
     "set_physics": "gazebo_msgs/srv/SetPhysicsProperties",
     "light_config": "simkit_msgs/srv/SetLight",
     "visual_config": "simkit_msgs/srv/SetMaterialColor",
+    "wheel_slip": "simkit_msgs/srv/SetWheelSlip",
     "enable_collision": _REQUEST,
     "disable_collision": _REQUEST,
     "set_spherical_coordinates": "simkit_msgs/srv/SetSphericalCoordinates",
@@ -214,6 +216,13 @@ class WorldServices(WorldPlugin):
             self.sim.enable_collisions([name], enabled)
         else:
             self.sim.enable_collisions([name.rpartition("::")[0]], enabled, only=name)
+
+    def _wheel_slip(self, request: Any) -> None:
+        kind, name = entity_of(self.sim, request.entity, ("model", "link"))
+        links = {link.scoped for link in self.sim.model(name).scene.all_links()} if kind == "model" else {name}
+        values = float(request.slip_compliance_lateral), float(request.slip_compliance_longitudinal)
+        if not set_compliances(self.sim, links, *values):
+            raise Refused(f"{kind} {name!r} has no wheel of a wheel slip plugin")
 
     # ------------------------------------------------------------------ looks
 

@@ -1,0 +1,54 @@
+"""The buoyancy of Gazebo Classic: `libBuoyancyPlugin.so`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.fluids.displacement import Fluid
+from simkit.plugins.fluids.floating import Floating
+from simkit.plugins.fluids.hulls import Hull
+from simkit.plugins.lookups import find_link
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+WATER: Final = 999.1026
+"""[kg/m³], at 15 °C."""
+
+
+class BuoyancyPlugin(Floating, ModelPlugin):
+    """The links of the model float, wholly under water, by the volume of their collisions or by numbers of the file.
+
+    `<link name="…">` with `<center_of_volume>` (link frame) and `<volume>` says what the shapes do not.
+    """
+
+    filenames = ("libBuoyancyPlugin.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._fluid = Fluid((params.number("fluid_density", WATER, minimum=0, maximum=1e9),))
+        self._links = [link.scoped for link in scene.all_links()]
+        self._given: dict[str, Hull] = {}
+        for element in params.all("link"):
+            name = element.attribute("name")
+            link = find_link(scene, name, element) if name else None
+            if not name:
+                element.error("SK-PARAM-001", '<link> needs name="…": the link whose volume it is')
+            volume = element.number("volume", required=True, minimum=1e-15, maximum=1e15)
+            centre = element.vector3("center_of_volume", required=True)
+            if link is not None:
+                self._given.setdefault(link.scoped, Hull(volume, np.array(centre)))
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.start()
+
+    def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
+        """Of the model's links; numbers of the file before shapes."""
+        links = self.sim.names.links
+        given = self._given
+        return {n: [given[n]] if n in given else self._yard.hulls(links[n].scene) for n in self._links if n in links}

@@ -1,0 +1,156 @@
+"""Gazebo Classic's elevator: `libElevatorPlugin.so`, and with ROS's topic `libgazebo_ros_elevator.so`."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.joints.axes import JointAxis
+from simkit.plugins.lookups import find_axis_joint
+from simkit.plugins.once import Once
+from simkit.runtime.physics import CONTROL
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneJoint, SceneModel
+
+Phase = Literal["idle", "closing first", "moving", "opening", "waiting", "closing"]
+
+STRING: Final = "std_msgs/msg/String"
+_NEVER: Final = 1e-9  # [Hz]
+_AFTER: Final[dict[Phase, Phase]] = {
+    "closing first": "moving",
+    "moving": "opening",
+    "opening": "waiting",
+    "waiting": "closing",
+    "closing": "idle",
+}
+_LIFT: Final = (1e5, 1e5)
+"""[N/m, N·s/m] of the cabin's controller."""
+_DOOR: Final = (2.0, 1.0)
+_OPEN: Final = 1.0  # [m or rad]
+_CABIN_WITHIN: Final = 0.15  # [m]
+_DOOR_WITHIN: Final = 0.05
+_FLOOR: Final = re.compile(r"\s*[-+]?\d+")
+
+
+class ElevatorPlugin(ModelPlugin):
+    """Takes the cabin to the floor whose number comes as text, with the door shut; opens it there, waits, and shuts it.
+
+    Floors are `<floor_height>` apart from where the joint `<lift_joint>` is 0; `<door_joint>` is open at 1 and shut at
+    0. A command that comes while it is under way is left out, as in Gazebo. The topic is `~/elevator`, which is
+    `/gazebo/<world>/elevator`, or `<topic>`.
+
+    Cabin and door are held by springs and dampers of Gazebo's strengths (10⁵ N/m and N·s/m, 2 N/m and 1 N·s/m). Gazebo
+    damps the change of the error, which throws the cabin when the floor changes, and loses the door's damping as time
+    goes on; here it is the speed that is damped. The wait is in simulated time, in Gazebo by the clock on the wall.
+    """
+
+    filenames = ("libElevatorPlugin.so",)
+    drives = True
+    _bottom: int | None = None
+    _top: int | None = None
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._wait_ns = round(params.number("door_wait_time", 5.0, minimum=0.0, maximum=1e9) * 1e9)
+        self._height = params.number("floor_height", 3.0, minimum=-1e6, maximum=1e6)
+        if not params.has("floor_height"):
+            message = f"plugin {self.name!r} has no <floor_height>: floors are 3 m apart"
+            params.diagnostics.warning("SK-PLUGIN-137", message, params.where)
+        found = [self._joint(scene, params, element) for element in ("lift_joint", "door_joint")]
+        self._joints = [joint.scoped for joint in found if joint is not None]
+        strengths = (_LIFT, _DOOR)
+        self._servos = [
+            builder.add_position_servo(joint.scoped, max_effort=float("inf"), owner=self.name, kp=p, kv=d)
+            for joint, (p, d) in zip(found, strengths, strict=True)
+            if joint is not None
+        ]
+
+    def _joint(self, scene: SceneModel, params: Params, element: str) -> SceneJoint | None:
+        name = params.text(element, required=True)
+        named = params.child(element)
+        return find_axis_joint(scene, name, named) if named is not None else None
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        self._lift, self._door = (JointAxis(self.sim.joint(name)) for name in self._joints)
+        self._phase: Phase = "idle"
+        self._floor, self._until_ns = 0, 0
+        self.before_step_rate = _NEVER
+        self.open_topic(params)
+
+    def open_topic(self, params: Params) -> None:
+        """Listens to what floor to go to."""
+        topic = params.text("topic", "~/elevator")
+        if topic.startswith("~/"):
+            topic = f"/gazebo/{self.sim.world.name}/{topic[2:]}"
+        self.listen(valid_topic(topic), STRING, self._on_floor)
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_floor(self, message: Any) -> None:
+        found = _FLOOR.match(message.data)
+        if found is None or len(found[0]) > 9:
+            self.once.left_out("text", f"{message.data[:40]!r} is not the number of a floor; it is left out")
+            return
+        floor = int(found[0])
+        if self._bottom is not None and floor < self._bottom:
+            self._beyond(floor, f"the lowermost is {self._bottom}")
+        elif self._top is not None and floor > self._top:
+            self._beyond(floor, f"the topmost is {self._top}")
+        elif self._phase == "idle":
+            self._floor = floor
+            self._go("closing first")
+
+    def _beyond(self, floor: int, which: str) -> None:
+        self.once.left_out(f"floor {floor}", f"there is no floor {floor}, {which}; it is left out")
+
+    def before_step(self) -> None:
+        """Goes on where something has come to its end."""
+        phase = self._phase
+        if phase == "moving":
+            is_over = abs(self._lift.position - self._floor * self._height) < _CABIN_WITHIN
+        elif phase == "waiting":
+            is_over = self.sim.time_ns >= self._until_ns
+        else:
+            wanted = _OPEN if phase == "opening" else 0.0
+            is_over = abs(self._door.position - wanted) < _DOOR_WITHIN
+        if phase != "idle" and is_over:
+            self._go(_AFTER[phase])
+
+    def _go(self, phase: Phase) -> None:
+        self._phase = phase
+        if phase == "moving":
+            self._hold(0, self._floor * self._height)
+        elif phase == "waiting":
+            self._until_ns = self.sim.time_ns + self._wait_ns
+        elif phase != "idle":
+            self._hold(1, _OPEN if phase == "opening" else 0.0)
+        pace = _NEVER if phase == "idle" else None
+        if pace != self.before_step_rate:
+            self.before_step_rate = pace
+            self.sim.reschedule()
+
+    def _hold(self, number: int, position: float) -> None:
+        """Tells the cabin's servo (0) or the door's (1) where to be."""
+        sim = self.sim
+        sim.mj_data.ctrl[sim.names.actuator(self._servos[number])] = position
+        sim.physics.changed(CONTROL)
+
+
+class GazeboRosElevator(ElevatorPlugin):
+    """The same with the floor on ROS's topic `elevator` (ROS 1: `<topic>`), from `<bottom_floor>` to `<top_floor>`."""
+
+    filenames = ("libgazebo_ros_elevator.so",)
+
+    def open_topic(self, params: Params) -> None:
+        """Listens to what floor to go to."""
+        self.listen(params.text("topic", "elevator"), STRING, self._on_floor)
+        self._bottom = params.integer("bottom_floor") if params.has("bottom_floor") else None
+        self._top = params.integer("top_floor") if params.has("top_floor") else None
+        if self._bottom is not None and self._top is not None and self._top < self._bottom:
+            message = f"plugin {self.name!r}: <top_floor> {self._top} is below <bottom_floor> {self._bottom}"
+            params.diagnostics.warning("SK-PLUGIN-135", f"{message}; it never moves", self.where)

@@ -1,0 +1,111 @@
+"""Gazebo Classic's hand that holds a link at a frame of tf, in both spellings: `libgazebo_ros_hand_of_god.so`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.odometry import TRANSFORMS, transforms
+from simkit.plugins.lookups import named_link
+from simkit.plugins.ros_names import is_ros_1
+from simkit.pose import IDENTITY, Pose
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+_NEVER: Final = 1e-9  # [Hz]
+_WORLD: Final = "world"
+
+
+class GazeboRosHandOfGod(ModelPlugin):
+    """Draws a link, which it takes the weight of, to the frame `<frame_id>_desired` that others tell on `/tf`.
+
+    The force is `<kl>` [N/m] times the way that is left, damped critically by the link's mass; the torque is `<ka>`
+    [N·m/rad] times half the angle that is left, damped by 2 √(ka Ixx), as in Gazebo. Where the link is, is told on
+    `/tf` as `<frame_id>_actual`. Frames may hang on others, up to `world`. ROS 1: `<linkName>`, `<frameId>`.
+    """
+
+    filenames = ("libgazebo_ros_hand_of_god.so",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        old = is_ros_1(params, ("linkName", "frameId"))
+        self._scoped = named_link(scene, "linkName" if old else "link_name", params)
+        self._frame = params.text("frameId" if old else "frame_id", _WORLD)
+        self._stiffness = np.array([params.number(name, 200.0, minimum=0.0, maximum=1e9) for name in ("kl", "ka")])
+        link = next((one for one in scene.all_links() if one.scoped == self._scoped), None)
+        self._mass, self._inertia = (1.0, 1.0) if link is None else (link.inertial.mass, link.inertial.inertia[0])
+        self._has_weight = link is not None and link.gravity
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._damping = 2.0 * np.sqrt(self._stiffness * (self._mass, self._inertia))
+        self._link = self.sim.link(self._scoped)
+        self._frames: dict[str, tuple[str, Pose]] = {}
+        self.before_step_rate = _NEVER
+        self._stand()
+        self._tf = self.advertise("/tf", TRANSFORMS)
+        for topic in ("/tf", "/tf_static"):
+            self.subscribe(topic, self._on_transforms)
+
+    def reset(self) -> None:
+        self.sim.reschedule()
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Back to a state from `get_state`."""
+        super().set_state(state)
+        self._stand(are_applied=True)
+
+    def _stand(self, *, are_applied: bool = False) -> None:
+        """Takes the link's weight."""
+        force = -self._mass * np.asarray(self.sim.gravity) if self._has_weight else np.zeros(3)
+        lift = {self._scoped: np.array([*force, 0.0, 0.0, 0.0])} if force.any() else {}
+        self.sim.set_standing_wrenches(self, lift, are_applied=are_applied)
+
+    def _on_transforms(self, message: Any) -> None:
+        own = f"{self._frame}_actual"
+        for one in message.transforms:
+            child = one.child_frame_id.lstrip("/")
+            t, q = one.transform.translation, one.transform.rotation
+            numbers = (t.x, t.y, t.z, q.w, q.x, q.y, q.z)
+            if child != own and all(map(math.isfinite, numbers)) and any(numbers[3:]):
+                self._frames[child] = one.header.frame_id.lstrip("/"), Pose(numbers[:3], numbers[3:])
+        pace = None if self._desired() is not None else _NEVER
+        if pace != self.before_step_rate:
+            self.before_step_rate = pace
+            self.sim.reschedule()
+
+    def _desired(self) -> Pose | None:
+        """Where the link is wanted in the world; None while nobody has told."""
+        frame, pose = f"{self._frame}_desired", IDENTITY
+        for _ in range(len(self._frames)):  # a ring of frames ends too
+            if frame not in self._frames:
+                return None
+            frame, step = self._frames[frame]
+            pose = step @ pose
+            if frame == _WORLD:
+                return pose
+        return None
+
+    def before_step(self) -> None:
+        """Pulls and turns the link."""
+        wanted = self._desired()
+        if wanted is None:
+            return
+        link, (kl, ka), (cl, ca) = self._link, self._stiffness, self._damping
+        pose = link.pose
+        turn = (pose.inverse() @ wanted).quaternion
+        turn = turn if turn[0] >= 0.0 else -turn
+        sine = float(np.linalg.norm(turn[1:]))
+        # the quaternion's logarithm: half the angle
+        half = turn[1:] * (math.atan2(sine, float(turn[0])) / sine) if sine > 1e-12 else turn[1:]
+        force = kl * (wanted.position - pose.position) - cl * link.linear_velocity
+        link.apply_wrench(force, pose.rotate(ka * half) - ca * link.angular_velocity)
+        if self._tf.wanted:
+            self._tf.publish_later(partial(transforms, self.sim.time_ns, (_WORLD, f"{self._frame}_actual", pose)))

@@ -1,0 +1,61 @@
+"""Gazebo Classic's battery and what draws from it: `libLinearBatteryPlugin.so`, `libLinearBatteryConsumerPlugin.so`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.plugins.gz.battery import Battery, BatteryConsumer
+from simkit.plugins.gz.battery_cell import Cell
+from simkit.plugins.lookups import named_link
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+
+class ClassicLinearBattery(Battery):
+    """The same arithmetic; it drains from the start by what consumers draw, and an empty one stops nobody.
+
+    In Classic only other plugins can ask how it is. Here its state is published as gz's battery's is.
+    """
+
+    filenames = ("libLinearBatteryPlugin.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        named_link(scene, "link_name", params)
+        self.battery = params.text("battery_name", required=True)
+        capacity = params.number("capacity", required=True, minimum=1e-12) or 1.0
+        charge = params.number("initial_charge", 0.0, minimum=0.0)
+        constant, linear = (params.number(f"open_circuit_voltage_{n}_coef", 0.0) for n in ("constant", "linear"))
+        resistance = params.number("resistance", 0.0, minimum=0.0)
+        tau = params.number("smooth_current_tau", 0.0, minimum=0.0)
+        voltage = constant + linear * (1.0 - charge / capacity)
+        self.cell = Cell(constant, linear, capacity, resistance, tau, voltage, charge)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.is_drained = True
+        self.open_state(parent.name)
+
+
+class LinearBatteryConsumer(BatteryConsumer):
+    """Draws a power from a battery of its model, Classic's or gz's."""
+
+    filenames = ("libLinearBatteryConsumerPlugin.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        named_link(scene, "link_name", params)
+        self.battery = params.text("battery_name", required=True)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._power = self.declare("power_load", 0.0, description="what is drawn from the battery [W]")
+        plugins = [p for p in self.sim.structure.all_plugins() if isinstance(p, Battery)]
+        there = [p.battery for p in plugins if p.scoped == self.scoped]
+        if self.battery and self.battery not in there:
+            message = f"plugin {self.name!r}: its model has no battery {self.battery!r}; nothing is drawn"
+            params.diagnostics.warning("SK-PLUGIN-123", message, self.where, did_you_mean(self.battery, there))
+
+    @property
+    def power(self) -> float:
+        return float(self._power.value)

@@ -1,0 +1,42 @@
+"""Gazebo Classic's touch detector, `libTouchPlugin.so`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.plugins.gz.touch import Touching
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+
+class ClassicTouchPlugin(Touching):
+    """Says once that its model has touched a target, and nothing else, for a while without a break.
+
+    What counts are the collisions that the named contact sensors watch. Its messages are whole numbers: 1 on
+    `/<namespace>/enable` has it look, 0 has it rest; 1 on `/<namespace>/touched` says that it is done.
+    """
+
+    filenames = ("libTouchPlugin.so",)
+    message_type: ClassVar[str] = "std_msgs/msg/Int32"
+    is_exclusive: ClassVar[bool] = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._read_common(scene, params, builder)
+        params.text("sensor", required=True)
+        sensors = {s.scoped: s.name for s in scene.all_sensors() if s.kind == "contact"}
+        self._sensors: tuple[str, ...] = ()
+        for element in params.all("sensor"):
+            found = tuple(scoped for scoped in sensors if f"::{scoped}".endswith(f"::{element.value}"))
+            self._sensors += found
+            if not found:
+                listed = ", ".join(map(repr, sensors.values())) or "none"
+                message = f"model {scene.scoped!r} has no contact sensor {element.value!r}; it has: {listed}"
+                element.error("SK-PLUGIN-003", message, did_you_mean(element.value, sensors.values()))
+
+    def load(self, parent: Any, params: Params) -> None:
+        sensors = [self.sim.sensor(scoped) for scoped in self._sensors]
+        self._watch([name for sensor in sensors for name in sensor.collisions], params)

@@ -1,0 +1,200 @@
+"""Gazebo Classic's vacuum gripper, in ROS 2 and ROS 1 spelling: `libgazebo_ros_vacuum_gripper.so`."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.heard import publish_while_heard
+from simkit.plugins.lookups import find_link, named_link
+from simkit.plugins.ros_names import is_ros_1
+from simkit.runtime.physics import STALE
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+BOOL: Final = "std_msgs/msg/Bool"
+SET_BOOL: Final = "std_srvs/srv/SetBool"
+EMPTY: Final = "std_srvs/srv/Empty"
+_ROS_1: Final = ("bodyName", "topicName", "maxForce", "maxDistance", "minDistance")
+_RATE: Final = 80.0  # [Hz]
+_NEVER: Final = 1e-9  # [Hz]
+
+
+class GazeboRosVacuumGripper(ModelPlugin):
+    """While it is on, holds every link whose origin comes within `<max_distance>` of a gripper link's origin.
+
+    What it holds keeps its place at the gripper link until it is switched off; its weight is the robot's to carry. Not
+    held are the robot itself, what cannot move, and the models named in `<fixed>`. Whether it holds something is told
+    on `grasping`. ROS 2: `<link_name>` (several), the service `switch` (SetBool). ROS 1: `<bodyName>`, `<topicName>`,
+    `<maxDistance>`, the services `on` and `off` (Empty).
+
+    Gazebo pulls at what is near: with 1 N in ROS 2, by setting its velocity in ROS 1. Neither lifts a load and keeps it
+    where it is; here it is held by a joint, as things are held by suction.
+    """
+
+    filenames = ("libgazebo_ros_vacuum_gripper.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._is_ros_1 = is_ros_1(params, _ROS_1)
+        self._topic, self._rate = "grasping", _RATE
+        fixed: list[str] = []
+        if self._is_ros_1:
+            self._grippers = [named_link(scene, "bodyName", params)]
+            self._topic, self._rate = params.text("topicName", required=True), 0.0
+            self._reach = params.number("maxDistance", 0.05, minimum=0.0)
+            for name in ("maxForce", "minDistance"):
+                if params.has(name):
+                    params.number(name, minimum=0.0)
+                    message = f"plugin {self.name!r}: <{name}> has no effect: what is near is held by a joint"
+                    params.diagnostics.note("SK-PLUGIN-138", message, self.where)
+        else:
+            named = params.all("link_name") if params.has("link_name") else []
+            if not named:
+                params.text("link_name", required=True)
+            found = [find_link(scene, one.value, one) for one in named]
+            self._grippers = [link.scoped for link in found if link is not None]
+            self._reach = params.number("max_distance", 0.05, minimum=0.0)
+            fixed = [one.value for one in params.all("fixed")]
+        self._fixed = frozenset(fixed)
+        self._own = scene.scoped.split("::")[0]
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._is_on = False
+        self._held: dict[str, str] = {}  # scoped link -> the weld that holds it
+        self._things = _Things()
+        self.before_step_rate = _NEVER
+        if self._is_ros_1:
+            self.offer("on", EMPTY, partial(self._on_empty, True))
+            self.offer("off", EMPTY, partial(self._on_empty, False))
+        else:
+            self.offer("switch", SET_BOOL, self._on_switch)
+        self._grasping = self.advertise(self._topic, BOOL)
+        publish_while_heard(self, self._grasping, self._rate, "tell")
+
+    def reset(self) -> None:
+        self.sim.reschedule()
+
+    @property
+    def holds(self) -> list[str]:
+        """Scoped names of the links that it holds."""
+        return [link for link, weld in self._held.items() if self._is_there(weld)]
+
+    def tell(self) -> None:
+        """Publishes whether it holds something."""
+        self._grasping.publish(msgs.make(BOOL, data=bool(self.holds)))
+
+    # ------------------------------------------------------------------ services
+
+    def _on_switch(self, request: Any) -> dict[str, Any]:
+        is_new = self._switch(bool(request.data))
+        return {"success": is_new, "message": "" if is_new else f"it is {'on' if request.data else 'off'} already"}
+
+    def _on_empty(self, is_on: bool, _: Any) -> None:
+        self._switch(is_on)
+
+    def _switch(self, is_on: bool) -> bool:
+        """Switches it; False where it was so already."""
+        if is_on == self._is_on:
+            return False
+        self._is_on = is_on
+        if not is_on:
+            for weld in self._held.values():
+                if self._is_there(weld):
+                    self.sim.set_weld(weld, False)
+            self._held = {}
+        self.before_step_rate = None if is_on else _NEVER
+        self.sim.reschedule()
+        return True
+
+    # ------------------------------------------------------------------ holding
+
+    def before_step(self) -> None:
+        """Takes hold of what has come near."""
+        if not self._is_on:
+            return
+        sim, things = self.sim, self._things
+        things.bind(sim, self._own, self._fixed, self._grippers)
+        physics = sim.physics
+        # where things are does not hang on what velocities and forces have been set since the last step
+        near = things.near(physics.fresh() if physics.stage == STALE else physics.data, self._reach)
+        for gripper, thing in near:
+            weld = self._held.get(thing)
+            if weld is None or not self._is_there(weld):
+                self._hold(gripper, thing)
+
+    def _hold(self, gripper: str, thing: str) -> None:
+        sim, weld = self.sim, f"{gripper}#vacuum {thing}"
+        if not self._is_there(weld):
+            sim.add_weld(weld, gripper, thing)
+        sim.set_weld(weld, True)
+        self._held = {**self._held, thing: weld}
+
+    def _is_there(self, weld: str) -> bool:
+        try:
+            self.sim.names.equality(weld)
+        except KeyError:
+            return False
+        return True
+
+
+class _Things:
+    """Where grippers and what they may hold are in the engine; a handle, without state of its own."""
+
+    def __init__(self) -> None:
+        self._known: Any = None
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> _Things:
+        return self
+
+    def bind(self, sim: Any, own: str, fixed: frozenset[str], grippers: list[str]) -> None:
+        """Finds them in the present model."""
+        if self._known is sim.structure:
+            return
+        self._known, names, weld = sim.structure, sim.names, sim.mj_model.body_weldid
+        self._grippers = grippers
+        self._links = [
+            link
+            for link in sim.entities.tables["link"]
+            if (parts := link.split("::"))[0] != own
+            and not fixed.intersection((parts[0], link, parts[-1]))
+            and weld[names.link(link).body] != 0
+        ]
+        self._own = _frames(names, grippers)
+        self._others = _frames(names, self._links)
+
+    def near(self, data: Any, reach: float) -> list[tuple[str, str]]:
+        """Each link within reach with the first gripper link that it is near to; scoped names, gripper first."""
+        if not self._links:
+            return []
+        places = _origins(data, *self._others)
+        found: dict[str, str] = {}
+        for gripper, place in zip(self._grippers, _origins(data, *self._own), strict=True):
+            away = places - place
+            for k in np.flatnonzero(np.einsum("ij,ij->i", away, away) <= reach * reach).tolist():
+                found.setdefault(self._links[k], gripper)
+        return [(gripper, thing) for thing, gripper in found.items()]
+
+
+Numbers = npt.NDArray[np.float64]
+
+
+def _frames(names: Any, links: list[str]) -> tuple[npt.NDArray[np.intp], Numbers]:
+    """Bodies of links, and the links' origins in them, shape (n, 3)."""
+    found = [names.link(link) for link in links]
+    bodies = np.array([int(one.body) for one in found], dtype=np.intp)
+    return bodies, np.array([one.offset.position for one in found]).reshape(-1, 3)
+
+
+def _origins(data: Any, bodies: npt.NDArray[np.intp], offsets: Numbers) -> Numbers:
+    """Origins of links in the world [m], shape (n, 3)."""
+    turns = data.xmat[bodies].reshape(-1, 3, 3)
+    found: Numbers = data.xpos[bodies] + np.einsum("nij,nj->ni", turns, offsets)
+    return found

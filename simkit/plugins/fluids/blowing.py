@@ -1,0 +1,125 @@
+"""Wind that pushes links: what `gz::sim::systems::WindEffects` and Classic's WindPlugin share."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.fluids.gusts import Seed, read_gusts
+from simkit.plugins.fluids.pushed_links import PushedLinks, moving_data
+from simkit.plugins.fluids.wind_field import WindField, read_field
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+WIND: Final = "simkit_msgs/msg/Wind"
+VECTOR: Final = "geometry_msgs/msg/Vector3"
+INFO: Final = "simkit_msgs/srv/WindInfo"
+_NEVER: Final = 1e-9  # [Hz]
+Velocity = tuple[float, float, float]
+
+
+class Blowing(WorldPlugin):
+    """Makes the world's wind rise, turn, swell and flutter, and pushes the links with `<enable_wind>` by it.
+
+    A link of mass m feels m · factor · (velocity of the air − its own) at its centre of mass. `/world/<world>/wind`
+    sets the wind that is asked for, `/world/<world>/wind_info` tells it.
+    """
+
+    has_field = True
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self.once = Once(self)
+        self._gusts = read_gusts(params, self.period)
+        self._field = WindField(everywhere=1.0)
+        if self.has_field:
+            self._field = read_field(params, parent.world.gazebo_quirks)
+        self._seed: Seed = self._gusts.start(parent.world.wind)
+        self._streams = {channel: self.random(channel, 3) for channel in ("wind", "wind bias")}
+        self._felt: tuple[int, Velocity] | None = None
+        self._links: PushedLinks | None = None
+        self._bind()
+        parent.wind.source = self.velocity
+        base = valid_topic(f"/world/{parent.world.name}")
+        self.listen(f"{base}/wind", (WIND, VECTOR), self._on_wind)
+        self.offer(f"{base}/wind_info", INFO, self._tell)
+
+    @property
+    def before_step_rate(self) -> float | None:
+        """Never while nothing feels the wind; after a spawn or a removal that is looked at anew."""
+        is_idle = self._links is not None and self._links.is_current and (not len(self._links) or self._is_calm)
+        return _NEVER if is_idle else None
+
+    @before_step_rate.setter
+    def before_step_rate(self, rate: float | None) -> None:
+        raise AttributeError("a wind is called as long as something feels it")
+
+    @property
+    def _is_calm(self) -> bool:
+        """Off: nothing is pushed, and what moves is not braked."""
+        return not self._seed.blows
+
+    # ------------------------------------------------------------------ what it is
+
+    def velocity(self, tick: int) -> Velocity:
+        """Velocity of the air [m/s], world frame, in the step that follows a tick."""
+        if self._felt is None or self._felt[0] != tick:
+            self._felt = tick, self._gusts.at(self._seed, tick, self._draw)
+        return self._felt[1]
+
+    def _draw(self, channel: str, index: int) -> Any:
+        return self._streams[channel].normal(index)
+
+    def before_step(self) -> None:
+        """Pushes for the step to come."""
+        if self._links is None or not self._links.is_current:
+            self._bind()
+            self.sim.reschedule()
+        links = self._links
+        if not links or self._is_calm:
+            return
+        data = moving_data(self.sim)
+        air = np.array(self.velocity(self.sim.tick)) - links.velocities(data)
+        strength = self._masses * self._field.at(data.xpos[links.bodies])
+        links.push(data, (strength * air.T).T)
+
+    def _bind(self) -> None:
+        names = self.sim.names.links
+        windy = {name: binding.scene for name, binding in names.items() if binding.scene.enable_wind}
+        self._links = PushedLinks(self.sim, list(windy))
+        self._masses = np.array([windy[name].inertial.mass for name in self._links.names], float)
+
+    def set_state(self, state: Any) -> None:
+        """Back to a state from `get_state`."""
+        super().set_state(state)
+        self._felt = None
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_wind(self, message: Any) -> None:
+        vector = getattr(message, "linear_velocity", message)
+        velocity = float(vector.x), float(vector.y), float(vector.z)
+        if not all(map(math.isfinite, velocity)) or max(map(abs, velocity)) > 1e6:
+            self.once.not_finite("a wind")
+            return
+        blows = bool(getattr(message, "enable_wind", True))
+        for sensor in self.sim.structure.all_sensors():
+            sensor.take_held()  # what was held was measured in the old one
+        self._seed = self._gusts.changed(self._seed, velocity, blows, self.sim.tick)
+        self._felt = None
+        self.sim.reschedule()
+
+    def _tell(self, request: Any) -> dict[str, Any]:
+        seed = self._seed
+        wind = {"linear_velocity": _fields(seed.velocity), "enable_wind": seed.blows}
+        return {"wind": wind, "velocity": _fields(self.velocity(self.sim.tick))}
+
+
+def _fields(vector: Velocity) -> dict[str, float]:
+    return dict(zip("xyz", map(float, vector), strict=True))

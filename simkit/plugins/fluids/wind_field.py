@@ -1,0 +1,168 @@
+"""How strongly the wind pushes at which place: a number, or pieces of space with a sum of polynomials in each."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.params import Params
+from simkit.pose import Vector
+
+Four = tuple[float, float, float, float]
+_AXES: Final = ("px", "qy", "rz")
+_ZERO: Final[Four] = (0.0, 0.0, 0.0, 0.0)
+_ONE: Final = ((0.0, 0.0, 0.0, 1.0), _ZERO, _ZERO)
+_FARTHEST: Final = 1e6  # [m], where a polynomial is asked whether it is negative
+_ALLOWED: Final = "at least 0 everywhere: wind pushes along, not against"
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """Of one coordinate [m]."""
+
+    low: float = -math.inf
+    high: float = math.inf
+    has_low: bool = False
+    has_high: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """k · (p(x) + q(y) + r(z)) in a box of space.
+
+    Attributes:
+        where: intervals of x, y and z.
+        factor: k.
+        terms: coefficients of p, q and r, from the cube down.
+    """
+
+    where: tuple[Interval, Interval, Interval]
+    factor: float
+    terms: tuple[Four, Four, Four]
+
+    def at(self, places: Vector) -> Vector:
+        a, b, c, d = np.array(self.terms).T
+        found: Vector = self.factor * (((a * places + b) * places + c) * places + d).sum(axis=1)
+        return found
+
+    def holds(self, places: Vector) -> npt.NDArray[np.bool_]:
+        inside = np.ones(len(places), bool)
+        for values, interval in zip(places.T, self.where, strict=True):
+            inside &= values >= interval.low if interval.has_low else values > interval.low
+            inside &= values <= interval.high if interval.has_high else values < interval.high
+        return inside
+
+    @property
+    def least(self) -> float:
+        """The smallest value in the box, as far as `_FARTHEST` out."""
+        extremes = [_extremes(c, span) for c, span in zip(self.terms, self.where, strict=True)]
+        return min(self.factor * sum(corner) for corner in itertools.product(*extremes))
+
+
+@dataclass(frozen=True, slots=True)
+class WindField:
+    """The scaling factor of the wind's force [1/s]: of the first piece that holds a place, zero outside of all.
+
+    Attributes:
+        pieces: where it is not the same everywhere.
+        everywhere: where it is.
+    """
+
+    pieces: tuple[Piece, ...] = ()
+    everywhere: float = 0.0
+
+    def at(self, places: Vector) -> Vector | float:
+        """At places [m], shape (n, 3): shape (n,), or one for all."""
+        if not self.pieces:
+            return self.everywhere
+        found, is_open = np.zeros(len(places)), np.ones(len(places), bool)
+        for piece in self.pieces:
+            inside = is_open & piece.holds(places)
+            if inside.any():
+                found[inside] = piece.at(places[inside])
+                is_open &= ~inside
+        return found
+
+
+def read_field(params: Params, quirks: bool) -> WindField:
+    """A plugin's `<force_approximation_scaling_factor>`; what is wrong is reported.
+
+    Args:
+        params: the plugin's.
+        quirks: a plain number counts squared, as gz has it.
+    """
+    name = "force_approximation_scaling_factor"
+    block = params.child(name)
+    if block is None:
+        return WindField(everywhere=1.0)
+    if not block.children:
+        value = params.number(name, 1.0, minimum=0, maximum=1e9)
+        return WindField(everywhere=value * value if quirks else value)
+    whens = block.all("when")
+    field = WindField(tuple(_piece(when) for when in whens) if whens else (_piece(block, is_bounded=False),))
+    for piece, element in zip(field.pieces, whens or [block], strict=True):
+        if piece.least < -1e-9:
+            text = f"found <{element.name}> that comes down to {piece.least:g}, allowed is {_ALLOWED}"
+            element.error("SK-PARAM-002", text)
+    return field
+
+
+def _piece(block: Params, is_bounded: bool = True) -> Piece:
+    x, y, z = (_interval(block, axis) if is_bounded else Interval() for axis in "xyz")
+    if not block.children:
+        value = _number_of(block)
+        return Piece((x, y, z), value, _ONE)
+    p, q, r = (_four(block, name) for name in _AXES)
+    return Piece((x, y, z), block.number("k", 1.0, minimum=-1e9, maximum=1e9), (p, q, r))
+
+
+def _four(block: Params, name: str) -> Four:
+    a, b, c, d = block.vector(name, 4, _ZERO)
+    return a, b, c, d
+
+
+def _number_of(block: Params) -> float:
+    """The number that an element itself is."""
+    try:
+        value = float(block.value)
+    except ValueError:
+        value = math.nan
+    if not abs(value) <= 1e9:
+        block.error("SK-PARAM-002", f"found <{block.name}>{block.value}</{block.name}>, allowed is a number")
+        return 0.0
+    return value
+
+
+def _interval(block: Params, axis: str) -> Interval:
+    low, has_low = _bound(block, axis + "ge", axis + "gt", -math.inf)
+    high, has_high = _bound(block, axis + "le", axis + "lt", math.inf)
+    return Interval(low, high, has_low, has_high)
+
+
+def _bound(block: Params, closed: str, opened: str, default: float) -> tuple[float, bool]:
+    given = [(name, block.attribute(name)) for name in (closed, opened) if block.attribute(name)]
+    if len(given) == 2:
+        block.error("SK-PARAM-002", f"found {closed} and {opened} on one <{block.name}>, allowed is one of the two")
+    for name, text in given[:1]:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if math.isfinite(value):
+            return value, name == closed
+        block.error("SK-PARAM-002", f'found {name}="{text}", allowed is a number [m]')
+    return default, False
+
+
+def _extremes(terms: Four, span: Interval) -> list[float]:
+    """Values of a cubic at the ends of an interval and where its slope is zero within."""
+    low, high = max(span.low, -_FARTHEST), min(span.high, _FARTHEST)
+    slope = np.polyder(np.poly1d(terms)).coeffs
+    turns = [float(r.real) for r in np.roots(slope) if abs(r.imag) < 1e-12] if np.any(slope) else []
+    points = [low, high, *(t for t in turns if low < t < high)]
+    return [float(np.polyval(terms, point)) for point in points]

@@ -1,0 +1,78 @@
+"""gz's buoyancy: `gz::sim::systems::Buoyancy`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.fluids.displacement import Fluid
+from simkit.plugins.fluids.floating import Floating
+from simkit.plugins.fluids.hulls import Hull
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+WATER: Final = 1000.0
+"""[kg/m³]"""
+
+
+class Buoyancy(Floating, WorldPlugin):
+    """The whole world lies in a fluid or in level layers of several; every link floats by its collisions' volume.
+
+    `<enable>` names the models and links that do, where not all should.
+    """
+
+    filenames = ("gz-sim-buoyancy-system",)
+    names = ("gz::sim::systems::Buoyancy",)
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self._fluid = self._read(params)
+        enabled = [(element.value, element) for element in params.all("enable")]
+        self._enabled = frozenset(name for name, _ in enabled)
+        names = {scope for link in parent.names.links for scope in _scopes(link)}
+        for name, element in enabled:
+            if name not in names:
+                message = f"plugin {self.name!r}: there is no model or link {name!r} to float; it is waited for"
+                params.diagnostics.warning("SK-PLUGIN-113", message, element.where, did_you_mean(name, names))
+        self.start()
+
+    def find_hulls(self) -> Mapping[str, Sequence[Hull]]:
+        """Of every link that moves and is to float."""
+        return {
+            name: self._yard.hulls(binding.scene)
+            for name, binding in self.sim.names.links.items()
+            if binding.body > 0 and (not self._enabled or not self._enabled.isdisjoint(_scopes(name)))
+        }
+
+    def _read(self, params: Params) -> Fluid:
+        graded = params.child("graded_buoyancy")
+        if params.has("uniform_fluid_density"):
+            if graded is not None:
+                graded.mark_all_read()
+                message = "found both <uniform_fluid_density> and <graded_buoyancy>: the former is used, as in Gazebo"
+                params.diagnostics.warning("SK-PLUGIN-111", message, graded.where)
+            return Fluid((_density(params, "uniform_fluid_density"),))
+        if graded is None:
+            message = f"plugin {self.name!r} says nothing of the fluid: water of {WATER:g} kg/m³ is everywhere"
+            hint = "<uniform_fluid_density> or <graded_buoyancy>"
+            params.diagnostics.warning("SK-PLUGIN-114", message, self.where, hint)
+            return Fluid((WATER,))
+        layers: dict[float, float] = {}
+        for change in graded.all("density_change"):
+            height = change.number("above_depth", required=True, minimum=-1e9, maximum=1e9)
+            layers[height] = _density(change, "density", required=True)
+        heights = tuple(sorted(layers))
+        return Fluid((_density(graded, "default_density"), *(layers[h] for h in heights)), heights)
+
+
+def _density(params: Params, name: str, required: bool = False) -> float:
+    return params.number(name, None if required else WATER, required=required, minimum=0, maximum=1e9)
+
+
+def _scopes(link: str) -> list[str]:
+    """A link's scoped name and those of what it is in."""
+    parts = link.split("::")
+    return ["::".join(parts[:count]) for count in range(1, len(parts) + 1)]

@@ -1,0 +1,204 @@
+"""gz's elevator: `gz::sim::systems::Elevator`."""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.heard import publish_while_heard
+from simkit.plugins.joints.axes import JointAxis
+from simkit.plugins.lookups import find_axis_joint, find_link
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+Phase = Literal["idle", "moving", "opening", "waiting", "closing"]
+
+DOUBLE: Final = "std_msgs/msg/Float64"
+INT: Final = "std_msgs/msg/Int32"
+_NEVER: Final = 1e-9  # [Hz]
+_FARTHEST: Final = 1e6
+"""[m] that a door opens at most; an axis without limits has more."""
+_CABIN_WITHIN: Final = 0.15  # [m]
+_DOOR_WITHIN: Final = 0.02  # [m]
+_AT_REST: Final = 0.01  # [m/s]
+_FREE: Final = 0.005
+"""[m] that a range may be short of the lidar's largest while the doorway is free."""
+
+
+class Elevator(ModelPlugin):
+    """Takes the cabin to the floor that comes on `<cmd_topic>`, opens its door there, waits, and closes it.
+
+    Links `floor_0`, `floor_1`, … mark the heights that the joint `lift` is to have, joints `door_0`, `door_1`, … open
+    at their upper limit and are closed at 0. The joints are moved by a JointPositionController each, which is told
+    where to on `/model/<model>/joint/<joint>/0/cmd_pos`. A lidar on `/model/<model>/<door joint>/lidar` whose first
+    range is short holds the door open while it waits. A command that comes while a door closes stops on the way where
+    it lies on it; one that comes before is kept until then. The floor next to the cabin is told on `<state_topic>`.
+    """
+
+    filenames = ("gz-sim-elevator-system",)
+    names = ("gz::sim::systems::Elevator",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._update_rate = params.number("update_rate", 10.0, minimum=0.0)
+        self._state_rate = params.number("state_publish_rate", 5.0, minimum=0.0)
+        self._wait_ns = round(params.number("open_door_wait_duration", 5.0, minimum=0.0, maximum=1e9) * 1e9)
+        floor, door = params.text("floor_link_prefix", "floor_"), params.text("door_joint_prefix", "door_")
+        cabin = params.text("cabin_joint", "lift")
+        lift = find_axis_joint(scene, cabin, params.child("cabin_joint") or params)
+        self._cabin = "" if lift is None else lift.scoped
+        pattern = re.compile(re.escape(floor) + r"\d+")
+        count = sum(bool(pattern.fullmatch(link.name)) for link in scene.all_links())
+        if not count:
+            names = [link.name for link in scene.all_links()]
+            message = f"plugin {self.name!r}: no link of model {scene.scoped!r} is named {floor}0; it has: "
+            params.error("SK-PLUGIN-003", message + ", ".join(map(repr, names)), "<floor_link_prefix> names another")
+        floors = [find_link(scene, f"{floor}{k}", params) for k in range(count)]
+        upright = scene.pose_world.inverse()
+        self._heights = [float((upright @ link.pose_world).position[2]) for link in floors if link is not None]
+        doors = [find_axis_joint(scene, f"{door}{k}", params) for k in range(count)]
+        self._doors = [joint.scoped for joint in doors if joint is not None]
+        self._open = [joint.axes[0].upper for joint in doors if joint is not None]
+        for joint in doors:
+            if joint is not None and not joint.axes[0].upper <= _FARTHEST:
+                message = f"plugin {self.name!r}: door joint {joint.name!r} has no upper limit, at which it is open"
+                params.error("SK-PLUGIN-133", message, "give its axis <limit><upper>")
+        self._joint_names = [cabin, *(f"{door}{k}" for k in range(count))]
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        own = f"/model/{parent.name}"
+        axes = [JointAxis(self.sim.joint(name)) for name in (self._cabin, *self._doors)]
+        self._lift, self._door_axes = axes[0], axes[1:]
+        topics = [valid_topic(f"{own}/joint/{name}/0/cmd_pos") for name in self._joint_names]
+        self._movers = [self.advertise(topic, DOUBLE) for topic in topics]
+        self._state = self.advertise(valid_topic(params.text("state_topic", f"{own}/state")), INT)
+        self._phase: Phase = "idle"
+        self._targets: list[int] = []
+        self._kept: list[int] = []
+        self._at = 0  # the floor whose door is dealt with
+        self._until_ns = 0
+        self._was_blocked = False
+        self._blocked = [False] * len(self._doors)
+        self.after_step_rate = _NEVER
+        self.listen(valid_topic(params.text("cmd_topic", f"{own}/cmd")), INT, self._on_command)
+        for k, name in enumerate(self._joint_names[1:]):
+            self.subscribe(valid_topic(f"{own}/{name}/lidar"), partial(self._on_scan, k))
+        rates = [rate for rate in (self._update_rate, self._state_rate) if rate > 0]
+        publish_while_heard(self, self._state, min(rates, default=0.0), "tell_floor")
+
+    @property
+    def floor(self) -> int:
+        """The floor that the cabin is next to."""
+        height = self._lift.position
+        return min(range(len(self._heights)), key=lambda k: abs(self._heights[k] - height))
+
+    def tell_floor(self) -> None:
+        """Publishes it."""
+        self._state.publish(msgs.make(INT, data=self.floor))
+
+    # ------------------------------------------------------------------ messages
+
+    def _on_command(self, message: Any) -> None:
+        target = int(message.data)
+        if not 0 <= target < len(self._heights):
+            top = len(self._heights) - 1
+            self.once.left_out(f"floor {target}", f"there is no floor {target}, floors are 0 to {top}")
+        elif self._phase == "idle":
+            self._put(target)
+            self._at = self.floor
+            if self._targets[0] == self._at:
+                self._targets = self._targets[1:]
+                self._go("opening")
+            else:
+                self._go("moving")
+        elif self._phase == "closing":
+            self._put(target)
+        else:
+            self._kept = [*self._kept, target]
+
+    def _put(self, target: int) -> None:
+        """Adds a floor to go to: before the first one that it is on the way to, else at the end."""
+        if target in self._targets:
+            return
+        before = self.floor
+        for place, stop in enumerate(self._targets):
+            low, high = min(before, stop), max(before, stop)
+            if low <= target < high:
+                self._targets = [*self._targets[:place], target, *self._targets[place:]]
+                return
+            before = stop
+        self._targets = [*self._targets, target]
+
+    def _on_scan(self, door: int, scan: Any) -> None:
+        if len(scan.ranges):
+            blocked = bool(scan.ranges[0] < scan.range_max - _FREE)
+            if blocked != self._blocked[door]:
+                self._blocked = [*self._blocked[:door], blocked, *self._blocked[door + 1 :]]
+
+    # ------------------------------------------------------------------ the way of a cabin
+
+    def after_step(self) -> None:
+        """Goes on where something has come to its end."""
+        phase = self._phase
+        if phase == "moving":
+            if self._has_come(self._lift, self._heights[self._targets[0]], _CABIN_WITHIN):
+                self._at, self._targets = self._targets[0], self._targets[1:]
+                self._go("opening")
+        elif phase == "opening":
+            if self._has_come(self._door_axes[self._at], self._open[self._at], _DOOR_WITHIN):
+                self._go("waiting")
+        elif phase == "waiting":
+            if self._has_waited():
+                self._go("closing")
+        elif phase == "closing" and self._has_come(self._door_axes[self._at], 0.0, _DOOR_WITHIN):
+            self._go("moving" if self._targets else "idle")
+
+    def _go(self, phase: Phase) -> None:
+        self._phase = phase
+        if phase == "moving":
+            self._send(0, self._heights[self._targets[0]])
+        elif phase == "opening":
+            self._send(1 + self._at, self._open[self._at])
+        elif phase == "waiting":
+            self._until_ns, self._was_blocked = self.sim.time_ns + self._wait_ns, False
+        elif phase == "closing":
+            self._send(1 + self._at, 0.0)
+            kept, self._kept = self._kept, []
+            for target in kept:
+                self._put(target)
+        self.log.info("%s: %s at floor %d", self.name, phase, self._at)
+        self._set_pace()
+
+    def _send(self, joint: int, position: float) -> None:
+        mover = self._movers[joint]
+        if not any(does == "takes" for *_, does in self.sim.bus.ends(mover.topic)) and not mover.wanted:
+            hint = f"give the model a JointPositionController for joint {self._joint_names[joint]!r}"
+            self.once.warn("SK-PLUGIN-132", mover.topic, f"nobody takes positions on {mover.topic}", hint)
+        mover.publish(msgs.make(DOUBLE, data=position))
+
+    def _has_waited(self) -> bool:
+        """Whether the door has been open long enough, since the doorway was last blocked."""
+        is_blocked, now = self._blocked[self._at], self.sim.time_ns
+        if self._was_blocked and not is_blocked:
+            self._until_ns = now + self._wait_ns
+        self._was_blocked = is_blocked
+        return not is_blocked and now >= self._until_ns
+
+    def _has_come(self, axis: JointAxis, target: float, within: float) -> bool:
+        return abs(axis.position - target) <= within and abs(axis.velocity) <= _AT_REST
+
+    def _set_pace(self) -> None:
+        """Looks only while it is under way."""
+        pace = _NEVER if self._phase == "idle" else self._update_rate
+        if pace != self.after_step_rate:
+            self.after_step_rate = pace
+            self.sim.reschedule()

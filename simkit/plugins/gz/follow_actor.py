@@ -1,0 +1,159 @@
+"""gz's actor that walks after something: `gz::sim::systems::FollowActor`."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.plugins.actors.gait import Gait
+from simkit.plugins.actors.skin import SkinRig
+from simkit.plugins.actors.stage import Cast
+from simkit.plugins.base import ModelPlugin
+from simkit.runtime.physics import STALE
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.plugins.actors.script import Floats
+    from simkit.scene import SceneModel
+
+_RATE: Final = 50.0  # [Hz]
+
+
+class FollowActor(ModelPlugin):
+    """Has its actor walk after `<target>`, a model or a link, in place of its script.
+
+    It goes straight towards the target at `<velocity>` while that is farther than `<min_distance>` and not farther
+    than `<max_distance>`, both in the plane, and looks at it; else it stands. Where to is decided 50 times a second of
+    simulated time, and where it is follows from that for every instant in between. A skin's animation (`<animation>`,
+    else the first) goes on by `<animation_x_vel>` seconds a metre; a person of our own walks in step with the way. A
+    target that is not there is waited for.
+    """
+
+    filenames = ("gz-sim-follow-actor-system",)
+    names = ("gz::sim::systems::FollowActor",)
+    scenery_rate = _RATE
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._target = params.text("target", required=True)
+        self._velocity = params.number("velocity", 0.8, minimum=0.0, maximum=1e6)
+        self._least = params.number("min_distance", 1.2, minimum=0.0)
+        self._most = params.number("max_distance", 4.0, minimum=0.0)
+        self._seconds = params.number("animation_x_vel", 2.0, minimum=0.0, maximum=1e6)
+        self._animation = params.text("animation", "")
+        cast = scene.moved_by
+        if not isinstance(cast, Cast):
+            message = f"plugin {self.name!r} is for an actor, {scene.scoped!r} is a model"
+            params.error("SK-PLUGIN-134", message, "put it into an <actor>")
+            return
+        known = sorted(name for name in cast.rig.clips if name) if isinstance(cast.rig, SkinRig) else []
+        if known and self._animation and self._animation not in known:
+            what = f"actor {scene.scoped!r} has no animation {self._animation!r}"
+            message = f"plugin {self.name!r}: {what}; the first plays"
+            hint = did_you_mean(self._animation, known) or f"animations: {', '.join(known)}"
+            params.diagnostics.warning("SK-ACTOR-003", message, self.where, hint)
+        if self._most < self._least:
+            message = f"plugin {self.name!r}: <max_distance> {self._most:g} is below <min_distance> {self._least:g}"
+            params.diagnostics.warning("SK-PLUGIN-135", f"{message}; it never walks", self.where)
+
+    def load(self, parent: Any, params: Params) -> None:
+        scene: SceneModel = parent.scene
+        assert isinstance(scene.moved_by, Cast)
+        self._gait = Gait(scene.moved_by, self._animation, self._velocity, self._seconds)
+        self._links = [link.scoped for link in scene.links]
+        pose = scene.pose_world
+        self._x, self._y, self._z = pose.position.tolist()
+        self._yaw = float(pose.rpy[2])
+        self._behind = 0.0  # [m]
+        # from an instant on it goes that way, for so many metres at most
+        self._since_ns, self._way, self._left = self.sim.time_ns, (0.0, 0.0), 0.0
+        self._is_following = True
+        self._places, self._shown = _Places(), (math.nan, 0.0, 0.0, False)
+        self.before_step_rate = None  # at once, then on the grid
+        if self._find() is None:
+            models = sorted(self.sim.entities.tables["model"])
+            what = f"there is no model or link {self._target!r} to walk after"
+            message = f"plugin {self.name!r}: {what}; it is waited for"
+            params.diagnostics.warning("SK-PLUGIN-136", message, self.where, did_you_mean(self._target, models))
+
+    def reset(self) -> None:
+        self.sim.reschedule()
+
+    def before_step(self) -> None:
+        """Takes it to where it is by now, and says where to from there."""
+        gone = self._gone()
+        self._x, self._y = self._x + gone * self._way[0], self._y + gone * self._way[1]
+        self._behind += gone
+        self._since_ns, self._left = self.sim.time_ns, 0.0
+        self._aim()
+        if self.before_step_rate is None:
+            self.before_step_rate = _RATE
+            self.sim.reschedule()
+
+    def _gone(self) -> float:
+        """Metres since the last decision."""
+        return min(self._left, self._velocity * (self.sim.time_ns - self._since_ns) * 1e-9)
+
+    def _aim(self) -> None:
+        target = self._find()
+        if target is None:
+            return
+        x, y, _ = target.pose.position.tolist()
+        x, y = x - self._x, y - self._y
+        far = math.hypot(x, y)
+        if far <= self._least:
+            return
+        is_within = far <= self._most
+        if is_within != self._is_following:
+            self._is_following = is_within
+            told = "is near enough, it walks" if is_within else "is too far, it stands"
+            self.log.info("%s: %s %s", self.name, self._target, told)
+        if is_within:
+            self._way, self._left = (x / far, y / far), far - self._least
+            self._yaw = math.atan2(y, x)
+
+    def _find(self) -> Any:
+        """The model or link of that name: exactly, or the first whose scoped name ends so."""
+        tables = self.sim.entities.tables
+        for table in (tables["model"], tables["link"]):
+            if self._target in table:
+                return table[self._target]
+        ending = f"::{self._target}"
+        found = (thing for kind in ("model", "link") for name, thing in tables[kind].items() if name.endswith(ending))
+        return next(found, None)
+
+    # ------------------------------------------------------------------ what is seen
+
+    def move_scenery(self) -> None:
+        """Puts the actor where it is at the time of the simulation."""
+        gone = self._gone()
+        x, y, behind = self._x + gone * self._way[0], self._y + gone * self._way[1], self._behind + gone
+        goes, sim = self._left > gone, self.sim
+        data, places = sim.mj_data, self._places.find(sim, self._links)
+        shown = x, y, self._yaw, goes
+        if shown == self._shown and data.mocap_pos[places[0]].tolist() == [x, y, self._z]:
+            return
+        self._shown = shown
+        poses = self._gait.poses((x, y, self._z), self._yaw, behind, goes)
+        data.mocap_pos[places], data.mocap_quat[places] = poses[:, :3], poses[:, 3:]
+        sim.physics.changed(STALE)
+
+
+class _Places:
+    """Where an actor's links are among the engine's movable bodies; a handle, without state of its own."""
+
+    def __init__(self) -> None:
+        self._known: tuple[Any, Any] = (None, None)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> _Places:
+        return self
+
+    def find(self, sim: Any, links: list[str]) -> Floats:
+        if self._known[0] is not sim.structure:
+            names = sim.names
+            self._known = sim.structure, np.array([names.link(link).mocap for link in links], dtype=np.intp)
+        found: Floats = self._known[1]
+        return found

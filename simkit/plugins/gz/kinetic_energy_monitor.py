@@ -1,0 +1,68 @@
+"""gz's blows: `gz::sim::systems::KineticEnergyMonitor`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.gz.watch import watch_while_heard
+from simkit.plugins.lookups import find_link
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.pose import Vector
+    from simkit.scene import SceneModel
+
+DOUBLE: Final = "std_msgs/msg/Float64"
+_BODY: Final = int(mujoco.mjtObj.mjOBJ_BODY)  # at its centre of mass, along the axes of its inertia
+
+
+class KineticEnergyMonitor(ModelPlugin):
+    """Tells how much kinetic energy [J] a link lost within one step, where that is more than a threshold.
+
+    The energy is that of the link's own mass and inertia, moving and turning: m v²/2 + ω·Iω/2.
+    """
+
+    filenames = ("gz-sim-kinetic-energy-monitor-system",)
+    names = ("gz::sim::systems::KineticEnergyMonitor",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        name = params.text("link_name", required=True)
+        link = find_link(scene, name, params) if name else None
+        self._scoped = link.scoped if link else ""
+        self._threshold = params.number("kinetic_energy_threshold", 7.0, minimum=0.0)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._lost = self.advertise(valid_topic(params.text("topic", f"/model/{parent.name}/kinetic_energy")), DOUBLE)
+        self._energy = 0.0
+        self._was_heard = False
+        watch_while_heard(self, (self._lost,), "look")
+
+    def begin(self) -> None:
+        """What the link has when somebody begins to listen."""
+        self._energy = self._present()
+
+    def look(self) -> None:
+        """Compares with the step before."""
+        before, self._energy = self._energy, self._present()
+        lost = before - self._energy
+        if lost > self._threshold and self._lost.wanted:
+            self._lost.publish(msgs.type_of(DOUBLE)(lost))
+
+    def _present(self) -> float:
+        """Kinetic energy of the link [J]."""
+        sim = self.sim
+        body = sim.names.link(self._scoped).body
+        if not body:
+            return 0.0
+        twist = np.zeros(6)
+        mujoco.mj_objectVelocity(sim.mj_model, sim.fresh_data(), _BODY, body, twist, 1)
+        turning, moving = twist[:3], twist[3:]
+        inertia: Vector = sim.mj_model.body_inertia[body]
+        return 0.5 * float(sim.mj_model.body_mass[body] * moving.dot(moving) + inertia.dot(turning * turning))

@@ -1,0 +1,186 @@
+"""gz's battery: `gz::sim::systems::LinearBatteryPlugin`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.gz.battery import Battery
+from simkit.plugins.gz.battery_cell import Cell
+from simkit.plugins.gz.sensors import SensorsSystem
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.pose import Vector
+    from simkit.scene import SceneModel
+
+BOOL: Final = "std_msgs/msg/Bool"
+SET_BOOL: Final = "std_srvs/srv/SetBool"
+_RENDERED: Final = ("camera", "depth", "gpu_", "segmentation", "boundingbox", "thermal")
+"""Parts of the names of kinds of sensors that gz's Sensors system has; a logical camera has a system of its own."""
+_LEAST_EFFORT: Final = 1e-9  # [N·m or N]
+
+
+class LinearBattery(Battery):
+    """A battery that a load drains and a charger fills; empty, it lets go of the joints of its model.
+
+    It drains from the first command to a joint of the model on, from the first message on a `<power_draining_topic>`,
+    or from the start. Its state is on `/model/<model>/battery/<battery>/state` at 50 Hz.
+    """
+
+    filenames = ("gz-sim-linearbatteryplugin-system", "gz-sim-linear-battery-plugin-system")
+    names = ("gz::sim::systems::LinearBatteryPlugin",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self.battery = params.text("battery_name", required=True)
+        self.cell = self._read_cell(params, params.number("voltage", required=True, minimum=0.0))
+        self._joints = tuple(joint.scoped for joint in scene.all_joints() if joint.axes or joint.type == "ball")
+        self.is_drained = params.boolean("start_draining", False)
+        recharges = params.boolean("enable_recharge", False)
+        hours = params.number("charging_time", 0.0, required=recharges, minimum=1e-9 if recharges else 0.0)
+        self._charger = self.cell.capacity / hours if recharges and hours else None
+        self.sign = -1.0 if params.boolean("invert_current_sign", False) else 1.0
+        self.percent = 100.0 if params.boolean("fix_issue_225", False) else 1.0
+        if self.percent == 1.0 and builder.world.gazebo_quirks:
+            self.cell.remember()
+
+    def _read_cell(self, params: Params, voltage: float) -> Cell:
+        capacity = params.number("capacity", required=True, minimum=1e-12)
+        charge = params.number("initial_charge", capacity)
+        kept = max(0.0, min(capacity, charge))
+        if kept != charge:
+            allowed = f"is not from 0 to {capacity:g}"
+            self._warn(params, f"<initial_charge> {charge:g} {allowed}, {kept:g} is used", "initial_charge")
+        tau = params.number("smooth_current_tau", 1.0)
+        if tau <= 0.0:
+            what = f"<smooth_current_tau> {tau:g} is not above 0, 1 is used, as in Gazebo"
+            self._warn(params, what, "smooth_current_tau")
+            tau = 1.0
+        constant = params.number("open_circuit_voltage_constant_coef", 0.0)
+        linear = params.number("open_circuit_voltage_linear_coef", 0.0)
+        if capacity and abs(constant + linear * (1.0 - kept / capacity)) < 1e-3:
+            hint = "give <open_circuit_voltage_constant_coef>: the voltage of the full battery"
+            self._warn(params, "the open-circuit voltage is 0, so that nothing can be drawn", hint=hint)
+        resistance = params.number("resistance", 0.0, minimum=0.0)
+        return Cell(constant, linear, capacity or 1.0, resistance, tau, voltage, kept)
+
+    def _warn(self, params: Params, what: str, element: str = "", hint: str = "") -> None:
+        where = params.block(element).where if element else self.where
+        params.diagnostics.warning("SK-PLUGIN-123", f"plugin {self.name!r}: {what}", where, hint)
+
+    def load(self, parent: Any, params: Params) -> None:
+        if not params.has("power_load"):
+            self._warn(params, "there is no <power_load> [W]: nothing drains the battery")
+        self._power = self.declare("power_load", 0.0, description="what is drawn while the battery drains [W]")
+        self._is_dead = False
+        self._held: dict[str, tuple[Vector, Vector, Vector]] = {}
+        base = self.open_state(parent.name)
+        if self._charger is not None:
+            self._offer_recharge(base, by_topic=params.has("recharge_by_topic"))
+        params.text("recharge_by_topic", "")
+        self._supply(parent.scene)
+        for element in params.all("power_draining_topic"):
+            self.subscribe(valid_topic(element.value), self._on_drain, keep=1)
+        for element in params.all("stop_power_draining_topic"):
+            self.subscribe(valid_topic(element.value), self._on_stop, keep=1)
+
+    def _supply(self, scene: SceneModel) -> None:
+        """Has the model's rendered sensors rest while the battery is empty, where the Sensors system asks for it."""
+        systems = (p for p in self.sim.structure.all_plugins() if isinstance(p, SensorsSystem))
+        if not any(system.stops_without_power for system in systems):
+            return
+        for sensor in scene.all_sensors():
+            is_rendered = any(word in sensor.kind for word in _RENDERED) and "logical" not in sensor.kind
+            if is_rendered and self.sim.has_sensor(sensor.scoped):
+                self.sim.sensor(sensor.scoped).only_while(lambda: not self.is_empty)
+
+    def _offer_recharge(self, base: str, *, by_topic: bool) -> None:
+        # what comes with the request does not count, as in gz: the name says what is to be
+        for word, does in (("start", self._on_charge), ("stop", self._on_uncharge)):
+            name = valid_topic(f"{base}/recharge/{word}")
+            self.offer(name, SET_BOOL, does)
+            if by_topic:
+                self.listen(name, BOOL, does)
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_charge(self, _: Any) -> Any:
+        self.charger = self._charger
+        return {"success": True}
+
+    def _on_uncharge(self, _: Any) -> Any:
+        self.charger = None
+        return {"success": True}
+
+    def _on_drain(self, _: Any) -> None:
+        self.is_drained = True
+
+    def _on_stop(self, _: Any) -> None:
+        self.is_drained = False
+
+    # ------------------------------------------------------------------ steps
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is left."""
+        return self.cell.soc <= 0.0
+
+    def demand(self) -> float:
+        return float(self._power.value) + super().demand()
+
+    def after_step(self) -> None:
+        """Takes one step, and lets go of the joints or takes them up again."""
+        if not self.is_drained:
+            self.is_drained = self._is_commanded()
+        super().after_step()
+        if self.is_empty != self._is_dead:
+            self._is_dead = self.is_empty
+            (self._let_go if self._is_dead else self._take_up)()
+
+    def _is_commanded(self) -> bool:
+        """Whether a joint of the model was commanded in this step: a control or an effort other than zero."""
+        physics = self.sim.physics
+        if not (physics.data.ctrl.any() or physics.last_applied.any()):
+            return False
+        dofs, actuators = self.sim.names.shared(f"battery {id(self)}", self._find_parts)
+        pushed = np.abs(physics.last_applied[dofs]) > _LEAST_EFFORT
+        return bool(physics.data.ctrl[actuators].any() or pushed.any())
+
+    def _find_parts(self) -> tuple[Any, Any]:
+        """Degrees of freedom of the model's joints, and the actuators on them."""
+        handles = [self.sim.joint(name) for name in self._joints]
+        dofs = [dof for joint in handles for dof in joint.mj_dofs]
+        actuators = [self._actuators_of(joint) for joint in handles]
+        return np.array(dofs, dtype=int), np.concatenate([np.zeros(0, dtype=int), *actuators])
+
+    def _actuators_of(self, joint: Any) -> Any:
+        model = self.sim.mj_model
+        ids = model.dof_jntid[list(joint.mj_dofs)]
+        on_joint = model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT
+        return np.flatnonzero(on_joint & np.isin(model.actuator_trnid[:, 0], ids))
+
+    def _let_go(self) -> None:
+        """Nothing commands the joints any more, as gz's physics has it of a model whose battery is empty."""
+        gains, biases = self.sim.touch("actuator_gainprm"), self.sim.touch("actuator_biasprm")
+        for name in self._joints:
+            joint = self.sim.joint(name)
+            actuators = self._actuators_of(joint)
+            efforts, velocities = joint.get_state()
+            self._held[name] = (efforts, gains[actuators].copy(), biases[actuators].copy())
+            joint.set_state((np.zeros_like(efforts), velocities))
+            gains[actuators], biases[actuators] = 0.0, 0.0
+        self.log.warning("%s: battery %r is empty", self.scoped, self.battery)
+
+    def _take_up(self) -> None:
+        """The joints obey again."""
+        gains, biases = self.sim.touch("actuator_gainprm"), self.sim.touch("actuator_biasprm")
+        for name, (efforts, gain, bias) in self._held.items():
+            joint = self.sim.joint(name)
+            actuators = self._actuators_of(joint)
+            joint.set_state((efforts, joint.get_state()[1]))
+            gains[actuators], biases[actuators] = gain, bias
+        self._held = {}

@@ -1,0 +1,190 @@
+"""gz's log of a run: `gz::sim::systems::LogRecord`, as a bag."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.errors import SimkitError
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.once import Once
+from simkit.runtime.writable import ALLOWED, allowed_folder
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.pose import Vector
+    from simkit.runtime import Simulation
+    from simkit.sinks.recorder import Recorder
+
+TRANSFORMS: Final = "tf2_msgs/msg/TFMessage"
+STRING: Final = "std_msgs/msg/String"
+FILE: Final = "state.mcap"
+_NEVER: Final = 1e-9  # [Hz]
+_IS_PATTERN: Final = re.compile(r"[*?\[\]().]")
+
+
+class _Log:
+    """The recording of a run; a handle, which stays what it is through resets and restores."""
+
+    def __init__(self) -> None:
+        self.recorder: Recorder | None = None
+        self.was_begun = False
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> _Log:
+        return self
+
+
+class LogRecord(WorldPlugin):
+    """Records the run to `<record_path>/state.mcap`: the world's SDF, where its links are, and `<record_topic>`s.
+
+    The file is begun with the first step; one that is there is written over, as in gz.
+    """
+
+    names = ("gz::sim::systems::LogRecord",)  # its file holds LogPlayback too
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        self._path = self._read_path(params)
+        self._period = params.number("record_period", 0.0, minimum=0.0)
+        self._plain, self._patterns = self._read_topics(params)
+        self._report_unused(params)
+
+    def _read_path(self, params: Params) -> Path | None:
+        written = params.text("record_path", "")
+        if not written:
+            message = f"plugin {self.name!r} has no <record_path>; nothing is recorded"
+            hint = "name a folder below the working directory, or use `simkit run --record OUT.mcap`"
+            params.diagnostics.warning("SK-PLUGIN-127", message, self.where, hint)
+            return None
+        path = allowed_folder(written)
+        if path is None or (path.exists() and not path.is_dir()):
+            what = "is no folder" if path else "lies outside the folders that may be written to"
+            message = f"plugin {self.name!r}: <record_path> {written} {what}; nothing is recorded"
+            hint = f"a path below the working directory, or the folder's name in the environment variable {ALLOWED}"
+            params.diagnostics.warning("SK-PLUGIN-127", message, params.block("record_path").where, hint)
+            return None
+        return path
+
+    def _read_topics(self, params: Params) -> tuple[frozenset[str], tuple[re.Pattern[str], ...]]:
+        """Topics by name, and those by regular expression: as in gz, whatever has one of `*?[]().` in it."""
+        plain, patterns = set(), []
+        for element in params.all("record_topic"):
+            if not _IS_PATTERN.search(element.value):
+                plain.add(valid_topic(element.value))
+                continue
+            try:
+                patterns.append(re.compile(element.value))
+            except re.error as error:
+                found = f"found <record_topic>{element.value}</record_topic>"
+                element.error("SK-PARAM-002", f"{found}, allowed is a topic or a regular expression: {error}")
+        return frozenset(plain), tuple(patterns)
+
+    def _report_unused(self, params: Params) -> None:
+        unused = []
+        if params.boolean("record_resources", False):
+            unused.append("<record_resources>: meshes stay where they are")
+        if params.boolean("compress", False):
+            unused.append("<compress>: a bag is compressed as it is written")
+        if params.text("compress_path", ""):
+            unused.append("<compress_path>: there is one file, in <record_path>")
+        if unused:
+            message = f"plugin {self.name!r} does without {'; '.join(unused)}"
+            params.diagnostics.note("SK-PLUGIN-128", message, self.where)
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self.once, self._log = Once(self), _Log()
+        self.before_step_rate = self.after_step_rate = _NEVER
+        others = [p for p in self.sim.structure.all_plugins() if isinstance(p, LogRecord) and p._path is not None]
+        if self._path is None:
+            return
+        if others[0] is not self:
+            message = f"plugin {self.name!r}: another one records already; this one does not, as in Gazebo"
+            params.diagnostics.warning("SK-PLUGIN-127", message, self.where)
+            return
+        self.before_step_rate = None
+        self.after_step_rate = 1.0 / self._period if self._period else None
+        self._sdf = self.advertise(valid_topic(f"/{self._path.name}/sdf"), STRING)
+        self._state = self.advertise(valid_topic(f"/world/{parent.world.name}/changed_state"), TRANSFORMS)
+        self.sim.bus.aside.update((self._sdf.topic, self._state.topic))
+        self._places: dict[str, tuple[float, ...]] = {}
+
+    # ------------------------------------------------------------------ running
+
+    def before_step(self) -> None:
+        """Begins the recording, once."""
+        if not self._log.was_begun:
+            self._begin()
+        self.before_step_rate = _NEVER
+        self.sim.reschedule()
+
+    def _begin(self) -> None:
+        from simkit.sinks.recorder import Recorder
+
+        path, log = self._path, self._log
+        assert path is not None
+        log.was_begun = True
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            log.recorder = Recorder(self.sim, path / FILE, overwrite=True, choose=self._is_recorded)
+        except (OSError, SimkitError) as error:
+            self.once.warn("SK-PLUGIN-127", "begin", f"nothing is recorded: {error}")
+            return
+        self._sdf.publish(msgs.type_of(STRING)(self.sim.to_sdf()))
+        self._tell_state()
+
+    def _is_recorded(self, topic: str) -> bool:
+        own = topic in (self._sdf.topic, self._state.topic) or topic in self._plain
+        return own or any(pattern.fullmatch(topic) for pattern in self._patterns)
+
+    def after_step(self) -> None:
+        recorder = self._log.recorder
+        if recorder is not None and recorder.failure is not None:
+            self.once.warn("SK-PLUGIN-127", "failed", str(recorder.failure))
+        if self._state.wanted:
+            self._tell_state()
+
+    def _tell_state(self) -> None:
+        """The poses of the links that moved since the last time, in the world."""
+        sim, moved = self.sim, []
+        header = msgs.header(sim.time_ns, sim.world.name)
+        for scoped, place in self._present():
+            if self._places.get(scoped) == place:
+                continue
+            self._places[scoped] = place
+            x, y, z, qw, qx, qy, qz = place
+            turn = {"translation": {"x": x, "y": y, "z": z}, "rotation": {"x": qx, "y": qy, "z": qz, "w": qw}}
+            moved.append({"header": header, "child_frame_id": scoped, "transform": turn})
+        if moved:
+            self._state.publish(msgs.make(TRANSFORMS, transforms=moved))
+
+    def _present(self) -> list[tuple[str, tuple[float, ...]]]:
+        found = []
+        for scoped, link in self.sim.entities.tables["link"].items():
+            pose = link.pose
+            both: Vector = np.concatenate((pose.position, pose.quaternion))
+            found.append((scoped, tuple(both.tolist())))
+        return found
+
+    def close(self) -> None:
+        if self._log.recorder is not None:
+            self._log.recorder.close()
+
+
+class LogPlayback(WorldPlugin):
+    """gz's replay of its logs, which simkit does not have: a run with the same seed is the same bit for bit."""
+
+    names = ("gz::sim::systems::LogPlayback",)
+
+    def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
+        params.mark_all_read()
+        message = f"plugin {self.name!r}: logs of Gazebo are not played back; the world runs as it is"
+        hint = "run the world with the same seed, or read a bag with `simkit topic echo --bag`"
+        params.diagnostics.warning("SK-PLUGIN-129", message, self.where, hint)
+
+    def load(self, parent: Any, params: Params) -> None:
+        """Nothing to do."""

@@ -1,0 +1,166 @@
+"""gz's performers, and who tells of them: `gz::sim::systems::PerformerDetector`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import did_you_mean
+from simkit.gzpython.msgs.message import CLASSES, Message
+from simkit.msgs.monitors import STATUS
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin, WorldPlugin
+from simkit.plugins.gz.watch import watch_while_heard
+from simkit.pose import Pose, Vector, quat_rotate
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneModel, SceneWorld
+
+POSE: Final = "geometry_msgs/msg/PoseStamped"
+DETAILS: Final = "/details"
+"""After a detector's topic: the one on which it says all that it knows."""
+
+
+@dataclass(frozen=True)
+class Performer:
+    """A model that levels and detectors look for, with the box [m] around its origin that stands for it."""
+
+    name: str
+    model: str
+    half: tuple[float, float, float]
+
+
+class Performers(WorldPlugin):
+    """gz's `<plugin name="gz::sim">`: which models are performers. Levels are not simulated: all is always loaded."""
+
+    names = ("gz::sim", "ignition::gazebo")
+    lets_sleep = True
+
+    def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
+        self.performers: tuple[Performer, ...] = ()
+        models = [model.name for model in scene.models]
+        for element in params.all("performer"):
+            name = element.attribute("name")
+            model = element.text("ref", required=True)
+            size = element.block("geometry").block("box").vector3("size", required=True)
+            if min(size) <= 0.0:
+                if element.block("geometry").block("box").has("size"):
+                    element.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
+                continue
+            if model and model not in models:
+                message = f"performer {name!r} is model {model!r}, which is not there (yet); it is waited for"
+                params.diagnostics.warning("SK-PLUGIN-125", message, element.where, did_you_mean(model, models))
+            self.performers += (Performer(name, model, (size[0] / 2, size[1] / 2, size[2] / 2)),)
+        if params.has("level"):
+            for level in params.all("level"):
+                level.mark_all_read()
+            message = "levels have no effect: every model is loaded from the start"
+            params.diagnostics.note("SK-PLUGIN-126", message, params.block("level").where)
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        """Nothing to do."""
+
+
+class PerformerDetector(ModelPlugin):
+    """Says when a performer's box comes into the box of this model, and when it leaves it.
+
+    Both boxes stay along the axes of the world, as in gz, however their models turn.
+    """
+
+    filenames = ("gz-sim-performer-detector-system",)
+    names = ("gz::sim::systems::PerformerDetector",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        box = params.block("geometry").block("box")
+        size = box.vector3("size", required=True)
+        if box.has("size") and min(size) <= 0.0:
+            box.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
+        self._half = np.array(size) / 2
+        self._offset = params.pose("pose").position
+        self._data = [pair for element in params.all("header_data") if (pair := self._read_data(element)) is not None]
+
+    def _read_data(self, element: Params) -> tuple[str, str] | None:
+        key, value = element.text("key", ""), element.text("value", "")
+        if key and value:
+            return key, value
+        message = f"plugin {self.name!r}: <header_data> without a <key> and a <value> is not used"
+        element.diagnostics.warning("SK-PLUGIN-124", message, element.where)
+        return None
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._model, self._born = parent, self.sim.tick
+        topic = valid_topic(params.text("topic", f"/model/{parent.name}/performer_detector/status"))
+        self._inside: tuple[str, ...] = ()
+        self._was_heard = False
+        self._poses, self._details = self.advertise(topic, POSE), self.advertise(topic + DETAILS, STATUS)
+        if not self._performers():
+            message = f"plugin {self.name!r}: the world names no performers; it finds nothing"
+            hint = 'a <plugin name="gz::sim" filename="dummy"> with <performer> in the world'
+            params.diagnostics.warning("SK-PLUGIN-125", message, self.where, hint)
+        watch_while_heard(self, (self._poses, self._details), "look")
+
+    def begin(self) -> None:
+        """What is inside when somebody begins to listen is no news, but at the very start."""
+        there = () if self.sim.tick == self._born else self._found()
+        self._inside = tuple(name for name, _, is_inside in there if is_inside)
+
+    def look(self) -> None:
+        """Tells who came and who went."""
+        there = self._found()
+        names = tuple(name for name, _, is_inside in there if is_inside)
+        for name, pose, is_inside in there:
+            if is_inside != (name in self._inside):
+                kept = tuple(one for one in self._inside if one != name)
+                self._inside = (*kept, name) if is_inside else kept
+                self._tell(name, pose, is_inside)
+        self._inside = tuple(name for name in self._inside if name in names)  # without those that were removed
+
+    def _performers(self) -> list[Performer]:
+        plugins = self.sim.structure.all_plugins()
+        return [one for plugin in plugins if isinstance(plugin, Performers) for one in plugin.performers]
+
+    def _found(self) -> list[tuple[str, Pose, bool]]:
+        """The performers' models, where they are in the world, and whether their boxes meet this one."""
+        own = self._model.pose
+        centre = own.position + quat_rotate(own.quaternion, self._offset)
+        models, found = self.sim.models, []
+        for performer in self._performers():
+            if performer.model in models:
+                pose = models[performer.model].pose
+                apart: Vector = np.abs(pose.position - centre)
+                found.append((performer.model, pose, bool((apart <= self._half + performer.half).all())))
+        return found
+
+    def _tell(self, name: str, pose: Pose, state: bool) -> None:
+        own = self._model.pose
+        relative = own.inverse() @ pose
+        header = msgs.header(self.sim.time_ns, self._model.name)
+        x, y, z = relative.position.tolist()
+        qw, qx, qy, qz = relative.quaternion.tolist()
+        fields = {"position": {"x": x, "y": y, "z": z}, "orientation": {"x": qx, "y": qy, "z": qz, "w": qw}}
+        if self._poses.wanted:
+            self._poses.publish(msgs.make(POSE, header=header, pose=fields))
+        if self._details.wanted:
+            keys, values = [key for key, _ in self._data], [value for _, value in self._data]
+            told = {"name": name, "pose": fields, "state": state, "count": len(self._inside)}
+            self._details.publish(msgs.make(STATUS, header=header, **told, keys=keys, values=values))
+
+
+def pose_of_status(status: Any) -> Message:
+    """The `gz.msgs.Pose` that a detector publishes in gz, with what gz has in its header."""
+    found: Any = CLASSES["Pose"](name=status.name)
+    for ours, theirs in ((found.position, status.pose.position), (found.orientation, status.pose.orientation)):
+        for axis in ours.FIELDS:
+            if axis != "header":
+                setattr(ours, axis, getattr(theirs, axis))
+    found.header.stamp.sec, found.header.stamp.nsec = status.header.stamp.sec, status.header.stamp.nanosec
+    own = (("frame_id", status.header.frame_id), ("state", str(int(status.state))), ("count", str(status.count)))
+    for key, value in (*own, *zip(status.keys, status.values, strict=True)):
+        found.header.data.add(key=key, value=[value])
+    return found  # type: ignore[no-any-return]

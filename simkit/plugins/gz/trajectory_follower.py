@@ -1,0 +1,150 @@
+"""gz's pusher along waypoints: `gz::sim::systems::TrajectoryFollower`."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import named_link
+from simkit.plugins.once import Once
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.pose import Pose
+    from simkit.scene import SceneModel
+
+Point = tuple[float, float]
+
+BOOL: Final = "std_msgs/msg/Bool"
+_NEVER: Final = 1e-9  # [Hz]
+_KINDS: Final = ("waypoints", "circle", "line")
+_ON_A_CIRCLE: Final = 8
+_FARTHEST: Final = 1e9  # [m]
+_STRAIGHT: Final = math.radians(0.1)
+"""Bearing at which `<zero_vel_on_bearing_reached>` stops the turning."""
+
+
+class TrajectoryFollower(ModelPlugin):
+    """Pushes a link from waypoint to waypoint in the plane, by one force and one torque.
+
+    While the next waypoint lies farther than `<bearing_tolerance>` from straight ahead (the link's x), the link is
+    turned by `<torque>` about its own z; else `<force>` pushes it along its own x, both at the centre of mass. A
+    waypoint within `<range_tolerance>` is reached. The last one is kept: a link that is carried away from it comes
+    back. `<line>` and `<circle>` count from where the link is at the start. True on
+    `/model/<model>/trajectory_follower/pause` pauses, false goes on.
+
+    gz pushes along the axes of `<inertial><pose>`; here it is the link's own, the same unless that pose is turned.
+    """
+
+    filenames = ("gz-sim-trajectory-follower-system",)
+    names = ("gz::sim::systems::TrajectoryFollower",)
+    drives = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._scoped = named_link(scene, "link_name", params)
+        start = next((one.pose_world for one in scene.all_links() if one.scoped == self._scoped), scene.pose_world)
+        self._points = _points(params, start, self.name)
+        self._loops = params.boolean("loop", False)
+        self._force = params.number("force", 60.0)
+        self._torque = params.number("torque", 50.0)
+        self._near = params.number("range_tolerance", 0.5, minimum=0.0)
+        self._ahead = math.radians(params.number("bearing_tolerance", 2.0, minimum=0.0, maximum=180.0))
+        self._stops_turning = params.boolean("zero_vel_on_bearing_reached", False)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
+        self._is_paused, self._is_held = False, False
+        self._way = list(self._points)
+        self._link = self.sim.link(self._scoped)
+        if self._stops_turning and not self._link.is_free:
+            message = "joints or the world hold the link: <zero_vel_on_bearing_reached> has no effect"
+            self.once.warn("SK-PLUGIN-131", "held", message, "name the link that carries the model")
+        self._set_pace()
+        own = f"/model/{parent.name}/trajectory_follower/pause"
+        self.listen(valid_topic(params.text("topic", own)), BOOL, self._on_pause)
+
+    def _on_pause(self, message: Any) -> None:
+        self._is_paused = bool(message.data)
+        self._set_pace()
+
+    def _set_pace(self) -> None:
+        """Looks at every step unless it is paused, or has nowhere to go."""
+        pace = _NEVER if self._is_paused or not self._way else None
+        if pace != self.before_step_rate:
+            self.before_step_rate = pace
+            self.sim.reschedule()
+
+    def before_step(self) -> None:
+        if not self._way or self._is_paused:
+            return
+        pose = self._link.pose
+        (x, y), (goal_x, goal_y) = pose.position[:2].tolist(), self._way[0]
+        way = goal_x - x, goal_y - y, 0.0  # heights are left out
+        if math.hypot(*way) <= self._near:
+            self._go_on()
+            return
+        ahead, aside, _ = pose.inverse().rotate(way).tolist()
+        bearing = math.atan2(aside, ahead)
+        if abs(bearing) > self._ahead:
+            self._is_held = False
+            torque = math.copysign(1.0, bearing) * self._torque
+            self._link.apply_wrench((0.0, 0.0, 0.0), pose.rotate((0.0, 0.0, torque)))
+            return
+        self._link.apply_wrench(pose.rotate((self._force, 0.0, 0.0)))
+        if self._stops_turning and self._link.is_free:
+            # from straight ahead on, until the bearing leaves the tolerance
+            self._is_held = self._is_held or abs(bearing) <= _STRAIGHT
+            if self._is_held:
+                self._link.set_velocity(self._link.linear_velocity)
+
+    def _go_on(self) -> None:
+        """To the next waypoint; the last one stays."""
+        if len(self._way) > 1:
+            reached, *rest = self._way
+            self._way = [*rest, reached] if self._loops else rest
+
+
+def _points(params: Params, start: Pose, name: str) -> list[Point]:
+    """The waypoints in the world [m]: those of `<waypoints>`, else of `<circle>`, else of `<line>`."""
+    given = [kind for kind in _KINDS if params.has(kind)]
+    if not given:
+        message = f"plugin {name!r} has no <waypoints>, <circle> or <line>: it pushes nothing"
+        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "<waypoints><waypoint>2 0</waypoint>")
+        return []
+    if len(given) > 1:
+        others = " and ".join(f"<{kind}>" for kind in given[1:])
+        message = f"plugin {name!r} follows <{given[0]}>, and not its {others}"
+        params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "leave one of them")
+    found = {
+        "waypoints": _listed(params.block("waypoints"), given[0] == "waypoints"),
+        "circle": _round(params.block("circle"), start, given[0] == "circle"),
+        "line": _along(params.block("line"), start, given[0] == "line"),
+    }
+    return found[given[0]]
+
+
+def _listed(block: Params, is_followed: bool) -> list[Point]:
+    found = [(x, y) for x, y in (one.vector("waypoint", 2) for one in block.each("waypoint"))]
+    if is_followed and not found:
+        block.error("SK-PARAM-001", "<waypoints> needs <waypoint>: x and y [m] in the world")
+    return found
+
+
+def _round(block: Params, start: Pose, is_followed: bool) -> list[Point]:
+    """Eight points of a circle about the start."""
+    radius = block.number("radius", 0.0, required=is_followed, minimum=0.0, maximum=_FARTHEST)
+    x, y = start.position[:2].tolist()
+    angles = [math.tau * k / _ON_A_CIRCLE for k in range(_ON_A_CIRCLE)]
+    return [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles]
+
+
+def _along(block: Params, start: Pose, is_followed: bool) -> list[Point]:
+    """The start, and the end of a line from there; its direction [rad] counts from the link's."""
+    angle = block.number("direction", 0.0, required=is_followed)
+    length = block.number("length", 0.0, required=is_followed, minimum=-_FARTHEST, maximum=_FARTHEST)
+    far = start.rotate((length * math.cos(angle), length * math.sin(angle), 0.0))
+    x, y = start.position[:2].tolist()
+    return [(x, y), (x + float(far[0]), y + float(far[1]))]

@@ -1,0 +1,157 @@
+"""gz's mecanum drive: ahead, sideways, round, on slopes and against a wall."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from mecanum_worlds import mecanum, world
+
+import simkit
+
+LIMITS = "<max_acceleration>1</max_acceleration><min_acceleration>-1</min_acceleration>"
+WALL = """<model name="wall"><static>true</static><pose>1 0 0.3 0 0 0</pose><link name="l">
+  <collision name="c"><geometry>
+  <box><size>0.1 4 0.6</size></box></geometry></collision></link></model>"""
+
+
+def twist(x=0.0, y=0.0, turn=0.0):
+    return {"linear": {"x": x, "y": y}, "angular": {"z": turn}}
+
+
+def drive(text, command, duration):
+    """The simulation, how far the base has gone in its own axes, and its odometry."""
+    sim = simkit.load(text)
+    sim.run(0.2)
+    start, odometry = sim.model("robot").pose, sim.subscribe("/model/robot/odometry")
+    sim.publish("/model/robot/cmd_vel", command)
+    sim.run(duration)
+    return sim, start.inverse() @ sim.model("robot").pose, odometry
+
+
+def arc(x, y, turn, duration):
+    """Where a constant twist leads, and the heading there."""
+    angle = turn * duration
+    if not angle:
+        return np.array([x, y]) * duration, 0.0
+    sin, cos = math.sin(angle) / turn, (1 - math.cos(angle)) / turn
+    return np.array([sin * x - cos * y, cos * x + sin * y]), angle
+
+
+@pytest.mark.parametrize("command", [(0.4, 0.0), (0.0, -0.4), (0.3, -0.2)])
+@pytest.mark.parametrize("step", [0.002, 0.004])
+def test_it_goes_where_it_is_told(command, step):
+    """An acceleration limit of 1 m/s² in each direction costs v²/2 of the way."""
+    _, moved, _ = drive(world(mecanum(settings=LIMITS), step=step), twist(*command), 2.0)
+    expected = [v * 2.0 - math.copysign(v * v / 2, v) for v in command]
+    assert moved.position[:2] == pytest.approx(expected, abs=0.012)
+    assert moved.position[2] == pytest.approx(0.0, abs=1e-4)
+    assert moved.rpy == pytest.approx((0, 0, 0), abs=3e-3)
+
+
+def test_it_turns_on_the_spot_and_along_an_arc():
+    _, moved, _ = drive(world(mecanum(settings=LIMITS)), twist(turn=0.8), 2.0)
+    assert moved.rpy[2] == pytest.approx(0.8 * 2 - 0.8**2 / 2, rel=5e-3)
+    assert moved.position[:2] == pytest.approx((0, 0), abs=2e-3)
+    _, moved, _ = drive(world(mecanum()), twist(0.2, 0.15, 0.5), 3.0)
+    place, angle = arc(0.2, 0.15, 0.5, 3.0)
+    assert moved.position[:2] == pytest.approx(place, abs=0.015)
+    assert moved.rpy[2] == pytest.approx(angle, abs=0.015)
+
+
+def test_its_own_axes_count_wherever_it_looks():
+    _, moved, _ = drive(world(mecanum("1 2 0.1 0 0 2.1", LIMITS)), twist(0.0, 0.4), 2.0)
+    assert moved.position[:2] == pytest.approx((0.0, 0.72), abs=0.012)
+
+
+def test_odometry_is_the_wheels_and_agrees_with_the_truth():
+    _, moved, odometry = drive(world(mecanum(settings=LIMITS)), twist(0.3, 0.2, 0.4), 3.0)
+    message = odometry.messages[-1]
+    told, turned = message.pose.pose.position, message.pose.pose.orientation
+    assert (told.x, told.y) == pytest.approx(moved.position[:2], abs=0.015)
+    assert 2 * math.atan2(turned.z, turned.w) == pytest.approx(moved.rpy[2], abs=0.01)
+    speed = message.twist.twist
+    assert (speed.linear.x, speed.linear.y, speed.angular.z) == pytest.approx((0.3, 0.2, 0.4), abs=2e-3)
+    assert (message.header.frame_id, message.child_frame_id) == ("robot/odom", "robot/base")
+    stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in odometry.messages]
+    assert set(np.diff(stamps)) == {20_000_000}
+
+
+@pytest.mark.parametrize(("slope", "across"), [(0.15, 0.0), (0.1, 0.1)])
+def test_it_stands_and_drives_on_a_slope(slope, across):
+    """What holds a wheel gives way by up to 1.5 cm/s under this load, as under any wheel with a velocity servo."""
+    gravity = f"{-9.8 * math.sin(slope)} {-9.8 * math.sin(across)} {-9.8 * math.cos(math.hypot(slope, across))}"
+    _, moved, _ = drive(world(mecanum(settings=LIMITS), gravity=gravity), twist(), 2.0)
+    assert np.linalg.norm(moved.position[:2]) < 0.035
+    _, moved, _ = drive(world(mecanum(settings=LIMITS), gravity=gravity), twist(0.0, 0.4), 2.0)
+    assert moved.position[:2] == pytest.approx((0.0, 0.72), abs=0.04)
+    assert abs(moved.rpy[2]) < 0.01
+
+
+def test_against_a_wall_its_wheels_slip_and_it_slides_along():
+    _, moved, _ = drive(world(mecanum(), WALL), twist(0.4), 3.0)
+    assert moved.position[0] == pytest.approx(0.95 - 0.35, abs=0.002)
+    assert abs(moved.rpy[1]) < 0.01
+    _, moved, _ = drive(world(mecanum(), WALL), twist(0.4, 0.3), 4.0)
+    assert moved.position[0] == pytest.approx(0.6, abs=0.002)
+    assert moved.position[1] > 0.4
+
+
+def test_a_base_whose_wheels_have_no_rollers_is_told_of():
+    rubber = "<mu>1</mu><mu2>1</mu2>"
+    sim, moved, _ = drive(world(mecanum(friction=rubber)), twist(0.0, 0.4), 1.0)
+    found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-090"]
+    assert len(found) == 1
+    assert "'fl', 'fr', 'bl', 'br'" in found[0].message
+    assert np.linalg.norm(moved.position[:2]) < 0.05
+
+
+def test_a_stamped_command_and_one_that_is_no_number():
+    sim = simkit.load(world(mecanum()))
+    sim.publish("/model/robot/cmd_vel", {"twist": twist(0.0, 0.3)})
+    sim.run(1.0)
+    assert sim.model("robot").pose.position[1] > 0.2
+    sim.publish("/model/robot/cmd_vel", twist(math.nan))
+    sim.run(0.5)
+    assert sim.model("robot").pose.position[1] > 0.35
+
+
+def test_bad_parameters_are_told_all_at_once():
+    settings = "<wheel_radius>-1</wheel_radius><max_velocity>-2</max_velocity>"
+    settings += "<odom_publish_frequency>x</odom_publish_frequency>"
+    broken = (
+        mecanum(settings=settings).replace("<wheel_radius>0.1</wheel_radius>", "").replace("fl_joint<", "wheel_fl<", 1)
+    )
+    with pytest.raises(simkit.LoadError) as caught:
+        simkit.load(world(broken))
+    text = str(caught.value)
+    for part in ("<wheel_radius>", "<max_velocity>", "<odom_publish_frequency>", "'wheel_fl'", "fl_joint"):
+        assert part in text
+
+
+def test_a_spawned_one_drives_and_a_removed_one_is_forgotten():
+    sim = simkit.load(world())
+    assert sim.physics.contact_law is None
+    sim.spawn(f'<sdf version="1.9">{mecanum()}</sdf>', "robot")
+    sim.publish("/model/robot/cmd_vel", twist(0.0, 0.3))
+    sim.run(1.0)
+    assert sim.model("robot").pose.position[1] == pytest.approx(0.29, abs=0.02)
+    sim.remove("robot")
+    sim.run(0.1)
+    assert sim.physics.contact_law is None
+
+
+def test_the_same_bits_again_after_a_reset_and_a_restore():
+    sim, _, _ = drive(world(mecanum(settings=LIMITS)), twist(0.3, 0.2, 0.4), 0.5)
+    here, kept = sim.mj_data.qpos.tobytes(), sim.snapshot()
+    sim.run(0.5)
+    there = sim.mj_data.qpos.tobytes()
+    sim.restore(kept)
+    sim.run(0.5)
+    assert sim.mj_data.qpos.tobytes() == there
+    sim.reset()
+    sim.run(0.2)
+    sim.publish("/model/robot/cmd_vel", twist(0.3, 0.2, 0.4))
+    sim.run(0.5)
+    assert sim.mj_data.qpos.tobytes() == here
