@@ -125,9 +125,11 @@ class _Recording:
 
     def __init__(self, source: LiveSource, wanted: _Wanted, duration: float | None) -> None:
         self._source, self._wanted, self._duration = source, wanted, duration
-        self._feeds: dict[str, LiveFeed] = {}
+        self._feeds: list[LiveFeed] = []
+        self._known: set[str] = set()
         self._latched: set[str] = set()
         self._looked = -_NEW
+        self._begun_ns: int | None = None
         there = source.topics()
         for name in wanted.named:
             if name not in there:
@@ -139,41 +141,56 @@ class _Recording:
     @property
     def lost(self) -> int:
         """How many messages were dropped."""
-        return sum(feed.lost for feed in self._feeds.values())
+        return sum(feed.lost for feed in self._feeds)
 
     def run(self, bag: McapBag, stop: Interrupts) -> None:
         """Records to the end of the simulation, or until asked to stop."""
-        begun_ns: int | None = None
-        while not stop.exit_code:
-            self._subscribe(bag)
-            came = self._source_pump()
-            for received in came:
-                begun_ns = received.time_ns if begun_ns is None else min(begun_ns, received.time_ns)
-                if self._duration is not None and received.time_ns - begun_ns > self._duration * 1e9:
-                    return
-                channel = bag.channel(received.topic, received.type_name, received.topic in self._latched)
-                bag.write_raw(channel, received.data, received.time_ns)
-            if not came and any(feed.is_over for feed in self._feeds.values()):
-                return
-            if self._duration is not None and begun_ns is not None and not came:
-                now_ns = int(self._source.client.state()["time_ns"])
-                if now_ns - begun_ns > self._duration * 1e9:
-                    return
+        from simkit.live import LiveClosed
 
-    def _source_pump(self) -> list[Any]:
-        """What has come, in the order of times."""
+        try:
+            started_ns = self._now_ns()
+            while not stop.exit_code:
+                self._subscribe(bag)
+                came = self._source_pump()
+                if self._write(bag, came) or (not came and any(feed.is_over for feed in self._feeds)):
+                    return
+                if self._duration is not None and not came:
+                    begun_ns = started_ns if self._begun_ns is None else self._begun_ns
+                    if self._now_ns() - begun_ns > self._duration * 1e9:
+                        return
+        except LiveClosed as closed:
+            if closed.code != "SK-LIVE-005":
+                raise
+            if not any(feed.is_over for feed in self._feeds):
+                aside(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
+        self._write(bag, self._source_pump(wait=0.0))
+
+    def _now_ns(self) -> int:
+        return int(self._source.client.state()["time_ns"])
+
+    def _write(self, bag: McapBag, came: list[Any]) -> bool:
+        """Writes messages; whether one is behind the end of what was asked for."""
+        for received in came:
+            time_ns = int(received.time_ns)
+            self._begun_ns = time_ns if self._begun_ns is None else min(self._begun_ns, time_ns)
+            if self._duration is not None and time_ns - self._begun_ns > self._duration * 1e9:
+                return True
+            channel = bag.channel(received.topic, received.type_name, received.topic in self._latched)
+            bag.write_raw(channel, received.data, time_ns)
+        return False
+
+    def _source_pump(self, wait: float = _LOOK) -> list[Any]:
+        """What has come, in the order of times; waited for where nothing has [s, wall time]."""
         if not self._feeds:
-            time.sleep(_LOOK)
+            time.sleep(wait)
             return []
         found: list[Any] = []
-        first = True
-        for feed in self._feeds.values():
-            while (received := feed.take(_LOOK if first and not found else 0.0)) is not None:
+        for number, feed in enumerate(self._feeds):
+            while (received := feed.take(wait if number == 0 and not found else 0.0)) is not None:
                 found.append(received)
-                first = False
             if feed.is_over:
                 break
-        for feed in self._feeds.values() if any(f.is_over for f in self._feeds.values()) else ():
+        for feed in self._feeds if any(f.is_over for f in self._feeds) else ():
             feed.is_over = True
             while (received := feed.take(0.0)) is not None:
                 found.append(received)
@@ -184,11 +201,15 @@ class _Recording:
         if time.monotonic() - self._looked < _NEW:
             return
         self._looked = time.monotonic()
-        for name, entry in self._source.topics().items():
-            if name in self._wanted and name not in self._feeds:
-                aside(f"[INFO] [rosbag2_recorder]: Subscribed to topic '{name}'")
-                self._feeds[name] = self._source.feed([name], _DEPTH)
-                if any(end.latched for end in entry.publishers):
-                    self._latched.add(name)
-                for end in entry.publishers[:1] or entry.subscribers[:1]:
-                    bag.channel(name, end.types[0], end.latched)  # listed though nothing may come
+        fresh = {n: e for n, e in self._source.topics().items() if n in self._wanted and n not in self._known}
+        if not fresh:
+            return
+        for name, entry in fresh.items():
+            if any(end.latched for end in entry.publishers):
+                self._latched.add(name)
+        self._feeds.append(self._source.feed(list(fresh), _DEPTH))
+        self._known |= set(fresh)
+        for name, entry in fresh.items():
+            aside(f"[INFO] [rosbag2_recorder]: Subscribed to topic '{name}'")
+            for end in entry.publishers[:1] or entry.subscribers[:1]:
+                bag.channel(name, end.types[0], end.latched)  # listed though nothing may come

@@ -74,21 +74,28 @@ def _nothing() -> None:
 
 
 def _spare(command: Any) -> None:
-    """Takes texts, and what is not given, as they are.
+    """Takes texts, defaults and what is not given as they are.
 
     Typer may send these too through pydantic, whose import takes longer than many a command.
     """
     for each in getattr(command, "commands", {}).values():
         _spare(each)
-    for parameter in command.params:
-        if parameter.nargs == 1 and not getattr(parameter, "multiple", False):
-            parameter.process_value = partial(_process, parameter, parameter.process_value)
+    command.get_params = partial(_sparing, command.get_params)
+
+
+def _sparing(usual: Any, ctx: Any) -> list[Any]:
+    """The parameters of a command, `--help` among them."""
+    found: list[Any] = usual(ctx)
+    for each in found:
+        if each.nargs == 1 and not getattr(each, "multiple", False) and "process_value" not in vars(each):
+            each.process_value = partial(_process, each, each.process_value)
+    return found
 
 
 def _process(parameter: Any, usual: Any, ctx: Any, value: Any) -> Any:
     """The value of a parameter that is to have one."""
-    descriptor = getattr(parameter, "type_descriptor", None)
-    is_text = type(value) is str and descriptor is not None and descriptor.annotation is str
-    if not is_text and (value is not None or parameter.required):
+    kind = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
+    is_there = type(value) is kind and (kind is str or value is parameter.default)
+    if not is_there and (value is not None or (parameter.required and not ctx.resilient_parsing)):
         return usual(ctx, value)
     return value if parameter.callback is None else parameter.callback(ctx, parameter, value)

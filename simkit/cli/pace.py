@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
+LONGEST = 1e6  # [s] of wall time for which a command sleeps at most
 _LOOK = 0.05  # [s] of wall time between two looks at its clock, at most
 _SLOWEST = 1e-3  # real-time factor below which it counts as standing still
 

@@ -43,11 +43,11 @@ def value_of(parameter: Any) -> Any:
 
 def typed(text: str) -> dict[str, Any]:
     """A text on the command line as a ParameterValue, of the type that YAML reads it as; else it is a text."""
-    import yaml
+    from simkit.sinks.yaml_text import NotYaml, read_yaml
 
     try:
-        found = yaml.safe_load(text)
-    except yaml.YAMLError:
+        found = read_yaml(text)
+    except NotYaml:
         found = text
     value = as_value(found)
     return value if value is not None else {"type": 4, "string_value": text}
@@ -74,14 +74,14 @@ def parameters_of_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[s
     Raises:
         InputError: SK-CLI-041 it cannot be read, or says nothing of this node.
     """
-    import yaml
+    from simkit.sinks.yaml_text import NotYaml, read_yaml
 
     try:
-        root = yaml.safe_load(path.read_text(encoding="utf-8"))
+        root = read_yaml(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
         raise _bad(path, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    except yaml.YAMLError as error:
-        raise _bad(path, f"is not YAML: {str(error).splitlines()[0]}") from None
+    except NotYaml as error:
+        raise _bad(path, f"is not YAML: {error}") from None
     if not isinstance(root, dict):
         raise _bad(path, "holds no mapping of nodes to their ros__parameters")
     found: dict[str, Any] = {}

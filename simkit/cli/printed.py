@@ -14,6 +14,7 @@ from simkit.cli.console import INTERRUPTED, guarded
 from simkit.errors import InputError
 
 P = ParamSpec("P")
+_SHOWN = 200  # letters of a text that are shown where it is wrong
 
 
 def line(text: str = "") -> None:
@@ -58,19 +59,18 @@ def given(text: str, what: str) -> dict[str, Any]:
     Raises:
         InputError: SK-CLI-031 it is no YAML, or no mapping.
     """
-    import yaml
+    from simkit.sinks.yaml_text import NotYaml, read_yaml
 
     try:
-        found = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-        raise InputError(f"SK-CLI-031 {what}: {text!r} is not YAML: {problem}", "SK-CLI-031") from None
-    except RecursionError:
-        raise InputError(f"SK-CLI-031 {what} is nested too deep", "SK-CLI-031") from None
+        found = read_yaml(text)
+    except NotYaml as error:
+        shown = repr(text) if len(text) <= _SHOWN else f"{text[:_SHOWN]!r}…"
+        raise InputError(f"SK-CLI-031 {what}: {shown} is not YAML: {error}", "SK-CLI-031") from None
     if found is None:
         return {}
     if not isinstance(found, dict) or any(not isinstance(key, str) for key in found):
-        text = f"{what}: found {text!r}, allowed is a mapping of fields such as '{{linear: {{x: 0.2}}}}'"
+        shown = repr(text) if len(text) <= _SHOWN else f"{text[:_SHOWN]!r}…"
+        text = f"{what}: found {shown}, allowed is a mapping of fields such as '{{linear: {{x: 0.2}}}}'"
         raise InputError(f"SK-CLI-031 {text}", "SK-CLI-031")
     return found
 

@@ -110,7 +110,7 @@ class LiveFeed:
 
     def __init__(self, client: Any, topics: Sequence[str], depth: int) -> None:
         self._client = client
-        self._subscriptions = {topic: client.subscribe(topic, depth=depth) for topic in topics}
+        self._subscriptions = dict(zip(topics, client.subscribe_all(topics, depth=depth), strict=True))
         self._ready: deque[Received] = deque()
         self.is_over = False
 

@@ -99,7 +99,9 @@ class Frames:
         return found
 
     def between(self, source: str, target: str) -> tuple[Pose, int] | None:
-        """The pose of `target` in `source`, and its time [ns]; None where they are of separate trees."""
+        """The pose of `target` in `source`, and its time [ns]; None where they are of separate trees, or unknown."""
+        if source not in self.names():
+            return None  # else any name would have its place in itself
         below = {name: (pose, at) for name, pose, at in reversed(self.chain(source))}
         for name, pose, at in self.chain(target):
             if name in below:

@@ -153,8 +153,11 @@ class _Shown:
         from simkit.msgs.text import part
 
         if self._raw:
-            line(str(received.data))
-            line(_ENDS)
+            if self._json:
+                as_json(list(received.data))
+            else:
+                line(str(received.data))
+                line(_ENDS)
             return True
         store = self._source.store(received.type_name)
         message, node = self._source.decode(received), None

@@ -12,7 +12,7 @@ import typer
 from simkit.cli import completion
 from simkit.cli.live_options import Sim, Topic
 from simkit.cli.options import Json
-from simkit.cli.pace import SimClock
+from simkit.cli.pace import LONGEST, SimClock
 from simkit.cli.printed import absolute, as_json, aside, given, line, quiet
 from simkit.cli.sources import running
 from simkit.errors import InputError, MessageError
@@ -71,6 +71,8 @@ def pub(
     json_: Json = False,
 ) -> int:
     """Publishes a message, again and again until Ctrl-C."""
+    from simkit.live import LiveClosed
+
     message_type, values = type_and_values(message_type, values)
     text = sys.stdin.read() if stdin else values or "{}"
     fields = given(text, "the message")
@@ -84,14 +86,20 @@ def pub(
         _wait_matching(client, topic, (1 if number else 0) if wait is None else wait, aside if json_ else line)
         if not json_:
             line("publisher: beginning loop")
-        for count, now_ns in enumerate(_times(client, rate, number, wall_time), 1):
-            message = make(now_ns)
-            if every and count % every == 0:
-                _print(message, count, json_)
-            publisher.publish(message)
+        try:
+            for count, now_ns in enumerate(_times(client, rate, number, wall_time), 1):
+                message = make(now_ns)
+                if every and count % every == 0:
+                    _print(message, count, json_)
+                publisher.publish(message)
+        except LiveClosed as closed:
+            if number or closed.code != "SK-LIVE-005":
+                raise  # not all of it has been sent
+            aside(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
+            return 0
         client.flush()
         if keep_alive:
-            time.sleep(keep_alive)
+            time.sleep(min(keep_alive, LONGEST))
     return 0
 
 

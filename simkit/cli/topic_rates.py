@@ -25,7 +25,9 @@ _EVERY = 1.0  # [s] of wall time between two lines
 _DEPTH = 10_000  # messages that wait while a line is printed
 Window = Annotated[
     int | None,
-    typer.Option("--window", "-w", help="Counts the last N messages.", metavar="N", min=1, show_default=False),
+    typer.Option(
+        "--window", "-w", help="Counts the last N messages.", metavar="N", min=1, max=10**9, show_default=False
+    ),
 ]
 WallTime = Annotated[bool, typer.Option("--wall-time", help="By the clock on the wall, not the simulation's.")]
 

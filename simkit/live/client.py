@@ -6,8 +6,9 @@ import itertools
 import os
 import select
 import socket
+import struct
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -16,10 +17,23 @@ from typing import Any
 from simkit import msgs
 from simkit.live.errors import BadFrame, LiveClosed, LiveError
 from simkit.live.finding import socket_of
-from simkit.live.frames import ANSWER, ASK, LARGEST_OUT, MARK, MESSAGE, PROTOCOL, TELL, FrameReader, read_words, worded
+from simkit.live.frames import (
+    ANSWER,
+    ASK,
+    LARGEST_IN,
+    LARGEST_OUT,
+    MARK,
+    MESSAGE,
+    PROTOCOL,
+    TELL,
+    FrameReader,
+    read_words,
+    worded,
+)
 from simkit.live.lines import LiveGoal, LivePublisher, LiveSubscription
 
 _PIECE = 1 << 18  # [bytes] taken from the socket at once
+_LONGEST = 1e6  # [s] for which a system waits at once without complaint
 _LOOK = 0.05  # [s] between two looks at whether a simulation has started
 DEPTH = 1000
 """So many messages of a subscription wait at most, here and at the simulation, where nothing is said."""
@@ -79,9 +93,13 @@ class Client:
 
     def _open(self, node: str | None) -> None:
         name = self.path.stem
-        self._socket.settimeout(self.timeout)
+        self._socket.settimeout(min(self.timeout, _LONGEST))
+        end = time.monotonic() + self.timeout
         try:
-            self._socket.connect(str(self.path))
+            while not self._called():  # others call at the same time, and wait to be let in
+                if time.monotonic() >= end:
+                    raise self._silent()
+                time.sleep(_LOOK)
         except TimeoutError:
             raise self._silent() from None
         except OSError as error:
@@ -91,6 +109,14 @@ class Client:
             found = self.info.get("version")
             raise LiveError(f"simulation {name!r} is of simkit {found}, which speaks another protocol", "SK-LIVE-006")
         self.info["node"] = self.ask("node", name=node or f"simkit_{os.getpid()}")
+
+    def _called(self) -> bool:
+        """Connects; False where so many wait to be let in that nobody else can."""
+        try:
+            self._socket.connect(str(self.path))
+        except BlockingIOError:
+            return False
+        return True
 
     # ------------------------------------------------------------------ asking
 
@@ -105,12 +131,20 @@ class Client:
 
     def _ask(self, question: str, args: Mapping[str, Any], data: bytes = b"") -> tuple[Any, bytes, str]:
         """The answer, with the CDR behind it and its type."""
+        return self._answer(self._put(question, args, data))
+
+    def _put(self, question: str, args: Mapping[str, Any], data: bytes = b"") -> int:
+        """Sends a question; the number of its answer."""
         number = next(self._numbers)
         try:
             frame = worded(ASK, {"id": number, "ask": question, **args}, data)
         except (TypeError, ValueError) as error:
             raise LiveError(f"the arguments of {question!r} cannot be sent: {error}", "SK-LIVE-008") from None
         self._send(frame)
+        return number
+
+    def _answer(self, number: int) -> tuple[Any, bytes, str]:
+        """The answer of that number, waited for."""
         self._wait(lambda: number in self._answers, self.timeout)
         words, found = self._answers.pop(number)
         if "error" in words:
@@ -163,15 +197,29 @@ class Client:
             topic: absolute, or taken as such.
             depth: how many messages wait at most; of more, the oldest are dropped and counted.
         """
-        number = next(self._numbers)
-        subscription = LiveSubscription(self, number, topic if topic.startswith("/") else "/" + topic, depth)
-        self._subscriptions[number] = subscription  # its first messages may come with the answer
-        try:
-            self.ask("subscribe", number=number, topic=topic, depth=depth)
-        except LiveError:
-            del self._subscriptions[number]
-            raise
-        return subscription
+        return self.subscribe_all([topic], depth)[0]
+
+    def subscribe_all(self, topics: Iterable[str], depth: int = DEPTH) -> list[LiveSubscription]:
+        """Receives topics, asked for at once: a simulation with slow steps answers once a step."""
+        opened, asked = [], []
+        for topic in topics:
+            number = next(self._numbers)
+            subscription = LiveSubscription(self, number, topic if topic.startswith("/") else "/" + topic, depth)
+            self._subscriptions[number] = subscription  # its first messages may come with the answer
+            opened.append(subscription)
+            asked.append(self._put("subscribe", {"number": number, "topic": topic, "depth": depth}))
+        failed: LiveError | None = None
+        for subscription, number in zip(opened, asked, strict=True):
+            try:
+                self._answer(number)
+            except LiveClosed:
+                raise
+            except LiveError as error:
+                del self._subscriptions[subscription.number]
+                failed = failed or error
+        if failed is not None:
+            raise failed
+        return opened
 
     def advertise(self, topic: str, type_name: str | None = None) -> LivePublisher:
         """Opens a topic for publishing.
@@ -198,7 +246,7 @@ class Client:
         """
         if self._closed is not None:
             raise self._closed
-        ready, _, _ = select.select([self._socket], [], [], timeout)
+        ready, _, _ = select.select([self._socket], [], [], None if timeout is None else min(timeout, _LONGEST))
         if ready:
             self._take_in()
         return bool(ready)
@@ -261,6 +309,9 @@ class Client:
     def _send(self, frame: bytes) -> None:
         if self._closed is not None:
             raise self._closed
+        if len(frame) > LARGEST_IN:
+            text = f"a message of {len(frame)} bytes is too large to be sent; allowed are {LARGEST_IN}"
+            raise LiveError(text, "SK-LIVE-008")
         try:
             self._socket.sendall(frame)
         except TimeoutError:
@@ -295,7 +346,7 @@ class Client:
         try:
             while (frame := self._reader.next()) is not None:
                 self._take(*frame)
-        except (BadFrame, ValueError, KeyError) as error:
+        except (BadFrame, ValueError, KeyError, TypeError, struct.error) as error:
             self._end(LiveClosed(f"simulation {self.path.stem!r} sent something odd: {error}", "SK-LIVE-006"))
 
     def _take(self, kind: int, body: bytes) -> None:

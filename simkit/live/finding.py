@@ -13,7 +13,7 @@ from pathlib import Path
 from simkit.diagnostics import did_you_mean
 from simkit.live.errors import BadFrame, LiveError
 from simkit.live.frames import LARGEST_OUT, TELL, FrameReader, read_words
-from simkit.live.place import is_living, is_possible, peer_of, sockets
+from simkit.live.place import file_name, is_living, is_possible, peer_of, sockets
 
 _PATIENCE = 0.5  # [s] for which a simulation is waited for to say what it is
 VARIABLE = "SIMKIT_SIM"
@@ -98,9 +98,10 @@ def socket_of(name: str | None = None) -> Path:
         if living:
             raise LiveError(f"{len(living)} simulations run ({listed}); --sim NAME says which", "SK-LIVE-002")
         raise LiveError("no simulation runs; `simkit run WORLD` in another terminal starts one", "SK-LIVE-001")
-    for path in living:
-        if path.stem == wanted:
-            return path
+    for said in (wanted, file_name(wanted)):  # a run of any name is called so that a file can be
+        for path in living:
+            if path.stem == said:
+                return path
     if not names:
         raise LiveError(f"no simulation {wanted!r} runs, nor any other; `simkit run WORLD` starts one", "SK-LIVE-001")
     raise LiveError(

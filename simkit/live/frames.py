@@ -23,6 +23,7 @@ HEAD: Final = struct.Struct("<IB")
 MARK: Final = struct.Struct("<IIqQ")
 NUMBER: Final = struct.Struct("<I")
 LARGEST_IN: Final = 16 << 20  # [bytes] of a frame to the simulation
+_SMALL: Final = 2048  # [bytes] of which a copy is made sooner than a view
 LARGEST_OUT: Final = 256 << 20  # [bytes] of a frame from it
 
 
@@ -100,7 +101,8 @@ class FrameReader:
             BadFrame: it is of an unknown kind, or larger than allowed.
         """
         buffer, begin = self._buffer, self._begin
-        if len(buffer) - begin < 5:
+        there = len(buffer)
+        if there - begin < 5:
             return None
         length, kind = HEAD.unpack_from(buffer, begin)
         if kind not in self._kinds:
@@ -108,7 +110,9 @@ class FrameReader:
         if length > self._largest:
             raise BadFrame(f"a frame of {length} bytes, allowed are {self._largest}")
         end = begin + 5 + length
-        if len(buffer) < end:
+        if there < end:
             return None
         self._begin = end
+        if length < _SMALL:
+            return kind, bytes(buffer[begin + 5 : end])
         return kind, bytes(memoryview(buffer)[begin + 5 : end])

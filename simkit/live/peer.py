@@ -85,14 +85,6 @@ class Peer:
         self.reader.feed(data)
         return True
 
-    def next(self) -> tuple[int, bytes] | None:
-        """Its next frame; None where there is none, or no more is taken of it for now.
-
-        Raises:
-            BadFrame: it is none.
-        """
-        return None if self.is_clogged else self.reader.next()
-
     @property
     def is_clogged(self) -> bool:
         """Whether so many answers wait that no more questions are taken."""

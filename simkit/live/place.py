@@ -12,6 +12,7 @@ import socket
 import stat
 import struct
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -20,6 +21,7 @@ from typing import Final
 SUFFIX: Final = ".sock"
 BACKLOG: Final = 64
 _LONGEST_NAME = 48  # a path of a socket has room for about 100 bytes
+_PATIENCE = 2.0  # [s] for which others that begin are waited for
 _LIVING = frozenset({errno.EAGAIN, errno.EINPROGRESS, errno.EACCES, errno.EPERM})
 
 
@@ -58,11 +60,11 @@ def fault_of(folder: Path) -> str:
     return ""
 
 
-def open_folder() -> Path:
-    """A folder for a socket, made where it is not there.
+def open_folders() -> Iterator[Path]:
+    """Folders for a socket, made where they are not there, the preferred one first.
 
     Raises:
-        NoPlace: none can be used.
+        NoPlace: none can be used, or none but those that were tried.
     """
     if not is_possible():
         raise NoPlace("this system's Python has no local sockets")
@@ -74,8 +76,9 @@ def open_folder() -> Path:
         if not fault and not os.access(folder, os.W_OK):
             fault = f"{folder} is not writable"
         if not fault:
-            return folder
-        faults.append(fault)
+            yield folder
+        else:
+            faults.append(fault)
     raise NoPlace("; ".join(faults))
 
 
@@ -90,20 +93,35 @@ def bind(name: str) -> tuple[socket.socket, str, Path]:
     Raises:
         NoPlace: there is no place for it.
     """
-    folder, wanted = open_folder(), file_name(name)
+    faults: list[str] = []
     try:
-        with _locked(folder):
-            for path in folder.glob("*" + SUFFIX):
-                if not is_living(path):
+        for folder in open_folders():
+            try:
+                return _bound(folder, file_name(name))
+            except OSError as error:
+                faults.append(f"{folder}: {error.strerror or error}")
+    except NoPlace as fault:
+        faults += [str(fault)] if str(fault) else []
+    raise NoPlace("; ".join(faults))
+
+
+def _bound(folder: Path, wanted: str) -> tuple[socket.socket, str, Path]:
+    """The same in one folder.
+
+    Raises:
+        OSError: it has no place for it.
+    """
+    with _locked(folder):
+        for path in folder.glob("*" + SUFFIX):
+            if not is_living(path):
+                with suppress(OSError):  # what cannot be taken away keeps its name
                     path.unlink(missing_ok=True)  # of one who died
-            for number in range(1, 1000):
-                free = wanted if number == 1 else f"{wanted}_{number}"
-                path = folder / (free + SUFFIX)
-                if not is_living(path):
-                    return _listening(path), free, path
-    except OSError as error:
-        raise NoPlace(f"{folder}: {error.strerror or error}") from None
-    raise NoPlace(f"{folder}: every name from {wanted} to {wanted}_999 is taken")
+        for number in range(1, 1000):
+            free = wanted if number == 1 else f"{wanted}_{number}"
+            path = folder / (free + SUFFIX)
+            if not os.path.lexists(path):
+                return _listening(path), free, path
+    raise OSError(f"every name from {wanted} to {wanted}_999 is taken")
 
 
 def _listening(path: Path) -> socket.socket:
@@ -129,7 +147,15 @@ def _locked(folder: Path) -> Iterator[None]:
 
     handle = os.open(folder / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX)
+        end = time.monotonic() + _PATIENCE
+        while True:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if time.monotonic() >= end:
+                    raise OSError("another simulation that begins holds it locked, and does not go on") from None
+            time.sleep(0.01)
         yield
     finally:
         os.close(handle)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _TOPIC = re.compile(r"[^\s\x00-\x1f]{1,255}")
+_NEW_TOPIC = re.compile(r"(/[A-Za-z0-9_.-]+)+")
 
 
 class Refused(Exception):
@@ -64,7 +65,9 @@ class Asked:
     def new_number(self, table: dict[int, Any]) -> int:
         """A number for something that is opened."""
         number = self.arg("number", int)
-        if number in table or not 0 <= number < 1 << 32:
+        if not 0 <= number < 1 << 32:
+            raise Refused(f"the number {number!r:.40} is none from 0 to {(1 << 32) - 1}")
+        if number in table:
             raise Refused(f"the number {number} is taken already")
         if len(table) >= MOST_OPEN:
             raise Refused(f"a client may have {MOST_OPEN} of these open, and has", "SK-LIVE-007")
@@ -192,6 +195,8 @@ def advertise(asked: Asked) -> Any:
 
 def _found(asked: Asked, topic: str) -> None:
     """Counts a topic that only a client has: who records or counts topics knows it for as long as the run goes on."""
+    if not _NEW_TOPIC.fullmatch(topic):
+        raise Refused(f"{topic!r} is no name of a topic; allowed are letters, digits and _ between slashes")
     names = asked.server.founded
     if topic not in names and len(names) >= MOST_OPEN:
         message = f"clients of this run have made {MOST_OPEN} topics that nobody else has, and no more are made"

@@ -23,6 +23,7 @@ from simkit.live.feeds import Feeds
 from simkit.live.frames import ANSWER, ASK, NUMBER, PROTOCOL, TELL, read_words
 from simkit.live.peer import Peer
 from simkit.live.questions import QUESTIONS, Asked, Refused, Response
+from simkit.live.readers import reader_of
 from simkit.runtime.inbox import DEPTH
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class Server:
         self._numbers = 0
         self._taken: dict[str, int] = {}
         self._taken_at, self._taken_since = -1, 0.0
-        self._read_cdr = msgs.type_store().deserialize_cdr  # a publisher's type has its full name already
+        self._fewest = 1  # commands of a topic that are kept for the next step, of the topic of which fewest are
         self._pace = [(time.monotonic(), sim.tick)]
 
     # ------------------------------------------------------------------ between two slices
@@ -160,17 +161,18 @@ class Server:
     def _serve(self, peer: Peer) -> bool:
         """Takes a few frames of one client; whether it may have more."""
         try:
+            take, publish = peer.reader.next, self._publish
             for _ in range(_TURN):
                 if peer.is_held or peer.why is not None:
                     return False
-                frame = peer.next()
+                frame = None if peer.is_clogged else take()
                 if frame is None:
                     return not peer.is_clogged and peer.read()
                 kind, body = frame
                 if kind == ASK:
                     self._answer(peer, body)
                 else:
-                    self._publish(peer, body)
+                    publish(peer, body)
         except BadFrame as error:
             self.refuse(peer, f"this is no client of simkit: {error}", "SK-LIVE-006")
             return False
@@ -183,7 +185,7 @@ class Server:
         if publisher is None:
             raise BadFrame("a message of no publisher")
         try:
-            message = self._read_cdr(body[4:], publisher.type_name)
+            message = reader_of(publisher.type_name)(body, 4)
         except Exception as error:  # noqa: BLE001 - bytes from outside may lead a reader anywhere
             raise BadFrame(f"what was sent on {publisher.topic!r} is no {publisher.type_name}: {error!r}") from None
         publisher.publish(message)
@@ -194,7 +196,10 @@ class Server:
         sim = self.sim
         if self._taken_at != sim.tick:
             self._taken, self._taken_at, self._taken_since = {}, sim.tick, time.monotonic()
+            self._fewest = min((DEPTH, *sim.bus.inbox.depths.values()))
         count = self._taken[topic] = self._taken.get(topic, 0) + 1
+        if count < self._fewest:
+            return
         if count >= sim.bus.inbox.depths.get(topic, DEPTH) and not sim.paused:
             peer.is_held = time.monotonic() - self._taken_since < _HOLD
             self._watch(peer)

@@ -97,7 +97,7 @@ class BagReader:
     def size(self) -> int:
         """Bytes of its files."""
         folder = self.path if self.path.is_dir() else self.path.parent
-        return sum((folder / name).stat().st_size for name in self.files)
+        return sum((folder / name).stat().st_size for name in self.files if (folder / name).is_file())
 
     def messages(self, topics: Sequence[str] = (), start: int | None = None) -> Iterator[BagMessage]:
         """Its messages in the order of their times; those of some topics, from a time on [ns], where asked for.
@@ -199,14 +199,14 @@ def _files(path: Path) -> tuple[list[str], str, str]:
     storage = "sqlite3" if any(".db3" in f.name for f in found) else "mcap"
     distro = "unknown"
     if (path / "metadata.yaml").is_file():
-        import yaml
+        from simkit.sinks.yaml_text import NotYaml, read_yaml
 
         try:
             text = (path / "metadata.yaml").read_text(encoding="utf-8")
-            written = yaml.safe_load(text)["rosbag2_bagfile_information"]
+            written = read_yaml(text)["rosbag2_bagfile_information"]
             names = [Path(name).name for name in written["relative_file_paths"]]
             return names, str(written["storage_identifier"]), str(written.get("ros_distro") or distro)
-        except (OSError, yaml.YAMLError, KeyError, TypeError, UnicodeDecodeError):
+        except (OSError, NotYaml, KeyError, TypeError, AttributeError, UnicodeDecodeError):
             pass  # what is there is told by the files themselves
     return [f.name for f in found], storage, distro
 
@@ -215,15 +215,22 @@ def _opened(path: Path) -> _Whole | _CutOff:
     """What reads the bag: rosbags, or record by record where it lacks its end."""
     from rosbags.rosbag2 import Reader, ReaderError
 
-    if not path.exists():
+    try:
+        is_there = path.exists()
+    except (OSError, ValueError) as error:  # no name of a file, such as one that is too long
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"SK-CLI-035 {path} cannot be read: {why}", _UNREADABLE) from None
+    if not is_there:
         raise InputError(f"SK-CLI-035 there is no bag {path}", _UNREADABLE)
     if path.is_dir() and not (path / "metadata.yaml").exists() and not list(path.glob("*.mcap")):
         raise InputError(f"SK-CLI-035 {path} is no bag: it holds neither metadata.yaml nor an MCAP file", _UNREADABLE)
     if not path.is_dir() and path.suffix not in (".mcap", ".db3"):
         text = f"SK-CLI-035 {path}: found the ending {path.suffix!r}, allowed is .mcap, .db3 or a folder of rosbag2"
         raise InputError(text, _UNREADABLE)
-    reader = Reader(path)
+    if not path.is_dir() and not path.is_file():
+        raise InputError(f"SK-CLI-035 {path} is neither a file nor a folder", _UNREADABLE)
     try:
+        reader = Reader(path)
         reader.open()
         return _Whole(path, reader)
     except Exception as error:  # noqa: BLE001 (a reader of somebody else's, fed with anything)

@@ -134,12 +134,14 @@ def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
     """
     import yaml
 
+    from simkit.sinks.yaml_text import loader
+
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise _bad(str(path), f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
     try:
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
+        root = yaml.compose(text, Loader=loader())
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         raise _bad(f"{path}:{line}", f"is not YAML: {error.problem}") from None
@@ -158,8 +160,8 @@ def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
         where = f"{path}:{node.start_mark.line + 1}"
         try:
             item = yaml.constructor.SafeConstructor().construct_document(node)
-        except yaml.YAMLError as error:
-            raise _bad(where, str(error).splitlines()[0]) from None
+        except (yaml.YAMLError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+            raise _bad(where, f"is not YAML: {str(error).partition(chr(10))[0]:.200}") from None
         commands.append(_command(item, where, topics))
     return commands
 

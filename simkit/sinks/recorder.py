@@ -36,7 +36,7 @@ def check_target(path: Path, *, overwrite: bool = False) -> None:
     Raises:
         InputError: SK-BAG-001 something is there already; SK-BAG-002 the place cannot be written.
     """
-    if path.exists() and not overwrite:
+    if _exists(path) and not overwrite:
         raise InputError(
             f"SK-BAG-001 {path} exists already and is not overwritten\n    help: --force replaces it", "SK-BAG-001"
         )
@@ -49,6 +49,19 @@ def check_target(path: Path, *, overwrite: bool = False) -> None:
         parent = parent.parent
     if not parent.is_dir() or not os.access(parent, os.W_OK):
         raise InputError(f"SK-BAG-002 cannot write {path}: the folder {parent} is not writable", "SK-BAG-002")
+
+
+def _exists(path: Path) -> bool:
+    """Whether something is there.
+
+    Raises:
+        InputError: SK-BAG-002 nothing can be, such as under a name that is too long.
+    """
+    try:
+        return path.exists()
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002") from None
 
 
 def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:

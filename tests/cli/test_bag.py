@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -95,3 +96,30 @@ def test_an_interrupt_ends_a_recording_that_is_whole(start: Any, simkit_line: An
     assert running.returncode == 130 and "messages on" in told
     summary = json.loads(simkit_line("bag", "info", str(target), "--json").stdout)
     assert summary["complete"] and {t["name"]: t["count"] for t in summary["topics"]}["/odom"] > 0
+
+
+def test_a_recording_of_nothing_ends_too(start: Any, simkit_line: Any, tmp_path: Path) -> None:
+    start()
+    target = tmp_path / "none.mcap"
+    found = simkit_line("bag", "record", "/nobody", "-o", str(target), "--duration", "0.2")
+    assert found.exit_code == 0 and "0 messages on 0 topics" in found.stderr
+
+
+def test_a_name_that_no_file_can_have_is_told(bag: Path, start: Any, simkit_line: Any) -> None:
+    start()
+    long = "x" * 300
+    told = simkit_line("bag", "record", "/odom", "-o", long)
+    assert told.exit_code == 2 and "SK-BAG-002" in told.stderr
+    told = simkit_line("topic", "list", "--bag", f"{long}.mcap")
+    assert told.exit_code == 2 and "SK-CLI-035" in told.stderr
+
+
+def test_a_recording_of_a_simulation_that_ends_is_whole(start: Any, simkit_line: Any, tmp_path: Path) -> None:
+    live = start()
+    target = tmp_path / "rec.mcap"
+    ends = threading.Timer(1.5, live.close)
+    ends.start()
+    found = simkit_line("bag", "record", "-a", "-x", "camera", "-o", str(target))
+    ends.join()
+    assert found.exit_code == 0 and "has ended" in found.stderr and "messages on" in found.stderr
+    assert json.loads(simkit_line("bag", "info", str(target), "--json").stdout)["complete"]

@@ -119,6 +119,10 @@ def test_a_goal_that_is_not_taken_or_called_off_says_so(yard: Any, simkit_line: 
         (("param", "get", "/Tuner", "p_gan"), "SK-CLI-034", "'p_gain'"),
         (("param", "set", "/Tuner", "p_gain"), "SK-CLI-031", "pairs"),
         (("param", "load", "/Tuner", "no_such.yaml"), "SK-CLI-041", "cannot be read"),
+        (("service", "call", "/lamp", "{data: 2024-13-45}"), "SK-CLI-031", "month must be in 1..12"),
+        (("service", "call", "/lamp", "&a {data: *a}"), "SK-CLI-031", "nested too deep"),
+        (("action", "send_goal", "/countdown", "{order: !!int no}"), "SK-CLI-031", "is not YAML"),
+        (("service", "call", "/lamp", "[" * 5000), "SK-CLI-031", "nested too deep"),
     ],
 )
 def test_a_mistake_is_told_with_what_helps(
@@ -127,3 +131,29 @@ def test_a_mistake_is_told_with_what_helps(
     result = simkit_line(*words)
     assert result.exit_code == 2
     assert code in result.stderr and hint in result.stderr
+
+
+@pytest.mark.parametrize(
+    "text", ["/Tuner: {ros__parameters: {p_gain: 2024-13-45}}", "/Tuner: {ros__parameters: &a {x: *a}}", "[" * 3000]
+)
+def test_a_parameter_file_that_is_no_yaml_is_told(text: str, yard: Any, simkit_line: Any, tmp_path: Path) -> None:
+    (tmp_path / "p.yaml").write_text(text)
+    told = simkit_line("param", "load", "/Tuner", str(tmp_path / "p.yaml"))
+    assert told.exit_code == 2 and "SK-CLI-041" in told.stderr and "is not YAML" in told.stderr
+
+
+@pytest.mark.parametrize("text", ["2024-13-45", "!!bool foo", "9" * 5000, "[" * 3000])
+def test_a_value_that_is_no_yaml_is_a_text_and_refused(text: str, yard: Any, simkit_line: Any) -> None:
+    told = simkit_line("param", "set", "/Tuner", "p_gain", text)
+    assert told.exit_code == 2 and "Setting parameter failed" in told.stderr
+
+
+def test_a_goal_may_be_waited_for_for_ever(yard: Any, simkit_line: Any) -> None:
+    found = simkit_line("action", "send", "/countdown", "{order: 1}", "--timeout", "inf", "--json")
+    assert json.loads(found.stdout)["status"] == "SUCCEEDED"
+
+
+def test_what_is_too_large_to_be_sent_is_told(yard: Any, simkit_line: Any) -> None:
+    values = '{data: "' + "x" * (17 << 20) + '"}'
+    told = simkit_line("topic", "pub", "--once", "-w", "0", "/big", "std_msgs/msg/String", values)
+    assert told.exit_code == 2 and "is too large to be sent; allowed are 16777216" in told.stderr

@@ -164,3 +164,29 @@ def test_two_simulations_are_told_apart_by_name(start: Any, simkit_line: Any, mo
 def test_without_a_simulation_the_command_says_how_to_start_one(place: Any, simkit_line: Any) -> None:
     result = simkit_line("topic", "list")
     assert result.exit_code == 2 and "SK-LIVE-001" in result.stderr and "simkit run" in result.stderr
+
+
+@pytest.mark.parametrize("name", ["", "/", "//", "/a//b", "/a/", "/ä", "~/x", "/{ns}", "/a b"])
+def test_a_topic_that_is_none_is_not_made(name: str, yard: Any, simkit_line: Any) -> None:
+    told = simkit_line("topic", "pub", "--once", "-w", "0", "--", name, "std_msgs/msg/Empty", "{}")
+    assert told.exit_code == 2 and "is no name of a topic" in told.stderr
+
+
+def test_times_without_an_end_are_taken(yard: Any, simkit_line: Any) -> None:
+    assert simkit_line("topic", "echo", "--once", "/odom", "--timeout", "1e400").exit_code == 0
+    assert simkit_line("topic", "hz", "/odom", "--window", "9" * 20).exit_code == 2
+
+
+def test_numbers_with_an_exponent_are_numbers_as_in_ros(yard: Any, simkit_line: Any) -> None:
+    sent = simkit_line("topic", "pub", "--once", "/cmd_vel", "{linear: {x: 0e-3, y: 1e-3}}").stdout
+    assert "Vector3(x=0.0, y=0.001, z=0.0)" in sent
+
+
+def test_raw_bytes_are_json_too(yard: Any, simkit_line: Any) -> None:
+    found = json.loads(simkit_line("topic", "echo", "--once", "/odom", "--raw", "--json").stdout)
+    assert found[:4] == [0, 1, 0, 0]
+
+
+def test_a_frame_that_nobody_knows_has_no_place_in_itself(yard: Any, simkit_line: Any) -> None:
+    told = simkit_line("tf", "echo", "nobody", "nobody", "--once")
+    assert told.exit_code == 2 and "SK-CLI-038" in told.stderr

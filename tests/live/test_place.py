@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import socket
 import stat
+import tempfile
 from pathlib import Path
 
 import pytest
 
 import simkit
 from simkit.live import place
-from simkit.live.finding import simulations
+from simkit.live.finding import simulations, socket_of
 from simkit.live.server import Server, serve
 
 
@@ -39,7 +41,7 @@ def test_a_folder_that_others_may_enter_is_not_used(court: simkit.Simulation, so
 def test_a_link_instead_of_the_folder_is_not_followed(sockets: Path, tmp_path: Path) -> None:
     sockets.symlink_to(tmp_path)
     assert place.fault_of(sockets) == f"{sockets} is no folder"
-    assert place.open_folder() != sockets
+    assert sockets not in list(itertools.islice(place.open_folders(), 1))
 
 
 def test_the_socket_of_one_who_died_is_replaced(court: simkit.Simulation, sockets: Path) -> None:
@@ -64,14 +66,18 @@ def test_any_name_becomes_one_of_a_file(name: str, file: str) -> None:
     assert place.file_name(name) == file
 
 
-def test_a_path_that_is_too_long_is_a_note_and_no_end(
-    court: simkit.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_where_the_path_is_too_long_the_temporary_files_are_the_place(
+    court: simkit.Simulation, sockets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    deep = tmp_path / ("d" * 90)
+    deep = sockets.parent / ("d" * 90)
     deep.mkdir()
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(deep))
-    server, note = serve(court)
-    assert server is None and note.startswith("note SK-LIVE-009: no other terminal can talk to this run: ")
+    with Server(court) as server:
+        assert server.path.parent.name == f"simkit-{os.getuid()}"
+        assert [found.name for found in simulations()] == ["court"]
+    monkeypatch.setattr(tempfile, "tempdir", str(deep))
+    none, note = serve(court)
+    assert none is None and note.startswith("note SK-LIVE-009: no other terminal can talk to this run: ")
 
 
 def test_where_there_are_no_local_sockets_the_run_goes_on_without(
@@ -80,3 +86,33 @@ def test_where_there_are_no_local_sockets_the_run_goes_on_without(
     monkeypatch.delattr(socket, "AF_UNIX")
     assert serve(court)[0] is None
     assert simulations() == []
+
+
+def test_what_is_no_socket_is_taken_away_or_keeps_its_name(court: simkit.Simulation, sockets: Path) -> None:
+    sockets.mkdir(mode=0o700)
+    (sockets / "court.sock").mkdir()
+    (sockets / "text.sock").write_text("no socket")
+    (sockets / "link.sock").symlink_to("/nobody/there")
+    with Server(court) as server:
+        assert server.name == "court_2", "a folder is left alone"
+        assert [found.name for found in simulations()] == ["court_2"]
+        assert sorted(path.name for path in sockets.glob("*.sock")) == ["court.sock", "court_2.sock"]
+
+
+def test_one_who_holds_the_lock_for_ever_keeps_no_run_from_beginning(
+    court: simkit.Simulation, sockets: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import fcntl
+
+    monkeypatch.setattr(place, "_PATIENCE", 0.05)
+    sockets.mkdir(mode=0o700)
+    with (sockets / ".lock").open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        with Server(court) as server:
+            assert server.path.parent.name == f"simkit-{os.getuid()}"
+
+
+@pytest.mark.parametrize("name", ["Büro 7", "a/b", "n" * 300])
+def test_a_run_is_found_by_the_name_that_it_was_given(court: simkit.Simulation, name: str) -> None:
+    with Server(court, name) as server:
+        assert socket_of(name) == server.path

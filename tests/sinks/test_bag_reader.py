@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -116,3 +117,24 @@ def test_the_summary_is_that_of_ros_2(tmp_path: Path) -> None:
             "Services:          0\nService information: \n"
         )
         assert bag_summary(found)["duration"] == 2.0
+
+
+@pytest.mark.parametrize("metadata", [None, "", "5", "a: 2024-13-45", "[" * 300, "rosbag2_bagfile_information: 5"])
+def test_a_folder_that_lacks_its_end_is_read_by_its_files(tmp_path: Path, metadata: str | None) -> None:
+    folder = tmp_path / "drive"
+    bag = Rosbag2Folder(folder)
+    _numbers(bag)
+    bag.close()
+    (folder / "metadata.yaml").unlink()
+    if metadata is not None:
+        (folder / "metadata.yaml").write_text(metadata)
+    with open_bag_to_read(folder) as found:
+        assert found.count == 4 and found.broken
+        assert "Messages:          4\n" in bag_text(found)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names there")
+def test_what_is_no_file_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.mcap")
+    with pytest.raises(InputError, match="neither a file nor a folder"):
+        open_bag_to_read(tmp_path / "pipe.mcap")

@@ -1,0 +1,85 @@
+"""Commands are read from their modules only when they are asked for, and nobody sees a difference."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import subprocess
+import sys
+from importlib import import_module
+from typing import Any
+
+import pytest
+import typer
+
+from simkit.cli import COMMANDS, app
+
+HEAVY = ("mujoco", "numpy", "pydantic", "rich", "rosbags", "scipy", "trimesh", "yaml")
+SCRIPT = f"""
+import sys
+from simkit.cli import app
+try:
+    app(prog_name="simkit")
+finally:
+    found = [name for name in {HEAVY} if name in sys.modules]
+    found += [name for name in {list(COMMANDS)} if f"simkit.cli.{{name}}" in sys.modules]
+    sys.stderr.write(" ".join(found))
+"""
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_line_beside_a_command_is_the_first_of_its_help(name: str) -> None:
+    found = getattr(import_module(f"simkit.cli.{name}"), name)
+    written = found.info.help if isinstance(found, typer.Typer) else inspect.getdoc(found)
+    assert str(written).splitlines()[0] == COMMANDS[name]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_is_the_one_of_its_module(name: str) -> None:
+    root: Any = typer.main.get_command(app)
+    found: Any = getattr(import_module(f"simkit.cli.{name}"), name)
+    real = root.commands[name].real
+    assert real.name == name
+    if isinstance(found, typer.Typer):
+        assert [c.name or c.callback.__name__ for c in found.registered_commands if c.callback] == list(real.commands)
+    else:
+        assert [p.name for p in real.params if p.name != "help"] == list(inspect.signature(found).parameters)
+
+
+@pytest.mark.parametrize(
+    ("line", "read"),
+    [
+        ("simkit --help", ""),
+        ("simkit --version", ""),
+        ("simkit run --help", "run"),
+        ("simkit topic --help", "topic"),
+        ("simkit topic list --help", "topic"),
+    ],
+)
+def test_only_what_is_asked_for_is_imported(line: str, read: str) -> None:
+    assert loaded(line.split()[1:]) == read
+
+
+@pytest.mark.parametrize(("line", "read"), [("simkit to", ""), ("simkit topic ec", "topic"), ("simkit bag re", "bag")])
+def test_completion_reads_only_the_command_that_is_written(line: str, read: str) -> None:
+    env = {"_SIMKIT_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(line.split()) - 1)}
+    assert loaded([], env) == read
+
+
+def test_a_client_that_lists_topics_imports_nothing_heavy(tmp_path: Any) -> None:
+    code = "import sys, simkit.live, simkit.cli.sources, simkit.cli.topic\n"
+    code += f"sys.stderr.write(' '.join(name for name in {HEAVY} if name in sys.modules))"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert found.stderr == ""
+
+
+def loaded(words: list[str], env: dict[str, str] | None = None) -> str:
+    """Heavy packages and modules of commands that a command line has imported by its end."""
+    found = subprocess.run(
+        [sys.executable, "-c", SCRIPT, *words],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, **(env or {})},
+    )
+    return found.stderr

@@ -1,0 +1,48 @@
+"""Whatever somebody writes as YAML is read, or told why not."""
+
+from __future__ import annotations
+
+import pytest
+
+from simkit.sinks.yaml_text import NotYaml, read_yaml
+
+
+@pytest.mark.parametrize(
+    ("text", "value"), [("1e-3", 0.001), ("-1E6", -1e6), (".5e1", 5.0), ("1.e2", 100.0), ("+2e+0", 2.0), ("1.5", 1.5)]
+)
+def test_a_number_with_an_exponent_is_one(text: str, value: float) -> None:
+    assert read_yaml(f"{{x: {text}, y: [{text}]}}") == {"x": value, "y": [value]}
+
+
+@pytest.mark.parametrize("text", ["e3", "1e", "1e3x", "'1e3'", "v1e3"])
+def test_what_is_no_number_stays_a_text(text: str) -> None:
+    assert read_yaml(text) == text.strip("'")
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("{x: 2024-13-45}", "month must be in 1..12"),
+        ("!!timestamp foo", "a value is not what it looks like"),
+        ("!!bool foo", "a value is not what it looks like"),
+        ("!!int foo", "invalid literal"),
+        ("!!float foo", "could not convert"),
+        ("9" * 5000, "4300 digits"),
+        ("&a {x: *a}", "nested too deep"),
+        ("&a [*a]", "nested too deep"),
+        ("[" * 3000, "nested too deep"),
+        ("[" * 150 + "]" * 150, "nested too deep"),
+        ("{x: [}", "expected the node content"),
+        ("!!python/name:os.system x", "could not determine a constructor"),
+        ("\0", "special characters are not allowed"),
+    ],
+)
+def test_what_cannot_be_read_is_told_and_no_more(text: str, why: str) -> None:
+    with pytest.raises(NotYaml, match=why):
+        read_yaml(text)
+
+
+def test_much_out_of_little_is_refused() -> None:
+    text = "a0: &a0 [1, 1]\n" + "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in range(1, 40))
+    with pytest.raises(NotYaml, match="stands for more than"):
+        read_yaml(text)
