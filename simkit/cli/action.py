@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Ros2Command, Sim
 from simkit.cli.options import Json
-from simkit.cli.printed import absolute, as_json, given, line, none_of, quiet
 from simkit.cli.service import check, made
-from simkit.cli.sources import running
-from simkit.cli.topic_pub import type_and_values
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Ros2Command, Sim
+from simkit.cli.talking.printed import absolute, as_json, given, line, none_of, quiet
+from simkit.cli.talking.sources import running
+from simkit.cli.talking.topic_pub import type_and_values
 
 if TYPE_CHECKING:
     from simkit.live import Client, LiveGoal

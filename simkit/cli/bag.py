@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.bag_play import play
-from simkit.cli.bag_record import record
 from simkit.cli.console import guarded, out
 from simkit.cli.options import Force, Json
-from simkit.cli.printed import as_json, aside, line, quiet
+from simkit.cli.talking.bag_play import play
+from simkit.cli.talking.bag_record import record
+from simkit.cli.talking.printed import as_json, aside, line, quiet
 
 bag = typer.Typer(help="Recordings: what is in them, new ones, and broken ones mended.", no_args_is_help=True)
 

@@ -6,11 +6,11 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Sim
 from simkit.cli.options import Json
-from simkit.cli.printed import as_json, line, none_of, quiet
-from simkit.cli.sources import running
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Sim
+from simkit.cli.talking.printed import as_json, line, none_of, quiet
+from simkit.cli.talking.sources import running
 
 model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
 Model = Annotated[

@@ -6,11 +6,11 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Ros2Command, Sim
 from simkit.cli.options import Json
-from simkit.cli.printed import absolute, as_json, is_hidden, line, none_of, quiet
-from simkit.cli.sources import running
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Ros2Command, Sim
+from simkit.cli.talking.printed import absolute, as_json, is_hidden, line, none_of, quiet
+from simkit.cli.talking.sources import running
 
 node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)
 Hidden = Annotated[bool, typer.Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]

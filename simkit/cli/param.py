@@ -7,12 +7,12 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Ros2Command, Sim
 from simkit.cli.options import Json
-from simkit.cli.param_values import KINDS, parameters_of_file, typed, value_of
-from simkit.cli.printed import absolute, as_json, aside, line, none_of, quiet
-from simkit.cli.sources import running
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Ros2Command, Sim
+from simkit.cli.talking.param_values import KINDS, parameters_of_file, typed, value_of
+from simkit.cli.talking.printed import absolute, as_json, aside, line, none_of, quiet
+from simkit.cli.talking.sources import running
 from simkit.errors import InputError
 
 _LIST = "/list_parameters"

@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand
 
 from simkit.cli.console import guarded, print_diagnostics, say
+from simkit.cli.driving.teleop import KEY_TIMEOUT
 from simkit.cli.options import (
     Base,
     Force,
@@ -24,8 +25,7 @@ from simkit.cli.options import (
     XacroArgs,
     source,
 )
-from simkit.cli.run_request import OnError, Request
-from simkit.cli.teleop import KEY_TIMEOUT
+from simkit.cli.running.request import OnError, Request
 from simkit.sinks.blocked import BlockedPlugins
 
 _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
@@ -155,7 +155,7 @@ def execute(request: Request) -> int:
         SimkitError: what went wrong; the recording up to there is complete by then.
     """
     from simkit.build import load
-    from simkit.cli.run_session import Session, check_keyboard
+    from simkit.cli.running.session import Session, check_keyboard
     from simkit.overrides import check_used
     from simkit.sinks import picture, recorder, viewer
 

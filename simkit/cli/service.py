@@ -8,12 +8,12 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Ros2Command, Sim
 from simkit.cli.options import Json
-from simkit.cli.printed import absolute, as_json, given, is_hidden, line, none_of, quiet
-from simkit.cli.sources import running
-from simkit.cli.topic_pub import type_and_values
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Ros2Command, Sim
+from simkit.cli.talking.printed import absolute, as_json, given, is_hidden, line, none_of, quiet
+from simkit.cli.talking.sources import running
+from simkit.cli.talking.topic_pub import type_and_values
 from simkit.errors import InputError, MessageError
 
 service = typer.Typer(help="Services of a running simulation.", no_args_is_help=True)

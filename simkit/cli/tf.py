@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Bag, Sim
 from simkit.cli.options import Json
-from simkit.cli.printed import as_json, line, none_of, quiet
-from simkit.cli.sources import Received, Source, opened
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Bag, Sim
+from simkit.cli.talking.printed import as_json, line, none_of, quiet
+from simkit.cli.talking.sources import Received, Source, opened
 from simkit.errors import InputError
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Bag, Ros2Command, Sim, Topic
 from simkit.cli.options import Json
-from simkit.cli.printed import as_json, is_hidden, line, quiet
-from simkit.cli.sources import End, TopicEntry, opened, topic_of
-from simkit.cli.topic_echo import echo
-from simkit.cli.topic_pub import pub
-from simkit.cli.topic_rates import bw, delay, hz
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Bag, Ros2Command, Sim, Topic
+from simkit.cli.talking.printed import as_json, is_hidden, line, quiet
+from simkit.cli.talking.sources import End, TopicEntry, opened, topic_of
+from simkit.cli.talking.topic_echo import echo
+from simkit.cli.talking.topic_pub import pub
+from simkit.cli.talking.topic_rates import bw, delay, hz
 from simkit.errors import MessageError
 
 topic = typer.Typer(help="Topics of a running simulation, or of a bag.", no_args_is_help=True)

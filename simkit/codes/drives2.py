@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simkit.codes import Code
-from simkit.codes.sketch import INERTIAL, model
+from simkit.codes.sketch import INERTIAL, model, python
 
 _BALL = "<collision name='c'><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>"
 
@@ -30,7 +30,32 @@ _TWICE = _SLIP.replace("</plugin>", "  " + _SLIP.splitlines()[1].strip() + "\n</
 _CAR_JOINTS = ("front_left", "front_right", "rear_left", "rear_right")
 _CAR = """<plugin filename="libgazebo_ros_ackermann_drive.so" name="drive"/>"""
 
+_RUBS = "<surface><friction><ode><mu>1</mu><mu2>0.1</mu2><fdir1{}>1 0 0</fdir1></ode></friction></surface>"
+_BOX = "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry>{}</collision>"
+_YARD = """<mujoco><option integrator="RK4"/><worldbody><geom type="plane" size="5 5 1"/></worldbody></mujoco>"""
+
+
+def _directed(frame: str = "") -> str:
+    return f'<link name="base">{INERTIAL}{_BOX.format(_RUBS.format(frame))}</link>'
+
+
+_SPAWNS = f"import simkit\nsim = simkit.load('yard.xml')\nsim.spawn('''{model(_directed()).text}''')\n"
+
 CODES: tuple[Code, ...] = (
+    Code(
+        "SK-SDF-040",
+        "warning",
+        "`<fdir1>` is told in a frame that is not there; the collision's own is used",
+        "the closest name is given; a frame is a link, joint, frame or model of the same model",
+        model(_directed(' gz:expressed_in="bse"')),
+    ),
+    Code(
+        "SK-PHYS-030",
+        "warning",
+        "direction and slip of friction, or a surface that runs, in a world whose MJCF file asks for RK4",
+        "RK4 has no place between velocities and forces; the other integrators have one",
+        python(_SPAWNS, {"yard.xml": _YARD}),
+    ),
     Code(
         "SK-PLUGIN-090",
         "warning",

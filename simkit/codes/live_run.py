@@ -21,7 +21,7 @@ CODES: tuple[Code, ...] = (
         python(
             """
             import simkit
-            from simkit.cli.teleop_target import find_target
+            from simkit.cli.driving.target import find_target
 
             with simkit.load("ball.sdf") as sim:
                 find_target(sim)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.cli.loop import Loop
+from simkit.cli.running.loop import Loop
 from simkit.sinks.commands import Commands
 
 BALL = '<sdf version="1.9"><world name="w"><model name="ball"><link name="l"/></model></world></sdf>'

@@ -18,7 +18,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from simkit.cli import app
-from simkit.cli.run_request import Request
+from simkit.cli.running.request import Request
 
 if sys.platform == "win32":
     pytest.skip("its terminals are others", allow_module_level=True)

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.cli.run_keys import RunKeys
-from simkit.cli.teleop import Teleop
-from simkit.cli.teleop_line import DriverLine
-from simkit.cli.teleop_target import find_target
+from simkit.cli.driving.line import DriverLine
+from simkit.cli.driving.target import find_target
+from simkit.cli.driving.teleop import Teleop
+from simkit.cli.running.keys import RunKeys
 from simkit.errors import InputError
 
 WORLD = """

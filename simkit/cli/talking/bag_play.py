@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.live_options import Sim
 from simkit.cli.options import Json
-from simkit.cli.pace import SimClock
-from simkit.cli.printed import absolute, as_json, aside, quiet
-from simkit.cli.sources import running
+from simkit.cli.talking.options import Sim
+from simkit.cli.talking.pace import SimClock
+from simkit.cli.talking.printed import absolute, as_json, aside, quiet
+from simkit.cli.talking.sources import running
 from simkit.errors import InputError
 
 

@@ -9,16 +9,16 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit.cli.console import err, out, say
-from simkit.cli.interrupts import Interrupts
-from simkit.cli.loop import Loop
-from simkit.cli.run_end import draw, summarise
-from simkit.cli.run_request import Request
+from simkit.cli.running.end import draw, summarise
+from simkit.cli.running.interrupts import Interrupts
+from simkit.cli.running.loop import Loop
+from simkit.cli.running.request import Request
 from simkit.errors import InputError
 from simkit.sinks.blocked import BlockedPlugins
 
 if TYPE_CHECKING:
-    from simkit.cli.keyboard import Keyboard, WindowsKeyboard
-    from simkit.cli.teleop import Teleop
+    from simkit.cli.driving.keyboard import Keyboard, WindowsKeyboard
+    from simkit.cli.driving.teleop import Teleop
     from simkit.sinks.progress import Progress
     from simkit.sinks.topic_counts import TopicCounter
 
@@ -29,7 +29,7 @@ def check_keyboard(request: Request) -> None:
     Raises:
         InputError: SK-CLI-050 there is no terminal.
     """
-    from simkit.cli.keyboard import keyboard_of
+    from simkit.cli.driving.keyboard import keyboard_of
 
     if request.teleop is not None and keyboard_of(sys.stdin) is None:
         raise InputError(
@@ -116,8 +116,8 @@ class Session:
         return found
 
     def _driver(self) -> Teleop | None:
-        from simkit.cli.teleop import Teleop
-        from simkit.cli.teleop_target import find_target
+        from simkit.cli.driving.target import find_target
+        from simkit.cli.driving.teleop import Teleop
 
         if self.request.teleop is None:
             return None
@@ -125,7 +125,7 @@ class Session:
 
     def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
         """The terminal's, where somebody drives or sees what keys do: a pager that shows our output has its own."""
-        from simkit.cli.keyboard import keyboard_of
+        from simkit.cli.driving.keyboard import keyboard_of
 
         if self._teleop is None and (sys.stdout is None or sys.stdout.closed or not sys.stdout.isatty()):
             return None
@@ -133,7 +133,7 @@ class Session:
 
     def _listen_to(self, keyboard: Keyboard | WindowsKeyboard, loop: Loop) -> None:
         """Lets keys pause, step and drive the run."""
-        from simkit.cli.run_keys import RunKeys
+        from simkit.cli.running.keys import RunKeys
 
         keys = RunKeys(self.sim, keyboard, self._teleop)
         loop.poll_keys, loop.on_pause = keys.poll, keys.say_paused
@@ -141,7 +141,7 @@ class Session:
             loop.senders.append(self._teleop)
 
     def _progress(self, counter: TopicCounter) -> Progress:
-        from simkit.cli.teleop_line import DriverLine
+        from simkit.cli.driving.line import DriverLine
         from simkit.sinks.progress import Progress
 
         if self._teleop is None:
@@ -177,7 +177,7 @@ class Session:
 
     def _watched(self, loop: Loop, interrupts: Interrupts, watchers: list[Any]) -> Callable[[float | None], Any]:
         """The same loop, which reloads plugins that are edited."""
-        from simkit.cli.run_watch import Watch
+        from simkit.cli.running.watch import Watch
 
         watch = Watch(self.sim, self.request.plugin_paths, interrupts, waits=self.request.record is None)
         watchers.append(watch.poll)

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.cli.teleop import Teleop
+from simkit.cli.driving.teleop import Teleop
 from simkit.pose import Pose, quat_rotate
 
 _DRIVING: Final = "w/x faster/slower   a/d left/right   s stop   q/z all speeds ±10 %"

@@ -13,8 +13,8 @@ from simkit.cli.console import say, show_error
 from simkit.errors import PluginError
 
 if TYPE_CHECKING:
-    from simkit.cli.interrupts import Interrupts
-    from simkit.cli.loop import Loop
+    from simkit.cli.running.interrupts import Interrupts
+    from simkit.cli.running.loop import Loop
 
 _LOOK = 0.1  # [s] of wall time between two looks at the files while the run waits
 

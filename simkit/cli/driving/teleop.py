@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from simkit.cli.keys import DOWN, LEFT, RIGHT, UP
-from simkit.cli.teleop_target import TWISTS, Bounds, Target
+from simkit.cli.driving.keys import DOWN, LEFT, RIGHT, UP
+from simkit.cli.driving.target import TWISTS, Bounds, Target
 from simkit.errors import MessageError
 
 RATE: Final = 10.0

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from simkit.cli.printed import absolute, aside, is_hidden, none_of
+from simkit.cli.talking.printed import absolute, aside, is_hidden, none_of
 from simkit.errors import InputError
 
 if TYPE_CHECKING:

@@ -14,11 +14,11 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.live_options import Bag, Sim, Topic
 from simkit.cli.options import Json
-from simkit.cli.printed import as_json, aside, line, quiet
-from simkit.cli.sources import Feed, Received, Source, opened, topic_of
-from simkit.cli.topic_echo import filtered
+from simkit.cli.talking.options import Bag, Sim, Topic
+from simkit.cli.talking.printed import as_json, aside, line, quiet
+from simkit.cli.talking.sources import Feed, Received, Source, opened, topic_of
+from simkit.cli.talking.topic_echo import filtered
 from simkit.errors import InputError
 
 _EVERY = 1.0  # [s] of wall time between two lines

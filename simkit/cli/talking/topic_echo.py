@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Bag, Sim, Topic
 from simkit.cli.options import Json
-from simkit.cli.printed import as_json, aside, line, quiet
-from simkit.cli.sources import Feed, Received, Source, opened, topic_of, wait_for
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Bag, Sim, Topic
+from simkit.cli.talking.printed import as_json, aside, line, quiet
+from simkit.cli.talking.sources import Feed, Received, Source, opened, topic_of, wait_for
 from simkit.errors import InputError, MessageError
 
 if TYPE_CHECKING:

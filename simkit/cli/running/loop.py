@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from simkit.cli.console import say
 
 if TYPE_CHECKING:
-    from simkit.cli.interrupts import Interrupts
+    from simkit.cli.running.interrupts import Interrupts
     from simkit.live.server import Server
     from simkit.sinks.commands import Commands
 

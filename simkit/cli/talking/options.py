@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
-from simkit.cli import completion
+from simkit.cli.talking import completion
 
 Sim = Annotated[
     str | None,

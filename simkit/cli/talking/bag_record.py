@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.interrupts import Interrupts
-from simkit.cli.live_options import Sim
 from simkit.cli.options import Force, Json
-from simkit.cli.printed import absolute, as_json, aside, is_hidden, quiet
-from simkit.cli.sources import LiveSource, running
+from simkit.cli.running.interrupts import Interrupts
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Sim
+from simkit.cli.talking.printed import absolute, as_json, aside, is_hidden, quiet
+from simkit.cli.talking.sources import LiveSource, running
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.cli.sources import LiveFeed
+    from simkit.cli.talking.sources import LiveFeed
     from simkit.sinks.mcap_bag import McapBag
 
 _DEPTH = 20_000  # messages of a topic that wait while the disk is busy

@@ -9,12 +9,12 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli import completion
-from simkit.cli.live_options import Sim, Topic
 from simkit.cli.options import Json
-from simkit.cli.pace import LONGEST, SimClock
-from simkit.cli.printed import absolute, as_json, aside, given, line, quiet
-from simkit.cli.sources import running
+from simkit.cli.talking import completion
+from simkit.cli.talking.options import Sim, Topic
+from simkit.cli.talking.pace import LONGEST, SimClock
+from simkit.cli.talking.printed import absolute, as_json, aside, given, line, quiet
+from simkit.cli.talking.sources import running
 from simkit.errors import InputError, MessageError
 
 _TYPE_FORM = r"^[A-Za-z]\w*(/\w+){1,2}$"
@@ -119,7 +119,7 @@ def _full(client: Any, topic: str, type_name: str | None) -> str:
         InputError: SK-CLI-032 there is no such type; SK-CLI-030 none is said and the topic is not there.
     """
     from simkit import msgs
-    from simkit.cli.sources import LiveSource, topic_of
+    from simkit.cli.talking.sources import LiveSource, topic_of
 
     if type_name is None:
         entry = topic_of(LiveSource(client), topic)

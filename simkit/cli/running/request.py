@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from simkit.cli.driving.teleop import KEY_TIMEOUT
 from simkit.cli.options import Source, source
-from simkit.cli.teleop import KEY_TIMEOUT
 
 OnError = Literal["stop", "disable"]
 

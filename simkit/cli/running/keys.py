@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from simkit.cli.console import say
 
 if TYPE_CHECKING:
-    from simkit.cli.teleop import Teleop
+    from simkit.cli.driving.teleop import Teleop
 
 HINT = "space goes on, n does one step, Ctrl-C ends"
 

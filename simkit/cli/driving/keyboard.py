@@ -15,7 +15,7 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import IO, Any, Final
 
-from simkit.cli.keys import KeyDecoder, windows_keys
+from simkit.cli.driving.keys import KeyDecoder, windows_keys
 
 _MOST: Final = 1024  # [bytes] looked at at a time
 _SHOW_CURSOR: Final = b"\x1b[?25h"

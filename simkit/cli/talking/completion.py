@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
-    from simkit.cli.sources import Source
+    from simkit.cli.talking.sources import Source
 
 _PATIENCE = 1.0  # [s] of wall time that a shell is kept waiting
 _BEGUN = __name__  # what was written of the word so far, in the meta of the context
@@ -36,7 +36,7 @@ def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Callable[[typ
 
 @contextmanager
 def _source(ctx: typer.Context) -> Iterator[Source]:
-    from simkit.cli.sources import BagSource, LiveSource
+    from simkit.cli.talking.sources import BagSource, LiveSource
     from simkit.live import connect
     from simkit.sinks.bag_reader import open_bag_to_read
 

@@ -1,0 +1,1 @@
+"""A driver at the keyboard."""
