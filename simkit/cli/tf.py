@@ -111,15 +111,19 @@ class Frames:
         return None
 
 
-def listen(source: Source, frames: Frames, topics: list[str] | None = None, *, until: float) -> Iterator[Received]:
-    """Takes transforms into `frames` until a wall time [s of `time.monotonic`]; of a bag, all there are."""
+def listen(source: Source, frames: Frames, topics: list[str] | None = None, *, lasting: float) -> Iterator[Received]:
+    """Takes transforms into `frames` for so long [s, wall time, from when it is heard]; of a bag, all there are."""
     there = source.topics()
     wanted = topics or [t for t in there if t.rpartition("/")[2] in ("tf", "tf_static") and _TYPE in there[t].types]
     wanted = [t for t in wanted if t in there] or [t for t in _TOPICS if t in there]
     if not wanted:
         raise none_of("topic", "/tf", list(there), "SK-CLI-030", source.where)
     static = {t for t in wanted if any(end.latched for end in there[t].publishers) or t.endswith("tf_static")}
+    from simkit import msgs
+
+    msgs.type_of(_TYPE)  # the first use of a type takes a while, which is not to be listening's
     feed = source.feed(wanted)
+    until = time.monotonic() + lasting
     try:
         while not source.is_live or time.monotonic() < until:
             received = feed.take(max(0.0, until - time.monotonic()))
@@ -149,7 +153,7 @@ def tree(
     """Prints which frame hangs on which."""
     frames = Frames()
     with opened(sim, bag) as source:
-        for _ in listen(source, frames, topic or None, until=time.monotonic() + listened):
+        for _ in listen(source, frames, topic or None, lasting=listened):
             pass
     if json_:
         rows = {c: {"parent": e.parent, "static": e.static, "time": e.time_ns * 1e-9} for c, e in frames.edges.items()}
@@ -184,8 +188,7 @@ def echo(
     with opened(sim, bag) as source:
         begun = time.monotonic()
         while True:
-            until = time.monotonic() + 1.0 / rate
-            for _ in listen(source, frames, topic or None, until=until):
+            for _ in listen(source, frames, topic or None, lasting=1.0 / rate):
                 if once and source.is_live and frames.between(source_frame, target_frame) is not None:
                     break
             found = frames.between(source_frame, target_frame)

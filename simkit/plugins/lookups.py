@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from simkit.diagnostics import did_you_mean
+from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.scene import SceneJoint, SceneLink, SceneModel
 
@@ -42,6 +43,26 @@ def named_link(scene: SceneModel, element: str, params: Params) -> str:
     named = params.child(element)
     link = None if named is None else find_link(scene, named.value, named)
     return "" if link is None else link.scoped
+
+
+def needed_name(params: Params, element: str) -> str:
+    """A name that has to be given; empty after an error, for an element with nothing in it too."""
+    name = params.text(element, required=True)
+    named = params.child(element)
+    if named is not None and not name:
+        named.error("SK-PARAM-002", f"found <{element}></{element}>, allowed is a name")
+    return name
+
+
+def given_topic(params: Params, element: str, default: str) -> str:
+    """The topic that an element names, as gz-transport makes it; the default where it is empty or not there."""
+    written = params.text(element, "")
+    topic = valid_topic(written or default)
+    named = params.child(element)
+    if topic == "/" and named is not None:
+        found = f"found <{element}>{written}</{element}>"
+        named.error("SK-PARAM-002", f"{found}, allowed is a name with a letter or a digit")
+    return topic
 
 
 def find_light(sim: Simulation, name: str, params: Params) -> Light | None:

@@ -15,16 +15,16 @@ import math
 import weakref
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from simkit.compiler.friction import coefficients_of, has_direction, slips_of
+from simkit.diagnostics import NOWHERE, Where
 from simkit.runtime.physics import STALE
 from simkit.runtime.softness import Softness
-from simkit.runtime.surface import Belt, Flow, Surfaces
+from simkit.runtime.surface import Belt, Flow, Run, Surfaces, Touches, touches
 
 if TYPE_CHECKING:
     from simkit.compiler.names import LinkBinding, NameMap
@@ -32,10 +32,11 @@ if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
     from simkit.scene import SceneCollision
 
-Floats = npt.NDArray[np.float64]
 Numbers = list[float]
+Pair = tuple[float, float]
 
 _ELLIPTIC = mujoco.mjtCone.mjCONE_ELLIPTIC
+_RK4 = mujoco.mjtIntegrator.mjINT_RK4
 _NO_ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 _SHARED = "directed friction"
 _UPRIGHT = 1e-2  # of the square of a direction: with less of it along a surface it has none there
@@ -53,8 +54,15 @@ class SlippingWheel:
     joint: str
 
 
-Slips = Callable[[], Floats]
-"""Of each wheel the compliances across (along its axle) and ahead, per turning rate [m/N], shape (n, 2)."""
+Slips = Callable[[], list[Pair]]
+"""Of each wheel the compliances across (along its axle) and ahead, per turning rate [m/N]."""
+
+
+class Told(NamedTuple):
+    """What plugins ask of contacts at one tick: how belts run, and the slips of the wheels of each plugin."""
+
+    runs: list[Run | None]
+    slips: list[list[Pair]]
 
 
 class DirectedFriction:
@@ -62,6 +70,7 @@ class DirectedFriction:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
+        self._is_told = False
         self._wheels: weakref.WeakKeyDictionary[Any, tuple[tuple[SlippingWheel, ...], Slips]]
         self._wheels = weakref.WeakKeyDictionary()
         self._belts: weakref.WeakKeyDictionary[Any, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
@@ -76,7 +85,7 @@ class DirectedFriction:
         for owner, belts in self._belts.items():
             if id(owner) in there:
                 table.add_belts(owner, belts())
-        self._sim.physics.contact_law = table if table else None
+        self._install(table)
 
     def add_belts(self, owner: Any, belts: Callable[[], Sequence[Belt]]) -> None:
         """Has surfaces run from now on, for as long as their plugin is there.
@@ -88,7 +97,7 @@ class DirectedFriction:
         self._belts[owner] = belts
         table = self._table(self._sim.structure)
         table.add_belts(owner, belts())
-        self._sim.physics.contact_law = table
+        self._install(table)
         self._sim.physics.changed(STALE)
 
     def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: Slips) -> None:
@@ -102,8 +111,20 @@ class DirectedFriction:
         self._wheels[owner] = tuple(wheels), slips
         table = self._table(self._sim.structure)
         table.add_wheels(owner, wheels, slips)
-        self._sim.physics.contact_law = table
+        self._install(table)
         self._sim.physics.changed(STALE)
+
+    def _install(self, table: _Table) -> None:
+        """Has the physics use it, if there is anything in it and the engine's integrator lets it."""
+        physics, has_place = self._sim.physics, table.model.opt.integrator != _RK4
+        physics.contact_law = table if table and has_place else None
+        if table and not has_place and not self._is_told:
+            self._is_told = True
+            message = (
+                "directions and slip of friction, and surfaces that run, have no effect: the engine's integrator is "
+                "RK4, which has no place for them between velocities and forces"
+            )
+            self._sim.reports.warning("SK-PHYS-030", message, table.where(), 'integrator="implicitfast" in <option>')
 
     def owners(self) -> list[Any]:
         """The plugins whose wheels slip, of those that are there."""
@@ -130,8 +151,8 @@ class _Row:
     geoms: list[int]
     body: int
     axis: Numbers
-    mu: tuple[float, float]
-    slip: tuple[float, float]
+    mu: Pair
+    slip: Pair
     tree: int
     dof: int = -1
 
@@ -142,7 +163,7 @@ class _Table:
     def __init__(self, model: Any, names: NameMap) -> None:
         self.model, self._names = model, names
         self._rows: dict[str, _Row] = {}
-        self._sources: dict[int, tuple[list[int], Slips]] = {}
+        self._sources: dict[int, tuple[list[str], Slips]] = {}
         self._softness = Softness(model)
         self.surfaces, self._belts = Surfaces(model), set[int]()
         for link in names.links.values():
@@ -154,6 +175,11 @@ class _Table:
 
     def __bool__(self) -> bool:
         return bool(self._rows or self._belts)
+
+    def where(self) -> Where:
+        """Of the first link that it is about."""
+        geoms = {geom for geom, concerned in enumerate(self._concerns) if concerned}
+        return next((link.scene.where for link in self._names.links.values() if geoms & set(link.geoms)), NOWHERE)
 
     @property
     def acts(self) -> bool:
@@ -167,6 +193,7 @@ class _Table:
             for belt in belts:
                 self.surfaces.add(belt)
                 self._rub(belt)
+            self._arrange()
 
     def _rub(self, belt: Belt) -> None:
         """Gives the collisions of a belt the friction that its plugin asks for."""
@@ -178,7 +205,6 @@ class _Table:
             slip = (0.0, 0.0) if old is None else old.slip
             tree = int(self.model.body_treeid[belt.body])
             self._rows[scoped] = _Row(geoms, belt.body, list(belt.axle), belt.friction, slip, tree)
-        self._arrange()
 
     def _of_surface(self, link: LinkBinding, collision: SceneCollision) -> _Row:
         surface = collision.surface
@@ -210,45 +236,46 @@ class _Table:
                 row.body, row.axis = body, axis
             row.dof = joint.dofs[0]
             keys.append(collision.scoped)
-        order = list(self._rows)
-        self._sources[id(owner)] = ([order.index(key) for key in keys], slips)
+        self._sources[id(owner)] = (keys, slips)
         self._arrange()
 
     def _arrange(self) -> None:
-        rows = list(self._rows.values())
-        self._list = rows
+        self._list = rows = list(self._rows.values())
         self._row_of = [-1] * (self.model.ngeom + 1)  # the last for -1: no geom
         for number, row in enumerate(rows):
             for geom in row.geoms:
                 self._row_of[geom] = number
-        self._slip: Floats = np.array([row.slip for row in rows], float).reshape(-1, 2)
-        self._dof = np.array([row.dof for row in rows], int)
-        self._may_slip = bool(self._slip.any() or self._sources)
+        self._concerns = [a >= 0 or b for a, b in zip(self._row_of, self.surfaces.concerns, strict=True)]
+        self._is_belt = [any(self.surfaces.concerns[geom] for geom in row.geoms) for row in rows]
+        self._slip = [row.slip for row in rows]
+        order = {key: number for number, key in enumerate(self._rows)}
+        self._wheels = [[(order[key], self._rows[key].dof) for key in keys] for keys, _ in self._sources.values()]
+        self._may_slip = bool(self._sources) or any(map(any, self._slip))
 
     # ------------------------------------------------------------------ in a forward pass
 
-    def runs(self) -> Any:
-        """How belts run now."""
-        return self.surfaces.runs()
+    def told(self) -> Told:
+        """What plugins ask for now."""
+        return Told(self.surfaces.runs(), [slips() for _, slips in self._sources.values()])
 
-    def shape(self, data: Any, runs: Any = None) -> None:
+    def shape(self, data: Any, told: Any = None) -> None:
         """Gives the contacts of such collisions their tangents, coefficients and softness."""
-        model, flow = self.model, self.surfaces.look(data, runs)
-        if not data.ncon:
+        model, surfaces = self.model, self.surfaces
+        runs, wheels = self.told() if told is None else told
+        found = touches(data, self._concerns) if data.ncon else None
+        flow = surfaces.look(data, found, runs)
+        if found is None:
             return
-        found = self._find(data.contact)
-        if not found:
+        places = self._directed(found)
+        if not places:
             if flow is not None:
-                self.surfaces.carry(data)
+                surfaces.carry(data, found.frames)
                 mujoco.mj_referenceConstraint(model, data)
             return
-        self._direct(data, found, flow)
-        self.surfaces.carry(data)
+        self._direct(data, found, places, flow)
+        surfaces.carry(data, found.frames)
         mujoco.mj_makeConstraint(model, data)
-        slips = self._slips(data) if self._may_slip else []
-        soft = []
-        if any(map(any, slips)):
-            soft = [(number, self._list[row].tree, slips[row]) for number, row, _ in found if any(slips[row])]
+        soft = self._soft(data, found, places, wheels) if self._may_slip else []
         is_elliptic = model.opt.cone == _ELLIPTIC
         if is_elliptic and soft:
             self._softness.soften(data, soft)
@@ -260,58 +287,73 @@ class _Table:
             for number, _, slip in soft:
                 self._softness.soften_pyramid(data, number, slip)
 
-    def _find(self, contact: Any) -> list[tuple[int, int, int]]:
-        """Those that it is about: contact, row and the other geom."""
-        row_of, found = self._row_of, []
-        for number, (first, second) in enumerate(contact.geom.tolist()):
-            row, other = row_of[first], second
-            if row < 0:
-                row, other = row_of[second], first
+    def _directed(self, found: Touches) -> list[tuple[int, int, int]]:
+        """Those that have a row: place among the touches, row and the other geom."""
+        row_of, places = self._row_of, []
+        for place, (first, second) in enumerate(found.geoms):
+            row = row_of[first]
             if row >= 0:
-                found.append((number, row, other))
-        if found:
-            acts, dims = contact.efc_address.tolist(), contact.dim.tolist()
-            found = [one for one in found if acts[one[0]] >= 0 and dims[one[0]] > 1]
-        return found
+                places.append((place, row, second))
+            elif (row := row_of[second]) >= 0:
+                places.append((place, row, first))
+        return places
 
     def solve(self, data: Any) -> None:
         """The rest of a forward pass, after `shape`."""
         self.surfaces.solve(data)
 
-    def _direct(self, data: Any, found: list[tuple[int, int, int]], flow: Flow | None = None) -> None:
-        """Turns the tangents of contacts and sets their coefficients; lists are quicker here than arrays of three."""
-        contact, which = data.contact, [number for number, _, _ in found]
-        frames, frictions = contact.frame[which].tolist(), contact.friction[which, :2].tolist()
+    def _direct(self, data: Any, found: Touches, places: list[tuple[int, int, int]], flow: Flow | None = None) -> None:
+        """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well."""
+        contact, ground, least = data.contact, self.model.geom_friction, mujoco.mjMINMU
+        which: Any = [found.numbers[place] for place, _, _ in places]
+        if len(which) == data.ncon:
+            which = slice(None)  # a view is quicker
         flows = contact.surfacevel[which].tolist() if self.model.flg_surfacevel else None
-        # a belt's friction is along its own way, not along <fdir1>
-        along = {} if flow is None else dict(zip(flow.numbers.tolist(), flow.directions.tolist(), strict=True))
-        for index, (_, row, other) in enumerate(found):
-            asked, friction = self._list[row], frictions[index]
-            # what is there may be less: what velocity control carries slides freely
-            most = min(*friction, float(self.model.geom_friction[other, 0]) if other >= 0 else math.inf)
-            frictions[index] = [max(min(mu, most), mujoco.mjMINMU) for mu in asked.mu]
-            frame = frames[index]
-            axis = along.get(found[index][0]) or _product(data.xmat[asked.body].tolist(), asked.axis)
+        # a belt's friction is along its own way, not along its <fdir1>; a roller's stays its own on a belt too
+        along = {} if flow is None else dict(zip(flow.places, flow.directions, strict=True))
+        turns: dict[int, Numbers] = {}
+        frames, frictions = [], []
+        for index, (place, row, other) in enumerate(places):
+            asked, frame = self._list[row], found.frames[place]
+            axis: Sequence[float] | None = along.get(place) if self._is_belt[row] else None
+            if axis is None:
+                turn = turns.get(asked.body)
+                if turn is None:
+                    turn = turns[asked.body] = data.xmat[asked.body].tolist()
+                axis = _product(turn, asked.axis)
             turned = _turned(frame, axis)
+            # what is there may be less: what velocity control carries slides freely
+            most = ground.item(other, 0) if other >= 0 else math.inf
+            one, two = asked.mu
             if turned is frame:  # no direction there: as where the file gives none
-                frictions[index] = [min(frictions[index])] * 2
-            if flows is not None:
+                one = two = min(one, two)
+            elif flows is not None:
                 _turn_flow(flows[index], frame, turned)
-            frames[index] = turned
+            found.frames[place] = turned
+            frames.append(turned)
+            frictions.append((one, two, most))
         contact.frame[which] = frames
-        contact.friction[which, :2] = frictions
+        there = contact.friction[which].tolist()
+        for each, (one, two, most) in zip(there, frictions, strict=True):
+            most = min(each[0], each[1], most)
+            each[0], each[1] = max(min(one, most), least), max(min(two, most), least)
+        contact.friction[which] = there
         if flows is not None:
             contact.surfacevel[which] = flows
 
-    def _slips(self, data: Any) -> list[Numbers]:
-        """Compliances of all rows [m/s/N]."""
+    def _soft(
+        self, data: Any, found: Touches, places: list[tuple[int, int, int]], wheels: list[list[Pair]]
+    ) -> list[tuple[int, int, Pair]]:
+        """The contacts that slip, with the tree that does and their compliances [m/s/N]."""
         slips = self._slip
-        if self._sources:
+        if self._wheels:
             slips = slips.copy()
-            for rows, source in self._sources.values():
-                slips[rows] += np.abs(data.qvel[self._dof[rows]])[:, None] * source()
-        found: list[Numbers] = slips.tolist()
-        return found
+            qvel = data.qvel
+            for those, own in zip(self._wheels, wheels, strict=True):
+                for (row, dof), (one, two) in zip(those, own, strict=True):
+                    (a, b), rate = slips[row], abs(qvel.item(dof))
+                    slips[row] = a + rate * one, b + rate * two
+        return [(found.numbers[place], self._list[row].tree, slips[row]) for place, row, _ in places if any(slips[row])]
 
 
 def _frame_of(name: str, link: str, names: NameMap) -> LinkBinding | None:
@@ -322,7 +364,7 @@ def _frame_of(name: str, link: str, names: NameMap) -> LinkBinding | None:
     return names.links.get(f"{scope}::{name}" if scope else name)
 
 
-def _turned(frame: Numbers, wanted: Numbers) -> Numbers:
+def _turned(frame: Numbers, wanted: Sequence[float]) -> Numbers:
     """A contact's frame (normal and two tangents, (9,)) whose first tangent is along a direction.
 
     The frame as it was where the direction stands on the surface.

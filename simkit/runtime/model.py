@@ -37,6 +37,7 @@ class Model(Handle):
         # the model frame in its canonical link's frame: fixed for ever
         self._canonical = next((li for li in scene.all_links() if li.scoped == scene.canonical_link), None)
         self._in_canonical = self._canonical.pose_world.inverse() @ scene.pose_world if self._canonical else None
+        self._is_canonical = self._in_canonical == IDENTITY
 
     def everything(self) -> list[Handle]:
         """This handle and all below it."""
@@ -70,7 +71,7 @@ class Model(Handle):
         if self._canonical is None or self._in_canonical is None:
             return self._rest
         pose = self._sim.link(self._canonical.scoped).pose
-        return pose if self._in_canonical == IDENTITY else pose @ self._in_canonical
+        return pose if self._is_canonical else pose @ self._in_canonical
 
     def set_pose(self, pose: Pose) -> None:
         """Moves the whole model; joint positions and velocities stay. A static model may be moved too."""

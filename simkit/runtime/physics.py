@@ -55,10 +55,10 @@ def _hear_engine(text: str) -> None:
 class HeldState:
     """The physics state of one tick, kept so that a reading can be made of it later."""
 
-    __slots__ = ("model", "runs", "tick", "values")
+    __slots__ = ("model", "tick", "told", "values")
 
-    def __init__(self, tick: int, model: Any, values: npt.NDArray[np.float64], runs: Any = None) -> None:
-        self.tick, self.model, self.values, self.runs = tick, model, values, runs
+    def __init__(self, tick: int, model: Any, values: npt.NDArray[np.float64], told: Any = None) -> None:
+        self.tick, self.model, self.values, self.told = tick, model, values, told
 
     def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
         return self
@@ -73,14 +73,14 @@ class ContactLaw(Protocol):
     def acts(self) -> bool:
         """Whether there is anything to change; else the engine goes on by itself."""
 
-    def shape(self, data: Any, runs: Any = None) -> None:
-        """Changes the contacts of data of its model; with surfaces running as they do now, or as `runs` once told."""
+    def shape(self, data: Any, told: Any = None) -> None:
+        """Changes the contacts of data of its model, as is asked for now or as was once `told`."""
 
     def solve(self, data: Any) -> None:
         """Solves for the forces, after that."""
 
-    def runs(self) -> Any:
-        """How surfaces run now."""
+    def told(self) -> Any:
+        """What is asked of contacts now, for `shape`."""
 
 
 class Physics:
@@ -202,10 +202,10 @@ class Physics:
             return True
         if self.sleep.counts or self.sleep.wants_all_awake or self._integrate is None:
             return False
-        if self.stage == STALE:
+        law = self._law
+        if self.stage == STALE or law is not None:  # a law changes contacts as they are found, not a second time
             mj_fwd_position(self.model, self.data)
         mj_fwd_velocity(self.model, self.data)
-        law = self._law
         if law is not None:
             law.shape(self.data)
         self.stage = CONTROL
@@ -226,10 +226,8 @@ class Physics:
             # where trees may sleep, all of a pass at once, and its forces again
             if self.sleep.wants_all_awake:
                 self.sleep.forward()
-            elif stage == STALE:
-                mj_forward(model, data)
             else:
-                mj_forward_skip(model, data, _SKIP[stage], 1)
+                mj_forward(model, data)
             law.shape(data)
         law.solve(data)
 
@@ -265,7 +263,7 @@ class Physics:
             else:
                 mj_get_state(self.model, data, values, _HELD)
             law = self.contact_law
-            self._held = HeldState(self.tick, self.model, values, None if law is None else law.runs())
+            self._held = HeldState(self.tick, self.model, values, None if law is None else law.told())
         return self._held
 
     def data_of(self, held: HeldState) -> Any:
@@ -279,7 +277,7 @@ class Physics:
             mujoco.mj_setState(held.model, self._second, held.values, _HELD)
             mujoco.mj_forward(held.model, self._second)
             if self.contact_law is not None and self.contact_law.model is held.model:
-                self.contact_law.shape(self._second, held.runs)
+                self.contact_law.shape(self._second, held.told)
                 self.contact_law.solve(self._second)
             mujoco.mj_rnePostConstraint(held.model, self._second)
             self._second_of = held

@@ -9,139 +9,159 @@ surfaces do not slide after all (what rolls or rocks gives way more easily than 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.integer[Any]]
+from simkit.runtime.sliding_many import BEYOND, CALM, MORE, SLIDES, TIMES, solve_many
+
+Pair = tuple[float, float]
+
+MANY = 64
+"""For more contacts than this arrays are quicker than plain numbers; the bits are the same."""
 
 _AFTER_VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
-_BEYOND = 2.0  # times the deceleration that friction can make at most: so much is asked for
-_CALM = 0.5  # times mu·g: decelerations below it push nothing apart
-_SLIDES = 0.95  # of the friction that there could be
-_MORE, _TIMES = 4.0, 4  # how much more is asked where it is not given, and how often
 
 
-def solve_sliding(model: Any, data: Any, numbers: Ints) -> bool:
+def solve_sliding(model: Any, data: Any, numbers: Sequence[int]) -> bool:
     """Solves for the forces, from velocities that are known; leaves the references of constraints as it found them.
 
     Args:
         model, data: of the engine.
-        numbers: of the contacts that may slide, shape (k,).
+        numbers: of the contacts that may slide, which have tangents.
 
     Returns:
         Whether it was done: where none of them slides, the engine does as well by itself.
     """
-    numbers = numbers[data.contact.dim[numbers] >= 3]
-    if not numbers.size:
-        return False
+    if len(numbers) > MANY:
+        return solve_many(model, data, np.array(numbers))
+    x, y, z = model.opt.gravity.tolist()
+    calm = math.sqrt(x * x + y * y + z * z)
     rows = _Rows(model, data, numbers)
-    wanted = rows.tangents(rows.before)
-    size = _length(wanted)
-    if not (size > _CALM * rows.most * np.linalg.norm(model.opt.gravity)).any():
+    wanted = rows.tangents()
+    size = [math.sqrt(a * a + b * b) for a, b in wanted]
+    if not any(one > CALM * most * calm for one, most in zip(size, rows.most, strict=True)):
         return False
-    rows.solve(0.0 * wanted)
-    normal = rows.normal()
-    limit = _BEYOND * (rows.most * _yielding(model, data, numbers, normal) + rows.resistance(normal))
-    trees = _trees(model, data, numbers).max(axis=1) + 1
-    way = wanted / np.maximum(size, 1e-300)[:, None]
-    for _ in range(_TIMES):
-        is_less = size > limit
-        rows.solve(way * np.minimum(size, limit)[:, None])
-        # what a body's contacts give together: one alone may be without load
-        given = np.bincount(trees, weights=rows.rubbing(way), minlength=model.ntree + 1)[trees]
-        could = np.bincount(trees, weights=rows.least * rows.normal(), minlength=model.ntree + 1)[trees]
-        gives_way = is_less & (given < _SLIDES * could)
-        if not gives_way.any():
+    rows.solve([(0.0, 0.0)] * len(size))
+    rows.look_at_bodies()
+    limit = rows.limits()
+    way = [(a / most, b / most) for (a, b), one in zip(wanted, size, strict=True) if (most := max(one, 1e-300))]
+    for _ in range(TIMES):
+        asked = [min(one, most) for one, most in zip(size, limit, strict=True)]
+        rows.solve([(a * one, b * one) for (a, b), one in zip(way, asked, strict=True)])
+        given, could = rows.given(way)
+        gives_way = [one > most and a < SLIDES * b for one, most, a, b in zip(size, limit, given, could, strict=True)]
+        if not any(gives_way):
             break
-        limit = np.where(gives_way, _MORE * limit, limit)
+        limit = [MORE * most if gives else most for most, gives in zip(limit, gives_way, strict=True)]
     rows.restore()
     return True
 
 
 class _Rows:
-    """The rows of the tangents of some contacts, of either cone.
+    """The rows of the tangents of some contacts, of either cone; plain numbers, as most often there are few.
 
     Attributes:
-        before: references as found, shape (k, 2), of a pyramid (k, 4).
-        most, least: the larger and the smaller coefficient of friction of each contact, shape (k,).
+        most, least: the larger and the smaller coefficient of friction of each contact.
     """
 
-    def __init__(self, model: Any, data: Any, numbers: Ints) -> None:
-        self._model, self._data = model, data
+    def __init__(self, model: Any, data: Any, numbers: Sequence[int]) -> None:
+        self._model, self._data, self._numbers = model, data, numbers
+        contact = data.contact
+        first, friction, aref = contact.efc_address.tolist(), contact.friction.tolist(), data.efc_aref.tolist()
         self._is_pyramid = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
-        self._first = data.contact.efc_address[numbers]
-        self._rows = self._first[:, None] + (np.arange(4) if self._is_pyramid else np.arange(1, 3))
-        self._friction = data.contact.friction[numbers, :2]
-        self.most, self.least = self._friction.max(axis=1), self._friction.min(axis=1)
-        self.before: Floats = data.efc_aref[self._rows]
+        self._first: list[int] = [first[number] for number in numbers]
+        self._friction: list[Pair] = [(friction[number][0], friction[number][1]) for number in numbers]
+        self.most, self.least = [max(pair) for pair in self._friction], [min(pair) for pair in self._friction]
+        before, count = (0, 4) if self._is_pyramid else (1, 3)
+        self._before: list[list[float]] = [aref[row + before : row + count] for row in self._first]
 
-    def tangents(self, values: Floats) -> Floats:
-        """References along the two tangents (k, 2)."""
-        return (values[:, ::2] - values[:, 1::2]) / 2 / self._friction if self._is_pyramid else values
+    def tangents(self) -> list[Pair]:
+        """References along the two tangents, as found."""
+        if not self._is_pyramid:
+            return [(a, b) for a, b in self._before]
+        return [
+            ((a - b) / 2 / one, (c - d) / 2 / other)
+            for (a, b, c, d), (one, other) in zip(self._before, self._friction, strict=True)
+        ]
 
-    def solve(self, tangents: Floats) -> None:
+    def solve(self, tangents: Sequence[Pair]) -> None:
         """Solves with these references along the tangents."""
+        aref = self._data.efc_aref
         if self._is_pyramid:
-            middle, swing = (self.before[:, :1] + self.before[:, 1:2]) / 2, self._friction * tangents
-            tangents = np.stack((middle + swing, middle - swing), axis=2).reshape(-1, 4)
-        self._data.efc_aref[self._rows] = tangents
+            each = zip(self._first, self._before, self._friction, tangents, strict=True)
+            for row, (a, b, _, _), (mu, mu2), (one, other) in each:
+                middle, one, other = (a + b) / 2, mu * one, mu2 * other
+                aref[row : row + 4] = (middle + one, middle - one, middle + other, middle - other)
+        else:
+            for row, (one, other) in zip(self._first, tangents, strict=True):
+                aref[row + 1], aref[row + 2] = one, other
         mujoco.mj_forwardSkip(self._model, self._data, _AFTER_VELOCITIES, 1)
+        self._forces: list[float] = self._data.efc_force.tolist()
 
     def restore(self) -> None:
         """Puts the references back."""
-        self._data.efc_aref[self._rows] = self.before
+        aref, at = self._data.efc_aref, 0 if self._is_pyramid else 1
+        for row, before in zip(self._first, self._before, strict=True):
+            aref[row + at : row + at + len(before)] = before
 
-    def normal(self) -> Floats:
-        """Normal forces (k,) [N]."""
-        forces: Floats = self._data.efc_force
-        found: Floats = forces[self._rows].sum(axis=1) if self._is_pyramid else forces[self._first]
-        return found
+    def look_at_bodies(self) -> None:
+        """Notes which bodies and kinematic trees meet at each contact; -1 is the tree of what does not move."""
+        body_of, tree_of = self._model.geom_bodyid, self._model.body_treeid
+        geoms = self._data.contact.geom.tolist()
+        pairs = [geoms[number] for number in self._numbers]
+        body = {geom: int(body_of[geom]) if geom >= 0 else 0 for pair in pairs for geom in pair}
+        tree = {one: int(tree_of[one]) for one in body.values()}
+        self._bodies = [(body[one], body[other]) for one, other in pairs]
+        self._trees = [(tree[one], tree[other]) for one, other in self._bodies]
 
-    def rubbing(self, way: Floats) -> Floats:
-        """Forces of friction (k,) along some unit vectors (k, 2) [N]."""
-        forces = self._data.efc_force[self._rows]
+    def _normal(self) -> list[float]:
+        """Normal forces [N]."""
+        forces = self._forces
         if self._is_pyramid:
-            forces = (forces[:, ::2] - forces[:, 1::2]) * self._friction
-        found: Floats = (forces * way).sum(axis=1)
+            return [forces[row] + forces[row + 1] + forces[row + 2] + forces[row + 3] for row in self._first]
+        return [forces[row] for row in self._first]
+
+    def limits(self) -> list[float]:
+        """Twice what friction can make of the normal forces at most, as references [m/s²].
+
+        Its deceleration of the two bodies, under all their normal forces together, and what its own softness takes.
+        """
+        normal, weights = self._normal(), self._model.body_invweight0
+        total: dict[tuple[int, int], float] = {}
+        for side in (0, 1):
+            for force, trees in zip(normal, self._trees, strict=True):
+                total[side, trees[side]] = total.get((side, trees[side]), 0.0) + force
+        found = []
+        softness = self._data.efc_R.tolist() if not self._is_pyramid else []
+        yields = {body: float(weights[body, 0]) for pair in self._bodies for body in pair}
+        for most, force, row, bodies, trees in zip(
+            self.most, normal, self._first, self._bodies, self._trees, strict=True
+        ):
+            parts = 0.0
+            for side in (0, 1):
+                if trees[side] >= 0:
+                    parts += yields[bodies[side]] * total[side, trees[side]]
+            taken = 0.0 if self._is_pyramid else most * force * max(softness[row + 1], softness[row + 2])
+            found.append(BEYOND * (most * parts + taken))
         return found
 
-    def resistance(self, normal: Floats) -> Floats:
-        """What the softness of friction takes of a reference at its largest force (k,) [m/s²]."""
-        if self._is_pyramid:
-            return np.zeros(len(normal))
-        found: Floats = self.most * normal * self._data.efc_R[self._rows].max(axis=1)
-        return found
+    def given(self, way: Sequence[Pair]) -> tuple[list[float], list[float]]:
+        """Friction along some unit vectors, and what there could be of it [N]; of all contacts of a body together.
 
-
-def _length(vectors: Floats) -> Floats:
-    found: Floats = np.sqrt((vectors * vectors).sum(axis=1))
-    return found
-
-
-def _bodies(model: Any, data: Any, numbers: Ints) -> Ints:
-    geoms = data.contact.geom[numbers]
-    found: Ints = np.where(geoms >= 0, model.geom_bodyid[geoms], 0)
-    return found
-
-
-def _trees(model: Any, data: Any, numbers: Ints) -> Ints:
-    """The trees of both bodies of each contact (k, 2); -1 for what does not move."""
-    found: Ints = model.body_treeid[_bodies(model, data, numbers)]
-    return found
-
-
-def _yielding(model: Any, data: Any, numbers: Ints, normal: Floats) -> Floats:
-    """How fast the two bodies of each contact would part under all their normal forces together (k,) [m/s²]."""
-    bodies, trees = _bodies(model, data, numbers), _trees(model, data, numbers)
-    pushed = np.zeros(numbers.size)
-    for side in (0, 1):
-        rows = (trees[:, side] >= 0).nonzero()[0]
-        if rows.size:
-            tree, body = trees[rows, side], bodies[rows, side]
-            total = np.bincount(tree, weights=normal[rows], minlength=model.ntree)[tree]
-            pushed[rows] += model.body_invweight0[body, 0] * total
-    return pushed
+        One contact alone may be without load.
+        """
+        forces, keys = self._forces, [max(trees) for trees in self._trees]
+        rubs, holds = dict.fromkeys(keys, 0.0), dict.fromkeys(keys, 0.0)
+        each = zip(keys, self._first, self._friction, self.least, self._normal(), way, strict=True)
+        for key, row, (mu, mu2), least, normal, (x, y) in each:
+            if self._is_pyramid:
+                one, other = (forces[row] - forces[row + 1]) * mu, (forces[row + 2] - forces[row + 3]) * mu2
+            else:
+                one, other = forces[row + 1], forces[row + 2]
+            rubs[key] += one * x + other * y
+            holds[key] += least * normal
+        return [rubs[key] for key in keys], [holds[key] for key in keys]

@@ -14,11 +14,10 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
 Numbers = list[float]
-Soft = tuple[int, int, Numbers]
+Pair = tuple[float, float]
+Soft = tuple[int, int, Pair]
 """A contact, the kinematic tree that slips, and its compliances along its two tangents [m/s/N]."""
 
 _STIFF = 4.0  # times what contacts yield: an R beside which they do not count
@@ -33,78 +32,84 @@ class Softness:
 
     def soften(self, data: Any, soft: Sequence[Soft]) -> None:
         """Makes the friction of elliptic contacts soft."""
-        yields = self._yields(data, soft)
-        step, contact = float(self.model.opt.timestep), data.contact
+        contact, step = data.contact, float(self.model.opt.timestep)
+        firsts, dims, frictions = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
+        yields = self._yields(data, [one for one in soft if not _is_even(one[2], frictions[one[0]])], firsts)
+        all_r, all_d, terms, mus = data.efc_R, data.efc_D, data.efc_KBIP, contact.mu
         for number, tree, slip in soft:
-            first = int(contact.efc_address[number])
-            friction = contact.friction[number, : int(contact.dim[number]) - 1].copy()
-            by_friction = (friction[0] / friction) ** 2
+            first, friction = firsts[number], frictions[number][: dims[number] - 1]
+            by_friction = [(by := friction[0] / one) * by for one in friction]
+            normal, base = all_r.item(first), all_r.item(first + 1)
             # by more it would overshoot, where there is next to no compliance
-            base, most = float(data.efc_R[first + 1]), [1.0 / step, 1.0 / step]
+            most = [1.0 / step, 1.0 / step]
             if _is_even(slip, friction):
                 base = max(base, slip[0] / step)
             else:
                 both = yields[tree]
-                base = max(base, _shared_resistance(slip, by_friction[:2].tolist(), both, step))
-                most = [(y + base * float(by)) / (y * step) for y, by in zip(both, by_friction, strict=False)]
-            resistance = base * by_friction
-            rows = slice(first + 1, first + 1 + len(friction))
-            data.efc_R[rows], data.efc_D[rows] = resistance, 1.0 / resistance
-            contact.mu[number] = friction[0] * math.sqrt(base / float(data.efc_R[first]))
+                base = max(base, _shared_resistance(slip, by_friction, both, step))
+                most = [(y + base * by) / (y * step) for y, by in zip(both, by_friction[:2], strict=True)]
+            resistance = [base * by for by in by_friction]
+            for row, one in enumerate(resistance, first + 1):
+                all_r[row], all_d[row] = one, 1.0 / one
+            mus[number] = friction[0] * math.sqrt(base / normal)
             for tangent, one in enumerate(slip):
-                damping = float(resistance[tangent]) / one if one > 0.0 else math.inf
-                data.efc_KBIP[first + 1 + tangent, 1] = min(damping, most[tangent])
+                damping = resistance[tangent] / one if one > 0.0 else math.inf
+                terms[first + 1 + tangent, 1] = min(damping, most[tangent])
 
-    def _yields(self, data: Any, soft: Sequence[Soft]) -> dict[int, Numbers]:
+    def _yields(self, data: Any, soft: Sequence[Soft], firsts: Sequence[int]) -> dict[int, Numbers]:
         """How much all contacts of a tree yield to forces along their two tangents at most, summed [1/kg].
 
-        Only of contacts whose two tangents differ. A sum of diagonal elements is no less than any eigenvalue.
+        A sum of diagonal elements is no less than any eigenvalue.
         """
         found: dict[int, Numbers] = {}
+        if not soft:
+            return found
         model = self.model
-        unit, along, solved = np.zeros(data.nefc), np.zeros(model.nv), np.zeros((1, model.nv))
-        for number, tree, slip in soft:
-            if _is_even(slip, data.contact.friction[number]):
-                continue
+        places = [firsts[number] + 1 + tangent for number, _, _ in soft for tangent in (0, 1)]
+        unit, along = np.zeros(data.nefc), np.zeros((len(places), model.nv))
+        for row, place in zip(along, places, strict=True):
+            unit[place] = 1.0
+            mujoco.mj_mulJacTVec(model, data, row, unit)
+            unit[place] = 0.0
+        solved = np.empty_like(along)
+        mujoco.mj_solveM(model, data, solved, along)
+        given = [float(one @ other) for one, other in zip(along, solved, strict=True)]
+        for index, (_, tree, _) in enumerate(soft):
             both = found.setdefault(tree, [1e-12, 1e-12])
-            for tangent in range(2):
-                place = int(data.contact.efc_address[number]) + 1 + tangent
-                unit[place] = 1.0
-                mujoco.mj_mulJacTVec(model, data, along, unit)
-                mujoco.mj_solveM(model, data, solved, along[None])
-                unit[place] = 0.0
-                both[tangent] += float(along @ solved[0])
+            both[0] += given[2 * index]
+            both[1] += given[2 * index + 1]
         return found
 
-    def soften_pyramid(self, data: Any, number: int, slip: Numbers) -> None:
+    def soften_pyramid(self, data: Any, number: int, slip: Pair) -> None:
         """Takes of the damping of a pyramid's edges what is too much along each tangent.
 
         Their R holds up the load as well and stays, so it takes longer until they slip as they are to.
         """
-        first, friction = int(data.contact.efc_address[number]), data.contact.friction[number]
+        contact, velocity, aref = data.contact, data.efc_vel, data.efc_aref
+        first, friction = int(contact.efc_address[number]), contact.friction[number].tolist()
         for tangent, one in enumerate(slip):
             edge = first + 2 * tangent
-            damping = float(data.efc_KBIP[edge, 1])
-            resistance = float(data.efc_R[edge]) / (2.0 * float(friction[tangent]) ** 2)
+            damping, resistance = float(data.efc_KBIP[edge, 1]), float(data.efc_R[edge])
+            resistance /= 2.0 * (friction[tangent] * friction[tangent])
             excess = max(0.0, damping - resistance / one) if one > 0.0 else 0.0
-            apart = (data.efc_vel[edge] - data.efc_vel[edge + 1]) / 2.0
-            data.efc_aref[edge] += excess * apart
-            data.efc_aref[edge + 1] -= excess * apart
+            apart = (velocity.item(edge) - velocity.item(edge + 1)) / 2.0
+            aref[edge] += excess * apart
+            aref[edge + 1] -= excess * apart
 
 
-def _is_even(slip: Numbers, friction: Floats) -> bool:
+def _is_even(slip: Pair, friction: Sequence[float]) -> bool:
     """Whether a contact is the same along both tangents."""
-    return slip[0] == slip[1] and bool(friction[0] == friction[1])
+    return slip[0] == slip[1] and friction[0] == friction[1]
 
 
-def _shared_resistance(slip: Numbers, by_friction: Numbers, yields: Numbers, step: float) -> float:
+def _shared_resistance(slip: Pair, by_friction: Numbers, yields: Numbers, step: float) -> float:
     """R of the first tangent, where the second has `by_friction` as much of it and the two slip differently.
 
     The larger it is beside what the contacts yield, S, the sooner the softer one slips as it is to. But the stiffer one
     slips with S dt R / (S + R) at least, as damping by more than that would overshoot; that is not to be more than its
     own compliance, or a fiftieth of the other's.
     """
-    wanted = [one / step / by for one, by in zip(slip, by_friction, strict=True)]
+    wanted = [one / step / by for one, by in zip(slip, by_friction[:2], strict=True)]
     softer = int(wanted[1] > wanted[0])
     stiffer = 1 - softer
     least = max(slip[stiffer], _LEAST * slip[softer])

@@ -7,22 +7,22 @@ what its upper side carries ahead, its lower side carries back, and its ends car
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
-from simkit.runtime.sliding import solve_sliding
+from simkit.runtime.sliding import MANY, solve_sliding
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.integer[Any]]
 Point = tuple[float, float, float]
+Numbers = list[float]
 
 _AFTER_VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
 _FLAT = 1e-6  # sine of an angle below which a normal stands along an axle
+NOWHERE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,38 +57,82 @@ class Belt:
     friction: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Flow:
+class Touches(NamedTuple):
+    """Contacts that rub, k of them; plain numbers, since there are few and arrays of three are slow.
+
+    Attributes:
+        numbers: among the contacts.
+        geoms: the two geoms of each; -1 for none.
+        frames: normal (from the first geom to the second) and two tangents of each, 9 numbers.
+    """
+
+    numbers: list[int]
+    geoms: list[list[int]]
+    frames: list[Numbers]
+
+
+def touches(data: Any, concerns: Sequence[bool]) -> Touches | None:
+    """The contacts that rub among those that are about certain geoms; None where there is none.
+
+    Args:
+        data: of the engine, with positions.
+        concerns: for each geom whether it is about it; the last is for -1.
+    """
+    contact = data.contact
+    if data.ncon > MANY:
+        rubs = (contact.efc_address >= 0) & (contact.dim > 1) & np.array(concerns)[contact.geom].any(axis=1)
+        numbers = rubs.nonzero()[0].tolist()
+        return Touches(numbers, contact.geom[rubs].tolist(), contact.frame[rubs].tolist()) if numbers else None
+    pairs = contact.geom.tolist()
+    numbers = [number for number, (one, other) in enumerate(pairs) if concerns[one] or concerns[other]]
+    if not numbers:
+        return None
+    rows, dims = contact.efc_address.tolist(), contact.dim.tolist()
+    numbers = [number for number in numbers if rows[number] >= 0 and dims[number] > 1]
+    if not numbers:
+        return None
+    if len(numbers) == len(pairs):
+        return Touches(numbers, pairs, contact.frame.tolist())
+    return Touches(numbers, [pairs[number] for number in numbers], contact.frame[numbers].tolist())
+
+
+class Flow(NamedTuple):
     """The contacts with running surfaces, k of them.
 
     Attributes:
-        numbers: among the contacts, shape (k,).
-        directions: of friction, unit vectors in the world, shape (k, 3).
-        velocities: of the second geom's surface less the first's [m/s], world, shape (k, 3).
+        numbers: among the contacts.
+        places: among the touches that they were found in.
+        directions: of friction, unit vectors in the world.
+        velocities: of the second geom's surface less the first's [m/s], world.
     """
 
-    numbers: Ints
-    directions: Floats
-    velocities: Floats
+    numbers: list[int]
+    places: list[int]
+    directions: list[Point]
+    velocities: list[Point]
 
 
 class Surfaces:
-    """The belts of a compiled model."""
+    """The belts of a compiled model.
+
+    Attributes:
+        concerns: for each geom whether it is part of one; the last is for -1: no geom.
+    """
 
     def __init__(self, model: Any) -> None:
         self.model = model
         self._belts: list[Belt] = []
-        self._owner: Ints = np.full(model.ngeom + 1, -1)  # the last for -1: no geom
+        self._owner = [-1] * (model.ngeom + 1)
+        self.concerns = [False] * (model.ngeom + 1)
         self._flow: Flow | None = None
         self._flow_of: Any = None
 
     def add(self, belt: Belt) -> None:
         """A belt more."""
         self.model.flg_surfacevel = True
-        self._owner[list(belt.geoms)] = len(self._belts)
+        for geom in belt.geoms:
+            self._owner[geom], self.concerns[geom] = len(self._belts), True
         self._belts.append(belt)
-        self._bodies = np.array([one.body for one in self._belts])
-        self._axles = np.array([one.axle for one in self._belts], float)
 
     @property
     def run(self) -> bool:
@@ -101,89 +145,129 @@ class Surfaces:
 
     # ------------------------------------------------------------------ contacts
 
-    def look(self, data: Any, runs: list[Run | None] | None = None) -> Flow | None:
-        """Finds the contacts with belts that run, of data with positions; also for `carry` and `solve`.
+    def look(self, data: Any, found: Touches | None, runs: Sequence[Run | None]) -> Flow | None:
+        """Finds the contacts with belts that run; also for `carry` and `solve`.
 
         Args:
-            data: of the engine.
-            runs: how belts run, unless it is as they do now.
+            data: of the engine, with positions.
+            found: its contacts that may be with belts.
+            runs: how belts run.
         """
         self._flow_of = data
-        self._flow = self._found(data, self.runs() if runs is None else runs) if self._belts and data.ncon else None
+        self._flow = None if found is None or not any(runs) else self._found(data, found, runs)
         return self._flow
 
-    def _found(self, data: Any, runs: Sequence[Run | None]) -> Flow | None:
-        if not any(runs):
-            return None
-        contact = data.contact
-        owners = self._owner[contact.geom]
-        speeds = np.array([0.0 if run is None else run.speed for run in runs])
-        is_ours = owners >= 0
-        if None in runs:
-            is_ours &= np.array([run is not None for run in runs])[owners]
-        numbers = (is_ours.any(axis=1) & (contact.efc_address >= 0) & (contact.dim > 1)).nonzero()[0]
-        if not numbers.size:
-            return None
-        flow = Flow(numbers, np.zeros((numbers.size, 3)), np.zeros((numbers.size, 3)))
-        normals, places = contact.frame[numbers, :3], contact.pos[numbers]
-        for side, inwards in ((1, 1.0), (0, -1.0)):
-            rows = is_ours[numbers, side].nonzero()[0]
-            if rows.size:
-                belts = owners[numbers[rows], side]
-                normal = inwards * normals[rows]
-                along = self._along(data, normal, places[rows], belts, runs)
-                flow.directions[rows] = along
-                flow.velocities[rows] += inwards * speeds[belts][:, None] * along
-        return flow
+    def _found(self, data: Any, found: Touches, runs: Sequence[Run | None]) -> Flow | None:
+        owner, flow = self._owner, Flow([], [], [], [])
+        axles: dict[int, Point] = {}
+        known: dict[Any, tuple[Point, Point]] = {}  # what lies flat on a straight belt has one normal
+        for place, (first, second) in enumerate(found.geoms):
+            one, other = owner[first], owner[second]
+            into = runs[other] if other >= 0 else None
+            out = runs[one] if one >= 0 else None
+            if into is None and out is None:
+                continue
+            nx, ny, nz = found.frames[place][:3]
+            key = one, other, nx, ny, nz
+            both = known.get(key)
+            if both is None:
+                belts = [(b, r, sign) for b, r, sign in ((other, into, 1.0), (one, out, -1.0)) if r is not None]
+                is_bent = any(run.centre is not None for _, run, _ in belts)
+                point = data.contact.pos[found.numbers[place]].tolist() if is_bent else NOWHERE
+                both = self._way(data, belts, (nx, ny, nz), point, axles)
+                if not is_bent:
+                    known[key] = both
+            flow.numbers.append(found.numbers[place])
+            flow.places.append(place)
+            flow.directions.append(both[0])
+            flow.velocities.append(both[1])
+        return flow if flow.numbers else None
 
-    def _along(self, data: Any, normal: Floats, places: Floats, belts: Ints, runs: Sequence[Run | None]) -> Floats:
-        """Which way the belt runs at a contact: unit vectors (k, 3), zero on the flanks.
+    def _way(
+        self,
+        data: Any,
+        belts: Sequence[tuple[int, Run, float]],
+        normal: Point,
+        place: Sequence[float],
+        axles: dict[int, Point],
+    ) -> tuple[Point, Point]:
+        """Direction of friction and velocity at a contact with one belt or two.
 
         Args:
             data: of the engine.
-            normal: into the belt, shape (k, 3).
-            places: of the contacts, shape (k, 3).
-            belts: their numbers, shape (k,).
-            runs: of all belts.
+            belts: numbers, how they run, and 1 where the normal is into the belt, -1 where it is out of it.
+            normal, place: of the contact.
+            axles: those in the world that are known, by belt.
         """
-        turns = data.xmat[self._bodies[belts]].reshape(-1, 3, 3)
-        axles = (turns * self._axles[belts][:, None, :]).sum(axis=2)
-        along = _unit(_cross(normal, axles))
-        bent: dict[Point, list[int]] = {}  # the tracks of a vehicle have one centre
-        for row, number in enumerate(belts.tolist()):
-            run = runs[number]
-            if run is not None and run.centre is not None:
-                bent.setdefault(run.centre, []).append(row)
-        for centre, those in bent.items():
-            rows = np.array(those)
-            circle = _unit(_cross(normal[rows], places[rows] - centre))
-            ahead = np.sign((circle * along[rows]).sum(axis=1))
-            is_round = (circle != 0.0).any(axis=1)
-            along[rows[is_round]] = circle[is_round] * ahead[is_round, None]
-        return along
+        direction, (vx, vy, vz) = NOWHERE, NOWHERE
+        for belt, run, inwards in belts:
+            if belt not in axles:
+                axles[belt] = _axle(data, self._belts[belt])
+            into = inwards * normal[0], inwards * normal[1], inwards * normal[2]
+            direction = _unit(_cross(into, axles[belt]))
+            if run.centre is not None:
+                direction = _bent(direction, into, place, run.centre)
+            speed, (dx, dy, dz) = inwards * run.speed, direction
+            vx, vy, vz = vx + speed * dx, vy + speed * dy, vz + speed * dz
+        return direction, (vx, vy, vz)
 
-    def carry(self, data: Any) -> None:
-        """Gives the contacts found by `look` their surface velocity, in the tangents that they have now."""
+    def carry(self, data: Any, frames: Sequence[Numbers]) -> None:
+        """Gives the contacts found by `look` their surface velocity.
+
+        Args:
+            data: of the engine.
+            frames: of all touches as they are now, whose tangents count.
+        """
         flow = self._flow
-        if flow is not None:
-            contact, numbers = data.contact, flow.numbers
-            tangents = contact.frame[numbers].reshape(-1, 3, 3)[:, 1:]
-            contact.surfacevel[numbers, :2] = (tangents * flow.velocities[:, None, :]).sum(axis=2)
+        if flow is None:
+            return
+        surface = data.contact.surfacevel
+        if len(flow.numbers) > MANY:
+            tangents = np.array([frames[place] for place in flow.places]).reshape(-1, 3, 3)[:, 1:]
+            surface[flow.numbers, :2] = (tangents * np.array(flow.velocities)[:, None, :]).sum(axis=2)
+            return
+        for number, place, (x, y, z) in zip(flow.numbers, flow.places, flow.velocities, strict=True):
+            _, _, _, ax, ay, az, bx, by, bz = frames[place]
+            surface[number, 0] = ax * x + ay * y + az * z
+            surface[number, 1] = bx * x + by * y + bz * z
 
     def solve(self, data: Any) -> None:
         """The rest of a forward pass, from velocities that are known; leaves the references of constraints as found."""
-        flow = self._flow if data is self._flow_of else self.look(data)
+        if data is self._flow_of:
+            flow = self._flow
+        else:
+            runs = self.runs()
+            flow = self.look(data, touches(data, self.concerns) if any(runs) and data.ncon else None, runs)
         if flow is None or not solve_sliding(self.model, data, flow.numbers):
             mujoco.mj_forwardSkip(self.model, data, _AFTER_VELOCITIES, 1)
 
 
-def _cross(a: Floats, b: Floats) -> Floats:
-    """Products of vectors (k, 3); `np.cross` takes ten times as long for a few."""
-    (ax, ay, az), (bx, by, bz) = a.T, b.T
-    return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)).T
+def _axle(data: Any, belt: Belt) -> Point:
+    """What a belt runs round, in the world."""
+    a, b, c, d, e, f, g, h, i = data.xmat[belt.body].tolist()
+    x, y, z = belt.axle
+    return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 
-def _unit(vectors: Floats) -> Floats:
-    """Vectors (k, 3) of length 1; zero for those that have nearly none."""
-    length = np.sqrt((vectors * vectors).sum(axis=1, keepdims=True))
-    return np.where(length > _FLAT, vectors / np.maximum(length, _FLAT), 0.0)
+def _bent(along: Point, normal: Point, place: Sequence[float], centre: Point) -> Point:
+    """The way round a centre that is not against the straight one; that one where there is none round it."""
+    (x, y, z), (cx, cy, cz) = place, centre
+    circle = _unit(_cross(normal, (x - cx, y - cy, z - cz)))
+    if circle == NOWHERE:
+        return along
+    (rx, ry, rz), (ax, ay, az) = circle, along
+    over = rx * ax + ry * ay + rz * az
+    ahead = math.copysign(1.0, over) if over else 0.0
+    return rx * ahead, ry * ahead, rz * ahead
+
+
+def _cross(a: Point, b: Point) -> Point:
+    (ax, ay, az), (bx, by, bz) = a, b
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+def _unit(vector: Point) -> Point:
+    """A vector of length 1; zero for one that has nearly none."""
+    x, y, z = vector
+    length = math.sqrt(x * x + y * y + z * z)
+    return (x / length, y / length, z / length) if length > _FLAT else NOWHERE

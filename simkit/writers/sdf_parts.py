@@ -137,6 +137,14 @@ def collision(value: SceneCollision, place: Place) -> Params:
     )
 
 
+def _direction(value: Surface) -> Params | None:
+    """`<fdir1>`, and the link that it is told in, as Gazebo's own attribute."""
+    if not any(value.fdir1):
+        return None
+    frame = {"gz:expressed_in": value.fdir1_frame} if value.fdir1_frame else {}
+    return element("fdir1", numbers(value.fdir1), **frame)
+
+
 def surface(value: Surface) -> Params | None:
     """`<surface>`; None where all is the format's default."""
     if replace(value, where=NOWHERE) == Surface():
@@ -144,7 +152,7 @@ def surface(value: Surface) -> Params | None:
     ode = [
         text("mu", value.mu),
         text("mu2", value.mu2),
-        other("fdir1", value.fdir1, (0.0, 0.0, 0.0)),
+        _direction(value),
         other("slip1", value.slip1, 0.0),
         other("slip2", value.slip2, 0.0),
     ]

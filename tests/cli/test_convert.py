@@ -377,3 +377,24 @@ def test_a_page_gives_the_prefix_to_what_is_written_with_it(page: Path) -> None:
     # what a solar sensor looks at is inside one of our own; its plugin has the same elements
     inside = {"angular_noise", "falloff", "field_of_view", "irradiance", "normal", "panel", "shadow", "towards"}
     assert named - (inside if page.name == "solar.md" else set()) <= set().union(*OWN_ELEMENTS.values())
+
+
+def test_the_frame_of_a_direction_of_friction_is_written_back(tmp_path: Path) -> None:
+    """Also one of a `<frame>`: it comes out in the link that the frame moves with."""
+    rubs = '<surface><friction><ode><mu>1</mu><mu2>0</mu2><fdir1 gz:expressed_in="{1}">1 -1 0</fdir1></ode></friction>'
+    wheel = (
+        '<link name="{0}"><collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry>'
+        f"{rubs}</surface></collision></link><joint name='{{0}}_joint' type='continuous'><parent>base</parent>"
+        "<child>{0}</child></joint>"
+    )
+    source, out = tmp_path / "base.sdf", tmp_path / "out.sdf"
+    source.write_text(
+        '<sdf version="1.9"><model name="robot" xmlns:gz="http://gazebosim.org/schema"><link name="base"/>'
+        '<frame name="rollers" attached_to="base"><pose>0 0 0 0 0 1.5707963267948966</pose></frame>'
+        f"{wheel.format('left', 'base')}{wheel.format('right', 'rollers')}</model></sdf>"
+    )
+    assert run("convert", source, "-o", out).exit_code == 0
+    directions = list(ElementTree.parse(out).iter("fdir1"))
+    assert [found.get("{http://gazebosim.org/schema}expressed_in") for found in directions] == ["base", "base"]
+    turned = [float(number) for number in (directions[1].text or "").split()]
+    assert turned == pytest.approx([1.0, 1.0, 0.0])

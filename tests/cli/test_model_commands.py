@@ -27,7 +27,7 @@ def test_models_have_poses_and_joints(start: Any, simkit_line: Any) -> None:
 
 
 def test_frames_hang_on_each_other(yard: Any, simkit_line: Any) -> None:
-    assert simkit_line("tf", "tree", "--time", "0.3").stdout == "odom\n  base\n    rover::base::imu (static)\n"
+    assert simkit_line("tf", "tree", "--time", "1").stdout == "odom\n  base\n    rover::base::imu (static)\n"
     told = simkit_line("tf", "echo", "odom", "base", "--once").stdout.splitlines()
     assert told[0].startswith("At time ")
     assert told[1].startswith("- Translation: [") and told[2].startswith("- Rotation: in Quaternion (xyzw) [")

@@ -208,6 +208,7 @@ def test_a_run_in_the_background_leaves_the_terminal_alone_until_it_is_in_front(
         terminal.wait_for(r"asked 0\.10 m/s")
         terminal.press("\x03")
         terminal.wait_for("simulated ")
+        terminal.wait_for(r"\$ ")  # what is typed before belongs to the drive, and goes with it
         terminal.press("kill %1; wait; echo none is le''ft\n")
         terminal.wait_for("none is left")
 

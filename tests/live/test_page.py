@@ -59,3 +59,14 @@ def test_a_run_of_another_process_is_talked_to_and_ends_as_it_would_without(cour
         if paused.poll() is None:
             paused.send_signal(signal.SIGKILL)
         paused.communicate()
+
+
+def test_a_bare_model_is_found_by_the_name_that_was_typed() -> None:
+    command = [sys.executable, "-m", "simkit", "run", "turtlebot3_burger", "--paused", "--duration", "1"]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        with connect("turtlebot3_burger", wait=60.0) as client:
+            assert client.info["world"] == "default"
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.wait()

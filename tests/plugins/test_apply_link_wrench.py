@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.errors import LoadError
 
 BODY = """<model name="{name}"><pose>{x} 0 1 0 0 0</pose><link name="{link}"><inertial><pose>0.1 0 0 0 0 0</pose>
 <mass>2</mass><inertia><ixx>0.5</ixx><iyy>0.5</iyy><izz>0.5</izz></inertia></inertial></link></model>"""
@@ -151,3 +152,8 @@ def test_a_name_may_begin_with_the_worlds() -> None:
     sim.publish("/world/w/wrench", command("w::two", 2, force=(10, 0, 0)))
     sim.step()
     assert sim.link("two::body").linear_velocity[0] == pytest.approx(10 / 2 * 0.001)
+
+
+def test_an_entity_without_a_name_is_an_error() -> None:
+    with pytest.raises(LoadError, match="found <entity_name></entity_name>, allowed is a name"):
+        simkit.load(world("<persistent><entity_name/><entity_type>link</entity_type></persistent>"))

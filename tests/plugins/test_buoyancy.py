@@ -294,3 +294,27 @@ def test_many_hulls_get_what_each_alone_would() -> None:
     assert np.array([sim.link(f"b{i}::hull").linear_velocity for i in range(5)]) == pytest.approx(
         np.array(alone), abs=1e-12
     )
+
+
+@pytest.mark.parametrize(
+    "shape", ["<box><size>1 1 1</size></box>", "<capsule><radius>.3</radius><length>1</length></capsule>"]
+)
+def test_a_fleet_floats_as_each_ship_alone_does(shape: str) -> None:
+    """Few hulls are reckoned one by one and many together: in two layers, across a bound, and turned in the link."""
+    layers = """<graded_buoyancy><default_density>1000</default_density><density_change><above_depth>-0.3</above_depth>
+    <density>600</density></density_change><density_change><above_depth>0</above_depth><density>1</density>
+    </density_change></graded_buoyancy>"""
+    ship = """<model name="s{n}"><pose>{x} 0 0 0.3 0.4 0.1</pose><link name="l"><inertial><pose>0.02 0 -0.1 0 0 0</pose>
+    <mass>300</mass><inertia><ixx>50</ixx><iyy>60</iyy><izz>70</izz></inertia></inertial><collision name="c">
+    <pose>0.1 0 0 0.5 0 0.2</pose><geometry>{shape}</geometry></collision></link></model>"""
+
+    def sailed(count: int) -> np.ndarray:
+        ships = "".join(ship.format(n=n, x=5 * n, shape=shape) for n in range(count))
+        plugin = 'filename="gz-sim-buoyancy-system" name="gz::sim::systems::Buoyancy"'
+        world = f'<sdf version="1.9"><world name="w">{ships}<plugin {plugin}>{layers}</plugin></world></sdf>'
+        with simkit.load(world) as sim:
+            sim.step(200)
+            pose, link = sim.model("s0").pose, sim.link("s0::l")
+            return np.concatenate([pose.position, pose.quaternion, link.linear_velocity, link.angular_velocity])
+
+    assert sailed(40) == pytest.approx(sailed(1), rel=1e-10, abs=1e-10)

@@ -102,3 +102,12 @@ def test_a_polyhedron_turned_inside_out_is_the_same() -> None:
 
 def test_what_has_no_inside_is_no_solid() -> None:
     assert solid_of(Plane(), lambda _: None) is None
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_few_triangles_are_cut_as_many_are(way: tuple[float, ...]) -> None:
+    box, normal = made(Box((1.0, 2.0, 3.0))), unit(way)
+    assert isinstance(box, Polyhedron)
+    for height in np.linspace(-2.0, 2.0, 21).tolist():
+        few, many = box._cut_few(*normal.tolist(), height), box._cut_many(*normal.tolist(), height)
+        assert few == pytest.approx(many, rel=1e-12, abs=1e-12)

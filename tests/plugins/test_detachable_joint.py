@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 import simkit
+from simkit.errors import LoadError
 
 G = 9.8
 
@@ -147,3 +150,17 @@ def test_a_link_of_the_same_model_can_be_the_child() -> None:
 def test_a_parent_link_that_is_not_there_is_an_error() -> None:
     with pytest.raises(simkit.LoadError, match="SK-PLUGIN-003"):
         simkit.load(crane().replace("<parent_link>body", "<parent_link>boddy"))
+
+
+@pytest.mark.parametrize("element", ["parent_link", "child_model", "child_link"])
+def test_names_with_nothing_in_them_are_errors(element: str) -> None:
+    text = re.sub(f"<{element}>.*?</{element}>", f"<{element}></{element}>", crane())
+    with pytest.raises(LoadError):
+        simkit.load(text)
+
+
+def test_an_empty_topic_is_the_default_and_one_without_a_letter_an_error() -> None:
+    with simkit.load(crane("<detach_topic/><topic/>")) as sim:
+        assert "/model/crane/detachable_joint/detach" in sim.topics()
+    with pytest.raises(LoadError, match="found <output_topic>/</output_topic>"):
+        simkit.load(crane("<output_topic>/</output_topic>"))

@@ -165,3 +165,13 @@ def test_a_joint_that_nobody_moves_is_told() -> None:
     sim.publish(CMD, {"data": 1})
     sim.run(0.1)
     assert any("nobody takes positions" in d.message for d in sim.diagnostics if d.code == "SK-PLUGIN-132")
+
+
+def test_a_nested_model_with_floors_of_the_same_names_adds_none() -> None:
+    inner = '<model name="twin"><pose>0 0 40 0 0 0</pose><link name="floor_0"/><link name="floor_1"/></model>'
+    mount = '<joint name="twins" type="fixed"><parent>shaft</parent><child>twin::floor_0</child></joint>'
+    bolt = '<joint name="bolt" type="fixed"><parent>shaft</parent><child>twin::floor_1</child></joint>'
+    sim = simkit.load(world(shaft(elevator() + inner + mount + bolt), step=0.01))
+    sim.publish(CMD, {"data": 2})
+    sim.run(8.0)
+    assert sim.joint("lift_1::lift").position == pytest.approx(HEIGHTS[2], abs=0.01)

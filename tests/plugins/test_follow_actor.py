@@ -10,6 +10,7 @@ import pytest
 from skinned import skinned_dae
 
 import simkit
+from simkit.errors import LoadError
 
 GROUND = "<include><uri>model://ground_plane</uri></include>"
 
@@ -147,3 +148,8 @@ def test_what_is_wrong_is_said() -> None:
         load(target(more=plugin))
     with pytest.raises(simkit.InputError, match="velocity"):
         load(target(), walker("<velocity>-1</velocity>"))
+
+
+def test_a_target_with_nothing_in_it_is_an_error() -> None:
+    with pytest.raises(LoadError, match="found <target></target>, allowed is a name"):
+        load(walker(wanted=""))

@@ -82,3 +82,25 @@ def test_a_ring_of_frames_and_one_that_is_no_number_draw_nowhere() -> None:
 def test_a_link_that_is_not_there_is_an_error() -> None:
     with pytest.raises(simkit.InputError, match="did you mean 'body'"):
         simkit.load(world(ball("<link_name>bdy</link_name><kl>-1</kl>")))
+
+
+@pytest.mark.parametrize("size", [1e-320, 1e-200, 1e200, 1e308, math.nan])
+def test_a_turn_that_is_none_is_left_out_and_said(size: float) -> None:
+    sim = simkit.load(world(ball()))
+    message = told("hog_desired", 1.0)
+    turn = message.transforms[0].transform.rotation
+    turn.z, turn.w = size, size
+    sim.publish("/tf", message)
+    sim.run(0.1)
+    assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)
+    assert [d.code for d in sim.diagnostics] == ["SK-PLUGIN-041"]
+    sim.publish("/tf", told("hog_desired", 1.0))
+    sim.run(2.0)
+    assert sim.model("ball").pose.position[0] == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_place_beyond_all_bounds_is_left_out() -> None:
+    sim = simkit.load(world(ball()))
+    sim.publish("/tf", told("hog_desired", 1e200))
+    sim.run(0.1)
+    assert sim.model("ball").pose.position == pytest.approx((0, 0, 5), abs=1e-9)

@@ -102,3 +102,13 @@ def test_topic_nested_links_and_missing_ones() -> None:
         assert found == [(2, pytest.approx(9.0))]
     with pytest.raises(LoadError, match="'l', 'deep'|'deep', 'l'"):
         simkit.load(world(link="lnk"))
+
+
+def test_a_link_name_with_nothing_in_it_is_an_error_and_so_is_a_topic_without_a_letter() -> None:
+    with pytest.raises(LoadError, match="has no link ''"):
+        simkit.load(world(link=""))
+    with pytest.raises(LoadError, match="found <topic>ü</topic>, allowed is a name with a letter or a digit"):
+        simkit.load(world("<topic>ü</topic>"))
+    with simkit.load(world("<topic/>")) as sim:  # as in gz, the default
+        assert "/model/m/kinetic_energy" in sim.topics()
+        assert "/" not in sim.topics()

@@ -213,3 +213,12 @@ def test_gpu_lidars_rest_while_the_battery_is_empty_where_the_world_says_so(is_a
         sim.run(1.0)
         assert len(scan.messages) == scans
         assert len(imu.messages) == 11, "of another system"
+
+
+def test_a_name_that_a_battery_of_the_model_has_already_is_an_error() -> None:
+    again = f"<plugin {GZ}><battery_name>main</battery_name><voltage>9</voltage><capacity>1</capacity></plugin>"
+    recharge = {"enable_recharge": "true", "charging_time": 1}
+    with pytest.raises(LoadError, match="the model has a battery 'main' already"):
+        simkit.load(world(**REAL, **recharge, other=again))
+    with pytest.raises(LoadError, match="found <battery_name></battery_name>, allowed is a name"):
+        simkit.load(world(**REAL, other=again.replace(">main<", "><")))

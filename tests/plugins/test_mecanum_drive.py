@@ -155,3 +155,19 @@ def test_the_same_bits_again_after_a_reset_and_a_restore():
     sim.publish("/model/robot/cmd_vel", twist(0.3, 0.2, 0.4))
     sim.run(0.5)
     assert sim.mj_data.qpos.tobytes() == here
+
+
+def test_on_a_running_belt_its_rollers_are_what_they_are():
+    """It is carried along by the belt and drives sideways on it; the belt does not turn its rollers' direction."""
+    belt = """<model name="conveyor"><static>true</static><pose>0 0 0.05 0 0 0</pose><link name="belt">
+    <collision name="c"><geometry><box><size>40 4 0.1</size></box></geometry></collision></link>
+    <plugin filename="gz-sim-track-controller-system" name="gz::sim::systems::TrackController">
+    <link>belt</link></plugin></model>"""
+    sim = simkit.load(world(belt, mecanum(pose="0 0 0.2 0 0 0")))
+    sim.publish("/model/conveyor/link/belt/track_cmd_vel", {"data": 0.3})
+    sim.publish("/model/robot/cmd_vel", {"linear": {"y": 0.2}})
+    sim.run(1.0)
+    before = sim.model("robot").pose.position
+    sim.run(1.0)
+    went = sim.model("robot").pose.position - before
+    assert went[:2] == pytest.approx((0.3, 0.2), abs=0.02)

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import simkit
+from simkit.errors import LoadError
 
 BODY = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
 BOX = "<geometry><box><size>{}</size></box></geometry>"
@@ -117,3 +118,8 @@ def test_levels_are_noted_and_a_detector_without_performers_is_warned_of() -> No
     text = world(names=()).replace('filename="dummy">', 'filename="dummy"><level name="l"><ref>x</ref></level>')
     with simkit.load(text) as sim:
         assert {"SK-PLUGIN-125", "SK-PLUGIN-126"} <= {d.code for d in sim.diagnostics}
+
+
+def test_a_performer_that_refers_to_nothing_is_an_error() -> None:
+    with pytest.raises(LoadError, match="found <ref></ref>, allowed is a name"):
+        simkit.load(world(names=("",)))

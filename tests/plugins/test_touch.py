@@ -153,3 +153,25 @@ def test_two_on_one_model_keep_their_own_targets() -> None:
         other = sim.subscribe("/second/touched")
         assert told(sim) == [102]
         assert other.messages == []
+
+
+def test_it_is_enabled_by_a_service_as_in_gz_too() -> None:
+    with simkit.load(world(PAD, probe(enabled="false"))) as sim:
+        assert not told(sim)
+        assert sim.call("/probe/enable", {"data": True}).success
+        assert len(told(sim)) == 1
+        sim.call("/probe/enable", {"data": True})
+        sim.call("/probe/enable", {"data": False})
+        assert not told(sim)
+
+
+def test_the_service_enables_all_detectors_of_a_namespace() -> None:
+    twice = body("probe", "0 0 0.3 0 0 0", plugin(enabled="false") + plugin(enabled="false", time=0.2))
+    with simkit.load(world(PAD, twice)) as sim:
+        sim.call("/probe/enable", {"data": True})
+        assert len(told(sim)) == 2
+
+
+def test_a_target_with_nothing_in_it_is_an_error() -> None:
+    with pytest.raises(LoadError, match="found <target></target>, allowed is a name"):
+        simkit.load(world(PAD, probe(target="")))

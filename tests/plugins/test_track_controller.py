@@ -9,6 +9,7 @@ import pytest
 from belt_worlds import BELT, CENTRE, conveyor, crate, rubs, wall, world
 
 import simkit
+from simkit.runtime import sliding, surface
 
 G = 9.8
 
@@ -233,3 +234,22 @@ def test_a_command_that_is_no_number_is_left_out() -> None:
         sim.run(0.2)
         assert place(sim)[0] == pytest.approx(0.0, abs=1e-6)
         assert [d for d in sim.diagnostics if d.code == "SK-PLUGIN-041"]
+
+
+@pytest.mark.parametrize("step", [0.001, 0.004])
+def test_many_contacts_have_the_bits_that_few_have(step: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many are worked out on arrays, few as plain numbers: where the one begins changes nothing."""
+
+    def run(many: int) -> bytes:
+        for module in (sliding, surface):
+            monkeypatch.setattr(module, "MANY", many)
+        crates = [crate(f"{0.2 * n} 0 0.05 0 0 {0.3 * n}", f"crate{n}") for n in range(4)]
+        with opened(conveyor("<max_acceleration>9</max_acceleration>"), *crates, wall(0.7), step=step) as sim:
+            sim.publish(BELT, {"data": 0.8})
+            sim.run(0.1)
+            sim.publish(CENTRE, {"x": 0.0, "y": 2.0, "z": 0.0})
+            sim.run(0.1)
+            found: bytes = sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes()
+            return found
+
+    assert run(0) == run(10**9)

@@ -157,3 +157,26 @@ def test_a_link_that_is_not_there_is_an_error_with_its_neighbours() -> None:
         load(crane("<link_name>cap</link_name>"))
     with pytest.raises(simkit.InputError, match="link_name"):
         load(crane("<max_distance>1</max_distance>"))
+
+
+def test_grippers_with_one_service_are_switched_together() -> None:
+    cups = "".join(
+        f"""<plugin name="vacuum_{link}" filename="libgazebo_ros_vacuum_gripper.so">
+        <ros><namespace>arm</namespace></ros><link_name>{link}</link_name><max_distance>0.12</max_distance></plugin>"""
+        for link in ("left", "right")
+    )
+    links = "".join(
+        f"""<link name="{link}"><pose>{x} 0 0.1 0 0 0</pose>{inertial(1)}</link><joint name="{link}_mount" type="fixed">
+        <parent>world</parent><child>{link}</child></joint>"""
+        for link, x in (("left", 0), ("right", 1))
+    )
+    sim = load(f'<model name="bar">{links}{cups}</model>', box("a", 0.0), box("b", 1.0))
+    assert sim.call(SWITCH, {"data": True}).success
+    sim.run(0.1)
+    cups_there = [plugin for plugin in sim.structure.all_plugins() if hasattr(plugin, "holds")]
+    held = {link for plugin in cups_there for link in plugin.holds}
+    assert held == {"a::l", "b::l"}
+    assert not sim.call(SWITCH, {"data": True}).success
+    assert sim.call(SWITCH, {"data": False}).success
+    sim.run(0.1)
+    assert not any(plugin.holds for plugin in cups_there)

@@ -134,6 +134,35 @@ def test_classic_tells_by_how_much_wheels_slip():
     assert list(told.messages[-1].longitudinal_slip) == pytest.approx([MASS / 4 / FORCE] * 2, rel=0.06)
 
 
+def test_a_compliance_that_is_changed_in_the_run_comes_out_by_the_formula():
+    """The pull is a force here: gravity that is tilted tilts what Classic takes for ahead, and the slip it tells."""
+    content = slip(wheels(0, 1, ("rl", "rr")), "libgazebo_ros_wheel_slip.so", "slip")
+    sim = simkit.load(world(car(DRIVE + content)))
+    told = sim.subscribe("/wheel_slip")
+    sim.publish("/model/car/cmd_vel", {"linear": {"x": 0.5}})
+    for compliance in (1.0, 0.5, 2.0):
+        sim.set_parameter("/slip", "slip_compliance_unitless_longitudinal", compliance)
+        for _ in range(1000):
+            sim.link("car::base").apply_wrench((-MASS, 0.0, 0.0))
+            sim.step()
+        expected = [compliance * MASS / 2 / FORCE] * 2
+        assert list(told.messages[-1].longitudinal_slip) == pytest.approx(expected, rel=5e-3)
+
+
+def test_a_held_tick_is_read_with_the_slips_of_that_tick():
+    """Whoever reads a measurement late finds what was there, whatever was set since."""
+
+    def accelerations(sets):
+        sim = driven(slip(wheels(0, 1)), pull=(-1.0, 0.0), duration=0.3)
+        held = sim.physics.hold()
+        sim.step()
+        if sets:
+            assert sim.call("/world/w/wheel_slip", _request("car", 2, 0.0, 0.0)).success
+        return sim.physics.data_of(held).qacc.tobytes()
+
+    assert accelerations(False) == accelerations(True)
+
+
 def test_classics_own_plugin_takes_the_radius_of_the_wheel_and_numbers_by_topic():
     content = wheels(0, 1, ("rl", "rr")).replace(f"<wheel_radius>{RADIUS}</wheel_radius>", "")
     sim = simkit.load(world(car(DRIVE + slip(content, "libWheelSlipPlugin.so", "slip")), gravity="-1 0 -9.8"))

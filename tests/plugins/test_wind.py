@@ -220,3 +220,29 @@ def test_noise_that_drifts_has_no_effect_and_that_is_said() -> None:
     drift = """<vertical><noise type="gaussian"><stddev>0.1</stddev><dynamic_bias_stddev>1</dynamic_bias_stddev>
     <dynamic_bias_correlation_time>5</dynamic_bias_correlation_time></noise></vertical>"""
     assert [d.code for d in simkit.load(world(drift)).diagnostics] == ["SK-PLUGIN-111"] * 2
+
+
+@pytest.mark.parametrize("first", ["gz", "classic"])
+def test_of_two_winds_the_first_blows(first: str) -> None:
+    other = '<plugin filename="gz-sim-wind-effects-system" name="gz::sim::systems::WindEffects"/>'
+    text = world(plugin=first)
+    both = text.replace("</plugin></world>", f"</plugin>{other}</world>")
+    one, two = simkit.load(text), simkit.load(both)
+    assert [d.code for d in two.diagnostics] == ["SK-PLUGIN-111"]
+    for sim in (one, two):
+        sim.publish("/world/w/wind", {"linear_velocity": {"x": 2.0}, "enable_wind": True})
+        sim.step(100)
+    assert speed(two).tolist() == speed(one).tolist()
+    assert two.call("/world/w/wind_info").velocity.x == one.call("/world/w/wind_info").velocity.x
+
+
+def test_many_links_are_pushed_as_each_alone_is() -> None:
+    """Few links are reckoned one by one, many together."""
+    field = """<force_approximation_scaling_factor><when xlt="0"><k>2</k><px>0 0 0 0.3</px><qy>0 1e-3 0 1</qy></when>
+    <when xge="0" xle="400"><px>0 0 0 1</px><rz>0 0.01 0 1</rz></when></force_approximation_scaling_factor>"""
+    more = "".join(BODY.format(name=f"l{n}", x=3 * n + 20, windy="true") for n in range(12))
+    alone, together = (simkit.load(world(AT_ONCE + field, more=text)) for text in ("", more))
+    for sim in (alone, together):
+        sim.link("leaf::body").set_velocity(linear=(0.1, 0.2, 0.3), angular=(1.0, 2.0, 3.0))
+        sim.step(100)
+    assert speed(alone) == pytest.approx(speed(together), rel=1e-12)

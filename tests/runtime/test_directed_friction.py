@@ -186,3 +186,64 @@ def test_boxes_with_a_direction_fall_asleep_and_wake():
     sim.run(0.1)
     assert sim.link("second::l").pose.position[1] > 0.02
     assert sim.link("box::l").pose.position[1] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_velocity_that_is_set_after_a_reading_counts_as_without_one():
+    """What the contacts had been given was taken for what they are: the smaller coefficient stood both ways."""
+
+    def run(reads):
+        sim = simkit.load(world(TWO, gravity=(1.0, 0.5)))
+        sim.run(0.1)
+        for turn in range(5):
+            if reads:
+                sim.physics.fresh_accelerations()
+            sim.link("box::l").set_velocity((0.5, 0.2 * turn, 0.0))
+            sim.run(0.02)
+        return sim.mj_data.qpos.tobytes() + sim.mj_data.qvel.tobytes()
+
+    assert run(False) == run(True)
+
+
+def framed(name, inner=""):
+    """A box whose direction, x, is told in a frame."""
+    friction = TWO.replace("<fdir1>", f'<fdir1 gz:expressed_in="{name}">')
+    return world(friction, more=inner, gravity=(0.8 * G, 0.0))
+
+
+def test_a_direction_may_be_told_in_a_frame_of_the_model():
+    frame = '<frame name="aside" attached_to="l"><pose>0 0 0.3 0 0 1.5707963267948966</pose></frame>'
+    sim = simkit.load(framed("aside", frame))
+    assert not [found for found in sim.diagnostics if found.severity == "warning"]
+    sim.run(0.3)
+    # along x the coefficient is that across: 0.8 g less 0.5 g accelerate
+    assert sim.link("box::l").linear_velocity[0] == pytest.approx(0.3 * G * 0.3, rel=0.04)
+    own = simkit.load(framed("__model__"))
+    assert not [found for found in own.diagnostics if found.severity == "warning"]
+    own.run(0.3)
+    assert own.link("box::l").linear_velocity[0] == pytest.approx(0.6 * G * 0.3, rel=0.04)
+
+
+def test_a_frame_that_is_not_there_is_told_with_its_line_and_the_closest():
+    sim = simkit.load(framed("ll"))
+    (found,) = [one for one in sim.diagnostics if one.severity == "warning"]
+    assert (found.code, found.line) == ("SK-SDF-040", 8)
+    assert "'ll'" in found.message and "'l'" in found.hint
+    sim.run(0.3)
+    assert sim.link("box::l").linear_velocity[0] == pytest.approx(0.6 * G * 0.3, rel=0.04)
+
+
+YARD = """<mujoco><option integrator="{}"/><worldbody><geom type="plane" size="5 5 1"/></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
+def test_an_integrator_that_has_no_place_for_it_is_told_of_once(integrator, tmp_path):
+    path = tmp_path / "yard.xml"
+    path.write_text(YARD.format(integrator))
+    sim = simkit.load(path)
+    model = f"<model{world(TWO).split('<model', 2)[2].split('</model>')[0]}</model>"
+    for name in ("one", "two"):
+        sim.spawn(f'<sdf version="1.9">{model}</sdf>', name)
+    found = [one.code for one in sim.diagnostics]
+    assert found.count("SK-PHYS-030") == (1 if integrator == "RK4" else 0)
+    assert (sim.physics.contact_law is None) == (integrator == "RK4")
+    sim.run(0.05)

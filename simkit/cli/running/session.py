@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.cli.console import err, out, say
@@ -169,7 +170,10 @@ class Session:
         """Lets other terminals talk to the run."""
         from simkit.live.server import serve
 
-        loop.server, note = serve(self.sim, self.request.name)
+        name = self.request.name
+        if name is None and self.sim.world.name == "default":  # a bare model's, and many a world's
+            name = Path(self.request.world).name.partition(".")[0] or None
+        loop.server, note = serve(self.sim, name)
         if loop.server is None:
             say(note)
         else:

@@ -6,7 +6,6 @@ Each function is given the half-written command by typer; what was written befor
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -262,7 +261,6 @@ def frames(ctx: typer.Context) -> Iterable[str]:
 
     with _source(ctx) as source:
         found = Frames()
-        end = time.monotonic() + _PATIENCE / 2
-        for _ in listen(source, found, until=end):
+        for _ in listen(source, found, lasting=_PATIENCE / 2):
             pass
     return found.names()

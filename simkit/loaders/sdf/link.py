@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.frames import world_pose
 from simkit.loaders.sdf.geometry import read_geometry
 from simkit.loaders.sdf.inertia import read_inertial
@@ -15,7 +18,7 @@ from simkit.loaders.sdf.surface import read_surface
 from simkit.loaders.sdf.workspace import Workspace
 from simkit.params import Params
 from simkit.pose import Pose
-from simkit.scene import SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual
+from simkit.scene import SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface
 
 
 def read_link(part: Part, model: str, static: bool, windy: bool, workspace: Workspace) -> SceneLink:
@@ -73,7 +76,7 @@ def _collision(
     what = f"collision {name!r} of link {part.name!r}"
     shape = read_geometry(element, part.file, workspace, what)
     density = element.number("density", 1000.0, minimum=0, maximum=1e15) if element.has("density") else None
-    surface = read_surface(element)
+    surface = _directed(read_surface(element), part, element, link)
     if shape is None:
         element.mark_all_read()
         return None, density
@@ -87,6 +90,33 @@ def _collision(
         where=element.where,
     )
     return collision, density
+
+
+def _directed(surface: Surface, part: Part, element: Params, link: str) -> Surface:
+    """A surface whose `<fdir1>` is told in a link: in the one that the frame moves with that the file names."""
+    name = surface.fdir1_frame
+    if not name:
+        return surface
+    scope, frames = part.scope, part.scope.chain(name)
+    if frames and frames[-1].kind == "link":
+        return surface
+    found = element.block("surface").block("friction").block("ode").child("fdir1")
+    where = element.where if found is None else found.where
+    owner = f"the direction of friction of link {part.name!r}"
+    body = None if frames is None else scope.body(name, where, owner)
+    if body is None or body.kind != "link":
+        if frames is None:
+            message = f"{owner} is told in {name!r}, which is no frame here; it is taken in the collision's own"
+            hint = did_you_mean(name, scope.all_names())
+            scope.diagnostics.warning("SK-SDF-040", message, where, hint)
+        return replace(surface, fdir1_frame="")
+    turned = world_pose(body).inverse().rotate((scope.world @ scope.pose_of(name)).rotate(surface.fdir1))
+    own = link.rpartition("::")[0]
+    return replace(
+        surface,
+        fdir1=(float(turned[0]), float(turned[1]), float(turned[2])),
+        fdir1_frame=body.scoped.removeprefix(f"{own}::") if own else body.scoped,
+    )
 
 
 def _visual(part: Part, element: Params, name: str, link: str, workspace: Workspace) -> SceneVisual | None:

@@ -9,7 +9,7 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joints.axes import JointAxis
-from simkit.plugins.lookups import find_axis_joint
+from simkit.plugins.lookups import find_axis_joint, given_topic
 from simkit.plugins.once import Once
 from simkit.runtime.physics import CONTROL
 
@@ -84,10 +84,10 @@ class ElevatorPlugin(ModelPlugin):
 
     def open_topic(self, params: Params) -> None:
         """Listens to what floor to go to."""
-        topic = params.text("topic", "~/elevator")
-        if topic.startswith("~/"):
-            topic = f"/gazebo/{self.sim.world.name}/{topic[2:]}"
-        self.listen(valid_topic(topic), STRING, self._on_floor)
+        own = f"/gazebo/{self.sim.world.name}"
+        topic = params.text("topic", "")
+        found = given_topic(params, "topic", f"{own}/elevator")
+        self.listen(valid_topic(f"{own}/{topic[2:]}") if topic.startswith("~/") else found, STRING, self._on_floor)
 
     # ------------------------------------------------------------------ commands
 
@@ -148,7 +148,7 @@ class GazeboRosElevator(ElevatorPlugin):
 
     def open_topic(self, params: Params) -> None:
         """Listens to what floor to go to."""
-        self.listen(params.text("topic", "elevator"), STRING, self._on_floor)
+        self.listen(params.text("topic", "") or "elevator", STRING, self._on_floor)
         self._bottom = params.integer("bottom_floor") if params.has("bottom_floor") else None
         self._top = params.integer("top_floor") if params.has("top_floor") else None
         if self._bottom is not None and self._top is not None and self._top < self._bottom:

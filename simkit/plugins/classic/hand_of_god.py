@@ -13,6 +13,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.lookups import named_link
+from simkit.plugins.once import Once
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import IDENTITY, Pose
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 _NEVER: Final = 1e-9  # [Hz]
 _WORLD: Final = "world"
+_FARTHEST: Final = 1e9  # [m]
 
 
 class GazeboRosHandOfGod(ModelPlugin):
@@ -45,6 +47,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._has_weight = link is not None and link.gravity
 
     def load(self, parent: Any, params: Params) -> None:
+        self.once = Once(self)
         self._damping = 2.0 * np.sqrt(self._stiffness * (self._mass, self._inertia))
         self._link = self.sim.link(self._scoped)
         self._frames: dict[str, tuple[str, Pose]] = {}
@@ -73,9 +76,13 @@ class GazeboRosHandOfGod(ModelPlugin):
         for one in message.transforms:
             child = one.child_frame_id.lstrip("/")
             t, q = one.transform.translation, one.transform.rotation
-            numbers = (t.x, t.y, t.z, q.w, q.x, q.y, q.z)
-            if child != own and all(map(math.isfinite, numbers)) and any(numbers[3:]):
-                self._frames[child] = one.header.frame_id.lstrip("/"), Pose(numbers[:3], numbers[3:])
+            place, turn = (t.x, t.y, t.z), (q.w, q.x, q.y, q.z)
+            if child == own:
+                continue
+            if not all(abs(number) <= _FARTHEST for number in place) or not 1e-6 <= math.hypot(*turn) <= 1e6:
+                self.once.left_out(child, f"a frame {child!r} whose numbers make no pose is left out")
+                continue
+            self._frames[child] = one.header.frame_id.lstrip("/"), Pose(place, turn)
         pace = None if self._desired() is not None else _NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace

@@ -8,7 +8,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.gz.battery import Battery, BatteryConsumer
 from simkit.plugins.gz.battery_cell import Cell
-from simkit.plugins.lookups import named_link
+from simkit.plugins.lookups import named_link, needed_name
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -25,7 +25,7 @@ class ClassicLinearBattery(Battery):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         named_link(scene, "link_name", params)
-        self.battery = params.text("battery_name", required=True)
+        self.battery = needed_name(params, "battery_name")
         capacity = params.number("capacity", required=True, minimum=1e-12) or 1.0
         charge = params.number("initial_charge", 0.0, minimum=0.0)
         constant, linear = (params.number(f"open_circuit_voltage_{n}_coef", 0.0) for n in ("constant", "linear"))
@@ -46,7 +46,7 @@ class LinearBatteryConsumer(BatteryConsumer):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         named_link(scene, "link_name", params)
-        self.battery = params.text("battery_name", required=True)
+        self.battery = needed_name(params, "battery_name")
 
     def load(self, parent: Any, params: Params) -> None:
         self._power = self.declare("power_load", 0.0, description="what is drawn from the battery [W]")

@@ -41,6 +41,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
     """
 
     filenames = ("libgazebo_ros_vacuum_gripper.so",)
+    _services: tuple[str, ...] = ()
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._is_ros_1 = is_ros_1(params, _ROS_1)
@@ -71,7 +72,12 @@ class GazeboRosVacuumGripper(ModelPlugin):
         self._held: dict[str, str] = {}  # scoped link -> the weld that holds it
         self._things = _Things()
         self.before_step_rate = _NEVER
-        if self._is_ros_1:
+        words = ("on", "off") if self._is_ros_1 else ("switch",)
+        self._services = tuple(self.ros.topic(word) for word in words)
+        first = self._together()[0]
+        if first is not self:  # the first answers for all whose services have the same names
+            pass
+        elif self._is_ros_1:
             self.offer("on", EMPTY, partial(self._on_empty, True))
             self.offer("off", EMPTY, partial(self._on_empty, False))
         else:
@@ -93,12 +99,18 @@ class GazeboRosVacuumGripper(ModelPlugin):
 
     # ------------------------------------------------------------------ services
 
+    def _together(self) -> list[GazeboRosVacuumGripper]:
+        """The grippers that are switched with one service, in the order of the file."""
+        grippers = [p for p in self.sim.structure.all_plugins() if isinstance(p, GazeboRosVacuumGripper)]
+        return [p for p in grippers if p._services == self._services]
+
     def _on_switch(self, request: Any) -> dict[str, Any]:
-        is_new = self._switch(bool(request.data))
+        is_new = max([gripper._switch(bool(request.data)) for gripper in self._together()])
         return {"success": is_new, "message": "" if is_new else f"it is {'on' if request.data else 'off'} already"}
 
     def _on_empty(self, is_on: bool, _: Any) -> None:
-        self._switch(is_on)
+        for gripper in self._together():
+            gripper._switch(is_on)
 
     def _switch(self, is_on: bool) -> bool:
         """Switches it; False where it was so already."""

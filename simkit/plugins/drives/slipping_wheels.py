@@ -10,9 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_link
@@ -75,6 +72,7 @@ class SlippingWheels(ModelPlugin):
         self.compliances = [
             (self._own(LATERAL, w, w.lateral), self._own(LONGITUDINAL, w, w.longitudinal)) for w in self.wheels
         ]
+        self._scales = [wheel.radius / wheel.force for wheel in self.wheels]
         if self.wheels:
             self.sim.friction.add_wheels(self, [wheel.contact for wheel in self.wheels], self.slips)
 
@@ -83,10 +81,12 @@ class SlippingWheels(ModelPlugin):
         text = f"slip of wheel {wheel.name}, {ahead} its axle, where the force is {wheel.force:g} N"
         return self.declare(f"{name}/{wheel.name}", value, minimum=0.0, maximum=_MOST, description=text)
 
-    def slips(self) -> npt.NDArray[np.float64]:
-        """Compliances of each wheel, per rate of turning [m/N], shape (n, 2)."""
-        scale = [wheel.radius / wheel.force for wheel in self.wheels]
-        return np.array([(s * a.value, s * b.value) for s, (a, b) in zip(scale, self.compliances, strict=True)])
+    def slips(self) -> list[tuple[float, float]]:
+        """Compliances of each wheel, per rate of turning [m/N]."""
+        return [
+            (scale * across.value, scale * ahead.value)
+            for scale, (across, ahead) in zip(self._scales, self.compliances, strict=True)
+        ]
 
 
 _MOST = 1e6

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -22,6 +23,7 @@ WIND: Final = "simkit_msgs/msg/Wind"
 VECTOR: Final = "geometry_msgs/msg/Vector3"
 INFO: Final = "simkit_msgs/srv/WindInfo"
 _NEVER: Final = 1e-9  # [Hz]
+_FEW: Final = 8  # links, up to which plain numbers are faster than arrays
 Velocity = tuple[float, float, float]
 
 
@@ -45,6 +47,11 @@ class Blowing(WorldPlugin):
         self._felt: tuple[int, Velocity] | None = None
         self._links: PushedLinks | None = None
         self._bind()
+        self._is_second = any(isinstance(plugin, Blowing) for plugin in self._before())
+        if self._is_second:
+            message = f"plugin {self.name!r}: the world has a wind plugin already; this one has no effect"
+            params.diagnostics.warning("SK-PLUGIN-111", message, self.where, "leave one of them")
+            return
         parent.wind.source = self.velocity
         base = valid_topic(f"/world/{parent.world.name}")
         self.listen(f"{base}/wind", (WIND, VECTOR), self._on_wind)
@@ -54,11 +61,15 @@ class Blowing(WorldPlugin):
     def before_step_rate(self) -> float | None:
         """Never while nothing feels the wind; after a spawn or a removal that is looked at anew."""
         is_idle = self._links is not None and self._links.is_current and (not len(self._links) or self._is_calm)
-        return _NEVER if is_idle else None
+        return _NEVER if is_idle or self._is_second else None
 
     @before_step_rate.setter
     def before_step_rate(self, rate: float | None) -> None:
         raise AttributeError("a wind is called as long as something feels it")
+
+    def _before(self) -> list[Any]:
+        """The plugins that stand before this one."""
+        return list(takewhile(lambda plugin: plugin is not self, self.sim.structure.all_plugins()))
 
     @property
     def _is_calm(self) -> bool:
@@ -85,9 +96,25 @@ class Blowing(WorldPlugin):
         if not links or self._is_calm:
             return
         data = moving_data(self.sim)
+        if len(links) <= _FEW:
+            self._push_few(links, data)
+            return
         air = np.array(self.velocity(self.sim.tick)) - links.velocities(data)
         strength = self._masses * self._field.at(data.xpos[links.bodies])
         links.push(data, (strength * air.T).T)
+
+    def _push_few(self, links: PushedLinks, data: Any) -> None:
+        """The same in plain numbers."""
+        x, y, z = self.velocity(self.sim.tick)
+        field, everywhere = self._field, None if self._field.pieces else self._field.everywhere
+        places = data.xpos[links.bodies].tolist()
+        wrenches = {}
+        for index, (mass, place, (u, v, w)) in enumerate(
+            zip(self._masses.tolist(), places, links.velocities_few(data, places), strict=True)
+        ):
+            strength = mass * (field.one_at(place) if everywhere is None else everywhere)
+            wrenches[index] = (strength * (x - u), strength * (y - v), strength * (z - w), 0.0, 0.0, 0.0)
+        links.push_some(data, wrenches)
 
     def _bind(self) -> None:
         names = self.sim.names.links

@@ -69,8 +69,8 @@ class Floating(Plugin):
             return
         data = moving_data(self.sim)
         lie = self._stand(data)
-        if not lie.steady.all():
-            found.links.push(data, *found.wrenches(data, lie, self.sim.mj_model.opt.gravity))
+        if not all(lie.steady):
+            found.push(data, lie, self.sim.mj_model.opt.gravity)
         if self.before_step_rate is not None:
             self.sim.reschedule()
 
@@ -82,12 +82,12 @@ class Floating(Plugin):
         found = self._found
         assert found is not None
         lie, gravity = found.lie(data), self._gravity
-        now = (lie.steady.tobytes(), lie.masses.tobytes(), gravity)
+        now = (lie.steady, lie.masses, gravity)
         if now != self._stood:
             self._stood = now
             self._standing = {
                 name: (*(-mass * g for g in gravity), 0.0, 0.0, 0.0)
-                for name, is_steady, mass in zip(found.links.names, lie.steady, lie.masses.tolist(), strict=True)
+                for name, is_steady, mass in zip(found.links.names, lie.steady, lie.masses, strict=True)
                 if is_steady and mass
             }
             self.sim.set_standing_wrenches(self, self._standing)

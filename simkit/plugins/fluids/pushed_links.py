@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from simkit.runtime.physics import CONTROL
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
+Three = tuple[float, float, float]
 _YZX, _ZXY = [1, 2, 0], [2, 0, 1]
 
 
@@ -34,6 +35,7 @@ class PushedLinks:
     Attributes:
         names: of the links that move.
         bodies: their ids, shape (n,).
+        ids: the same as plain numbers.
     """
 
     def __init__(self, sim: Simulation, names: Sequence[str]) -> None:
@@ -43,6 +45,7 @@ class PushedLinks:
         moving = [name for name in names if name in links and links[name].body > 0 and links[name].mocap < 0]
         self.names = tuple(moving)
         self.bodies = np.array([links[name].body for name in moving], dtype=np.intp)
+        self.ids: list[int] = self.bodies.tolist()
         self._roots = self._model.body_rootid[self.bodies]
 
     def __len__(self) -> int:
@@ -67,6 +70,16 @@ class PushedLinks:
         found: Vector = motion[:, 3:] + cross(motion[:, :3], data.xpos[self.bodies] - data.subtree_com[self._roots])
         return found
 
+    def velocities_few(self, data: Any, places: list[list[float]]) -> list[Three]:
+        """The same in plain numbers, of links whose origins in the world are known."""
+        found = []
+        middles = data.subtree_com[self._roots].tolist()
+        for motion, (x, y, z), (a, b, c) in zip(data.cvel[self.bodies].tolist(), places, middles, strict=True):
+            p, q, r, u, v, w = motion
+            x, y, z = x - a, y - b, z - c
+            found.append((u + (q * z - r * y), v + (r * x - p * z), w + (p * y - q * x)))
+        return found
+
     def push(self, data: Any, forces: Vector, torques: Vector | None = None) -> None:
         """For the next step only, besides what else pushes.
 
@@ -82,13 +95,29 @@ class PushedLinks:
         felt = wrenches.any(axis=1)
         if not felt.any():
             return
-        bodies, physics = self.bodies, self._sim.physics
+        bodies = self.bodies
         if not felt.all():
             bodies, wrenches = bodies[felt], wrenches[felt]
         data.xfrc_applied[bodies] += wrenches
+        self._tell(bodies.tolist())
+
+    def push_some(self, data: Any, wrenches: Mapping[int, Sequence[float]]) -> None:
+        """`push` of a few: by their place among the links, force [N] and torque [N·m] in the world frame."""
+        applied, told = data.xfrc_applied, []
+        for place, wrench in wrenches.items():
+            if any(wrench):
+                body = self.ids[place]
+                applied[body] += wrench
+                told.append(body)
+        if told:
+            self._tell(told)
+
+    def _tell(self, bodies: list[int]) -> None:
+        """Says which were pushed."""
+        physics = self._sim.physics
         physics.one_shot = True
         if physics.sleep.watches:
-            for body in bodies.tolist():
+            for body in bodies:
                 physics.changed_body(CONTROL, body)
         else:
             physics.changed(CONTROL)

@@ -1,9 +1,10 @@
 """How much of a solid lies below a plane, and where the middle of that is: exact, at any slant.
 
-Polyhedra by the divergence theorem: the sum over triangles of tetrahedra from a point of the plane, so that the cut
-face itself adds nothing. Balls and ellipsoids in closed form. Cylinders, capsules and cones as stacks of discs, each
-cut to a segment of a circle; the integral along the axis is taken between the heights at which the plane enters and
-leaves the discs, with nodes that crowd there: that leaves an error of about 1e-9 of the volume.
+Polyhedra by the divergence theorem: with d = normal · x − height, the volume is the flux of d · normal through the wet
+surface, to which the cut face adds nothing, since d is zero there. Balls and ellipsoids in closed form. Cylinders,
+capsules and cones as stacks of discs, each cut to a segment of a circle; the integral along the axis is taken between
+the heights at which the plane enters and leaves the discs, with nodes that crowd there: that leaves an error of about
+1e-9 of the volume.
 """
 
 from __future__ import annotations
@@ -11,18 +12,21 @@ from __future__ import annotations
 import itertools
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from simkit.pose import Vector
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Mesh, Polyline, Sphere
 
 Triangles = Vector
 """Corners of triangles, counter-clockwise seen from outside, shape (n, 3, 3)."""
+
+
+Part = tuple[float, float, float, float]
+"""A volume [m³], and its volume times its centre [m⁴]."""
 
 
 class Solid(ABC):
@@ -39,16 +43,22 @@ class Solid(ABC):
     reach: float
 
     @abstractmethod
-    def below(self, normal: Vector, height: float) -> tuple[float, Vector]:
-        """The part with normal · x <= height.
+    def cut(self, x: float, y: float, z: float, height: float) -> Part:
+        """The part below a plane, in plain numbers: of a few hulls at a step, arrays would cost many times more.
 
         Args:
-            normal: unit vector, shape (3,).
-            height: [m].
+            x, y, z: the plane's normal, a unit vector.
+            height: of the plane along it [m].
 
         Returns:
-            Its volume [m³], and its volume times its centre [m⁴], shape (3,).
+            Its volume [m³], and its volume times its centre [m⁴].
         """
+
+    def below(self, normal: Vector, height: float) -> tuple[float, Vector]:
+        """The part with normal · x <= height, as from `cut`; normal and the volume times its centre of shape (3,)."""
+        x, y, z = normal.tolist()
+        volume, *moment = self.cut(x, y, z, float(height))
+        return volume, np.array(moment)
 
 
 class Ball(Solid):
@@ -59,15 +69,15 @@ class Ball(Solid):
         self.volume = 4 / 3 * math.pi * x * y * z
         self.centre, self.reach = np.zeros(3), max(radii)
 
-    def below(self, normal: Vector, height: float) -> tuple[float, Vector]:
+    def cut(self, x: float, y: float, z: float, height: float) -> Part:
         """As of the unit ball, which stretching along the axes makes this of."""
-        (rx, ry, rz), (nx, ny, nz) = self._radii, normal.tolist()
-        sx, sy, sz = rx * nx, ry * ny, rz * nz
+        rx, ry, rz = self._radii
+        sx, sy, sz = rx * x, ry * y, rz * z
         length = math.sqrt(sx * sx + sy * sy + sz * sz)
         depth = min(max(height / length + 1.0, 0.0), 2.0)  # of the cap, in a ball of radius 1
         volume = depth * depth * (3.0 - depth) / 4.0 * self.volume
         out = -0.75 * (2.0 - depth) ** 2 / (3.0 - depth) * volume / length
-        return volume, np.array((out * rx * sx, out * ry * sy, out * rz * sz))
+        return volume, out * rx * sx, out * ry * sy, out * rz * sz
 
 
 class Polyhedron(Solid):
@@ -79,71 +89,98 @@ class Polyhedron(Solid):
 
     def __init__(self, triangles: Triangles) -> None:
         self.corners = np.ascontiguousarray(triangles, float)
-        first = np.zeros(len(triangles), dtype=np.intp)
-        volumes, moments = _enclosed(self.corners, first, np.zeros((1, 3)))
-        if volumes[0] < 0:  # turned inside out
+        volume, moment = _enclosed(self.corners)
+        if volume < 0:  # turned inside out
             self.corners = np.ascontiguousarray(self.corners[:, ::-1])
-        self.volume = abs(float(volumes[0]))
-        self.centre = moments[0] / volumes[0] if self.volume > 0 else np.zeros(3)
+        self.volume = abs(volume)
+        self.centre = moment / volume if self.volume > 0 else np.zeros(3)
         away = self.corners.reshape(-1, 3) - self.centre
         self.reach = float(np.sqrt((away * away).sum(axis=1).max())) if len(away) else 0.0
+        first, second, third = self.corners.transpose(1, 0, 2)
+        self._areas = np.cross(second - first, third - first) / 2  # along the normals, outwards, shape (n, 3)
+        self._is_small = len(self.corners) <= _FEW
+        self._by_corner = np.ascontiguousarray(self.corners.transpose(1, 0, 2)), self.corners.sum(axis=1)
+        if self._is_small:
+            points, places = np.unique(self.corners.reshape(-1, 3), axis=0, return_inverse=True)
+            self._points = [tuple(point) for point in points.tolist()]
+            rows = zip(places.reshape(-1, 3).tolist(), self._areas.tolist(), strict=True)
+            self._faces = [(*corners, *area) for corners, area in rows]
 
-    def below(self, normal: Vector, height: float) -> tuple[float, Vector]:
-        volumes, moments = polyhedra_below([self], normal[None, :], np.array((height,)))
-        return float(volumes[0]), moments[0]
+    def cut(self, x: float, y: float, z: float, height: float) -> Part:
+        return (self._cut_few if self._is_small else self._cut_many)(x, y, z, height)
+
+    def _cut_few(self, x: float, y: float, z: float, height: float) -> Part:
+        points = self._points
+        over = [x * px + y * py + z * pz - height for px, py, pz in points]
+        volume = mx = my = mz = lean = 0.0  # lean: twice the integral of d over the part
+        for i, j, k, ax, ay, az in self._faces:
+            d, e, f = over[i], over[j], over[k]
+            flux = x * ax + y * ay + z * az
+            dry = (d > 0) + (e > 0) + (f > 0)
+            if dry == 3 or flux == 0.0:
+                continue
+            (px, py, pz), (qx, qy, qz), (rx, ry, rz) = points[i], points[j], points[k]
+            if dry <= 1:
+                total = d + e + f
+                volume += flux * total / 3
+                twelfth = flux / 12
+                mx += twelfth * ((px + qx + rx) * total + px * d + qx * e + rx * f)
+                my += twelfth * ((py + qy + ry) * total + py * d + qy * e + ry * f)
+                mz += twelfth * ((pz + qz + rz) * total + pz * d + qz * e + rz * f)
+                lean += twelfth * (total * total + d * d + e * e + f * f)
+            if dry == 0:
+                continue
+            # the tip of a corner that is alone on its side: a wet one is added, a dry one taken off again
+            is_alone_dry = dry == 1
+            if (d > 0) != is_alone_dry:
+                if (e > 0) == is_alone_dry:
+                    d, e, f, px, py, pz, qx, qy, qz, rx, ry, rz = e, f, d, qx, qy, qz, rx, ry, rz, px, py, pz
+                else:
+                    d, e, f, px, py, pz, qx, qy, qz, rx, ry, rz = f, d, e, rx, ry, rz, px, py, pz, qx, qy, qz
+            u, v = d / (d - e), d / (d - f)  # of the edges, up to the plane
+            flux *= -u * v if is_alone_dry else u * v
+            volume += flux * d / 3
+            twelfth = flux * d / 12
+            mx += twelfth * (4 * px + u * (qx - px) + v * (rx - px))
+            my += twelfth * (4 * py + u * (qy - py) + v * (ry - py))
+            mz += twelfth * (4 * pz + u * (qz - pz) + v * (rz - pz))
+            lean += twelfth * 2 * d
+        lean /= 2
+        return volume, mx - x * lean, my - y * lean, mz - z * lean
+
+    def _cut_many(self, x: float, y: float, z: float, height: float) -> Part:
+        normal = np.array((x, y, z))
+        by_corner, sums = self._by_corner
+        over, flux = by_corner @ normal - height, self._areas @ normal  # shapes (3, triangles) and (triangles,)
+        is_above = over > 0
+        dry, total = is_above.sum(axis=0), over.sum(axis=0)
+        shares = np.where(dry <= 1, flux / 12, 0.0)
+        volume = 4 * float(shares @ total)
+        moment = (shares * total) @ sums + (shares * over).ravel() @ by_corner.reshape(-1, 3)
+        lean = float(shares @ (total * total + (over * over).sum(axis=0)))
+        split = np.flatnonzero((dry == 1) | (dry == 2))
+        if len(split):
+            is_one_dry = dry[split] == 1
+            alone = (is_above[:, split] == is_one_dry).argmax(axis=0)
+            order = (alone[:, None] + _TURN) % 3
+            corners, levels = by_corner[order, split[:, None]], over[order, split[:, None]]
+            first = levels[:, 0]
+            parts = first[:, None] / (first[:, None] - levels[:, 1:])
+            shares = flux[split] * parts[:, 0] * parts[:, 1] * np.where(is_one_dry, -1.0, 1.0) * first / 12
+            volume += 4 * float(shares.sum())
+            edges = parts[:, :, None] * (corners[:, 1:] - corners[:, :1])
+            moment += shares @ (4 * corners[:, 0] + edges.sum(axis=1))
+            lean += 2 * float(shares @ first)
+        mx, my, mz = (moment - normal * (lean / 2)).tolist()
+        return volume, mx, my, mz
 
 
-def polyhedra_below(solids: Sequence[Polyhedron], normals: Vector, heights: Vector) -> tuple[Vector, Vector]:
-    """`Polyhedron.below` of many at once.
-
-    Args:
-        solids: k of them.
-        normals: unit vectors, shape (k, 3).
-        heights: [m], shape (k,).
-
-    Returns:
-        Volumes, shape (k,), and volumes times their centres, shape (k, 3).
-    """
-    corners = np.concatenate([solid.corners for solid in solids])
-    owners = np.repeat(np.arange(len(solids)), [len(solid.corners) for solid in solids])
-    above = (corners * normals[owners][:, None, :]).sum(axis=2) - heights[owners][:, None]  # shape (triangles, 3)
-    dry = (above > 0).sum(axis=1)
-    is_wet, is_split = dry <= 1, (dry == 1) | (dry == 2)  # of those with one corner above, its tip is taken off again
-    tips = _tips(corners[is_split], above[is_split], dry[is_split])
-    pieces = np.concatenate([corners[is_wet], tips])
-    signs = np.ones(len(pieces))
-    signs[len(pieces) - len(tips) :] -= 2.0 * (dry[is_split] == 1)
-    whose = np.concatenate([owners[is_wet], owners[is_split]])
-    return _enclosed(pieces, whose, normals * heights[:, None], signs)
-
-
-def _enclosed(
-    corners: Triangles, owners: npt.NDArray[np.intp], origins: Vector, signs: Vector | None = None
-) -> tuple[Vector, Vector]:
-    """Volumes and their moments, by owner, of the tetrahedra from the owner's origin to triangles, by their signs."""
-    count, away = len(origins), corners - origins[owners][:, None, :]
-    a, b, c = away.transpose(1, 2, 0)
+def _enclosed(corners: Triangles) -> tuple[float, Vector]:
+    """Volume and its moment, of the tetrahedra from the origin to triangles."""
+    a, b, c = corners.transpose(1, 2, 0)
     sixth = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
     sixth /= 6.0
-    if signs is not None:
-        sixth *= signs
-    volumes = np.asarray(np.bincount(owners, sixth, count), float)
-    quarters = away.sum(axis=1) * (sixth / 4)[:, None]
-    moments = np.stack([np.bincount(owners, quarters[:, axis], count) for axis in range(3)], axis=1)
-    return volumes, moments + volumes[:, None] * origins
-
-
-def _tips(corners: Triangles, above: Vector, dry: npt.NDArray[np.intp]) -> Triangles:
-    """Of triangles that a plane cuts, the piece at the corner that is alone on its side."""
-    is_above = above > 0
-    first = np.where(dry[:, None] == 1, is_above, ~is_above).argmax(axis=1)
-    order = (first[:, None] + _TURN) % 3
-    rows = np.arange(len(corners))[:, None]
-    turned: Triangles = corners[rows, order]
-    levels = above[rows, order]
-    parts = levels[:, :1] / (levels[:, :1] - levels[:, 1:])  # of the edges, up to the plane
-    turned[:, 1:] = turned[:, :1] + parts[:, :, None] * (turned[:, 1:] - turned[:, :1])
-    return turned
+    return float(sixth.sum()), corners.sum(axis=1).T @ (sixth / 4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,8 +193,19 @@ class Stretch:
     b: float
     c: float
 
+    def square(self, z: Any) -> Any:
+        """radius² [m²]."""
+        return self.a + z * (self.b + z * self.c)
+
+    def between(self, middle: float, half: float) -> tuple[float, float]:
+        """Volume [m³] from middle − half to middle + half, and its integral of z [m⁴]."""
+        slope, third = self.b + 2 * self.c * middle, half * half / 3
+        volume = 2 * math.pi * half * (self.square(middle) + self.c * third)
+        return volume, volume * middle + 2 * math.pi * half * slope * third
+
 
 _TURN = np.arange(3)
+_FEW: Final = 48  # triangles that are dealt with one by one
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 # θ from -90° to 90°, z = sin θ: where a disc only just gets wet, the area is smooth in θ
 _PLACES: Final = np.sin(_NODES * math.pi / 2)
@@ -170,8 +218,8 @@ class Spindle(Solid):
     def __init__(self, stretches: tuple[Stretch, ...]) -> None:
         self._stretches = stretches
         self.centre, self.volume, self.reach = np.zeros(3), 0.0, math.inf
-        self.volume, moment = self.below(np.array((0.0, 0.0, 1.0)), math.inf)
-        self.centre = moment / self.volume
+        self.volume, *moment = self.cut(0.0, 0.0, 1.0, math.inf)
+        self.centre = np.array(moment) / self.volume
         ends = [
             (z - self.centre[2]) ** 2 + max(s.a + z * (s.b + z * s.c), 0.0)
             for s in stretches
@@ -179,20 +227,27 @@ class Spindle(Solid):
         ]
         self.reach = math.sqrt(max(ends)) * 1.01
 
-    def below(self, normal: Vector, height: float) -> tuple[float, Vector]:
-        up, aside = float(normal[2]), math.hypot(normal[0], normal[1])
-        parts = []
+    def cut(self, x: float, y: float, z: float, height: float) -> Part:
+        aside = math.hypot(x, y)
+        volume = out = up = 0.0
         for stretch in self._stretches:
-            bounds = _bounds(stretch, up, aside, height)
-            parts += [(*ends, stretch.a, stretch.b, stretch.c) for ends in itertools.pairwise(bounds)]
-        low, high, a, b, c = np.array(parts).T[:, :, None]
-        half = (high - low) / 2
-        z = (low + high) / 2 + half * _PLACES
-        areas, moments = _segments(np.maximum(a + z * (b + z * c), 0.0), height - up * z, aside)
-        shares = half * _SHARES
-        wet = shares * areas
-        out = float((shares * moments).sum()) / aside if aside > 0 else 0.0
-        return float(wet.sum()), np.array((out * normal[0], out * normal[1], (wet * z).sum()))
+            for low, high in itertools.pairwise(_bounds(stretch, z, aside, height)):
+                middle, half = (low + high) / 2, (high - low) / 2
+                room, edge = height - z * middle, aside * math.sqrt(max(stretch.square(middle), 0.0))
+                if room >= edge:  # every disc is wholly below
+                    whole, upwards = stretch.between(middle, half)
+                    volume += whole
+                    up += upwards
+                elif room > -edge:
+                    places = middle + half * _PLACES
+                    squares = np.maximum(stretch.square(places), 0.0)
+                    areas, moments = _segments(squares, height - z * places, aside)
+                    volume += half * float(areas @ _SHARES)
+                    up += half * float(areas @ (places * _SHARES))
+                    out += half * float(moments @ _SHARES)
+        if aside > 0:
+            out /= aside
+        return volume, out * x, out * y, up
 
 
 def _segments(squares: Any, room: Any, aside: float) -> tuple[Any, Any]:
@@ -225,19 +280,6 @@ def _roots(a: float, b: float, c: float) -> list[float]:
         return [-b / (2 * a)] if inside > -1e-12 * b * b else []
     half = -(b + math.copysign(math.sqrt(inside), b)) / 2
     return [half / a, c / half] if half else [0.0]
-
-
-def all_below(solids: Sequence[Solid], normals: Vector, heights: Vector) -> tuple[Vector, Vector]:
-    """`Solid.below` of many; arguments and results as of `polyhedra_below`."""
-    volumes, moments = np.empty(len(solids)), np.empty((len(solids), 3))
-    faceted = [i for i, solid in enumerate(solids) if isinstance(solid, Polyhedron)]
-    if faceted:
-        of_them = [solid for solid in solids if isinstance(solid, Polyhedron)]
-        volumes[faceted], moments[faceted] = polyhedra_below(of_them, normals[faceted], heights[faceted])
-    for i, solid in enumerate(solids):
-        if not isinstance(solid, Polyhedron):
-            volumes[i], moments[i] = solid.below(normals[i], float(heights[i]))
-    return volumes, moments
 
 
 def solid_of(shape: Geometry, triangles: Callable[[Geometry], Triangles | None]) -> Solid | None:

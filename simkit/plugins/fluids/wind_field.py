@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -57,6 +58,16 @@ class Piece:
             inside &= values <= interval.high if interval.has_high else values < interval.high
         return inside
 
+    def one_at(self, place: Sequence[float]) -> float | None:
+        """At one place; None where this piece does not hold it."""
+        for value, interval in zip(place, self.where, strict=True):
+            if not (value >= interval.low if interval.has_low else value > interval.low):
+                return None
+            if not (value <= interval.high if interval.has_high else value < interval.high):
+                return None
+        p, q, r = (((a * x + b) * x + c) * x + d for x, (a, b, c, d) in zip(place, self.terms, strict=True))
+        return self.factor * (p + q + r)
+
     @property
     def least(self) -> float:
         """The smallest value in the box, as far as `_FARTHEST` out."""
@@ -87,6 +98,14 @@ class WindField:
                 found[inside] = piece.at(places[inside])
                 is_open &= ~inside
         return found
+
+    def one_at(self, place: Sequence[float]) -> float:
+        """At one place [m], in plain numbers."""
+        for piece in self.pieces:
+            found = piece.one_at(place)
+            if found is not None:
+                return found
+        return 0.0 if self.pieces else self.everywhere
 
 
 def read_field(params: Params, quirks: bool) -> WindField:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
+from simkit.plugins.lookups import given_topic, needed_name
 from simkit.plugins.once import Once
 from simkit.plugins.world.entities import Refused, entity_of
 from simkit.pose import Vector
@@ -53,14 +53,12 @@ class ApplyLinkWrench(WorldPlugin):
         self._persistent = [w for e in params.all("persistent") if (w := self._read(e)) is not None]
         self._stand()
         base = f"/world/{parent.world.name}/wrench"
-        self.listen(valid_topic(params.text("topic", base)), ENTITY_WRENCH, self._on_wrench)
-        self.listen(
-            valid_topic(params.text("topic_persistent", f"{base}/persistent")), ENTITY_WRENCH, self._on_persistent
-        )
-        self.listen(valid_topic(params.text("topic_clear", f"{base}/clear")), ENTITY, self._on_clear)
+        self.listen(given_topic(params, "topic", base), ENTITY_WRENCH, self._on_wrench)
+        self.listen(given_topic(params, "topic_persistent", f"{base}/persistent"), ENTITY_WRENCH, self._on_persistent)
+        self.listen(given_topic(params, "topic_clear", f"{base}/clear"), ENTITY, self._on_clear)
 
     def _read(self, element: Params) -> _Wrench | None:
-        name = element.text("entity_name", required=True)
+        name = needed_name(element, "entity_name")
         kind = element.choice("entity_type", tuple(_TYPES), "link" if element.has("entity_type") else "")
         force, torque = (element.vector3(n, (0.0, 0.0, 0.0)) for n in ("force", "torque"))
         if not name or kind not in _TYPES:

@@ -58,6 +58,13 @@ class Battery(ModelPlugin):
     def open_state(self, model: str) -> str:
         """Opens the topic of its state; gives what the names of its topics begin with."""
         base = f"/model/{model}/battery/{self.battery}"
+        for other in self.sim.structure.all_plugins():
+            if other is self:
+                break
+            if isinstance(other, Battery) and (other.scoped, other.battery) == (self.scoped, self.battery):
+                message = f"plugin {self.name!r}: the model has a battery {self.battery!r} already"
+                self.params.error("SK-PARAM-002", f"{message}, allowed is another <battery_name>")
+                return ""
         self._state = self.advertise(valid_topic(f"{base}/state"), STATE)
         publish_while_heard(self, self._state, _RATE, "tell")
         return base

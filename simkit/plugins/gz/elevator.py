@@ -12,7 +12,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.heard import publish_while_heard
 from simkit.plugins.joints.axes import JointAxis
-from simkit.plugins.lookups import find_axis_joint, find_link
+from simkit.plugins.lookups import find_axis_joint, find_link, given_topic
 from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Elevator(ModelPlugin):
         lift = find_axis_joint(scene, cabin, params.child("cabin_joint") or params)
         self._cabin = "" if lift is None else lift.scoped
         pattern = re.compile(re.escape(floor) + r"\d+")
-        count = sum(bool(pattern.fullmatch(link.name)) for link in scene.all_links())
+        count = len({link.name for link in scene.all_links() if pattern.fullmatch(link.name)})
         if not count:
             names = [link.name for link in scene.all_links()]
             message = f"plugin {self.name!r}: no link of model {scene.scoped!r} is named {floor}0; it has: "
@@ -80,7 +80,7 @@ class Elevator(ModelPlugin):
         self._lift, self._door_axes = axes[0], axes[1:]
         topics = [valid_topic(f"{own}/joint/{name}/0/cmd_pos") for name in self._joint_names]
         self._movers = [self.advertise(topic, DOUBLE) for topic in topics]
-        self._state = self.advertise(valid_topic(params.text("state_topic", f"{own}/state")), INT)
+        self._state = self.advertise(given_topic(params, "state_topic", f"{own}/state"), INT)
         self._phase: Phase = "idle"
         self._targets: list[int] = []
         self._kept: list[int] = []
@@ -89,7 +89,7 @@ class Elevator(ModelPlugin):
         self._was_blocked = False
         self._blocked = [False] * len(self._doors)
         self.after_step_rate = _NEVER
-        self.listen(valid_topic(params.text("cmd_topic", f"{own}/cmd")), INT, self._on_command)
+        self.listen(given_topic(params, "cmd_topic", f"{own}/cmd"), INT, self._on_command)
         for k, name in enumerate(self._joint_names[1:]):
             self.subscribe(valid_topic(f"{own}/{name}/lidar"), partial(self._on_scan, k))
         rates = [rate for rate in (self._update_rate, self._state_rate) if rate > 0]

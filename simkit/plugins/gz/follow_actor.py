@@ -13,6 +13,7 @@ from simkit.plugins.actors.gait import Gait
 from simkit.plugins.actors.skin import SkinRig
 from simkit.plugins.actors.stage import Cast
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import needed_name
 from simkit.runtime.physics import STALE
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class FollowActor(ModelPlugin):
     scenery_rate = _RATE
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._target = params.text("target", required=True)
+        self._target = needed_name(params, "target")
         self._velocity = params.number("velocity", 0.8, minimum=0.0, maximum=1e6)
         self._least = params.number("min_distance", 1.2, minimum=0.0)
         self._most = params.number("max_distance", 4.0, minimum=0.0)

@@ -8,11 +8,10 @@ import mujoco
 import numpy as np
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.gz.watch import watch_while_heard
-from simkit.plugins.lookups import find_link
+from simkit.plugins.lookups import given_topic, named_link
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -33,13 +32,11 @@ class KineticEnergyMonitor(ModelPlugin):
     names = ("gz::sim::systems::KineticEnergyMonitor",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        name = params.text("link_name", required=True)
-        link = find_link(scene, name, params) if name else None
-        self._scoped = link.scoped if link else ""
+        self._scoped = named_link(scene, "link_name", params)
         self._threshold = params.number("kinetic_energy_threshold", 7.0, minimum=0.0)
 
     def load(self, parent: Any, params: Params) -> None:
-        self._lost = self.advertise(valid_topic(params.text("topic", f"/model/{parent.name}/kinetic_energy")), DOUBLE)
+        self._lost = self.advertise(given_topic(params, "topic", f"/model/{parent.name}/kinetic_energy"), DOUBLE)
         self._energy = 0.0
         self._was_heard = False
         watch_while_heard(self, (self._lost,), "look")

@@ -12,6 +12,7 @@ from simkit.params import Params
 from simkit.plugins.gz.battery import Battery
 from simkit.plugins.gz.battery_cell import Cell
 from simkit.plugins.gz.sensors import SensorsSystem
+from simkit.plugins.lookups import needed_name
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -36,7 +37,7 @@ class LinearBattery(Battery):
     names = ("gz::sim::systems::LinearBatteryPlugin",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self.battery = params.text("battery_name", required=True)
+        self.battery = needed_name(params, "battery_name")
         self.cell = self._read_cell(params, params.number("voltage", required=True, minimum=0.0))
         self._joints = tuple(joint.scoped for joint in scene.all_joints() if joint.axes or joint.type == "ball")
         self.is_drained = params.boolean("start_draining", False)
@@ -79,7 +80,7 @@ class LinearBattery(Battery):
         self._is_dead = False
         self._held: dict[str, tuple[Vector, Vector, Vector]] = {}
         base = self.open_state(parent.name)
-        if self._charger is not None:
+        if self._charger is not None and base:
             self._offer_recharge(base, by_topic=params.has("recharge_by_topic"))
         params.text("recharge_by_topic", "")
         self._supply(parent.scene)

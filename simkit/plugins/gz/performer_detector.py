@@ -5,17 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.gzpython.msgs.message import CLASSES, Message
 from simkit.msgs.monitors import STATUS
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
 from simkit.plugins.gz.watch import watch_while_heard
-from simkit.pose import Pose, Vector, quat_rotate
+from simkit.plugins.lookups import given_topic, needed_name
+from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -47,7 +45,7 @@ class Performers(WorldPlugin):
         models = [model.name for model in scene.models]
         for element in params.all("performer"):
             name = element.attribute("name")
-            model = element.text("ref", required=True)
+            model = needed_name(element, "ref")
             size = element.block("geometry").block("box").vector3("size", required=True)
             if min(size) <= 0.0:
                 if element.block("geometry").block("box").has("size"):
@@ -81,8 +79,9 @@ class PerformerDetector(ModelPlugin):
         size = box.vector3("size", required=True)
         if box.has("size") and min(size) <= 0.0:
             box.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
-        self._half = np.array(size) / 2
+        self._half = size[0] / 2, size[1] / 2, size[2] / 2
         self._offset = params.pose("pose").position
+        self._is_centred = not self._offset.any()
         self._data = [pair for element in params.all("header_data") if (pair := self._read_data(element)) is not None]
 
     def _read_data(self, element: Params) -> tuple[str, str] | None:
@@ -95,11 +94,12 @@ class PerformerDetector(ModelPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         self._model, self._born = parent, self.sim.tick
-        topic = valid_topic(params.text("topic", f"/model/{parent.name}/performer_detector/status"))
+        topic = given_topic(params, "topic", f"/model/{parent.name}/performer_detector/status")
         self._inside: tuple[str, ...] = ()
         self._was_heard = False
         self._poses, self._details = self.advertise(topic, POSE), self.advertise(topic + DETAILS, STATUS)
-        if not self._performers():
+        self._known = self._performers()
+        if not self._known:
             message = f"plugin {self.name!r}: the world names no performers; it finds nothing"
             hint = 'a <plugin name="gz::sim" filename="dummy"> with <performer> in the world'
             params.diagnostics.warning("SK-PLUGIN-125", message, self.where, hint)
@@ -121,20 +121,25 @@ class PerformerDetector(ModelPlugin):
                 self._tell(name, pose, is_inside)
         self._inside = tuple(name for name in self._inside if name in names)  # without those that were removed
 
-    def _performers(self) -> list[Performer]:
+    def _performers(self) -> tuple[Performer, ...]:
+        """Of the world's plugins, which are there from its beginning to its end."""
         plugins = self.sim.structure.all_plugins()
-        return [one for plugin in plugins if isinstance(plugin, Performers) for one in plugin.performers]
+        return tuple(one for plugin in plugins if isinstance(plugin, Performers) for one in plugin.performers)
 
     def _found(self) -> list[tuple[str, Pose, bool]]:
         """The performers' models, where they are in the world, and whether their boxes meet this one."""
+        models = self.sim.models
+        there = [one for one in self._known if one.model in models]
+        if not there:
+            return []
         own = self._model.pose
-        centre = own.position + quat_rotate(own.quaternion, self._offset)
-        models, found = self.sim.models, []
-        for performer in self._performers():
-            if performer.model in models:
-                pose = models[performer.model].pose
-                apart: Vector = np.abs(pose.position - centre)
-                found.append((performer.model, pose, bool((apart <= self._half + performer.half).all())))
+        centre = own.position if self._is_centred else own.position + quat_rotate(own.quaternion, self._offset)
+        (x, y, z), (a, b, c), found = centre.tolist(), self._half, []
+        for performer in there:
+            pose = models[performer.model].pose
+            (u, v, w), (p, q, r) = pose.position.tolist(), performer.half
+            is_inside = abs(u - x) <= a + p and abs(v - y) <= b + q and abs(w - z) <= c + r
+            found.append((performer.model, pose, is_inside))
         return found
 
     def _tell(self, name: str, pose: Pose, state: bool) -> None:

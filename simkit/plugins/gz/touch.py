@@ -10,6 +10,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import needed_name
 from simkit.runtime.contacts import Bools, collisions_of, touches
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneCollision, SceneModel
 
 BOOL: Final = "std_msgs/msg/Bool"
+SET_BOOL: Final = "std_srvs/srv/SetBool"
 _NEVER: Final = 1e-9  # [Hz]
 
 
@@ -34,7 +36,7 @@ class Touching(ModelPlugin):
     _touched: Any
 
     def _read_common(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._target = params.text("target", required=True)
+        self._target = needed_name(params, "target")
         duration = params.number("time", required=True, minimum=0.0, maximum=1e9)
         self._duration = round(duration * 1e9)
         self._topic = valid_topic(params.text("namespace", required=True))
@@ -153,3 +155,15 @@ class TouchPlugin(Touching):
             hint = "put a contact sensor on its link, or name <collision> and <create_contact_sensor_for_collision>"
             params.diagnostics.warning("SK-SENSOR-043", f"{message}; it never touches", self.where, hint)
         self._watch(watched, params)
+        if self._together()[0] is self:  # the first answers for all of its namespace
+            self.offer(f"{self._topic}/enable", SET_BOOL, self._on_call)
+
+    def _together(self) -> list[TouchPlugin]:
+        """The detectors of its namespace, in the order of the file."""
+        detectors = [p for p in self.sim.structure.all_plugins() if isinstance(p, TouchPlugin)]
+        return [p for p in detectors if p._topic == self._topic]
+
+    def _on_call(self, request: Any) -> dict[str, Any]:
+        for detector in self._together():
+            detector._enable(bool(request.data))
+        return {"success": True}

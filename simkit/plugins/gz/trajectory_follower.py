@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import named_link
+from simkit.plugins.lookups import given_topic, named_link
 from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
@@ -64,7 +63,7 @@ class TrajectoryFollower(ModelPlugin):
             self.once.warn("SK-PLUGIN-131", "held", message, "name the link that carries the model")
         self._set_pace()
         own = f"/model/{parent.name}/trajectory_follower/pause"
-        self.listen(valid_topic(params.text("topic", own)), BOOL, self._on_pause)
+        self.listen(given_topic(params, "topic", own), BOOL, self._on_pause)
 
     def _on_pause(self, message: Any) -> None:
         self._is_paused = bool(message.data)
