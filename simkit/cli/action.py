@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from simkit.cli.options import Json
-from simkit.cli.service import check, made
 from simkit.cli.talking import completion
+from simkit.cli.talking.given import check_type, given, made, type_and_values
 from simkit.cli.talking.options import Ros2Command, Sim
-from simkit.cli.talking.printed import absolute, as_json, given, line, none_of, quiet
-from simkit.cli.talking.sources import running
-from simkit.cli.talking.topic_pub import type_and_values
+from simkit.cli.talking.printed import absolute, as_json, line, list_typed, quiet
+from simkit.cli.talking.sources import running, type_of
 
 if TYPE_CHECKING:
     from simkit.live import Client, LiveGoal
 
-_LOOK = 3600.0  # [s] of wall time; a goal takes as long as it takes
 _PATIENCE = 5.0  # [s] of wall time in which a goal that is called off should end
 action = typer.Typer(help="Actions of a running simulation.", no_args_is_help=True)
 Name = Annotated[
@@ -43,13 +41,7 @@ def list_(
     """Lists the actions."""
     with running(sim) as client:
         found = dict(sorted(client.actions().items()))
-    if json_:
-        as_json(len(found) if count else [{"name": n, "types": [t]} for n, t in found.items()])
-    elif count:
-        line(str(len(found)))
-    else:
-        for name, type_name in found.items():
-            line(f"{name} [{type_name}]" if show_types else name)
+    list_typed(found, show_types=show_types, count=count, json_=json_)
     return 0
 
 
@@ -58,7 +50,7 @@ def list_(
 def type_(action: Name, sim: Sim = None, json_: Json = False) -> int:
     """Prints an action's type."""
     with running(sim) as client:
-        found = type_of(client, action)
+        found = type_of(client, "action", client.actions(), action)
     if json_:
         as_json([found])
     else:
@@ -77,7 +69,7 @@ def info(
 ) -> int:
     """Says who serves an action."""
     with running(sim) as client:
-        found = type_of(client, action)
+        found = type_of(client, "action", client.actions(), action)
         nodes = client.ask("nodes")
     name = absolute(action)
     node = next((n for n, has in nodes.items() if name in has["actions"]), name.rpartition("/")[0] or name)
@@ -122,9 +114,10 @@ def send_goal(
     action_type, goal = type_and_values(action_type, goal)
     fields = given(sys.stdin.read() if stdin else goal or "{}", "the goal")
     with running(sim) as client:
-        found = type_of(client, action)
-        check(action_type, found, absolute(action))
-        return _Sending(client, json_, feedback).send(absolute(action), made(f"{found}_Goal", fields), timeout)
+        found = type_of(client, "action", client.actions(), action)
+        check_type(action_type, [found], absolute(action))
+        _Sending(client, json_, feedback).send(absolute(action), made(f"{found}_Goal", fields), timeout)
+    return 0
 
 
 action.command("send_goal", cls=Ros2Command)(quiet(send_goal))
@@ -137,30 +130,31 @@ class _Sending:
     def __init__(self, client: Client, json_: bool, feedback: bool) -> None:
         self._client, self._json, self._feedback = client, json_, feedback
 
-    def send(self, name: str, goal: Any, timeout: float | None) -> int:
+    def send(self, name: str, goal: Any, timeout: float | None) -> None:
         self._say("Waiting for an action server to become available...")
         self._say(f"Sending goal:\n     {_yaml(goal)}")
         handle = self._client.send_goal(name, goal, self._on_feedback if self._feedback else None)
         try:
-            handle.wait_accepted(_LOOK)
+            handle.wait_accepted()
             if handle.status.name == "REJECTED":
                 self._say(f"Goal was rejected{': ' + handle.reason if handle.reason else '.'}")
-                return self._ended(handle, 0)
+                self._ended(handle)
+                return
             self._say(f"Goal accepted with ID: {handle.id:032x}\n")
-            if not handle.wait(_LOOK if timeout is None else timeout):
+            if not handle.wait(timeout):
                 self._call_off(handle)
         except KeyboardInterrupt:
             self._call_off(handle)
-            self._ended(handle, 0)
+            self._ended(handle)
             raise
-        return self._ended(handle, 0)
+        self._ended(handle)
 
     def _call_off(self, handle: LiveGoal) -> None:
         self._say("Canceling goal...")
         handle.cancel()
         self._say("Goal canceled." if handle.wait(_PATIENCE) else "The goal goes on: its action does not stop it.")
 
-    def _ended(self, handle: LiveGoal, code: int) -> int:
+    def _ended(self, handle: LiveGoal) -> None:
         from simkit.msgs.text import plain
 
         result = handle.result
@@ -170,7 +164,6 @@ class _Sending:
         elif handle.is_done and handle.status.name != "REJECTED":
             line(f"Result:\n    {_yaml(result)}")
             line(f"Goal finished with status: {handle.status.name}")
-        return code
 
     def _on_feedback(self, message: Any) -> None:
         from simkit.msgs.text import plain
@@ -189,16 +182,3 @@ def _yaml(message: Any) -> str:
     from simkit.msgs.text import yaml_of
 
     return yaml_of(message)
-
-
-def type_of(client: Any, name: str) -> str:
-    """The type of an action.
-
-    Raises:
-        InputError: SK-CLI-037 there is none of that name.
-    """
-    actions = client.actions()
-    wanted = absolute(name)
-    if wanted not in actions:
-        raise none_of("action", wanted, actions, "SK-CLI-037", f"the simulation {client.info.get('name', '')!r}")
-    return str(actions[wanted])

@@ -10,7 +10,7 @@ import typer
 from simkit.cli.options import Json
 from simkit.cli.talking import completion
 from simkit.cli.talking.options import Bag
-from simkit.cli.talking.printed import as_json, line, quiet
+from simkit.cli.talking.printed import as_json, line, none_of, quiet
 from simkit.errors import InputError, MessageError
 
 _KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
@@ -73,7 +73,6 @@ def packages(json_: Json = False) -> int:
 @quiet
 def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=False)], json_: Json = False) -> int:
     """Lists the types of a package."""
-    from simkit.cli.talking.printed import none_of
     from simkit.msgs.written import names
 
     known = [n for kind, _ in _KINDS for n in names(kind)]

@@ -10,7 +10,7 @@ from simkit.cli.options import Json
 from simkit.cli.talking import completion
 from simkit.cli.talking.options import Sim
 from simkit.cli.talking.printed import as_json, line, none_of, quiet
-from simkit.cli.talking.sources import running
+from simkit.cli.talking.sources import running, where_of
 
 model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
 Model = Annotated[
@@ -150,5 +150,5 @@ def _model(client: Any, name: str) -> dict[str, Any]:
         raise
     except LiveError:
         names = client.models()
-        raise none_of("model", name, names, "SK-CLI-038", f"the simulation {client.info['name']!r}") from None
+        raise none_of("model", name, names, "SK-CLI-038", where_of(client)) from None
     return found

@@ -9,8 +9,8 @@ import typer
 from simkit.cli.options import Json
 from simkit.cli.talking import completion
 from simkit.cli.talking.options import Ros2Command, Sim
-from simkit.cli.talking.printed import absolute, as_json, is_hidden, line, none_of, quiet
-from simkit.cli.talking.sources import running
+from simkit.cli.talking.printed import absolute, as_json, is_hidden, line, list_names, none_of, quiet
+from simkit.cli.talking.sources import running, where_of
 
 node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)
 Hidden = Annotated[bool, typer.Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
@@ -32,11 +32,7 @@ def list_(
     """Lists the nodes."""
     with running(sim) as client:
         found = node_names(client, hidden=hidden)
-    if json_:
-        as_json(len(found) if count else found)
-    else:
-        for name in [str(len(found))] if count else found:
-            line(name)
+    list_names(found, count=count, json_=json_)
     return 0
 
 
@@ -54,10 +50,9 @@ def info(
     """Says what a node publishes, takes and offers."""
     with running(sim) as client:
         nodes: dict[str, dict[str, Any]] = client.ask("nodes")
-        where = f"the simulation {client.info['name']!r}"
     wanted = absolute(node)
     if wanted not in nodes:
-        raise none_of("node", wanted, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", where)
+        raise none_of("node", wanted, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", where_of(client))
     found = nodes[wanted]
     if json_:
         as_json({"name": wanted, **found})

@@ -9,10 +9,11 @@ import typer
 
 from simkit.cli.options import Json
 from simkit.cli.talking import completion
+from simkit.cli.talking.given import pattern
 from simkit.cli.talking.options import Ros2Command, Sim
 from simkit.cli.talking.param_values import KINDS, parameters_of_file, typed, value_of
 from simkit.cli.talking.printed import absolute, as_json, aside, line, none_of, quiet
-from simkit.cli.talking.sources import running
+from simkit.cli.talking.sources import running, where_of
 from simkit.errors import InputError
 
 _LIST = "/list_parameters"
@@ -57,7 +58,7 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists nodes with parameters and these."""
-    wanted = _pattern(filter_)
+    wanted = pattern(filter_, "--filter")
     found: dict[str, dict[str, str]] = {}
     with running(sim) as client:
         for name in parameter_nodes(client) if node is None else [_node(client, node)]:
@@ -74,15 +75,6 @@ def list_(
         for parameter, kind in parameters.items():
             line(f"  {parameter} (type: {kind})" if param_type else f"  {parameter}")
     return 0
-
-
-def _pattern(text: str | None) -> Any:
-    import re
-
-    try:
-        return None if text is None else re.compile(text)
-    except re.error as error:
-        raise InputError(f"SK-CLI-031 --filter: {text!r} is no regular expression: {error}", "SK-CLI-031") from None
 
 
 @param.command(cls=Ros2Command)
@@ -264,7 +256,7 @@ def _node(client: Any, name: str) -> str:
     nodes = parameter_nodes(client)
     wanted = absolute(name)
     if wanted not in nodes:
-        raise none_of("node with parameters", wanted, nodes, "SK-CLI-034", f"the simulation {client.info['name']!r}")
+        raise none_of("node with parameters", wanted, nodes, "SK-CLI-034", where_of(client))
     return wanted
 
 

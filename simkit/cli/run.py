@@ -83,7 +83,8 @@ def run(
     paused: Annotated[bool, typer.Option("--paused", help="Begins paused; space or a service lets it go on.")] = False,
     step: Annotated[int | None, typer.Option(help="Does N steps, then is paused.", metavar="N", min=0)] = None,
     name: Annotated[
-        str | None, typer.Option(help="What other terminals call this run; else the world's or file's name.", metavar="NAME")
+        str | None,
+        typer.Option(help="What other terminals call this run; else the world's or file's name.", metavar="NAME"),
     ] = None,
     set_: Annotated[
         list[str],

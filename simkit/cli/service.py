@@ -10,11 +10,10 @@ import typer
 
 from simkit.cli.options import Json
 from simkit.cli.talking import completion
+from simkit.cli.talking.given import check_type, given, is_type, made, type_and_values
 from simkit.cli.talking.options import Ros2Command, Sim
-from simkit.cli.talking.printed import absolute, as_json, given, is_hidden, line, none_of, quiet
-from simkit.cli.talking.sources import running
-from simkit.cli.talking.topic_pub import type_and_values
-from simkit.errors import InputError, MessageError
+from simkit.cli.talking.printed import absolute, as_json, is_hidden, line, list_names, list_typed, quiet
+from simkit.cli.talking.sources import running, type_of
 
 service = typer.Typer(help="Services of a running simulation.", no_args_is_help=True)
 Name = Annotated[
@@ -44,13 +43,7 @@ def list_(
     """Lists the services."""
     with running(sim) as client:
         found = {n: t for n, t in sorted(client.services().items()) if hidden or not is_hidden(n)}
-    if json_:
-        as_json(len(found) if count else [{"name": n, "types": [t]} for n, t in found.items()])
-    elif count:
-        line(str(len(found)))
-    else:
-        for name, type_name in found.items():
-            line(f"{name} [{type_name}]" if show_types else name)
+    list_typed(found, show_types=show_types, count=count, json_=json_)
     return 0
 
 
@@ -59,7 +52,7 @@ def list_(
 def type_(service: Name, sim: Sim = None, json_: Json = False) -> int:
     """Prints a service's type."""
     with running(sim) as client:
-        found = type_of(client, service)
+        found = type_of(client, "service", client.services(), service)
     if json_:
         as_json([found])
     else:
@@ -72,7 +65,7 @@ def type_(service: Name, sim: Sim = None, json_: Json = False) -> int:
 def info(service: Name, sim: Sim = None, json_: Json = False) -> int:
     """Says of what type a service is."""
     with running(sim) as client:
-        found = type_of(client, service)
+        found = type_of(client, "service", client.services(), service)
     if json_:
         as_json({"name": absolute(service), "types": [found], "clients": 0, "services": 1})
     else:
@@ -97,14 +90,9 @@ def find(
     json_: Json = False,
 ) -> int:
     """Lists the services of a type."""
-    package, _, short = service_type.partition("/")
     with running(sim) as client:
-        found = [n for n, t in sorted(client.services().items()) if t in (service_type, f"{package}/srv/{short}")]
-    if json_:
-        as_json(len(found) if count else found)
-    else:
-        for name in [str(len(found))] if count else found:
-            line(name)
+        found = [name for name, full in sorted(client.services().items()) if is_type(service_type, full)]
+    list_names(found, count=count, json_=json_)
     return 0
 
 
@@ -143,8 +131,8 @@ def call(
     fields = given(sys.stdin.read() if stdin else values or "{}", "the request")
     with running(sim) as client:
         name = absolute(service)
-        found = type_of(client, service)
-        check(service_type, found, name)
+        found = type_of(client, "service", client.services(), service)
+        check_type(service_type, [found], name)
         request = made(f"{found}_Request", fields)
         while True:
             begun = time.monotonic()
@@ -164,44 +152,3 @@ def _one_call(client: Any, name: str, request: Any, json_: bool) -> None:
         as_json(plain(response))
     else:
         line(f"response:\n{python_of(response)}\n")
-
-
-def type_of(client: Any, name: str) -> str:
-    """The type of a service.
-
-    Raises:
-        InputError: SK-CLI-037 there is none of that name.
-    """
-    services = client.services()
-    wanted = absolute(name)
-    if wanted not in services:
-        raise none_of("service", wanted, services, "SK-CLI-037", f"the simulation {client.info.get('name', '')!r}")
-    return str(services[wanted])
-
-
-def check(said: str | None, found: str, name: str) -> None:
-    """Raises where a service or action is of another type than was said.
-
-    Raises:
-        InputError: SK-CLI-032 it is.
-    """
-    if (
-        said is not None
-        and said.split("/")[0::2][:2] != found.split("/")[0::2]
-        and said.split("/") != (found.split("/")[0::2])
-    ):
-        raise InputError(f"SK-CLI-032 {name} is of type {found}, found {said!r}", "SK-CLI-032")
-
-
-def made(type_name: str, fields: dict[str, Any]) -> Any:
-    """A message of what was given.
-
-    Raises:
-        InputError: SK-CLI-031 it does not fit the type.
-    """
-    from simkit import msgs
-
-    try:
-        return msgs.make(type_name, **fields)
-    except MessageError as error:
-        raise InputError(f"SK-CLI-031 {error}", "SK-CLI-031") from None

@@ -9,8 +9,9 @@ import typer
 
 from simkit.cli.options import Json
 from simkit.cli.talking import completion
+from simkit.cli.talking.given import is_type
 from simkit.cli.talking.options import Bag, Ros2Command, Sim, Topic
-from simkit.cli.talking.printed import as_json, is_hidden, line, quiet
+from simkit.cli.talking.printed import as_json, is_hidden, line, list_names, quiet
 from simkit.cli.talking.sources import End, TopicEntry, opened, topic_of
 from simkit.cli.talking.topic_echo import echo
 from simkit.cli.talking.topic_pub import pub
@@ -167,18 +168,10 @@ def find(
     json_: Json = False,
 ) -> int:
     """Lists the topics of a type."""
-    package, _, short = topic_type.partition("/")
-    wanted = {topic_type, f"{package}/msg/{short}"}
     with opened(sim, bag) as source:
-        found = [t.name for t in source.topics().values() if wanted & _all_types(t)]
+        found = [t.name for t in source.topics().values() if any(is_type(topic_type, one) for one in _all_types(t))]
     found = [name for name in found if hidden or not is_hidden(name)]
-    if json_:
-        as_json(len(found) if count else found)
-    elif count:
-        line(str(len(found)))
-    else:
-        for name in found:
-            line(name)
+    list_names(found, count=count, json_=json_)
     return 0
 
 

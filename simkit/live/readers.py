@@ -9,21 +9,9 @@ from functools import cache
 from typing import Any
 
 from simkit.msgs import type_store
+from simkit.msgs.text import NUMBER_CODES
 
-_CODES = {
-    "bool": "?",
-    "char": "B",
-    "int8": "b",
-    "uint8": "B",
-    "int16": "h",
-    "uint16": "H",
-    "int32": "i",
-    "uint32": "I",
-    "int64": "q",
-    "uint64": "Q",
-    "float32": "f",
-    "float64": "d",
-}
+_CODES = {**NUMBER_CODES, "bool": "?"}
 _BASE, _NAME = 1, 2  # kinds of field, as rosbags counts them
 Reader = Callable[[bytes, int], Any]
 

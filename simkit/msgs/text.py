@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4  # rosbags.interfaces.Nodetype
 _EMPTY = "structure_needs_at_least_one_member"
-_CODES = {  # of Python's array module, which rclpy keeps numbers in
+NUMBER_CODES = {
     "float32": "f",
     "float64": "d",
     "int8": "b",
@@ -35,6 +35,7 @@ _CODES = {  # of Python's array module, which rclpy keeps numbers in
     "char": "B",
     "octet": "B",
 }
+"""Letters of Python's `array` (in which rclpy keeps numbers) and `struct` for the numbers of messages."""
 _STEP = re.compile(r"([^.\[\]]+)|\[(-?\d*)(:?)(-?\d*)\]")
 _WIDEST = 2**31 - 1
 
@@ -180,7 +181,7 @@ def field_text(value: Any, node: Any, store: Typestore | None = None) -> str:
     """One field alone, as `ros2 topic echo --field` prints what is no message."""
     if isinstance(value, np.ndarray):
         inner = node[1][0] if node is not None and int(node[0]) in (_ARRAY, _SEQUENCE) else None
-        code = _CODES.get(_kind(inner)) if inner is not None else None
+        code = NUMBER_CODES.get(_kind(inner)) if inner is not None else None
         if int(node[0] if node is not None else 0) == _SEQUENCE and code is not None:
             return f"array('{code}', {value.tolist()!r})" if len(value) else f"array('{code}')"
         return str(value)

@@ -16,7 +16,7 @@ import copy
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.params import Params
@@ -34,6 +34,9 @@ T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 Hook = Literal["prepare", "reset", "before_step", "after_step", "close"]
 ParentKind = Literal["world", "model", "visual", "sensor", "any"]
+
+NEVER: Final = 1e-9
+"""[Hz]; the rate of a hook that is not called for now: once in thirty years."""
 
 
 class Plugin(abc.ABC):

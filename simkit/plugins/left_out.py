@@ -66,9 +66,18 @@ _CLASSIC: Final = (
         "it reads a device or a window of the machine; `simkit run --teleop` drives with the keyboard",
         "HydraPlugin KeysToCmdVelPlugin KeysToJointsPlugin",
     ),
+    ("it hands a model to another program over a socket", "ArduCopterPlugin"),
     (
-        "it hands a model to another program over a socket, or to a hand in a window",
-        "ArduCopterPlugin gazebo_ros_harness HarnessPlugin",
+        "it makes joints while it runs; a joint controller winds a load, and gz's DetachableJoint lets it go",
+        "gazebo_ros_harness HarnessPlugin",
+    ),
+    (
+        "it is the base of SimpleTrackedVehiclePlugin and WheelTrackedVehiclePlugin, which are there",
+        "TrackedVehiclePlugin",
+    ),
+    (
+        "it is a library whose two plugins go by their classes, `gz::sim::systems::LogRecord` and `…LogPlayback`",
+        "gz-sim-log-system",
     ),
     (
         "it is a demonstration of Gazebo's own, without topics",

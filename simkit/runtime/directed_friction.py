@@ -11,7 +11,6 @@ pass (`Physics.contact_law`), whoever asks for it: no reader makes a difference.
 
 from __future__ import annotations
 
-import math
 import weakref
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,9 +21,10 @@ import numpy as np
 
 from simkit.compiler.friction import coefficients_of, has_direction, slips_of
 from simkit.diagnostics import NOWHERE, Where
+from simkit.runtime.directed_contacts import DirectedContacts, Places, Row
 from simkit.runtime.physics import STALE
 from simkit.runtime.softness import Softness
-from simkit.runtime.surface import Belt, Flow, Run, Surfaces, Touches, touches
+from simkit.runtime.surface import Belt, ManyTouches, Run, Surfaces, Touches, touches
 
 if TYPE_CHECKING:
     from simkit.compiler.names import LinkBinding, NameMap
@@ -137,32 +137,12 @@ class DirectedFriction:
         return made
 
 
-@dataclass(slots=True)
-class _Row:
-    """What a collision asks for; the first direction is `axis` in the frame of `body`.
-
-    Attributes:
-        mu: friction along and across.
-        slip: compliances along and across [m/s/N].
-        tree: the kinematic tree that it is part of.
-        dof: of the wheel's turning, whose rate its slips are multiplied with; -1 for none.
-    """
-
-    geoms: list[int]
-    body: int
-    axis: Numbers
-    mu: Pair
-    slip: Pair
-    tree: int
-    dof: int = -1
-
-
 class _Table:
     """What one compiled model has of them, and how its contacts are changed."""
 
     def __init__(self, model: Any, names: NameMap) -> None:
         self.model, self._names = model, names
-        self._rows: dict[str, _Row] = {}
+        self._rows: dict[str, Row] = {}
         self._sources: dict[int, tuple[list[str], Slips]] = {}
         self._softness = Softness(model)
         self.surfaces, self._belts = Surfaces(model), set[int]()
@@ -204,15 +184,15 @@ class _Table:
             old = self._rows.get(scoped)
             slip = (0.0, 0.0) if old is None else old.slip
             tree = int(self.model.body_treeid[belt.body])
-            self._rows[scoped] = _Row(geoms, belt.body, list(belt.axle), belt.friction, slip, tree)
+            self._rows[scoped] = Row(geoms, belt.body, list(belt.axle), belt.friction, slip, tree)
 
-    def _of_surface(self, link: LinkBinding, collision: SceneCollision) -> _Row:
+    def _of_surface(self, link: LinkBinding, collision: SceneCollision) -> Row:
         surface = collision.surface
         frame = _frame_of(surface.fdir1_frame, link.scoped, self._names)
         body, offset = (link.body, link.offset @ collision.pose_link) if frame is None else (frame.body, frame.offset)
         axis = (offset.matrix @ np.array(surface.fdir1)).tolist()
         tree = int(self.model.body_treeid[link.body])
-        return _Row(self._geoms(link, collision), body, axis, coefficients_of(surface), slips_of(surface), tree)
+        return Row(self._geoms(link, collision), body, axis, coefficients_of(surface), slips_of(surface), tree)
 
     def _geoms(self, link: LinkBinding, collision: SceneCollision) -> list[int]:
         return [geom for geom in link.geoms if self._names.geom_owner(geom)[1] == collision.scoped]
@@ -230,7 +210,7 @@ class _Table:
             body, axis = int(self.model.jnt_bodyid[number]), self.model.jnt_axis[number].tolist()
             if row is None:
                 mu, tree = coefficients_of(collision.surface), int(self.model.body_treeid[link.body])
-                row = _Row(self._geoms(link, collision), body, axis, mu, (0.0, 0.0), tree)
+                row = Row(self._geoms(link, collision), body, axis, mu, (0.0, 0.0), tree)
                 self._rows[collision.scoped] = row
             elif not has_direction(collision.surface):
                 row.body, row.axis = body, axis
@@ -246,7 +226,8 @@ class _Table:
             for geom in row.geoms:
                 self._row_of[geom] = number
         self._concerns = [a >= 0 or b for a, b in zip(self._row_of, self.surfaces.concerns, strict=True)]
-        self._is_belt = [any(self.surfaces.concerns[geom] for geom in row.geoms) for row in rows]
+        is_belt = [any(self.surfaces.concerns[geom] for geom in row.geoms) for row in rows]
+        self._contacts = DirectedContacts(self.model, rows, self._row_of, is_belt)
         self._slip = [row.slip for row in rows]
         order = {key: number for number, key in enumerate(self._rows)}
         self._wheels = [[(order[key], self._rows[key].dof) for key in keys] for keys, _ in self._sources.values()]
@@ -266,13 +247,13 @@ class _Table:
         flow = surfaces.look(data, found, runs)
         if found is None:
             return
-        places = self._directed(found)
-        if not places:
+        places = self._contacts.find(found)
+        if not len(places):
             if flow is not None:
                 surfaces.carry(data, found.frames)
                 mujoco.mj_referenceConstraint(model, data)
             return
-        self._direct(data, found, places, flow)
+        self._contacts.turn(data, found, places, flow)
         surfaces.carry(data, found.frames)
         mujoco.mj_makeConstraint(model, data)
         soft = self._soft(data, found, places, wheels) if self._may_slip else []
@@ -287,62 +268,12 @@ class _Table:
             for number, _, slip in soft:
                 self._softness.soften_pyramid(data, number, slip)
 
-    def _directed(self, found: Touches) -> list[tuple[int, int, int]]:
-        """Those that have a row: place among the touches, row and the other geom."""
-        row_of, places = self._row_of, []
-        for place, (first, second) in enumerate(found.geoms):
-            row = row_of[first]
-            if row >= 0:
-                places.append((place, row, second))
-            elif (row := row_of[second]) >= 0:
-                places.append((place, row, first))
-        return places
-
     def solve(self, data: Any) -> None:
         """The rest of a forward pass, after `shape`."""
         self.surfaces.solve(data)
 
-    def _direct(self, data: Any, found: Touches, places: list[tuple[int, int, int]], flow: Flow | None = None) -> None:
-        """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well."""
-        contact, ground, least = data.contact, self.model.geom_friction, mujoco.mjMINMU
-        which: Any = [found.numbers[place] for place, _, _ in places]
-        if len(which) == data.ncon:
-            which = slice(None)  # a view is quicker
-        flows = contact.surfacevel[which].tolist() if self.model.flg_surfacevel else None
-        # a belt's friction is along its own way, not along its <fdir1>; a roller's stays its own on a belt too
-        along = {} if flow is None else dict(zip(flow.places, flow.directions, strict=True))
-        turns: dict[int, Numbers] = {}
-        frames, frictions = [], []
-        for index, (place, row, other) in enumerate(places):
-            asked, frame = self._list[row], found.frames[place]
-            axis: Sequence[float] | None = along.get(place) if self._is_belt[row] else None
-            if axis is None:
-                turn = turns.get(asked.body)
-                if turn is None:
-                    turn = turns[asked.body] = data.xmat[asked.body].tolist()
-                axis = _product(turn, asked.axis)
-            turned = _turned(frame, axis)
-            # what is there may be less: what velocity control carries slides freely
-            most = ground.item(other, 0) if other >= 0 else math.inf
-            one, two = asked.mu
-            if turned is frame:  # no direction there: as where the file gives none
-                one = two = min(one, two)
-            elif flows is not None:
-                _turn_flow(flows[index], frame, turned)
-            found.frames[place] = turned
-            frames.append(turned)
-            frictions.append((one, two, most))
-        contact.frame[which] = frames
-        there = contact.friction[which].tolist()
-        for each, (one, two, most) in zip(there, frictions, strict=True):
-            most = min(each[0], each[1], most)
-            each[0], each[1] = max(min(one, most), least), max(min(two, most), least)
-        contact.friction[which] = there
-        if flows is not None:
-            contact.surfacevel[which] = flows
-
     def _soft(
-        self, data: Any, found: Touches, places: list[tuple[int, int, int]], wheels: list[list[Pair]]
+        self, data: Any, found: Touches | ManyTouches, places: Places, wheels: list[list[Pair]]
     ) -> list[tuple[int, int, Pair]]:
         """The contacts that slip, with the tree that does and their compliances [m/s/N]."""
         slips = self._slip
@@ -353,7 +284,9 @@ class _Table:
                 for (row, dof), (one, two) in zip(those, own, strict=True):
                     (a, b), rate = slips[row], abs(qvel.item(dof))
                     slips[row] = a + rate * one, b + rate * two
-        return [(found.numbers[place], self._list[row].tree, slips[row]) for place, row, _ in places if any(slips[row])]
+        listed = places if isinstance(places, list) else places.tolist()
+        numbers = found.numbers
+        return [(int(numbers[place]), self._list[row].tree, slips[row]) for place, row, _ in listed if any(slips[row])]
 
 
 def _frame_of(name: str, link: str, names: NameMap) -> LinkBinding | None:
@@ -362,35 +295,3 @@ def _frame_of(name: str, link: str, names: NameMap) -> LinkBinding | None:
         return None
     scope = link.rpartition("::")[0]
     return names.links.get(f"{scope}::{name}" if scope else name)
-
-
-def _turned(frame: Numbers, wanted: Sequence[float]) -> Numbers:
-    """A contact's frame (normal and two tangents, (9,)) whose first tangent is along a direction.
-
-    The frame as it was where the direction stands on the surface.
-    """
-    nx, ny, nz = frame[:3]
-    x, y, z = wanted
-    over = x * nx + y * ny + z * nz
-    fx, fy, fz = x - over * nx, y - over * ny, z - over * nz
-    square = fx * fx + fy * fy + fz * fz
-    if square <= _UPRIGHT * (x * x + y * y + z * z):
-        return frame
-    length = math.sqrt(square)
-    fx, fy, fz = fx / length, fy / length, fz / length
-    return [nx, ny, nz, fx, fy, fz, ny * fz - nz * fy, nz * fx - nx * fz, nx * fy - ny * fx]
-
-
-def _turn_flow(flow: Numbers, before: Numbers, after: Numbers) -> None:
-    """Takes the speed of a surface along the tangents of one frame over to those of another."""
-    one, two = flow[:2]
-    over = [one * a + two * b for a, b in zip(before[3:6], before[6:], strict=True)]
-    flow[0] = sum(a * b for a, b in zip(over, after[3:6], strict=True))
-    flow[1] = sum(a * b for a, b in zip(over, after[6:], strict=True))
-
-
-def _product(matrix: Numbers, vector: Numbers) -> Numbers:
-    """A row-major matrix (9,) times a vector (3,)."""
-    a, b, c, d, e, f, g, h, i = matrix
-    x, y, z = vector
-    return [a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from simkit.errors import SimulationDiverged
 from simkit.runtime.clock import Clock
+from simkit.runtime.contact_law import ContactLaw, HeldState
 from simkit.runtime.sleep import Sleep
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)
@@ -50,37 +51,6 @@ def _hear_engine(text: str) -> None:
     # an exception here would kill the interpreter, so the text is only kept
     if len(_engine_texts) < 8:
         _engine_texts.append(text)
-
-
-class HeldState:
-    """The physics state of one tick, kept so that a reading can be made of it later."""
-
-    __slots__ = ("model", "tick", "told", "values")
-
-    def __init__(self, tick: int, model: Any, values: npt.NDArray[np.float64], told: Any = None) -> None:
-        self.tick, self.model, self.values, self.told = tick, model, values, told
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
-        return self
-
-
-class ContactLaw(Protocol):
-    """What changes contacts in every forward pass, once velocities are known and before forces are."""
-
-    model: Any
-
-    @property
-    def acts(self) -> bool:
-        """Whether there is anything to change; else the engine goes on by itself."""
-
-    def shape(self, data: Any, told: Any = None) -> None:
-        """Changes the contacts of data of its model, as is asked for now or as was once `told`."""
-
-    def solve(self, data: Any) -> None:
-        """Solves for the forces, after that."""
-
-    def told(self) -> Any:
-        """What is asked of contacts now, for `shape`."""
 
 
 class Physics:

@@ -16,7 +16,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from simkit.runtime.sliding_many import BEYOND, CALM, MORE, SLIDES, TIMES, solve_many
+from simkit.runtime.sliding_many import BEYOND, CALM, MORE, SLIDES, TIMES, Ints, solve_many
 
 Pair = tuple[float, float]
 
@@ -26,7 +26,7 @@ MANY = 64
 _AFTER_VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
-def solve_sliding(model: Any, data: Any, numbers: Sequence[int]) -> bool:
+def solve_sliding(model: Any, data: Any, numbers: Sequence[int] | Ints) -> bool:
     """Solves for the forces, from velocities that are known; leaves the references of constraints as it found them.
 
     Args:
@@ -37,10 +37,10 @@ def solve_sliding(model: Any, data: Any, numbers: Sequence[int]) -> bool:
         Whether it was done: where none of them slides, the engine does as well by itself.
     """
     if len(numbers) > MANY:
-        return solve_many(model, data, np.array(numbers))
+        return solve_many(model, data, np.asarray(numbers))
     x, y, z = model.opt.gravity.tolist()
     calm = math.sqrt(x * x + y * y + z * z)
-    rows = _Rows(model, data, numbers)
+    rows = _Rows(model, data, list(map(int, numbers)))
     wanted = rows.tangents()
     size = [math.sqrt(a * a + b * b) for a, b in wanted]
     if not any(one > CALM * most * calm for one, most in zip(size, rows.most, strict=True)):

@@ -66,7 +66,8 @@ class _Rows:
         self._first = data.contact.efc_address[numbers]
         self._rows = self._first[:, None] + (np.arange(4) if self._is_pyramid else np.arange(1, 3))
         self._friction = data.contact.friction[numbers, :2]
-        self.most, self.least = self._friction.max(axis=1), self._friction.min(axis=1)
+        one, other = self._friction.T
+        self.most, self.least = np.maximum(one, other), np.minimum(one, other)
         self.before: Floats = data.efc_aref[self._rows]
 
     def tangents(self, values: Floats) -> Floats:
@@ -108,7 +109,8 @@ class _Rows:
 
 
 def _length(vectors: Floats) -> Floats:
-    found: Floats = np.sqrt((vectors * vectors).sum(axis=1))
+    x, y = vectors.T
+    found: Floats = np.sqrt(x * x + y * y)
     return found
 
 

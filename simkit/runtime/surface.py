@@ -16,12 +16,12 @@ import mujoco
 import numpy as np
 
 from simkit.runtime.sliding import MANY, solve_sliding
+from simkit.runtime.surface_many import FLAT, Floats, Ints, along_tangents, ways_of
 
 Point = tuple[float, float, float]
 Numbers = list[float]
 
 _AFTER_VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
-_FLAT = 1e-6  # sine of an angle below which a normal stands along an axle
 NOWHERE = (0.0, 0.0, 0.0)
 
 
@@ -58,7 +58,7 @@ class Belt:
 
 
 class Touches(NamedTuple):
-    """Contacts that rub, k of them; plain numbers, since there are few and arrays of three are slow.
+    """Contacts that rub, k of them; plain numbers where there are few, as arrays of three are slow, else `ManyTouches`.
 
     Attributes:
         numbers: among the contacts.
@@ -71,7 +71,15 @@ class Touches(NamedTuple):
     frames: list[Numbers]
 
 
-def touches(data: Any, concerns: Sequence[bool]) -> Touches | None:
+class ManyTouches(NamedTuple):
+    """The same of many contacts, on arrays."""
+
+    numbers: Ints
+    geoms: Ints
+    frames: Floats
+
+
+def touches(data: Any, concerns: Sequence[bool]) -> Touches | ManyTouches | None:
     """The contacts that rub among those that are about certain geoms; None where there is none.
 
     Args:
@@ -80,8 +88,13 @@ def touches(data: Any, concerns: Sequence[bool]) -> Touches | None:
     """
     contact = data.contact
     if data.ncon > MANY:
-        rubs = (contact.efc_address >= 0) & (contact.dim > 1) & np.array(concerns)[contact.geom].any(axis=1)
-        numbers = rubs.nonzero()[0].tolist()
+        one_side, other_side = np.array(concerns)[contact.geom].T
+        rubs = (contact.efc_address >= 0) & (contact.dim > 1) & (one_side | other_side)
+        many: Ints = rubs.nonzero()[0]
+        if many.size > MANY:
+            which: Any = slice(None) if many.size == data.ncon else many  # a slice is quicker
+            return ManyTouches(many, contact.geom[which], contact.frame[which].copy())
+        numbers = many.tolist()
         return Touches(numbers, contact.geom[rubs].tolist(), contact.frame[rubs].tolist()) if numbers else None
     pairs = contact.geom.tolist()
     numbers = [number for number, (one, other) in enumerate(pairs) if concerns[one] or concerns[other]]
@@ -112,6 +125,15 @@ class Flow(NamedTuple):
     velocities: list[Point]
 
 
+class ManyFlow(NamedTuple):
+    """The same of contacts among many, on arrays."""
+
+    numbers: Ints
+    places: Ints
+    directions: Floats
+    velocities: Floats
+
+
 class Surfaces:
     """The belts of a compiled model.
 
@@ -124,7 +146,8 @@ class Surfaces:
         self._belts: list[Belt] = []
         self._owner = [-1] * (model.ngeom + 1)
         self.concerns = [False] * (model.ngeom + 1)
-        self._flow: Flow | None = None
+        self._owners: Ints = np.array(self._owner)
+        self._flow: Flow | ManyFlow | None = None
         self._flow_of: Any = None
 
     def add(self, belt: Belt) -> None:
@@ -133,6 +156,7 @@ class Surfaces:
         for geom in belt.geoms:
             self._owner[geom], self.concerns[geom] = len(self._belts), True
         self._belts.append(belt)
+        self._owners = np.array(self._owner)
 
     @property
     def run(self) -> bool:
@@ -145,7 +169,9 @@ class Surfaces:
 
     # ------------------------------------------------------------------ contacts
 
-    def look(self, data: Any, found: Touches | None, runs: Sequence[Run | None]) -> Flow | None:
+    def look(
+        self, data: Any, found: Touches | ManyTouches | None, runs: Sequence[Run | None]
+    ) -> Flow | ManyFlow | None:
         """Finds the contacts with belts that run; also for `carry` and `solve`.
 
         Args:
@@ -154,8 +180,19 @@ class Surfaces:
             runs: how belts run.
         """
         self._flow_of = data
-        self._flow = None if found is None or not any(runs) else self._found(data, found, runs)
+        if found is None or not any(runs):
+            self._flow = None
+        elif isinstance(found, Touches):
+            self._flow = self._found(data, found, runs)
+        else:
+            self._flow = self._found_many(data, found, runs)
         return self._flow
+
+    def _found_many(self, data: Any, found: ManyTouches, runs: Sequence[Run | None]) -> ManyFlow | None:
+        axles = [NOWHERE if run is None else _axle(data, one) for one, run in zip(self._belts, runs, strict=True)]
+        points = data.contact.pos[found.numbers]
+        places, directions, velocities = ways_of(self._owners[found.geoms], found.frames, points, runs, axles)
+        return ManyFlow(found.numbers[places], places, directions, velocities) if places.size else None
 
     def _found(self, data: Any, found: Touches, runs: Sequence[Run | None]) -> Flow | None:
         owner, flow = self._owner, Flow([], [], [], [])
@@ -211,7 +248,7 @@ class Surfaces:
             vx, vy, vz = vx + speed * dx, vy + speed * dy, vz + speed * dz
         return direction, (vx, vy, vz)
 
-    def carry(self, data: Any, frames: Sequence[Numbers]) -> None:
+    def carry(self, data: Any, frames: Sequence[Numbers] | Floats) -> None:
         """Gives the contacts found by `look` their surface velocity.
 
         Args:
@@ -222,9 +259,9 @@ class Surfaces:
         if flow is None:
             return
         surface = data.contact.surfacevel
-        if len(flow.numbers) > MANY:
-            tangents = np.array([frames[place] for place in flow.places]).reshape(-1, 3, 3)[:, 1:]
-            surface[flow.numbers, :2] = (tangents * np.array(flow.velocities)[:, None, :]).sum(axis=2)
+        if isinstance(flow, ManyFlow):
+            those: Any = slice(None) if len(flow.places) == len(surface) else flow.numbers
+            surface[those, :2] = along_tangents(np.asarray(frames)[flow.places], flow.velocities)
             return
         for number, place, (x, y, z) in zip(flow.numbers, flow.places, flow.velocities, strict=True):
             _, _, _, ax, ay, az, bx, by, bz = frames[place]
@@ -270,4 +307,4 @@ def _unit(vector: Point) -> Point:
     """A vector of length 1; zero for one that has nearly none."""
     x, y, z = vector
     length = math.sqrt(x * x + y * y + z * z)
-    return (x / length, y / length, z / length) if length > _FLAT else NOWHERE
+    return (x / length, y / length, z / length) if length > FLAT else NOWHERE

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import math
 import sys
 import tempfile
 import threading
@@ -99,12 +100,14 @@ class Live:
 
     Attributes:
         sim: to be looked at while it is paused.
+        steps_heard: how many steps with a subscriber it goes on before it ends by itself.
     """
 
     def __init__(self, sim: Any, name: str) -> None:
         from simkit.live import Server
 
         self.sim = sim
+        self.steps_heard = math.inf
         self._server = Server(sim, name)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -112,9 +115,10 @@ class Live:
 
     def _run(self) -> None:
         with self._server:
-            while not self._over.is_set():
+            while not self._over.is_set() and self.steps_heard > 0:
                 if not self.sim.paused:
                     self.sim.step(5)
+                    self.steps_heard -= 5 * any(peer.subscriptions for peer in self._server.peers.values())
                 self._server.poll(0.02 if self.sim.paused else 0.001)
 
     def close(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -65,8 +66,13 @@ def test_without_a_simulation_nothing_is_offered_and_nothing_said(place: Any) ->
     assert completed("simkit topic echo --bag no_such.mcap /o") == []
 
 
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
 def test_a_shell_can_be_taught(place: Any) -> None:
-    assert "_SIMKIT_COMPLETE" in CliRunner().invoke(app, ["--show-completion", "bash"], prog_name="simkit").output
+    """Which shell it is, is seen from the process above."""
+    named = f"import sys; sys.argv[0] = 'simkit'; {MAIN}"
+    line = ["bash", "-c", '"$0" -c "$1" --show-completion; exit $?', sys.executable, named]
+    told = subprocess.run(line, stdout=subprocess.PIPE, text=True, check=True).stdout
+    assert "_SIMKIT_COMPLETE=complete_bash" in told
     assert typer.main.get_command(app).name == "simkit"
 
 

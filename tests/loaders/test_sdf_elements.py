@@ -191,3 +191,15 @@ def test_a_file_that_is_not_there_is_an_error(load, tmp_path):
     scene, found = load(tmp_path / "no.sdf")
     assert [d.code for d in found] == ["SK-LOAD-002"]
     assert scene.model is None
+
+
+def test_a_slip_below_zero_is_reported_and_none(load):
+    scene, found = load(
+        body("""<collision name="c"><geometry><sphere><radius>1</radius></sphere></geometry><surface><friction><ode>
+        <mu>1</mu><mu2>1</mu2><slip1>-0.1</slip1><slip2>0.2</slip2></ode></friction></surface></collision>""")
+    )
+    surface = scene.model.links[0].collisions[0].surface
+    assert (surface.slip1, surface.slip2) == (0.0, 0.2)
+    told = [d for d in found if d.code == "SK-SDF-030"]
+    assert [(d.severity, d.line) for d in told] == [("warning", 2)]
+    assert "<slip1> is -0.1, it cannot be negative; 0 is used" in told[0].message

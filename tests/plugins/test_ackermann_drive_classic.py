@@ -90,3 +90,13 @@ def test_a_reset_brings_it_back():
     sim.reset()
     drive(sim, 0.5, 0.2, 0.5)
     assert sim.mj_data.qpos.tobytes() == here
+
+
+def test_a_rate_above_that_of_steps_is_every_step():
+    """The first update has no time before it: its slope is over a step, not over the shorter period of the rate."""
+    found = []
+    for rate in ("0", "1e9"):
+        sim = simkit.load(world(car(plugin().replace("<update_rate>0<", f"<update_rate>{rate}<"))))
+        drive(sim, 0.5, 0.3, 0.2)
+        found.append(sim.mj_data.qpos.tobytes())
+    assert found[0] == found[1]

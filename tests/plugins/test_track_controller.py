@@ -236,15 +236,18 @@ def test_a_command_that_is_no_number_is_left_out() -> None:
         assert [d for d in sim.diagnostics if d.code == "SK-PLUGIN-041"]
 
 
+@pytest.mark.parametrize("friction", [rubs(0.7), rubs(0.7, 0.2, "1 1 0")], ids=["even", "directed"])
 @pytest.mark.parametrize("step", [0.001, 0.004])
-def test_many_contacts_have_the_bits_that_few_have(step: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_contacts_have_the_bits_that_few_have(step: float, friction: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Many are worked out on arrays, few as plain numbers: where the one begins changes nothing."""
 
     def run(many: int) -> bytes:
         for module in (sliding, surface):
             monkeypatch.setattr(module, "MANY", many)
         crates = [crate(f"{0.2 * n} 0 0.05 0 0 {0.3 * n}", f"crate{n}") for n in range(4)]
-        with opened(conveyor("<max_acceleration>9</max_acceleration>"), *crates, wall(0.7), step=step) as sim:
+        crates[3] = crates[3].replace("<mu>1.0</mu><mu2>1.0</mu2>", "<mu>0.9</mu><mu2>0.4</mu2><fdir1>1 0.5 0</fdir1>")
+        belt = conveyor("<max_acceleration>9</max_acceleration>", surface=friction)
+        with opened(belt, *crates, wall(0.7), step=step) as sim:
             sim.publish(BELT, {"data": 0.8})
             sim.run(0.1)
             sim.publish(CENTRE, {"x": 0.0, "y": 2.0, "z": 0.0})

@@ -54,7 +54,7 @@ def play(
         if not json_:
             aside(f"[INFO] [rosbag2_player]: playing {', '.join(publishers)}")
         count = _played(client, reader, publishers, rate, start)
-        while loop:
+        while loop and count:  # a round of nothing takes no time
             count += _played(client, reader, publishers, rate, start)
         client.flush()
     if json_:

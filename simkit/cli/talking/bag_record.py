@@ -12,6 +12,7 @@ import typer
 from simkit.cli.options import Force, Json
 from simkit.cli.running.interrupts import Interrupts
 from simkit.cli.talking import completion
+from simkit.cli.talking.given import pattern
 from simkit.cli.talking.options import Sim
 from simkit.cli.talking.printed import absolute, as_json, aside, is_hidden, quiet
 from simkit.cli.talking.sources import LiveSource, running
@@ -64,7 +65,7 @@ def record(
     from simkit.sinks.recorder import open_bag
 
     named = [absolute(t) for t in (*(topics or ()), *topics_too)]
-    wanted = _Wanted(named, all_, _pattern(regex, "--regex"), _pattern(exclude, "--exclude-regex"), hidden)
+    wanted = _Wanted(named, all_, pattern(regex, "--regex"), pattern(exclude, "--exclude-regex"), hidden)
     if storage != "mcap":
         raise InputError(f"SK-CLI-018 --storage: found {storage!r}, allowed is mcap", "SK-CLI-018")
     target = output or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
@@ -84,13 +85,6 @@ def record(
         if recording.lost:
             aside(f"note: {recording.lost} messages came faster than they were written; simkit run --record loses none")
     return stop.exit_code
-
-
-def _pattern(text: str | None, option: str) -> re.Pattern[str] | None:
-    try:
-        return None if text is None else re.compile(text)
-    except re.error as error:
-        raise InputError(f"SK-CLI-031 {option}: {text!r} is no regular expression: {error}", "SK-CLI-031") from None
 
 
 class _Wanted:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from simkit.cli.talking.printed import absolute
+
 if TYPE_CHECKING:
     from simkit.cli.talking.sources import Source
 
@@ -51,7 +53,7 @@ def _source(ctx: typer.Context) -> Iterator[Source]:
 def _topic(ctx: typer.Context) -> str:
     """The topic that was written before; click leaves it aside while the value of an option is being written."""
     found = ctx.params.get("topic") or next((word for word in ctx.args if not word.startswith("-")), "")
-    return found if not found or found.startswith("/") else f"/{found}"
+    return absolute(found) if found else ""
 
 
 def _named(ctx: typer.Context) -> str | None:
@@ -174,15 +176,7 @@ def services(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def service_types(ctx: typer.Context) -> Iterable[str]:
     """The type of the service named before; all service types where there is none."""
-    from simkit.msgs.written import names
-
-    name = ctx.params.get("service")
-    if name:
-        with _client(ctx) as client:
-            found = client.services().get(name if name.startswith("/") else f"/{name}")
-        if found:
-            return [found]
-    return names("srv")
+    return _types_of(ctx, "service", "srv")
 
 
 @_silent
@@ -195,15 +189,20 @@ def actions(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def action_types(ctx: typer.Context) -> Iterable[str]:
     """The type of the action named before; all action types where there is none."""
+    return _types_of(ctx, "action", "action")
+
+
+def _types_of(ctx: typer.Context, what: str, kind: str) -> list[str]:
+    """The type of the service or action that was written before; where there is none, all types of that kind."""
     from simkit.msgs.written import names
 
-    name = ctx.params.get("action")
+    name = ctx.params.get(what)
     if name:
         with _client(ctx) as client:
-            found = client.actions().get(name if name.startswith("/") else f"/{name}")
-        if found:
-            return [found]
-    return names("action")
+            there = client.services() if what == "service" else client.actions()
+        if absolute(name) in there:
+            return [there[absolute(name)]]
+    return names(kind)
 
 
 @_silent
@@ -229,7 +228,7 @@ def parameters(ctx: typer.Context) -> Iterable[str]:
     """Parameters of the node named before."""
     node = str(ctx.params.get("node") or "")
     with _client(ctx) as client:
-        found = client.call(f"{node if node.startswith('/') else '/' + node}/list_parameters", {})
+        found = client.call(f"{absolute(node)}/list_parameters", {})
     return list(found.result.names)
 
 

@@ -1,4 +1,4 @@
-"""What the commands for topics, services and the like print, as lines or JSON, and what they are given."""
+"""What the commands for topics, services and the like print, as lines or JSON."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from simkit.cli.console import INTERRUPTED, guarded
 from simkit.errors import InputError
 
 P = ParamSpec("P")
-_SHOWN = 200  # letters of a text that are shown where it is wrong
 
 
 def line(text: str = "") -> None:
@@ -53,26 +52,22 @@ def quiet(command: Callable[P, Any]) -> Callable[P, None]:
     return guarded(run)
 
 
-def given(text: str, what: str) -> dict[str, Any]:
-    """The mapping that a YAML text on the command line stands for; an empty text for none of its fields.
+def list_names(names: Sequence[str], *, count: bool, json_: bool) -> None:
+    """Names, one a line, or how many there are."""
+    if json_:
+        as_json(len(names) if count else list(names))
+    else:
+        for text in [str(len(names))] if count else names:
+            line(text)
 
-    Raises:
-        InputError: SK-CLI-031 it is no YAML, or no mapping.
-    """
-    from simkit.sinks.yaml_text import NotYaml, read_yaml
 
-    try:
-        found = read_yaml(text)
-    except NotYaml as error:
-        shown = repr(text) if len(text) <= _SHOWN else f"{text[:_SHOWN]!r}…"
-        raise InputError(f"SK-CLI-031 {what}: {shown} is not YAML: {error}", "SK-CLI-031") from None
-    if found is None:
-        return {}
-    if not isinstance(found, dict) or any(not isinstance(key, str) for key in found):
-        shown = repr(text) if len(text) <= _SHOWN else f"{text[:_SHOWN]!r}…"
-        text = f"{what}: found {shown}, allowed is a mapping of fields such as '{{linear: {{x: 0.2}}}}'"
-        raise InputError(f"SK-CLI-031 {text}", "SK-CLI-031")
-    return found
+def list_typed(types: Mapping[str, str], *, show_types: bool, count: bool, json_: bool) -> None:
+    """Names, with their types where asked for, one a line, or how many there are."""
+    if json_ and not count:
+        as_json([{"name": name, "types": [type_name]} for name, type_name in types.items()])
+    else:
+        names = [f"{n} [{t}]" for n, t in types.items()] if show_types else list(types)
+        list_names(names, count=count, json_=json_)
 
 
 def none_of(what: str, name: str, there: Sequence[str] | Mapping[str, Any], code: str, where: str) -> InputError:

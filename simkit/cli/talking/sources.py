@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -64,7 +64,7 @@ class LiveSource:
 
     @property
     def where(self) -> str:
-        return f"the simulation {self.client.info.get('name', '')!r}"
+        return where_of(self.client)
 
     def topics(self) -> dict[str, TopicEntry]:
         """Topics by name, sorted."""
@@ -258,6 +258,29 @@ def running(sim: str | None) -> Iterator[Any]:
 
     with connect(sim, node=f"_simkit_{os.getpid()}") as client:
         yield client
+
+
+def where_of(client: Any) -> str:
+    """What a client is connected to, in words."""
+    return f"the simulation {client.info.get('name', '')!r}"
+
+
+def type_of(client: Any, what: str, types: Mapping[str, str], name: str) -> str:
+    """The type of a service or an action.
+
+    Args:
+        client: the connection.
+        what: `service` or `action`.
+        types: of all there are.
+        name: which one; its leading slash may be left out.
+
+    Raises:
+        InputError: SK-CLI-037 there is none of that name; names the closest.
+    """
+    wanted = absolute(name)
+    if wanted not in types:
+        raise none_of(what, wanted, types, "SK-CLI-037", where_of(client))
+    return str(types[wanted])
 
 
 def wait_for(source: Source, name: str, until: float | None = None) -> TopicEntry:

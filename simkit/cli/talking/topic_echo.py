@@ -10,6 +10,7 @@ import typer
 
 from simkit.cli.options import Json
 from simkit.cli.talking import completion
+from simkit.cli.talking.given import check_type
 from simkit.cli.talking.options import Bag, Sim, Topic
 from simkit.cli.talking.printed import as_json, aside, line, quiet
 from simkit.cli.talking.sources import Feed, Received, Source, opened, topic_of, wait_for
@@ -92,19 +93,6 @@ def _echoed(feed: Feed, show: _Shown, *, once: bool, until: float | None, tells_
         if tells_lost and feed.lost > lost:
             aside(f"A message was lost!!!\n\ttotal count change:{feed.lost - lost}\n\ttotal count: {feed.lost}")
             lost = feed.lost
-
-
-def check_type(said: str | None, types: tuple[str, ...], topic: str) -> None:
-    """Raises where a topic is of another type than was said.
-
-    Raises:
-        InputError: SK-CLI-032 it is, or it has several and none was said.
-    """
-    if said is None:
-        return
-    package, _, short = said.partition("/")
-    if not {said, f"{package}/msg/{short}"} & set(types):
-        raise InputError(f"SK-CLI-032 {topic} is of type {', '.join(types)}, found {said!r}", "SK-CLI-032")
 
 
 def filtered(expression: str | None) -> Callable[[Any], bool] | None:

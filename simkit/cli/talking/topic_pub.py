@@ -11,13 +11,12 @@ import typer
 
 from simkit.cli.options import Json
 from simkit.cli.talking import completion
+from simkit.cli.talking.given import given, made, type_and_values
 from simkit.cli.talking.options import Sim, Topic
 from simkit.cli.talking.pace import LONGEST, SimClock
-from simkit.cli.talking.printed import absolute, as_json, aside, given, line, quiet
+from simkit.cli.talking.printed import absolute, as_json, aside, line, quiet
 from simkit.cli.talking.sources import running
 from simkit.errors import InputError, MessageError
-
-_TYPE_FORM = r"^[A-Za-z]\w*(/\w+){1,2}$"
 
 
 @quiet
@@ -103,15 +102,6 @@ def pub(
     return 0
 
 
-def type_and_values(type_name: str | None, values: str | None) -> tuple[str | None, str | None]:
-    """The two arguments; values alone stand in the place of the type."""
-    import re
-
-    if type_name is not None and values is None and not re.match(_TYPE_FORM, type_name):
-        return None, type_name
-    return type_name, values
-
-
 def _full(client: Any, topic: str, type_name: str | None) -> str:
     """The type's full name, a known one.
 
@@ -133,19 +123,14 @@ def _full(client: Any, topic: str, type_name: str | None) -> str:
 
 def _maker(type_name: str, fields: dict[str, Any]) -> Any:
     """Makes the message of a time [ns]; where nothing in it depends on that, it is always the same."""
-    from simkit import msgs
-
     is_stamped = fields.get("header") == "auto" or _has_now(fields)
 
-    def made(now_ns: int) -> Any:
-        try:
-            return msgs.make(type_name, **_with_time(fields, now_ns))
-        except MessageError as error:
-            raise InputError(f"SK-CLI-031 {error}", "SK-CLI-031") from None
+    def at(now_ns: int) -> Any:
+        return made(type_name, _with_time(fields, now_ns))
 
     if is_stamped:
-        return made
-    kept = made(0)
+        return at
+    kept = at(0)
     return lambda _: kept
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Annotated, Any
 
 import typer
@@ -53,13 +53,22 @@ class Rates:
 
     def found(self) -> dict[str, Any] | None:
         """`rate` [Hz], `min`, `max`, `std_dev` of the gaps [s] and `window`; None before there is a gap."""
-        gaps = self._gaps
-        if not gaps:
+        if not self._gaps:
             return None
-        mean = sum(gaps) / len(gaps)
-        spread = math.sqrt(sum((g - mean) ** 2 for g in gaps) / len(gaps))
-        rate = 1.0 / mean if mean > 0.0 else 0.0
-        return {"rate": rate, "min": min(gaps), "max": max(gaps), "std_dev": spread, "window": len(gaps)}
+        mean, spread = _spread(self._gaps)
+        return {"rate": 1.0 / mean if mean > 0.0 else 0.0, **spread}
+
+
+def _spread(seconds: Collection[float]) -> tuple[float, dict[str, Any]]:
+    """The mean of some times [s], and their `min`, `max`, `std_dev` [s] and how many they are: `window`."""
+    mean = sum(seconds) / len(seconds)
+    deviation = math.sqrt(sum((one - mean) ** 2 for one in seconds) / len(seconds))
+    return mean, {"min": min(seconds), "max": max(seconds), "std_dev": deviation, "window": len(seconds)}
+
+
+def _spread_text(found: dict[str, Any]) -> str:
+    ends = f"min: {found['min']:.3f}s max: {found['max']:.3f}s std dev: {found['std_dev']:.5f}s"
+    return f"{ends} window: {found['window']}"
 
 
 class Amounts:
@@ -169,8 +178,7 @@ def hz(
 
 def rate_text(found: dict[str, Any]) -> str:
     """As `ros2 topic hz` prints it."""
-    gaps = f"min: {found['min']:.3f}s max: {found['max']:.3f}s std dev: {found['std_dev']:.5f}s"
-    return f"average rate: {found['rate']:.3f}\n\t{gaps} window: {found['window']}"
+    return f"average rate: {found['rate']:.3f}\n\t{_spread_text(found)}"
 
 
 @quiet
@@ -234,9 +242,8 @@ def delay(
         def found() -> dict[str, Any] | None:
             if not late:
                 return None
-            mean = sum(late) / len(late)
-            spread = math.sqrt(sum((d - mean) ** 2 for d in late) / len(late))
-            return {"delay": mean, "min": min(late), "max": max(late), "std_dev": spread, "window": len(late)}
+            mean, spread = _spread(late)
+            return {"delay": mean, **spread}
 
         feed = source.feed([entry.name], _DEPTH)
         return _listen(feed, take, lambda: _told(found(), delay_text, json_), False, duration)
@@ -244,5 +251,4 @@ def delay(
 
 def delay_text(found: dict[str, Any]) -> str:
     """As `ros2 topic delay` prints it."""
-    ends = f"min: {found['min']:.3f}s max: {found['max']:.3f}s std dev: {found['std_dev']:.5f}s"
-    return f"average delay: {found['delay']:.3f}\n\t{ends} window: {found['window']}"
+    return f"average delay: {found['delay']:.3f}\n\t{_spread_text(found)}"

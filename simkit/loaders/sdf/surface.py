@@ -22,8 +22,8 @@ def read_surface(collision: Params) -> Surface:
         mu=mu,
         mu2=mu2,
         fdir1=ode.vector3("fdir1", bullet.vector3("fdir1", (0.0, 0.0, 0.0))),
-        slip1=ode.number("slip1", 0.0),
-        slip2=ode.number("slip2", 0.0),
+        slip1=_not_negative(ode, "slip1", 0.0),
+        slip2=_not_negative(ode, "slip2", 0.0),
         torsional=twist.number("coefficient", 1.0, minimum=0) if twist.has("coefficient") else None,
         kp=_given(soft, "kp"),
         kd=_given(soft, "kd"),
@@ -56,7 +56,12 @@ def _direction_frame(ode: Params) -> str:
 
 def _friction(block: Params, name: str, default: float) -> float:
     """A coefficient; old files write a negative one where they mean the default."""
-    value = block.number(name, default, finite=False)
+    return _not_negative(block, name, default, finite=False)
+
+
+def _not_negative(block: Params, name: str, default: float, *, finite: bool = True) -> float:
+    """A number; the default, with a warning, for a negative one."""
+    value = block.number(name, default, finite=finite)
     if value >= 0:
         return value
     found = block.child(name) or block

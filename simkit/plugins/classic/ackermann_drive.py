@@ -140,7 +140,7 @@ class GazeboRosAckermannDrive(ModelPlugin):
         now = self.sim.time_ns
         elapsed, self._last_ns = (now - self._last_ns) * 1e-9, now
         if elapsed <= 0.0:
-            elapsed = 1.0 / self._rate if self._rate > 0 else self.period
+            elapsed = max(self.period, 1.0 / self._rate) if self._rate > 0 else self.period
         speed, angle = self._command
         left, right, rear_left, rear_right = self._axes
         target = max(-self._most_speed, min(self._most_speed, speed)) / self._radius

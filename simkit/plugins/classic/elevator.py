@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.joints.axes import JointAxis
 from simkit.plugins.lookups import find_axis_joint, given_topic
 from simkit.plugins.once import Once
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 Phase = Literal["idle", "closing first", "moving", "opening", "waiting", "closing"]
 
 STRING: Final = "std_msgs/msg/String"
-_NEVER: Final = 1e-9  # [Hz]
 _AFTER: Final[dict[Phase, Phase]] = {
     "closing first": "moving",
     "moving": "opening",
@@ -79,7 +78,7 @@ class ElevatorPlugin(ModelPlugin):
         self._lift, self._door = (JointAxis(self.sim.joint(name)) for name in self._joints)
         self._phase: Phase = "idle"
         self._floor, self._until_ns = 0, 0
-        self.before_step_rate = _NEVER
+        self.before_step_rate = NEVER
         self.open_topic(params)
 
     def open_topic(self, params: Params) -> None:
@@ -129,7 +128,7 @@ class ElevatorPlugin(ModelPlugin):
             self._until_ns = self.sim.time_ns + self._wait_ns
         elif phase != "idle":
             self._hold(1, _OPEN if phase == "opening" else 0.0)
-        pace = _NEVER if phase == "idle" else None
+        pace = NEVER if phase == "idle" else None
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.reschedule()

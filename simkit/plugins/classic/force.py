@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.lookups import named_link
 from simkit.plugins.once import Once
 from simkit.pose import Vector, quat_rotate
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 WRENCH: Final = "geometry_msgs/msg/Wrench"
-_NEVER: Final = 1e-9  # [Hz]
 
 
 class GazeboRosForce(ModelPlugin):
@@ -41,7 +40,7 @@ class GazeboRosForce(ModelPlugin):
         self.once = Once(self)
         self._wrench = np.zeros(6)
         # what turns with the link is set anew at every step
-        self.before_step_rate = None if self._turns else _NEVER
+        self.before_step_rate = None if self._turns else NEVER
         self.listen(self._topic, WRENCH, self._on_wrench)
 
     def _on_wrench(self, message: Any) -> None:

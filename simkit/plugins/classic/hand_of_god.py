@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.lookups import named_link
 from simkit.plugins.once import Once
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
 
-_NEVER: Final = 1e-9  # [Hz]
 _WORLD: Final = "world"
 _FARTHEST: Final = 1e9  # [m]
 
@@ -51,7 +50,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._damping = 2.0 * np.sqrt(self._stiffness * (self._mass, self._inertia))
         self._link = self.sim.link(self._scoped)
         self._frames: dict[str, tuple[str, Pose]] = {}
-        self.before_step_rate = _NEVER
+        self.before_step_rate = NEVER
         self._stand()
         self._tf = self.advertise("/tf", TRANSFORMS)
         for topic in ("/tf", "/tf_static"):
@@ -83,7 +82,7 @@ class GazeboRosHandOfGod(ModelPlugin):
                 self.once.left_out(child, f"a frame {child!r} whose numbers make no pose is left out")
                 continue
             self._frames[child] = one.header.frame_id.lstrip("/"), Pose(place, turn)
-        pace = None if self._desired() is not None else _NEVER
+        pace = None if self._desired() is not None else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.reschedule()

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.heard import publish_while_heard
 from simkit.plugins.lookups import find_link, named_link
 from simkit.plugins.ros_names import is_ros_1
@@ -25,7 +25,6 @@ SET_BOOL: Final = "std_srvs/srv/SetBool"
 EMPTY: Final = "std_srvs/srv/Empty"
 _ROS_1: Final = ("bodyName", "topicName", "maxForce", "maxDistance", "minDistance")
 _RATE: Final = 80.0  # [Hz]
-_NEVER: Final = 1e-9  # [Hz]
 
 
 class GazeboRosVacuumGripper(ModelPlugin):
@@ -71,7 +70,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         self._is_on = False
         self._held: dict[str, str] = {}  # scoped link -> the weld that holds it
         self._things = _Things()
-        self.before_step_rate = _NEVER
+        self.before_step_rate = NEVER
         words = ("on", "off") if self._is_ros_1 else ("switch",)
         self._services = tuple(self.ros.topic(word) for word in words)
         first = self._together()[0]
@@ -122,7 +121,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
                 if self._is_there(weld):
                     self.sim.set_weld(weld, False)
             self._held = {}
-        self.before_step_rate = None if is_on else _NEVER
+        self.before_step_rate = None if is_on else NEVER
         self.sim.reschedule()
         return True
 

@@ -41,13 +41,21 @@ class DeadReckoning:
             separation: between the wheels [m].
             sideways: distance slid to the left [m].
         """
-        distance, turn = (left + right) / 2, (right - left) / separation
+        self.go((left + right) / 2, sideways, (right - left) / separation)
+
+    def go(self, ahead: float, left: float, turn: float) -> None:
+        """On along an arc of constant curvature: the exponential of SE(2).
+
+        Args:
+            ahead, left: in the base's own axes, which turn on the way [m].
+            turn: to the left [rad].
+        """
         half = turn / 2
         # chord of the arc; the series keeps full precision where sin(x)/x would lose it
         part = math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6
         cos, sin = math.cos(self.yaw + half) * part, math.sin(self.yaw + half) * part
-        self.x += distance * cos - sideways * sin
-        self.y += distance * sin + sideways * cos
+        self.x += ahead * cos - left * sin
+        self.y += ahead * sin + left * cos
         self.yaw += turn
 
     @property

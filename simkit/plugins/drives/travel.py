@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import abc
-import math
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from simkit.plugins.drives.odometry import LONGEST, MEAN_STEPS, BodyTwist
-from simkit.pose import Pose, quat_from_rpy
+from simkit.plugins.drives.odometry import LONGEST, MEAN_STEPS, BodyTwist, DeadReckoning
+from simkit.pose import Pose
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint
@@ -25,7 +24,6 @@ class TravelOdometry(abc.ABC):
     last ten steps, or as many as there were, as Gazebo has it for most bases.
 
     Attributes:
-        x, y, yaw: where the base is at the last `reckon` [m, rad]; it begins at zero.
         twist: over the last steps before that, in the base's axes.
     """
 
@@ -37,7 +35,7 @@ class TravelOdometry(abc.ABC):
 
     def __init__(self, step: float) -> None:
         self._step = step
-        self.x = self.y = self.yaw = 0.0
+        self._reckoning = DeadReckoning()
         self.twist = BodyTwist()
         self._at: tuple[float, ...] | None = None
         self._noted: list[tuple[float, ...]] = []
@@ -49,8 +47,8 @@ class TravelOdometry(abc.ABC):
 
     @property
     def pose(self) -> Pose:
-        """Of the base, on the plane."""
-        return Pose((self.x, self.y, 0.0), quat_from_rpy(0.0, 0.0, self.yaw))
+        """Of the base on the plane, as of the last `reckon`; it begins at zero."""
+        return self._reckoning.pose
 
     def note(self, angles: tuple[float, ...]) -> None:
         """Before every step."""
@@ -73,21 +71,11 @@ class TravelOdometry(abc.ABC):
         noted = self._noted
         last = self._at if self._at is not None else (noted or [angles])[0]
         for point in (*noted[self.stride :: self.stride], angles):
-            self._go(*self.motion(last, point))
+            self._reckoning.go(*self.motion(last, point))
             last = point
         self._at = angles
         self._recent = [*self._recent, *noted][-self.mean_steps :] or [angles]
         self._noted = []
-
-    def _go(self, ahead: float, left: float, turn: float) -> None:
-        """On along an arc of constant curvature: the exponential of SE(2)."""
-        half = turn / 2
-        # chord of the arc; the series keeps full precision where sin(x)/x would lose it
-        part = math.sin(half) / half if abs(half) > 1e-4 else 1 - half * half / 6
-        cos, sin = math.cos(self.yaw + half) * part, math.sin(self.yaw + half) * part
-        self.x += ahead * cos - left * sin
-        self.y += ahead * sin + left * cos
-        self.yaw += turn
 
 
 def joint_angles(joints: Sequence[Joint]) -> tuple[float, ...]:

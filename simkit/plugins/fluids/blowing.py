@@ -10,7 +10,7 @@ import numpy as np
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import WorldPlugin
+from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.fluids.gusts import Seed, read_gusts
 from simkit.plugins.fluids.pushed_links import PushedLinks, moving_data
 from simkit.plugins.fluids.wind_field import WindField, read_field
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 WIND: Final = "simkit_msgs/msg/Wind"
 VECTOR: Final = "geometry_msgs/msg/Vector3"
 INFO: Final = "simkit_msgs/srv/WindInfo"
-_NEVER: Final = 1e-9  # [Hz]
 _FEW: Final = 8  # links, up to which plain numbers are faster than arrays
 Velocity = tuple[float, float, float]
 
@@ -61,7 +60,7 @@ class Blowing(WorldPlugin):
     def before_step_rate(self) -> float | None:
         """Never while nothing feels the wind; after a spawn or a removal that is looked at anew."""
         is_idle = self._links is not None and self._links.is_current and (not len(self._links) or self._is_calm)
-        return _NEVER if is_idle or self._is_second else None
+        return NEVER if is_idle or self._is_second else None
 
     @before_step_rate.setter
     def before_step_rate(self, rate: float | None) -> None:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
-from simkit.plugins.base import Plugin
+from simkit.plugins.base import NEVER, Plugin
 from simkit.plugins.fluids.displacement import Displacement, Fluid, Lie
 from simkit.plugins.fluids.hulls import Hull, Shipyard
 from simkit.plugins.fluids.pushed_links import moving_data
 from simkit.plugins.once import Once
-
-_NEVER: Final = 1e-9  # [Hz]
 
 
 class Floating(Plugin):
@@ -50,7 +48,7 @@ class Floating(Plugin):
             and self._stood is not None
             and self._stood[-1] == self._gravity
         )
-        return _NEVER if is_idle else None
+        return NEVER if is_idle else None
 
     @before_step_rate.setter
     def before_step_rate(self, rate: float | None) -> None:

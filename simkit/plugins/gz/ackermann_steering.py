@@ -6,9 +6,8 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
@@ -21,6 +20,7 @@ from simkit.plugins.drives.steering import AckermannOdometry, find_turning, stee
 from simkit.plugins.drives.travel import joint_angles
 from simkit.plugins.drives.wheels import find_wheels
 from simkit.plugins.gz.diff_drive import speed_limits
+from simkit.plugins.lookups import given_topic
 from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 _STRAIGHT = 1e-3  # rate of turning [rad/s] below which gz drives straight on
-_NEVER = 1e-9  # [Hz]
 _SIDES = ("left", "right")
 
 
@@ -55,7 +54,7 @@ class AckermannSteering(ModelPlugin):
         self._width = self._radius = 1.0
         self._driven: list[list[str]] = [[], []]
         self._motors: list[list[Any]] = [[], []]
-        self.after_step_rate = _NEVER
+        self.after_step_rate = NEVER
         if not self._only:
             self._width = params.number("kingpin_width", 0.8, minimum=1e-6)
             self._radius = params.number("wheel_radius", 0.2, minimum=1e-6)
@@ -108,9 +107,9 @@ class AckermannSteering(ModelPlugin):
         link = self._canonical.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{parent.name}/odom")
         self._child = params.text("child_frame_id", f"{parent.name}/{link}")
-        topic = valid_topic(params.text("odom_topic", f"/model/{parent.name}/odometry"))
+        topic = given_topic(params, "odom_topic", f"/model/{parent.name}/odometry")
         self._odom = self.advertise(topic, ODOMETRY)
-        self._tf = self.advertise(valid_topic(params.text("tf_topic", f"/model/{parent.name}/tf")), TRANSFORMS)
+        self._tf = self.advertise(given_topic(params, "tf_topic", f"/model/{parent.name}/tf"), TRANSFORMS)
 
     def _read_rest_of_gains(self, params: Params) -> None:
         """Of gz's controller, which begins anew at every step: i and d are further proportional parts."""
@@ -126,9 +125,9 @@ class AckermannSteering(ModelPlugin):
         topic = "/actuators" if by_message else f"/model/{model}/steer_angle"
         if not self._only:
             topic = f"/model/{model}/cmd_vel"
-        if params.has("sub_topic"):
-            topic = f"/model/{model}/{params.text('sub_topic')}"
-        topic = valid_topic(params.text("topic", topic))
+        if params.text("sub_topic", ""):
+            topic = f"/model/{model}{given_topic(params, 'sub_topic', '')}"
+        topic = given_topic(params, "topic", topic)
         if not self._only:
             self.listen(topic, COMMAND_TYPES, self._on_command)
         elif by_message:

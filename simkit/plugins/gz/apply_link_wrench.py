@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.params import Params
-from simkit.plugins.base import WorldPlugin
+from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.lookups import given_topic, needed_name
 from simkit.plugins.once import Once
 from simkit.plugins.world.entities import Refused, entity_of
@@ -23,7 +23,6 @@ ENTITY: Final = "ros_gz_interfaces/msg/Entity"
 ENTITY_WRENCH: Final = "ros_gz_interfaces/msg/EntityWrench"
 _ANY, _MODEL, _LINK = 0, 2, 3
 _TYPES: Final = {"model": _MODEL, "link": _LINK}
-_NEVER: Final = 1e-9  # [Hz]
 
 
 @dataclass(frozen=True)
@@ -167,7 +166,7 @@ class ApplyLinkWrench(WorldPlugin):
                 both = np.array((*wrench.force, *wrench.torque))
                 total[link.scoped] = total.get(link.scoped, np.zeros(6)) + both
         self.sim.set_standing_wrenches(self, total, are_applied=are_applied)
-        pace = None if is_missing else _NEVER
+        pace = None if is_missing else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.reschedule()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.lookups import given_topic, named_link, needed_name
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 EMPTY: Final = "std_msgs/msg/Empty"
 STRING: Final = "std_msgs/msg/String"
-_NEVER: Final = 1e-9  # [Hz]
 
 
 class DetachableJoint(ModelPlugin):
@@ -126,7 +125,7 @@ class DetachableJoint(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Asked at every step only while there is something to attach."""
-        pace = None if self._wanted and not self._is_attached else _NEVER
+        pace = None if self._wanted and not self._is_attached else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.reschedule()

@@ -25,6 +25,7 @@ from simkit.plugins.drives.odometry import (
 )
 from simkit.plugins.drives.odometry_noise import ErringOdometry, read_odometry_noise
 from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.lookups import given_topic
 from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
@@ -136,10 +137,10 @@ class DiffDrive(ModelPlugin):
             stream = self.random("odometry_noise", 2)
             self._erring = ErringOdometry(noise, self._radius, self._separation, stream, wheel_angles(*self._pair))
         self._last_ns = self.sim.time_ns
-        self.listen(valid_topic(params.text("topic", f"/model/{model}/cmd_vel")), COMMAND_TYPES, self._on_command)
+        self.listen(given_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self._on_command)
         self.listen(valid_topic(f"/model/{model}/enable"), "std_msgs/msg/Bool", self._on_enable)
-        self._odom = self.advertise(valid_topic(params.text("odom_topic", f"/model/{model}/odometry")), ODOMETRY)
-        self._tf = self.advertise(valid_topic(params.text("tf_topic", f"/model/{model}/tf")), TRANSFORMS)
+        self._odom = self.advertise(given_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
+        self._tf = self.advertise(given_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
         truth = params.boolean("publish_ground_truth", False)
         self._truth = self.advertise(valid_topic(f"/model/{model}/ground_truth/odom"), ODOMETRY) if truth else None
 

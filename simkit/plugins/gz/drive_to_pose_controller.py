@@ -8,7 +8,7 @@ from typing import Any, Final
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.once import Once
 from simkit.pose import rpy_from_quat
 
@@ -18,7 +18,6 @@ Planar = tuple[float, float, float]
 POSE: Final = "geometry_msgs/msg/Pose"
 TWIST: Final = "geometry_msgs/msg/Twist"
 TARGETS: Final = ("geometry_msgs/msg/PoseArray", "geometry_msgs/msg/PoseStamped", POSE, "tf2_msgs/msg/TFMessage")
-_NEVER: Final = 1e-9  # [Hz]
 
 
 class DriveToPoseController(ModelPlugin):
@@ -89,7 +88,7 @@ class DriveToPoseController(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Works at every step only while there is a target."""
-        pace = _NEVER if self._target is None else None
+        pace = NEVER if self._target is None else None
         if pace != self.after_step_rate:
             self.after_step_rate = pace
             self.sim.reschedule()

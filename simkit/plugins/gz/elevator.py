@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.heard import publish_while_heard
 from simkit.plugins.joints.axes import JointAxis
 from simkit.plugins.lookups import find_axis_joint, find_link, given_topic
@@ -23,7 +23,6 @@ Phase = Literal["idle", "moving", "opening", "waiting", "closing"]
 
 DOUBLE: Final = "std_msgs/msg/Float64"
 INT: Final = "std_msgs/msg/Int32"
-_NEVER: Final = 1e-9  # [Hz]
 _FARTHEST: Final = 1e6
 """[m] that a door opens at most; an axis without limits has more."""
 _CABIN_WITHIN: Final = 0.15  # [m]
@@ -88,7 +87,7 @@ class Elevator(ModelPlugin):
         self._until_ns = 0
         self._was_blocked = False
         self._blocked = [False] * len(self._doors)
-        self.after_step_rate = _NEVER
+        self.after_step_rate = NEVER
         self.listen(given_topic(params, "cmd_topic", f"{own}/cmd"), INT, self._on_command)
         for k, name in enumerate(self._joint_names[1:]):
             self.subscribe(valid_topic(f"{own}/{name}/lidar"), partial(self._on_scan, k))
@@ -198,7 +197,7 @@ class Elevator(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Looks only while it is under way."""
-        pace = _NEVER if self._phase == "idle" else self._update_rate
+        pace = NEVER if self._phase == "idle" else self._update_rate
         if pace != self.after_step_rate:
             self.after_step_rate = pace
             self.sim.reschedule()

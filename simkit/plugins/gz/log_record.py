@@ -12,7 +12,7 @@ from simkit import msgs
 from simkit.errors import SimkitError
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import WorldPlugin
+from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.once import Once
 from simkit.runtime.writable import ALLOWED, allowed_folder
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 TRANSFORMS: Final = "tf2_msgs/msg/TFMessage"
 STRING: Final = "std_msgs/msg/String"
 FILE: Final = "state.mcap"
-_NEVER: Final = 1e-9  # [Hz]
 _IS_PATTERN: Final = re.compile(r"[*?\[\]().]")
 
 
@@ -98,7 +97,7 @@ class LogRecord(WorldPlugin):
 
     def load(self, parent: Simulation, params: Params) -> None:
         self.once, self._log = Once(self), _Log()
-        self.before_step_rate = self.after_step_rate = _NEVER
+        self.before_step_rate = self.after_step_rate = NEVER
         others = [p for p in self.sim.structure.all_plugins() if isinstance(p, LogRecord) and p._path is not None]
         if self._path is None:
             return
@@ -119,7 +118,7 @@ class LogRecord(WorldPlugin):
         """Begins the recording, once."""
         if not self._log.was_begun:
             self._begin()
-        self.before_step_rate = _NEVER
+        self.before_step_rate = NEVER
         self.sim.reschedule()
 
     def _begin(self) -> None:

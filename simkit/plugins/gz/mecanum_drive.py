@@ -12,13 +12,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit.compiler.friction import has_direction
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, odometry_message, transforms
 from simkit.plugins.drives.travel import Motion, TravelOdometry, joint_angles
 from simkit.plugins.drives.wheels import find_wheels
 from simkit.plugins.gz.diff_drive import speed_limits
+from simkit.plugins.lookups import given_topic
 from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
@@ -99,9 +99,9 @@ class MecanumDrive(ModelPlugin):
         self._before_last: Triple = (0.0, 0.0, 0.0)
         self._settled = True
         self._odometry = MecanumOdometry(self._radius, self._arm, self.period)
-        self.listen(valid_topic(params.text("topic", f"/model/{model}/cmd_vel")), COMMAND_TYPES, self._on_command)
-        self._odom = self.advertise(valid_topic(params.text("odom_topic", f"/model/{model}/odometry")), ODOMETRY)
-        self._tf = self.advertise(valid_topic(params.text("tf_topic", f"/model/{model}/tf")), TRANSFORMS)
+        self.listen(given_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        self._odom = self.advertise(given_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
+        self._tf = self.advertise(given_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
 
     # ------------------------------------------------------------------ commands
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
-from simkit.msgs.topics import valid_topic
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import (
@@ -21,6 +20,7 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
+from simkit.plugins.lookups import given_topic
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
@@ -60,10 +60,10 @@ class OdometryPublisher(ModelPlugin):
         self._trail: deque[tuple[float, ...]] = deque(maxlen=MEAN_STEPS)
         self._stream = self.random("gaussian_noise", 6) if self._noise > 0 else None
         self._index = 0
-        covariance = params.text("odom_covariance_topic", f"{own}/odometry_with_covariance")
-        self._odom = self.advertise(valid_topic(params.text("odom_topic", f"{own}/odometry")), ODOMETRY)
-        self._sure = self.advertise(valid_topic(covariance), ODOMETRY)
-        self._tf = self.advertise(valid_topic(params.text("tf_topic", f"{own}/pose")), TRANSFORMS)
+        covariance = given_topic(params, "odom_covariance_topic", f"{own}/odometry_with_covariance")
+        self._odom = self.advertise(given_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
+        self._sure = self.advertise(covariance, ODOMETRY)
+        self._tf = self.advertise(given_topic(params, "tf_topic", f"{own}/pose"), TRANSFORMS)
 
     def before_step(self) -> None:
         """Remembers where the model is."""

@@ -9,7 +9,7 @@ from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.lookups import needed_name
 from simkit.runtime.contacts import Bools, collisions_of, touches
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 BOOL: Final = "std_msgs/msg/Bool"
 SET_BOOL: Final = "std_srvs/srv/SetBool"
-_NEVER: Final = 1e-9  # [Hz]
 
 
 class Touching(ModelPlugin):
@@ -109,7 +108,7 @@ class Touching(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Looks at every step only while it is enabled."""
-        pace = None if self._is_enabled else _NEVER
+        pace = None if self._is_enabled else NEVER
         if pace != self.after_step_rate:
             self.after_step_rate = pace
             self.sim.reschedule()

@@ -6,14 +6,13 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.belts import belt_of, needs_direction, report_nothing_to_run
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
 from simkit.plugins.gz.diff_drive import SpeedLimiter
 from simkit.plugins.heard import publish_while_heard
-from simkit.plugins.lookups import find_link
+from simkit.plugins.lookups import find_link, given_topic
 from simkit.plugins.once import Once
 from simkit.pose import Pose
 from simkit.runtime.surface import Belt, Run
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
 
-_NEVER = 1e-9  # [Hz]
 _BOUNDS = ("velocity", "acceleration", "jerk")
 SPEED = "std_msgs/msg/Float64"
 CENTRE = ("geometry_msgs/msg/Vector3", "geometry_msgs/msg/Point")
@@ -58,17 +56,17 @@ class TrackController(ModelPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         self.once = Once(self)
-        self.before_step_rate = _NEVER
+        self.before_step_rate = NEVER
         self._wanted, self._told_tick = 0.0, -1
         self._speed, self._history = 0.0, (0.0, 0.0)  # now, and at the two steps before
         self._centre: tuple[float, float, float] | None = None
         self._run: Run | None = Run(0.0) if self._is_directed else None
         self._tick, self._place = self.sim.tick, (self.sim.tick, 0.0)
         prefix = f"/model/{parent.name}/link/{self._name}"
-        self.listen(valid_topic(params.text("velocity_topic", f"{prefix}/track_cmd_vel")), SPEED, self._on_speed)
-        centre = params.text("center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
-        self.listen(valid_topic(centre), CENTRE, self._on_centre)
-        odometry = valid_topic(params.text("odometry_topic", f"{prefix}/odometry"))
+        self.listen(given_topic(params, "velocity_topic", f"{prefix}/track_cmd_vel"), SPEED, self._on_speed)
+        centre = given_topic(params, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
+        self.listen(centre, CENTRE, self._on_centre)
+        odometry = given_topic(params, "odometry_topic", f"{prefix}/odometry")
         self._odometry = self.advertise(odometry, ODOMETRY)
         publish_while_heard(self, self._odometry, self._odometry_rate, "publish")
         if self._link:
@@ -115,7 +113,7 @@ class TrackController(ModelPlugin):
             self._speed = speed
         self._apply()
         if not waits and speed == last == before and self.before_step_rate is None and tick != self._told_tick:
-            self.before_step_rate = _NEVER
+            self.before_step_rate = NEVER
             self.sim.reschedule()
 
     def _apply(self) -> None:

@@ -8,9 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
-from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
@@ -22,14 +21,13 @@ from simkit.plugins.drives.odometry import (
 from simkit.plugins.drives.track_odometry import TrackOdometry
 from simkit.plugins.gz.track_controller import CENTRE, SPEED, read_limiter
 from simkit.plugins.heard import publish_while_heard
-from simkit.plugins.lookups import find_link, named_link
+from simkit.plugins.lookups import find_link, given_topic, named_link
 from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
 
-_NEVER = 1e-9  # [Hz]
 _STRAIGHT = 1e-6  # rate of turning [rad/s] below which it drives straight, and speed [m/s] below which on the spot
 _STILL = 1e-6  # change of a speed in a step below which the tracks are not told again
 _SIDES = ("left", "right")
@@ -79,14 +77,14 @@ class TrackedVehicle(ModelPlugin):
             if named is not None and name:
                 find_link(scene, name, named)
             prefix = f"/model/{scene.name}/link/{name}"
-            velocity = valid_topic(one.text("velocity_topic", f"{prefix}/track_cmd_vel"))
-            centre = one.text("center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
-            tracks.append(_Track(name, velocity, valid_topic(centre)))
+            velocity = given_topic(one, "velocity_topic", f"{prefix}/track_cmd_vel")
+            centre = given_topic(one, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
+            tracks.append(_Track(name, velocity, centre))
         return tracks
 
     def load(self, parent: Any, params: Params) -> None:
         self.once = Once(self)
-        self.after_step_rate = _NEVER
+        self.after_step_rate = NEVER
         model = parent.name
         link = self._body.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{model}/odom")
@@ -99,11 +97,11 @@ class TrackedVehicle(ModelPlugin):
             for side in self._sides
         ]
         own = f"/model/{model}"
-        self.listen(valid_topic(params.text("topic", f"{own}/cmd_vel")), COMMAND_TYPES, self._on_command)
-        efficiency = valid_topic(params.text("steering_efficiency_topic", f"{own}/steering_efficiency"))
+        self.listen(given_topic(params, "topic", f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        efficiency = given_topic(params, "steering_efficiency_topic", f"{own}/steering_efficiency")
         self.listen(efficiency, SPEED, self._on_efficiency)
-        self._odom = self.advertise(valid_topic(params.text("odom_topic", f"{own}/odometry")), ODOMETRY)
-        self._tf = self.advertise(valid_topic(params.text("tf_topic", f"{own}/tf")), TRANSFORMS)
+        self._odom = self.advertise(given_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
+        self._tf = self.advertise(given_topic(params, "tf_topic", f"{own}/tf"), TRANSFORMS)
         for publisher, method in ((self._odom, "publish_odometry"), (self._tf, "publish_transform")):
             publish_while_heard(self, publisher, self._odometry_rate, method)
 
@@ -147,7 +145,7 @@ class TrackedVehicle(ModelPlugin):
         if tells:
             self._tell(*self._last)
         elif rests:
-            self.after_step_rate = _NEVER
+            self.after_step_rate = NEVER
             self.sim.reschedule()
 
     def _tell(self, ahead: float, turning: float) -> None:

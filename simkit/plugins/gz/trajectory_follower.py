@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.params import Params
-from simkit.plugins.base import ModelPlugin
+from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.lookups import given_topic, named_link
 from simkit.plugins.once import Once
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 Point = tuple[float, float]
 
 BOOL: Final = "std_msgs/msg/Bool"
-_NEVER: Final = 1e-9  # [Hz]
 _KINDS: Final = ("waypoints", "circle", "line")
 _ON_A_CIRCLE: Final = 8
 _FARTHEST: Final = 1e9  # [m]
@@ -71,7 +70,7 @@ class TrajectoryFollower(ModelPlugin):
 
     def _set_pace(self) -> None:
         """Looks at every step unless it is paused, or has nowhere to go."""
-        pace = _NEVER if self._is_paused or not self._way else None
+        pace = NEVER if self._is_paused or not self._way else None
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.reschedule()

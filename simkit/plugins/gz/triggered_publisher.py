@@ -17,14 +17,13 @@ from simkit.gzpython.msgs.text_form import parse
 from simkit.msgs.monitors import STATUS
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import WorldPlugin
+from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.gz.performer_detector import DETAILS, pose_of_status
 from simkit.plugins.once import Once
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
-_NEVER: Final = 1e-9  # [Hz]
 _MS: Final = 1_000_000  # [ns]
 
 
@@ -59,7 +58,7 @@ class TriggeredPublisher(WorldPlugin):
     def load(self, parent: Simulation, params: Params) -> None:
         self.once = Once(self)
         self._due: deque[int] = deque()  # [ns]
-        self.before_step_rate = _NEVER
+        self.before_step_rate = NEVER
         self._delay = max(0, params.integer("delay_ms", 0, maximum=10**12)) * _MS
         self._outputs = [out for element in params.all("output") if (out := self._read_output(element)) is not None]
         self._requests = [r for element in params.all("service") if (r := self._read_request(element)) is not None]
@@ -182,7 +181,7 @@ class TriggeredPublisher(WorldPlugin):
 
     def _set_pace(self) -> None:
         """Looks at the time at every step only while something waits for it."""
-        pace = None if self._due else _NEVER
+        pace = None if self._due else NEVER
         if pace != self.before_step_rate:
             self.before_step_rate = pace
             self.sim.reschedule()
