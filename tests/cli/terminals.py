@@ -34,7 +34,7 @@ class Terminal:
     ) -> None:
         self.far, near = os.openpty()
         self.resize(*size)
-        ours = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "TERM": "xterm-256color", **(environment or {})}
+        ours = {**_without_size(), "PYTHONPATH": os.pathsep.join(sys.path), "TERM": "xterm-256color", **(environment or {})}
         self.process = subprocess.Popen(
             [str(word) for word in command],
             cwd=cwd, env=ours, stdin=near, stdout=near, stderr=near, start_new_session=True, preexec_fn=_own_terminal,
@@ -108,3 +108,8 @@ def _own_terminal() -> None:
     import termios
 
     fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+def _without_size() -> dict[str, str]:
+    """The environment but for what is there said of another terminal's size."""
+    return {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
