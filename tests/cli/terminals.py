@@ -34,7 +34,8 @@ class Terminal:
     ) -> None:
         self.far, near = os.openpty()
         self.resize(*size)
-        ours = {**_without_size(), "PYTHONPATH": os.pathsep.join(sys.path), "TERM": "xterm-256color", **(environment or {})}
+        ours = {**_without_size(), "PYTHONPATH": os.pathsep.join(sys.path), "TERM": "xterm-256color"}
+        ours |= environment or {}
         self.process = subprocess.Popen(
             [str(word) for word in command],
             cwd=cwd, env=ours, stdin=near, stdout=near, stderr=near, start_new_session=True, preexec_fn=_own_terminal,
