@@ -219,7 +219,7 @@ def _print(pose: Pose, time_ns: int, precision: int, json_: bool) -> None:
     def listed(numbers: Any) -> str:
         return "[" + ", ".join(f"{float(n) + 0.0:.{precision}f}" for n in numbers) + "]"
 
-    line(f"At time {time_ns // 10**9}.{time_ns % 10**9}")
+    line(f"At time {time_ns // 10**9}.{time_ns % 10**9:09d}")
     line(f"- Translation: {listed(xyz)}")
     line(f"- Rotation: in Quaternion (xyzw) {listed((x, y, z, w))}")
     line(f"- Rotation: in RPY (radian) {listed(rpy)}")
