@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import functools
+import signal
 import sys
 import traceback
 from collections import Counter
@@ -143,9 +144,9 @@ def guarded(command: Callable[P, Any]) -> Callable[P, None]:
             sys.stdout = None
             raise typer.Exit(0) from None
         except OSError as error:
-            if error.errno == errno.EIO:  # so does a terminal that is gone
+            if error.errno == errno.EIO:  # a terminal that is gone, which may be seen before its signal comes
                 sys.stdout = sys.stderr = None
-                raise typer.Exit(0) from None
+                raise typer.Exit(_hung_up()) from None
             if error.errno not in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
                 raise
             sys.stdout = None
@@ -155,3 +156,9 @@ def guarded(command: Callable[P, Any]) -> Callable[P, None]:
             raise typer.Exit(int(code))
 
     return run
+
+
+def _hung_up() -> int:
+    """The exit code of who has lost its terminal: none of an error where that is not to matter (`nohup`)."""
+    hang_up = getattr(signal, "SIGHUP", None)
+    return 0 if hang_up is None or signal.getsignal(hang_up) is signal.SIG_IGN else 128 + hang_up

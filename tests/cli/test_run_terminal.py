@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import re
@@ -13,11 +14,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import typer
 from mcap.reader import make_reader
 from typer.main import get_command
 from typer.testing import CliRunner
 
 from simkit.cli import app
+from simkit.cli.console import guarded
 from simkit.cli.running.request import Request
 
 if sys.platform == "win32":
@@ -260,3 +263,22 @@ def test_a_run_whose_terminal_is_closed_ends_with_its_recording_whole(folder: Pa
     assert terminal.process.wait(60) == 128 + signal.SIGHUP
     checked = CliRunner().invoke(app, ["bag", "recover", str(folder / "out.mcap"), str(folder / "mended.mcap")])
     assert "whole" in checked.stdout + checked.stderr
+
+
+def test_a_terminal_that_is_seen_to_be_gone_before_its_signal_comes_ends_as_by_the_signal(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def write() -> None:
+        raise OSError(errno.EIO, "no such terminal")
+
+    for handler, code in ((signal.SIG_DFL, 128 + signal.SIGHUP), (signal.SIG_IGN, 0)):
+        before = signal.signal(signal.SIGHUP, handler)
+        try:
+            with monkeypatch.context() as patch:
+                patch.setattr(sys, "stdout", sys.stdout)
+                patch.setattr(sys, "stderr", sys.stderr)
+                with pytest.raises(typer.Exit) as ended:
+                    guarded(write)()
+        finally:
+            signal.signal(signal.SIGHUP, before)
+        assert ended.value.exit_code == code
