@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 import math
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -67,9 +68,9 @@ class _TrackedVehicle(ModelPlugin):
         self.drive(left, right)
         self._told.publish(msgs.type_of(_SPEEDS)(left, right, 0.0))
 
+    @abc.abstractmethod
     def drive(self, left: float, right: float) -> None:
         """Has the tracks run at these speeds [m/s]."""
-        raise NotImplementedError
 
     def rub(self, link: SceneLink, mu: float) -> None:
         """Gives the collisions of a link a coefficient of friction, in the engine's model."""
