@@ -335,7 +335,7 @@ class Params:
         return f"<{name}>{value}</{name}>"
 
     def _near(self, name: str) -> str:
-        return did_you_mean(name, [c.name for c in self.children])
+        return did_you_mean(name, [c.name for c in self.children if not c.was_read])  # what was read is meant as it is
 
     def _bad(self, found: str, allowed: str, where: Where) -> None:
         shown = found if len(found) <= 200 else found[:200] + "..."

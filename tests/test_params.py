@@ -88,3 +88,13 @@ def test_numbers_that_are_too_many_are_passed_over_with_a_warning():
     assert [(d.code, d.severity) for d in p.diagnostics] == [("SK-PARAM-006", "warning")] * 2
     p.vector3("f")
     assert problems(p)[-1][0] == "SK-PARAM-002"
+
+
+def test_an_element_that_is_missing_is_not_taken_for_one_that_has_been_read() -> None:
+    diagnostics = Diagnostics()
+    params = Params.from_dict({"front_left_joint": "a", "frnt_right_joint": "b"}, "plugin", diagnostics)
+    params.text("front_left_joint", required=True)
+    params.text("front_right_joint", required=True)
+    params.text("back_left_joint", required=True)
+    assert ["frnt_right_joint" in d.hint for d in diagnostics] == [True, False]
+    assert not any("front_left_joint" in d.hint for d in diagnostics)
