@@ -17,7 +17,7 @@ SimkitError                 exit 1
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic
@@ -28,6 +28,16 @@ class SimkitError(Exception):
 
     exit_code: ClassVar[int] = 1
     code: str = "SK-CORE-001"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Goes from one process to another whole, whatever its constructor takes."""
+        return _again, (type(self), self.args, vars(self))
+
+
+def _again(kind: type[SimkitError], args: tuple[Any, ...], state: dict[str, Any]) -> SimkitError:
+    error = kind.__new__(kind, *args)
+    vars(error).update(state)
+    return error
 
 
 class InputError(SimkitError):

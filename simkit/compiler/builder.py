@@ -79,12 +79,14 @@ class SpecBuilder:
         spec: MuJoCo's specification. Handles into it die with `copy`; look elements up by name.
         records: what each top-level model put into it, by scoped name; the world's own under the empty name.
         find_file: the file that a URI names beside the file in that folder; None where there is none.
+        files_read: what plugins have found so.
         parameter_files: what the run was given for the control plugins, which alone know what it is.
     """
 
     def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
         self.world, self.diagnostics = world, diagnostics
         self.find_file: FileFinder = _beside
+        self.files_read: list[Path] = []
         self.parameter_files: tuple[Any, ...] = ()
         self.spec = mujoco.MjSpec()
         self.spec.modelname = world.name
@@ -410,6 +412,7 @@ class SpecBuilder:
         other = SpecBuilder.__new__(SpecBuilder)
         other.world, other.diagnostics = self.world, self.diagnostics
         other.find_file, other.parameter_files = self.find_file, self.parameter_files
+        other.files_read = self.files_read
         other.spec = self.spec.copy()
         other.assets = Assets(other.spec, self.assets.known)
         other.records = {name: record.copy() for name, record in self.records.items()}

@@ -96,7 +96,11 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         diagnostics.error("SK-LOAD-002", f"cannot read the file: {problem}", Where(shown))
         return None
     if path.is_dir():
-        model = resolver.model_file(path, Where(str(path)), diagnostics)
+        found = Diagnostics()
+        model = resolver.model_file(path, Where(str(path)), found)
+        if model is None and (bundled := resolver.find_world(str(source)) or resolver.find_model(str(source))):
+            return parse_file(bundled, diagnostics)  # a folder that happens to have the name, such as a golden run
+        diagnostics.extend(found)
         return None if model is None else parse_file(model, diagnostics)
     if not path.exists():
         name = chosen_name(str(source), diagnostics)

@@ -73,6 +73,8 @@ def _seems(data: bytes) -> str:
         return "JSON"
     if head.startswith((b"v ", b"o ", b"mtllib ", b"# Blender")) or b"\nv " in head:
         return "an OBJ mesh"
+    if head.startswith(b"world: ") or b"\nworld: " in head:
+        return "a scenario; simkit golden record, certify, bundle and grade take one"
     if b"\0" in head:
         return "a binary file"
     if b"<" not in data:

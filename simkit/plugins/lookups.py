@@ -112,11 +112,14 @@ def find_file_of(plugin: Plugin, uri: str, builder: SpecBuilder, places: Sequenc
     try:
         path = builder.find_file(uri, folder)
         if path is not None and path.is_file():
+            builder.files_read.append(path)
             return path
         name = uri.replace("\\", "/").rpartition("/")[2]
         if folder is None or not name:
             return None
-        return next((file for place in (".", *places) if (file := folder / place / name).is_file()), None)
+        found = next((file for place in (".", *places) if (file := folder / place / name).is_file()), None)
+        builder.files_read += [found] if found is not None else []
+        return found
     except (OSError, ValueError):  # a name that no file can have
         return None
 

@@ -79,7 +79,12 @@ class GoalHandle:
 
     def cancel(self) -> None:
         """Asks for it to be called off; the plugin hears of it before the next step, and may go on."""
-        self._action.sim.bus.enqueue(lambda: self._action.ask_to_cancel(self))
+        bus = self._action.sim.bus
+        if bus.journal is None:
+            bus.enqueue(lambda: self._action.ask_to_cancel(self))
+            return
+        with bus.journal.passing("cancel", {"goal": self.id}):
+            bus.enqueue(lambda: self._action.ask_to_cancel(self))
 
     # ------------------------------------------------------------------ for the plugin
 
@@ -223,6 +228,9 @@ class ActionTable:
             msgs.full_name(f"{type_name}_Goal")
         if self._find(name) is not None:
             raise ActionError(f"there is an action {name!r} already")
+        if self._sim.bus.journal is not None:
+            with self._sim.bus.journal.passing("act", {"action": name}):
+                pass
         action = Action(self._sim, name, type_name, on_goal, on_cancel)
         self._actions.setdefault(name, []).append(action)
         return action
@@ -261,6 +269,21 @@ class ActionTable:
         request = msgs.from_dict([wanted], goal or {}) if goal is None or isinstance(goal, Mapping) else goal
         if msgs.type_name(request) != wanted:
             raise MessageError(f"{name!r} takes {wanted}, got {msgs.type_name(request)}")
+        journal = self._sim.bus.journal
+        if journal is None:
+            return self._send(action, request, on_feedback, on_done)
+        on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)
+        words = {"action": action.name, "goal": request, "on_feedback": on_feedback, "on_done": on_done}
+        with journal.passing("send_goal", words):
+            return self._send(action, request, on_feedback, on_done)
+
+    def _send(
+        self,
+        action: Action,
+        request: Any,
+        on_feedback: Callable[[Any], None] | None,
+        on_done: Callable[[GoalHandle], None] | None,
+    ) -> GoalHandle:
         self._sent += 1
         handle = GoalHandle(action, self._sent, request, self._sim.time_ns)
         handle._on_feedback, handle._on_done = on_feedback, on_done

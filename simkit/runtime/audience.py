@@ -58,21 +58,23 @@ class Audience:
         receivers: what takes a message, one for each of them.
         is_called: whether one of them is called back with each message, and not only keeps it.
         looks_at_all: whether one of them will look at every message for all that is known.
+        is_streamed: whether one of them takes each message as it comes, made or not.
         feeds: whether command inputs hear the topic.
     """
 
-    __slots__ = ("feeds", "is_called", "looks_at_all", "readers", "receivers")
+    __slots__ = ("feeds", "is_called", "is_streamed", "looks_at_all", "readers", "receivers")
 
     def __init__(self) -> None:
         self.readers: list[Subscription] = []
         self.receivers: tuple[Callback, ...] = ()
-        self.is_called = self.looks_at_all = self.feeds = False
+        self.is_called = self.is_streamed = self.looks_at_all = self.feeds = False
 
     def count(self) -> None:
         """After a change of the readers."""
         self.receivers = tuple(reader.receive for reader in self.readers)
         self.is_called = any(reader.is_called for reader in self.readers)
-        self.looks_at_all = any(type(reader) is Stream or reader.keeps == math.inf for reader in self.readers)
+        self.is_streamed = any(type(reader) is Stream for reader in self.readers)
+        self.looks_at_all = self.is_streamed or any(reader.keeps == math.inf for reader in self.readers)
 
     @property
     def keeps(self) -> float:
@@ -134,8 +136,13 @@ class Subscription:
 
     def _keep_and_call(self, message: Any) -> None:
         self._messages.append(message)
+        journal = self._bus.journal
         try:
-            self.callback(message)  # type: ignore[misc]  # this is only used where there is one
+            if journal is None:
+                self.callback(message)  # type: ignore[misc]  # this is only used where there is one
+            else:
+                with journal.called_back(self):
+                    self.callback(message)  # type: ignore[misc]  # as above
         except Exception as error:  # noqa: BLE001 - what a user wrote may raise anything
             self._bus.subscriber_failed(self, error)
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from simkit.pose import Pose
 from simkit.runtime.aspect import Aspect
+from simkit.runtime.doors import door
 from simkit.runtime.joint import Joint
 from simkit.runtime.light import Light
 from simkit.runtime.link import Link
@@ -17,7 +18,7 @@ from simkit.runtime.renaming import check_name
 from simkit.runtime.snapshot import take
 from simkit.runtime.visual import Visual
 from simkit.runtime.weld import set_weld
-from simkit.scene import SceneLink
+from simkit.scene import SceneLink, SceneModel
 
 if TYPE_CHECKING:
     from simkit.runtime.entities import Entities
@@ -128,8 +129,11 @@ class Contents(Aspect):
             LoadError: one of the sources has errors, or its name is taken.
             InputError: no model can have one of the names.
         """
+        return self._spawned(list(models))
+
+    @door
+    def _spawned(self, wanted: list[tuple[Any, str | None, Pose | None]]) -> list[Model]:
         self._whole._check_open()
-        wanted = list(models)
         for _, name, _ in wanted:
             if name is not None:
                 check_name(name)
@@ -137,6 +141,7 @@ class Contents(Aspect):
         self._whole.reschedule()
         return [self.model(name) for name in names]
 
+    @door
     def remove(self, name: str) -> None:
         """Takes a top-level model away while time goes on."""
         self._whole._check_open()
@@ -156,6 +161,7 @@ class Contents(Aspect):
             self._population.undo(before)
             raise
 
+    @door
     def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> Any:
         """Fits a sensor to a link or a joint while time goes on; nobody else's bits change.
 
@@ -187,19 +193,31 @@ class Contents(Aspect):
         else:
             self._population.forget()
 
+    @door
     def make_movable(self, name: str) -> None:
         """Lets a static top-level model be moved: its links become bodies that follow their set pose."""
         if self._population.make_movable(name):
             self._whole.reschedule()
 
+    @door
     def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
         """Adds a weld between two links while time goes on; `set_weld` closes it. Raises KeyError for unknown links."""
         self._population.add_weld(name, parent_link, child_link)
         self._whole.reschedule()
 
+    @door
     def set_weld(self, name: str, closed: bool) -> None:
         """Closes a weld with its links as they stand now, or lets it go. Raises KeyError."""
         set_weld(self._whole, name, closed)
+
+    @property
+    def models_reader(self) -> Callable[..., SceneModel]:
+        """Reads models that come while it runs, given `(source, diagnostics, *, name, pose, taken)`; settable."""
+        return self._population._load_model
+
+    @models_reader.setter
+    def models_reader(self, reader: Callable[..., SceneModel]) -> None:
+        self._population._load_model = reader
 
     def adopt(self, structure: Structure) -> None:
         """Goes on with a structure that was before, with all its state still to be put back."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from simkit import msgs
 from simkit.runtime.audience import Callback, Later
 
 if TYPE_CHECKING:
@@ -42,12 +43,24 @@ class Publisher:
     def patience(self) -> float:
         """How many of the newest messages anybody will look at; 0 where nothing may be put off.
 
-        That is where somebody is called back, and where others publish on the same topic.
+        That is where somebody is called back or counts what comes, and where others publish on the same topic.
         """
-        return 0 if self.is_live or len(self._bus._publishers[self.topic]) > 1 else self._audience.keeps
+        audience = self._audience
+        if self.is_live or audience.is_streamed or len(self._bus._publishers[self.topic]) > 1:
+            return 0
+        return audience.keeps
 
     def publish(self, message: Any) -> None:
-        """Hands the message to every subscriber, now, and to command inputs before the next step."""
+        """Hands a message to every subscriber, now, and to command inputs before the next step.
+
+        Args:
+            message: of the topic's type, or a dict of its fields.
+
+        Raises:
+            MessageError: a dict does not fit the topic's type.
+        """
+        if type(message) is dict:
+            message = msgs.make(self.type_name, **message)
         if self.latched:
             self._last = message
         audience = self._audience
@@ -81,6 +94,30 @@ class Publisher:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
         return self
+
+
+class OutsidePublisher(Publisher):
+    """One that belongs to no plugin and no sensor: what it publishes comes in from outside."""
+
+    __slots__ = ()
+
+    def publish(self, message: Any) -> None:
+        """As every publisher does; a journal hears of it."""
+        journal = self._bus.journal
+        if journal is None:
+            super().publish(message)
+            return
+        if type(message) is dict:
+            message = msgs.make(self.type_name, **message)
+        with journal.passing("send", {"publisher": self, "message": message}):
+            super().publish(message)
+
+    def publish_later(self, make: Callable[[], Any], work: Any = None) -> Later | None:
+        """Publishes what `make()` gives; a journal has to have it now."""
+        if self._bus.journal is None:
+            return super().publish_later(make, work)
+        self.publish(make())
+        return None
 
 
 class Listener:

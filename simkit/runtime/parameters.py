@@ -17,6 +17,7 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import ParameterError
+from simkit.runtime.doors import door
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -146,6 +147,7 @@ class ParameterTable:
             raise ParameterError(f"{node!r} has no parameter {name!r}; {hint}")
         return nodes[node][name]
 
+    @door
     def set(self, node: str, name: str, value: Any) -> None:
         """Changes a parameter before the next step; at once where no step is under way.
 

@@ -23,6 +23,7 @@ class Pausing:
         is_stepping: whether it is on its way there by steps that were asked for.
         pace: the highest real-time factor that somebody asked for; None for none. It is no state of the world.
         is_served: whether somebody keeps the world running, so that what is asked for is done by them.
+        is_over: whether the run has come to its end, so that `advance` goes no further; no state of the world.
     """
 
     def __init__(self, sim: Simulation) -> None:
@@ -30,7 +31,7 @@ class Pausing:
         self.until: int | None = None
         self.is_stepping = False
         self.pace: float | None = None
-        self.is_served = False
+        self.is_served = self.is_over = False
         self._watchers: list[Callable[[], None]] = []
 
     @property
@@ -80,6 +81,11 @@ class Pausing:
         finally:
             self.is_served = False
 
+    def end(self) -> None:
+        """Has a run that is served end with the step under way."""
+        self.is_over = True
+        self._sim.halt()
+
     def advance(self, count: int) -> None:
         """Goes on by up to `count` steps, as far as the world is let: what `simkit run` does again and again.
 
@@ -88,7 +94,7 @@ class Pausing:
         sim = self._sim
         end, inbox = sim.tick + count, sim.bus.inbox
         generation = inbox.generation
-        while inbox.generation == generation:
+        while inbox.generation == generation and not self.is_over:
             stop = end if self.until is None else min(end, self.until)
             if sim.tick >= stop:
                 return

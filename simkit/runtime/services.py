@@ -66,6 +66,9 @@ class ServiceTable:
         standing = self._find(name)
         if standing is not None and not standing.yields:
             raise ServiceError(f"there is a service {name!r} already, {_of(standing)}")
+        if self._sim.bus.journal is not None:
+            with self._sim.bus.journal.passing("offer", {"service": name}):
+                pass
         service = Service(name, type_name, handler, self._sim.bus._owner)
         self._services.setdefault(name, []).insert(0, service)
         return service
@@ -109,7 +112,11 @@ class ServiceTable:
         asked = msgs.from_dict([f"{service.type_name}_Request"], request or {}) if _is_plain(request) else request
         if msgs.type_name(asked) != f"{service.type_name}_Request":
             raise MessageError(f"{name!r} takes {service.type_name}_Request, got {msgs.type_name(asked)}")
-        return self._answer(service, asked)
+        journal = self._sim.bus.journal
+        if journal is None:
+            return self._answer(service, asked)
+        with journal.passing("call", {"service": service, "request": asked}):
+            return self._answer(service, asked)
 
     def set_active(self, owners: Sequence[object]) -> None:
         """Leaves only the services of these owners (and those without one) in use."""

@@ -12,6 +12,7 @@ from simkit.runtime.clock import Clock
 from simkit.runtime.contents import Contents
 from simkit.runtime.directed_friction import DirectedFriction
 from simkit.runtime.divergence import name_drivers
+from simkit.runtime.doors import door
 from simkit.runtime.engine_access import EngineAccess
 from simkit.runtime.entities import Entities
 from simkit.runtime.faults import Faults, OnError
@@ -46,9 +47,12 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         faults: what becomes of plugins that raise, and which of them are left out.
         render_thread: whether pictures of cameras are drawn beside the physics where nobody waits for them; to be
             changed at any time, for it changes no message.
+        origin: how it was loaded: `simkit.load`'s arguments by name, and `folder`, where that was; None of what was
+            made otherwise.
     """
 
     render_thread = False
+    origin: Mapping[str, Any] | None = None
 
     def __init__(
         self,
@@ -155,14 +159,21 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
 
     def _advance(self, target: int, *, is_served: bool = False) -> None:
         self._check_open()
+        journal = self.bus.journal
+        if journal is not None:
+            journal.before_steps()
         try:
             self._loop.advance(target, is_served=is_served)
         except SimulationDiverged as error:
             name_drivers(self, error)
             raise
+        finally:
+            if journal is not None:
+                journal.after_steps()
 
     # ------------------------------------------------------------------ state
 
+    @door
     def reset(self, seed: int | None = None) -> None:
         """Back to t = 0 and to what was loaded: physics, plugins, sensors, random streams (optionally re-seeded)."""
         self._check_loaded()
@@ -180,6 +191,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         for plugin in self.structure.all_plugins():
             guarded(self, plugin, "reset")()
 
+    @door
     def snapshot(self) -> Snapshot:
         """The whole state; a run restored to it repeats bit for bit.
 
@@ -192,6 +204,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self._loop.promise(keep)
         return snapshot
 
+    @door
     def restore(self, snapshot: Snapshot) -> None:
         """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone.
 

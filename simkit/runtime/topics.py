@@ -21,7 +21,8 @@ from simkit.runtime.audience import (
     callback_name,
 )
 from simkit.runtime.clashes import clash_with
-from simkit.runtime.ends import Listener, Publisher
+from simkit.runtime.doors import Journal
+from simkit.runtime.ends import Listener, OutsidePublisher, Publisher
 from simkit.runtime.faults import is_guarded
 from simkit.runtime.inbox import DEPTH, Inbox
 
@@ -47,6 +48,7 @@ class TopicBus:
         revision: another number after every change of who reads or publishes what.
         aside: topics that nobody takes unasked: recorders and counters leave them out unless they are named.
         unlisted: those of them that are only listed while somebody reads them.
+        journal: hears of what comes in from outside; None where nobody does.
     """
 
     def __init__(self, reports: Diagnostics | None = None, now: Callable[[], float] = lambda: 0.0) -> None:
@@ -61,6 +63,7 @@ class TopicBus:
         self.revision = 0
         self.aside: set[str] = set()
         self.unlisted: set[str] = set()
+        self.journal: Journal | None = None
         self._on_audience: dict[str, Callable[[], None]] = {}
 
     # ------------------------------------------------------------------ ends
@@ -85,10 +88,14 @@ class TopicBus:
         topic = absolute(topic)
         self.gather(topic)
         self.revision += 1
-        publisher = Publisher(self, topic, type_name, latched, self._owner)
+        kind = Publisher if self._owner is not None else OutsidePublisher
+        publisher = kind(self, topic, type_name, latched, self._owner)
         self._check_type(topic, publisher)
         self._publishers.setdefault(topic, []).append(publisher)
         self._announce(topic, type_name)
+        if self.journal is not None and self._owner is None:
+            with self.journal.passing("advertise", {"publisher": publisher}):
+                pass
         return publisher
 
     def listen(self, topic: str, types: Sequence[str], callback: Callback, *, depth: int | None = None) -> Listener:
@@ -128,7 +135,10 @@ class TopicBus:
         """
         if on_error not in ("stop", "drop"):
             raise ValueError(f"on_error is 'stop' or 'drop', got {on_error!r}")
-        return self._add_reader(Subscription(self, absolute(topic), callback, keep, on_error))
+        subscription = Subscription(self, absolute(topic), callback, keep, on_error)
+        if self.journal is not None and callback is not None and not is_guarded(callback):
+            self.journal.hears(subscription.topic, subscription)
+        return self._add_reader(subscription)
 
     def tap(self, topic: str, callback: Callback, *, takes_later: bool = False) -> Subscription:
         """Receives a topic without keeping its messages.
@@ -143,6 +153,9 @@ class TopicBus:
     def close(self, end: Publisher | Listener) -> None:
         """Takes a publisher or a listener away for good."""
         self.gather(end.topic)
+        if self.journal is not None and isinstance(end, OutsidePublisher):
+            with self.journal.passing("close", {"publisher": end}):
+                pass
         self.revision += 1
         table: Mapping[str, list[Any]] = self._publishers if isinstance(end, Publisher) else self._listeners
         if end in table.get(end.topic, []):
@@ -260,7 +273,11 @@ class TopicBus:
             message = msgs.from_dict(list(dict.fromkeys(types)), dict(message))
         elif types and msgs.type_name(message) not in types:
             raise MessageError(f"{topic!r} takes {' or '.join(dict.fromkeys(types))}, got {msgs.type_name(message)}")
-        self._deliver(topic, message)
+        if self.journal is None:
+            self._deliver(topic, message)
+        else:
+            with self.journal.passing("publish", {"topic": topic, "message": message}):
+                self._deliver(topic, message)
 
     def enqueue(self, call: Callable[[], None]) -> None:
         """Has something done between two steps, in its turn among the queued commands."""

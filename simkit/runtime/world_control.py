@@ -12,6 +12,7 @@ from simkit.errors import InputError
 from simkit.pose import Pose, Vector
 from simkit.runtime.aspect import Aspect
 from simkit.runtime.collisions import enable_collisions
+from simkit.runtime.doors import door
 from simkit.runtime.loop import guarded
 from simkit.runtime.on_demand import OnDemand
 from simkit.runtime.pausing import Pausing
@@ -70,6 +71,7 @@ class WorldControl(Aspect):
         """Ends the present stretch of a world that is kept running with the step under way; `step` and `run` go on."""
         self._whole._loop.halt()
 
+    @door
     def reseed(self, seed: int) -> None:
         """Draws everything random from another seed from now on."""
         sim = self._whole
@@ -98,6 +100,7 @@ class WorldControl(Aspect):
 
     # ------------------------------------------------------------------ models
 
+    @door
     def clone(self, name: str, new_name: str, pose: Pose | None = None) -> Model:
         """Adds a copy of a top-level model as its file has it, where the model is now or at a pose in the world.
 
@@ -141,6 +144,7 @@ class WorldControl(Aspect):
         """Lets the collisions of links (scoped names) make contacts, or not; of one collision where `only` names it."""
         enable_collisions(self._whole, links, enabled, only)
 
+    @door
     def reset_models(self) -> None:
         """Puts the models that are there back to where and how they started; time goes on.
 

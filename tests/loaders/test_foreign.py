@@ -11,6 +11,7 @@ import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders.xml import parse_file
 
+SCENARIO = "a scenario; simkit golden record, certify, bundle and grade take one"
 LFS = "a pointer of Git LFS; the content was not fetched (git lfs pull)"
 
 
@@ -39,6 +40,7 @@ def refused(path: Path) -> simkit.Diagnostic:
         (b"\x89MCAP0\r\n", "an MCAP recording"),
         (b"abc\0def", "a binary file"),
         (b"world:\n  models: []\n", "a text without any element"),
+        (b"# a run\nworld: hall\nlimits: [time < 3]\n", SCENARIO),
         (b"version https://git-lfs.github.com/spec/v1\n", LFS),
     ],
 )  # fmt: skip

@@ -33,6 +33,16 @@ def test_a_latched_topic_gives_its_last_message_to_who_comes_late():
     assert bus.subscribe("/x").latest.data == 4.0
 
 
+def test_a_publisher_takes_a_dict_of_the_fields_of_its_type():
+    bus = TopicBus()
+    publisher = bus.advertise("/x", "geometry_msgs/msg/Twist")
+    subscription = bus.subscribe("/x")
+    publisher.publish({"linear": {"x": 0.2}})
+    assert (subscription.latest.linear.x, subscription.latest.linear.y) == (0.2, 0.0)
+    with pytest.raises(MessageError, match="linaer"):
+        publisher.publish({"linaer": {"x": 0.2}})
+
+
 def test_commands_arrive_in_order_and_only_when_delivered():
     bus, got = TopicBus(), []
     bus.listen("/cmd", ["std_msgs/msg/Float64"], lambda m: got.append(m.data))

@@ -140,6 +140,17 @@ def test_half_opaque_is_half_before_a_wall_and_before_the_background() -> None:
         np.testing.assert_allclose(seen[16, 16], 0.5 * np.array((0, 255, 0)) + 0.5 * np.array(behind), atol=2)
 
 
+def test_the_background_behind_glass_in_one_picture_does_not_colour_the_background_of_the_next() -> None:
+    pane = slab("pane", 1.2, "0 1 0 1", 0.5, before="<visibility_flags>2</visibility_flags>")
+    eyes = camera(name="through") + camera("<visibility_mask>1</visibility_mask>", name="blind_to_it")
+    with simkit.load(world(eyes, others=pane, top=scene())) as sim:
+        first, other = sim.subscribe("/through"), sim.subscribe("/blind_to_it")
+        sim.run(0.03)
+    assert tuple(colours(first.messages[0])[0, 0]) != BLUE
+    for image in other.messages:
+        assert (colours(image) == BLUE).all()
+
+
 def test_glass_is_drawn_from_the_back_to_the_front_whatever_its_order_in_the_file() -> None:
     green, blue = slab("g", 1.5, "0 1 0 1", 0.5), slab("b", 2.0, "0 0 1 1", 0.25)
     expected = 0.5 * np.array((0, 255, 0)) + 0.5 * (0.75 * np.array((0, 0, 255)) + 0.25 * np.array((255, 0, 0)))

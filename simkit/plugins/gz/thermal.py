@@ -95,6 +95,7 @@ def _find_picture(params: Params, builder: SpecBuilder) -> Path | None:
     if path is not None:
         try:
             pixels_of(path)
+            builder.files_read.append(path)
             return path
         except MeshFileError as error:
             problem = str(error)

@@ -131,7 +131,8 @@ class Renderer:
                     fit_shadow_maps(context)
                 self._render(scene, context, rectangle, hidden, glassy)
                 is_masked = not glassy and self._can_mask(composition.model)
-                learns = not is_masked and self._backdrop.is_plain and self._shade is None
+                # glass colours what is behind it and leaves its depth: that is not the background's colour
+                learns = not (is_masked or glassy) and self._backdrop.is_plain and self._shade is None
                 if not is_masked:
                     self._backdrop.draw()
                 if glassy:

@@ -1,0 +1,70 @@
+"""A program in a process apart has a limit, keeps few words, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from simkit.apart import Processes
+
+ROOT = Path(__file__).resolve().parents[1]
+HEAD = "import os, subprocess, sys, time\nfrom simkit.apart import end_at_once, end_with_parent\nend_with_parent()\n"
+SLEEPER = "print(subprocess.Popen(['sleep', '60']).pid, flush=True)\n"
+
+
+def ended(folder: Path, body: str, **how: float):
+    (folder / "part.py").write_text(HEAD + body)
+    path = os.pathsep.join([str(folder), str(ROOT)])
+    return Processes().run("part", [], environment={**os.environ, "PYTHONPATH": path}, **how)
+
+
+def is_gone(pid: int) -> bool:
+    deadline = time.monotonic() + 5
+    while time.monotonic() < deadline:
+        try:
+            state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        except FileNotFoundError:
+            return True
+        if state == "Z":
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def test_of_megabytes_the_last_lines_are_kept_and_nobody_waits(tmp_path: Path) -> None:
+    found = ended(tmp_path, "print('x' * 5_000_000)\nprint('last', sys.stdin.read())\nsys.exit(3)")
+    assert found.code == 3 and found.last_lines(1) == ["last "] and len(found.said) <= 1 << 16
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are looked at in /proc")
+@pytest.mark.parametrize("body", ["time.sleep(60)", "end_at_once(0)"], ids=["at its limit", "at its end"])
+def test_what_it_began_ends_with_it(body: str, tmp_path: Path) -> None:
+    found = ended(tmp_path, SLEEPER + body, limit=1.0)
+    assert found.is_late == ("60" in body)
+    assert is_gone(int(found.said.split()[0]))
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are looked at in /proc")
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_it_ends_with_whoever_began_it_however_that_goes(how: signal.Signals, tmp_path: Path) -> None:
+    file = tmp_path / "pid"
+    (tmp_path / "part.py").write_text(
+        f"{HEAD}open({str(file) + '.part'!r}, 'w').write(str(os.getpid()))\n"
+        f"os.rename({str(file) + '.part'!r}, {str(file)!r})\ntime.sleep(60)"
+    )
+    script = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    script += "from simkit.apart import Processes\nProcesses().run('part', [])"
+    path = os.pathsep.join([str(tmp_path), str(ROOT)])
+    parent = subprocess.Popen([sys.executable, "-c", script], env={**os.environ, "PYTHONPATH": path}, stderr=-3)
+    while not file.exists():
+        assert parent.poll() is None
+        time.sleep(0.01)
+    parent.send_signal(how)
+    parent.wait()
+    assert is_gone(int(file.read_text()))
