@@ -236,7 +236,7 @@ def _opened(path: Path) -> _Whole | _CutOff:
     except Exception as error:  # noqa: BLE001 (a reader of somebody else's, fed with anything)
         files = [path] if path.suffix == ".mcap" else sorted(path.glob("*.mcap")) if path.is_dir() else []
         cut = _CutOff(path, files)
-        if files and cut.topics():
+        if files and cut.has_begun:
             return cut
         reason = cut.broken if files else error if isinstance(error, ReaderError) else f"it is damaged ({error})"
         raise InputError(f"SK-CLI-035 {path} cannot be read: {reason}", _UNREADABLE) from None
@@ -296,6 +296,7 @@ class _CutOff:
         self._files = files
         self._definitions: dict[str, str] = {}
         self.broken = ""
+        self.has_begun = False
         counts: Counter[tuple[str, str, bool]] = Counter()
         self._span = (0, 0)
         for time_ns, topic, type_name, _, latched in self._records():
@@ -306,6 +307,8 @@ class _CutOff:
         if self._topics:
             hint = f"simkit bag recover {path} mends it"
             self.broken = f"the recording was cut off ({self.broken or 'its end is missing'}); {hint}"
+        elif self.has_begun:
+            self.broken = "the recording was cut off before anything was written"
 
     def topics(self) -> list[BagTopic]:
         return self._topics
@@ -332,6 +335,7 @@ class _CutOff:
             with path.open("rb") as file:
                 try:
                     for record in StreamReader(file).records:
+                        self.has_begun = True
                         if isinstance(record, Schema):
                             schemas[record.id] = record
                             self._definitions[record.name] = bytes(record.data).decode(errors="replace")

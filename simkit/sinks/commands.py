@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -132,43 +132,90 @@ def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
     Raises:
         InputError: SK-CLI-011 with file and line.
     """
-    import yaml
+    return commands_of(script_items(path), topics)
 
-    from simkit.sinks.yaml_text import loader
+
+def script_items(path: Path) -> list[dict[str, Any]]:
+    """What a YAML script holds, each with its place under "where"; whether it fits a world is seen by `commands_of`.
+
+    Raises:
+        InputError: SK-CLI-011 with file and line.
+    """
+    from simkit.sinks.yaml_text import NotYaml, composed, value_of
 
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise _bad(str(path), f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
     try:
-        root = yaml.compose(text, Loader=loader())
-    except yaml.MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise _bad(f"{path}:{line}", f"is not YAML: {error.problem}") from None
-    except yaml.YAMLError as error:
-        raise _bad(str(path), f"is not YAML: {str(error).splitlines()[0]}") from None
-    except RecursionError:
-        raise _bad(str(path), "is nested too deep") from None
+        root = composed(text)
+    except NotYaml as error:
+        raise _bad(str(path) if error.line is None else f"{path}:{error.line}", f"is not YAML: {error}") from None
     if root is None:
         return []
-    if not isinstance(root, yaml.SequenceNode):
+    if root.id != "sequence":
         raise _bad(
             f"{path}:{root.start_mark.line + 1}", "found something else, allowed is a list of {at, topic, message}"
         )
-    commands = []
+    found = []
     for node in root.value:
         where = f"{path}:{node.start_mark.line + 1}"
         try:
-            item = yaml.constructor.SafeConstructor().construct_document(node)
-        except (yaml.YAMLError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            raise _bad(where, f"is not YAML: {str(error).partition(chr(10))[0]:.200}") from None
-        commands.append(_command(item, where, topics))
-    return commands
+            found.append((value_of(node), where))
+        except NotYaml as error:
+            raise _bad(where, f"is not YAML: {error!s:.200}") from None
+    return placed_items(found)
 
 
-def _command(item: Any, where: str, topics: dict[str, str]) -> Command:
+def placed_items(items: Iterable[tuple[Any, str]]) -> list[dict[str, Any]]:
+    """The mappings of commands, each with its place under "where"; what is wrong in any world is told.
+
+    Args:
+        items: what was written, and where.
+
+    Raises:
+        InputError: SK-CLI-011 with a line for every one that is no command.
+    """
+    return _each(_placed, items)
+
+
+def _placed(written: tuple[Any, str]) -> dict[str, Any]:
+    item, where = written
     if not isinstance(item, dict):
-        raise _bad(where, f"found {item!r}, allowed is {{at, topic, message}}")
+        raise _bad(where, f"found {item!r:.60}, allowed is {{at, topic, message}}")
+    _command(item, where, None)
+    return {**item, "where": where}
+
+
+def commands_of(items: Iterable[Mapping[str, Any]], topics: dict[str, str]) -> list[Command]:
+    """The commands that mappings stand for: those of a script, each with its place under "where".
+
+    Raises:
+        InputError: SK-CLI-011 with a line for every one that does not fit.
+    """
+
+    def command(item: Mapping[str, Any]) -> Command:
+        where = str(item.get("where", "commands"))
+        return _command({key: value for key, value in item.items() if key != "where"}, where, topics)
+
+    return _each(command, items)
+
+
+def _each(make: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+    """Makes something of each item; what is wrong with any of them is told at once."""
+    found, wrong = [], []
+    for item in items:
+        try:
+            found.append(make(item))
+        except InputError as error:
+            wrong.append(error)
+    if wrong:
+        raise InputError("\n".join(map(str, wrong)), wrong[0].code)
+    return found
+
+
+def _command(item: Mapping[str, Any], where: str, topics: dict[str, str] | None) -> Command:
+    """A command; whether its topic is there is seen where topics are given."""
     for key in item:
         if key not in _KEYS:
             raise _bad(where, f"unknown key {key!r}; {did_you_mean(str(key), _KEYS) or 'keys are ' + ', '.join(_KEYS)}")
@@ -179,11 +226,12 @@ def _command(item: Any, where: str, topics: dict[str, str]) -> Command:
     if not isinstance(topic, str):
         raise _bad(where, f"topic: found {topic!r}, allowed is a text")
     topic = topic if topic.startswith("/") else "/" + topic
-    if topic not in topics:
+    if topics is not None and topic not in topics:
         raise _bad(where, f"no topic {topic!r}; {did_you_mean(topic, topics) or 'there is ' + ', '.join(topics)}")
     message = item.get("message") or {}
     if not isinstance(message, dict):
-        raise _bad(where, f"message: found {message!r}, allowed is a mapping of the fields of {topics[topic]}")
+        of = "its message" if topics is None else topics[topic]
+        raise _bad(where, f"message: found {message!r:.60}, allowed is a mapping of the fields of {of}")
     at = _number(item["at"], "at", where, 0.0)
     until = None if item.get("until") is None else _number(item["until"], "until", where, at)
     rate = _number(item.get("rate", _RATE), "rate", where, 1e-6)
@@ -191,10 +239,12 @@ def _command(item: Any, where: str, topics: dict[str, str]) -> Command:
 
 
 def _number(value: Any, key: str, where: str, minimum: float) -> float:
-    number = value if isinstance(value, (int, float)) and not isinstance(value, bool) else None
-    if number is None or not math.isfinite(number) or number < minimum:
-        raise _bad(where, f"{key}: found {value!r}, allowed is a number of at least {minimum:g}")
-    return float(number)
+    from simkit.sinks.yaml_text import finite_number
+
+    number = finite_number(value)
+    if number is None or number < minimum:
+        raise _bad(where, f"{key}: found {value!r:.60}, allowed is a number of at least {minimum:g}")
+    return number
 
 
 def _bad(where: str, message: str) -> InputError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fnmatch
 import os
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -14,6 +13,8 @@ from simkit import msgs
 from simkit.errors import InputError, SimkitError
 from simkit.runtime.topics import NOTHING, Later
 from simkit.sinks.mcap_bag import McapBag
+from simkit.sinks.topic_patterns import fits
+from simkit.writers.staging import why_unwritable
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -42,13 +43,11 @@ def check_target(path: Path, *, overwrite: bool = False) -> None:
         )
     if path.is_dir() and is_single_file(path):
         raise InputError(f"SK-BAG-002 cannot write {path}: it is a folder", "SK-BAG-002")
-    parent = path.absolute().parent
-    if is_single_file(path) and not parent.is_dir():
-        raise InputError(f"SK-BAG-002 cannot write {path}: there is no folder {parent}", "SK-BAG-002")
-    while not parent.exists():
-        parent = parent.parent
-    if not parent.is_dir() or not os.access(parent, os.W_OK):
-        raise InputError(f"SK-BAG-002 cannot write {path}: the folder {parent} is not writable", "SK-BAG-002")
+    if is_single_file(path) and not path.absolute().parent.is_dir():
+        raise InputError(f"SK-BAG-002 cannot write {path}: there is no folder {path.absolute().parent}", "SK-BAG-002")
+    why = why_unwritable(path)
+    if why:
+        raise InputError(f"SK-BAG-002 cannot write {path}: {why}", "SK-BAG-002")
 
 
 def _exists(path: Path) -> bool:
@@ -164,13 +163,13 @@ class Recorder:
             return
         if not (self._choose or self._is_asked_for)(topic):
             return
-        if any(fnmatch.fnmatchcase(topic, p) for p in self._skip):
+        if fits(topic, self._skip):
             return
         self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._take(topic, message), takes_later=True)
 
     def _is_asked_for(self, topic: str) -> bool:
         if self._patterns:
-            return any(fnmatch.fnmatchcase(topic, p) for p in self._patterns)
+            return fits(topic, self._patterns)
         return topic not in self._sim.bus.aside
 
     def records(self, topic: str) -> bool:

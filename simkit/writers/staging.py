@@ -11,6 +11,43 @@ from types import TracebackType
 from simkit.errors import InputError
 
 
+def check_file(path: Path, *, overwrite: bool) -> None:
+    """Whether a file may be written: it replaces a file only where that is wanted, and anything else never.
+
+    Raises:
+        InputError: SK-CLI-016 something is there already.
+    """
+    if path.exists() and not path.is_file():
+        what = "it is a folder" if path.is_dir() else "it is no plain file"
+        raise InputError(f"SK-CLI-016 cannot write {path}: {what}", "SK-CLI-016")
+    if path.exists() and not overwrite:
+        raise _taken(path)
+
+
+def why_unwritable(path: Path) -> str:
+    """Why nothing can come to be at a path, whose folders may have to be made; empty where it can."""
+    parent = path.absolute().parent
+    while not parent.exists():
+        parent = parent.parent
+    if not parent.is_dir():
+        return f"{parent} is no folder"
+    return "" if os.access(parent, os.W_OK) else f"the folder {parent} is not writable"
+
+
+def check_folder(path: Path) -> None:
+    """Whether files may be written into a folder, which need not be there yet.
+
+    Raises:
+        InputError: SK-CLI-016 it is none, or nothing can be written there.
+    """
+    try:
+        why = "it is no folder" if path.exists() and not path.is_dir() else why_unwritable(path / "file")
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+    if why:
+        raise InputError(f"SK-CLI-016 cannot write to {path}: {why}", "SK-CLI-016")
+
+
 def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
     """Whether a file and the folder beside it may be written.
 
@@ -20,14 +57,15 @@ def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
     whole = path.absolute()
     if not whole.parent.is_dir():
         raise InputError(f"SK-CLI-016 there is no folder {whole.parent}", "SK-CLI-016")
-    if whole.is_dir():
-        raise InputError(f"SK-CLI-016 cannot write {path}: it is a folder", "SK-CLI-016")
-    for target in (path, path.with_name(folder)):
-        if target.exists() and not overwrite:
-            raise InputError(
-                f"SK-CLI-016 {target} exists already and is not overwritten\n    help: --force replaces it",
-                "SK-CLI-016",
-            )
+    check_file(path, overwrite=overwrite)
+    beside = path.with_name(folder)
+    if beside.exists() and not overwrite:
+        raise _taken(beside)
+
+
+def _taken(path: Path) -> InputError:
+    said = f"SK-CLI-016 {path} exists already and is not overwritten\n    help: --force replaces it"
+    return InputError(said, "SK-CLI-016")
 
 
 class Staging:

@@ -138,3 +138,18 @@ def test_what_is_no_file_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.mcap")
     with pytest.raises(InputError, match="neither a file nor a folder"):
         open_bag_to_read(tmp_path / "pipe.mcap")
+
+
+@pytest.mark.parametrize("size", [100, 35, 12])
+def test_a_recording_that_was_cut_off_before_its_first_second_is_one_of_nothing(tmp_path: Path, size: int) -> None:
+    bag = McapBag(tmp_path / "run.mcap")
+    _numbers(bag, 1)
+    begun = (tmp_path / "run.mcap").read_bytes()
+    bag.close()
+    (tmp_path / "cut.mcap").write_bytes(begun[:size])
+    if size == 12:
+        with pytest.raises(InputError, match="SK-CLI-035"):
+            open_bag_to_read(tmp_path / "cut.mcap")
+        return
+    with open_bag_to_read(tmp_path / "cut.mcap") as cut:
+        assert cut.count == 0 and not list(cut.messages()) and "before anything" in cut.broken

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from simkit.sinks.yaml_text import NotYaml, read_yaml
+from simkit.sinks.yaml_text import NotYaml, finite_number, read_yaml
 
 
 @pytest.mark.parametrize(
@@ -46,3 +46,20 @@ def test_much_out_of_little_is_refused() -> None:
     text = "a0: &a0 [1, 1]\n" + "".join(f"a{i}: &a{i} [*a{i - 1}, *a{i - 1}]\n" for i in range(1, 40))
     with pytest.raises(NotYaml, match="stands for more than"):
         read_yaml(text)
+
+
+def test_much_out_of_little_by_merging_is_refused_too() -> None:
+    text = "a0: &a0 {x: 1}\n" + "".join(f"a{i}: &a{i} {{<<: [{f'*a{i - 1}, ' * 9}]}}\n" for i in range(1, 20))
+    with pytest.raises(NotYaml, match="stands for more than") as caught:
+        read_yaml(text)
+    assert caught.value.line is not None
+
+
+@pytest.mark.parametrize("text", ["12:30", "-1:30:00", "1:30.5"])
+def test_a_time_of_day_is_no_number_of_minutes(text: str) -> None:
+    assert read_yaml(f"x: {text}") == {"x": text}
+
+
+@pytest.mark.parametrize("value", [10**400, -(10**400), float("nan"), float("inf"), True, "1", None, [1]])
+def test_what_is_no_finite_number_is_none(value: object) -> None:
+    assert finite_number(value) is None and finite_number(10**20) == 1e20

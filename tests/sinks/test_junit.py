@@ -1,0 +1,119 @@
+"""Results as JUnit XML: what every reader needs is there, whatever a text holds, and no half file ever."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from simkit.errors import InputError
+from simkit.sinks.junit import LONGEST, Case, junit_text, write_junit
+from simkit.sinks.whole_file import write_whole
+
+CASES = [
+    Case("straight", "drive", 1.25),
+    Case("turn", "drive", 0.5, failure=("/odom +3 mm", "/odom.x: +3 mm\nfrom t = 1 s"), output="a note"),
+    Case("world", "drive", error=("SK-XML-001 not XML", "w.sdf:1: …"), file="drive/w.sdf"),
+    Case("camera", "drive", skipped="no renderer"),
+]
+
+
+def tree(cases: list[Case]) -> etree._Element:
+    return etree.fromstring(junit_text("golden", cases).encode())
+
+
+def test_a_suite_counts_its_cases_and_adds_their_times() -> None:
+    root = tree(CASES)
+    for element in (root, root[0]):
+        counted = {name: element.get(name) for name in ("tests", "failures", "errors", "skipped", "time")}
+        assert counted == {"tests": "4", "failures": "1", "errors": "1", "skipped": "1", "time": "1.750"}
+
+
+def test_each_case_says_what_became_of_it() -> None:
+    passed, failed, wrong, skipped = tree(CASES)[0]
+    assert (passed.get("classname"), passed.get("name"), passed.get("time")) == ("drive", "straight", "1.250")
+    assert len(passed) == 0
+    failure = failed.find("failure")
+    assert failure is not None
+    assert (failure.get("message"), failure.text) == ("/odom +3 mm", "/odom.x: +3 mm\nfrom t = 1 s")
+    assert failed.findtext("system-out") == "a note"
+    assert wrong.get("file") == "drive/w.sdf"
+    assert wrong.find("error") is not None
+    reason = skipped.find("skipped")
+    assert reason is not None
+    assert reason.get("message") == "no renderer"
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ('<script>&"]]>', '<script>&"]]>'),
+        ("a\x00b\x1bc", "a\ufffdb\ufffdc"),
+        ("\x1b[1;31mred\x1b[0m", "red"),
+        ("half \ud83d pair", "half \ufffd pair"),
+        ("größer → µm 🤖", "größer → µm 🤖"),
+        ("two\r\nlines", "two\nlines"),
+    ],
+)
+def test_any_text_is_read_back_less_what_xml_cannot_hold(text: str, read: str) -> None:
+    root = tree([Case(text, text, failure=(text, text), output=text)])
+    failure = root[0][0].find("failure")
+    assert failure is not None
+    assert failure.text == read
+    assert failure.get("message") == " ".join(read.split())
+    assert root[0][0].get("name") == " ".join(read.split())
+
+
+def test_an_endless_text_keeps_its_beginning_and_its_end() -> None:
+    text = tree([Case("c", output="first" + "x" * 10 * LONGEST + "last")])[0][0].findtext("system-out")
+    assert text is not None
+    assert text.startswith("first")
+    assert text.endswith("last")
+    assert len(text) < LONGEST + 100
+    assert "letters left out" in text
+
+
+def test_a_time_that_is_no_number_counts_as_none() -> None:
+    assert tree([Case("c", seconds=float("nan")), Case("d", seconds=-1.0)])[0].get("time") == "0.000"
+
+
+def test_nothing_tried_is_a_file_too() -> None:
+    assert tree([])[0].get("tests") == "0"
+
+
+def test_equal_cases_give_equal_files_in_a_folder_that_is_made(tmp_path: Path) -> None:
+    for name in ("a/b/one.xml", "two.xml"):
+        write_junit(tmp_path / name, "golden", CASES)
+    assert (tmp_path / "a/b/one.xml").read_bytes() == (tmp_path / "two.xml").read_bytes()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a", "two.xml"]
+
+
+def test_a_place_that_cannot_be_written_is_an_error_and_nothing_is_left_behind(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    for path in (tmp_path, tmp_path / "file" / "out.xml"):
+        with pytest.raises(InputError, match="SK-CLI-016 cannot write"):
+            write_junit(path, "golden", [])
+    assert [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_link_stays_a_link_and_the_mask_of_the_process_counts(tmp_path: Path) -> None:
+    (tmp_path / "real").write_bytes(b"old")
+    (tmp_path / "link").symlink_to("real")
+    old = os.umask(0o027)
+    try:
+        write_whole(tmp_path / "link", b"new")
+    finally:
+        os.umask(old)
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "real").read_bytes() == b"new"
+    assert (tmp_path / "real").stat().st_mode & 0o777 == 0o640
+
+
+def test_a_pipe_is_written_as_it_is(tmp_path: Path) -> None:
+    read, write = os.pipe()
+    write_whole(f"/dev/fd/{write}", b"<xml/>")
+    os.close(write)
+    assert os.read(read, 100) == b"<xml/>"
+    os.close(read)
