@@ -1,9 +1,16 @@
-"""The pytest fixture `simkit_world`: a world in one line, closed when the test ends.
+"""The pytest fixtures `simkit_world` and `sensor_regression`.
+
+A world in one line, closed when the test ends:
 
     def test_it_rolls(simkit_world):
         sim = simkit_world("ramp.sdf", plugins=[Brake(force=2.0)])
         sim.run(1.0)
         assert sim.model("cart").pose.position[0] < 0.1
+
+What its sensors give, compared with what they gave (`pytest --simkit-update-golden` keeps that beside the test):
+
+    def test_the_scan_is_as_it_was(sensor_regression):
+        sensor_regression("ramp.sdf", duration=3.0)
 
 pytest imports this module at every start, whether a test asks for a world or not: so nothing heavy is imported here.
 """
@@ -22,9 +29,12 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
 
     from simkit.diagnostics import Diagnostic
+    from simkit.golden.in_tests import SensorRegression
     from simkit.runtime import Simulation
 
 _OPENED: Final = pytest.StashKey["list[_Opened]"]()
+_GOLDEN: Final = pytest.StashKey["list[str]"]()
+_REASON: Final = "updated by a test"
 _LONGEST: Final = 40  # letters of a text of SDF that stand for it in a report
 
 
@@ -81,9 +91,8 @@ class _Opened:
         refused: why it could not.
     """
 
-    def __init__(self, label: str) -> None:
-        self.label = label
-        self.sim: Simulation | None = None
+    def __init__(self, label: str, sim: Simulation | None = None) -> None:
+        self.label, self.sim = label, sim
         self.refused: list[Diagnostic] = []
 
     def text(self) -> str:
@@ -101,10 +110,59 @@ def simkit_world(request: pytest.FixtureRequest) -> Iterator[WorldOpener]:
     Takes a file, a bare name or a text of SDF, and every option of `simkit.load`. Where the test fails, its report says
     what loading the world approximated or ignored.
     """
-    opened: list[_Opened] = []
-    request.node.stash[_OPENED] = opened
+    opened: list[_Opened] = request.node.stash.setdefault(_OPENED, [])
     with ExitStack() as stack:
         yield WorldOpener(request.path.parent, opened, stack)
+
+
+@pytest.fixture
+def sensor_regression(request: pytest.FixtureRequest) -> Iterator[SensorRegression]:
+    """Compares what sensors give with a golden run beside the test, `golden/FILE/TEST`.
+
+    `sensor_regression("w.sdf", duration=3.0)` runs a world or a scenario; of a simulation that the test steps by itself
+    `with sensor_regression.of(sim): …` listens. A test without a golden run fails; `--simkit-update-golden` writes it.
+    """
+    from simkit.golden.in_tests import Place, SensorRegression
+
+    opened: list[_Opened] = request.node.stash.setdefault(_OPENED, [])
+    options, file = request.config.option, request.path
+    reason = (options.simkit_golden_reason or _REASON) if options.simkit_update_golden else None
+    # the name with its parameters; a class keeps methods of one name apart
+    name = request.node.name if request.cls is None else f"{request.cls.__qualname__}.{request.node.name}"
+    place = Place(
+        file.parent / "golden" / file.stem,
+        name,
+        file.parent,
+        request.node.nodeid,
+        reason,
+        options.simkit_bless_other_renderer,
+        Path(options.simkit_report).absolute() if options.simkit_report else None,
+    )
+    request.node.stash[_GOLDEN] = place.done
+    with ExitStack() as stack:
+
+        def keep(sim: Simulation, label: str) -> None:
+            opened.append(_Opened(label, sim))
+            stack.callback(sim.close)
+
+        yield SensorRegression(place, keep)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """What the command line may say of golden runs."""
+    group = parser.getgroup("simkit", "simkit: sensor outputs under regression")
+    group.addoption(
+        "--simkit-update-golden",
+        action="store_true",
+        help="write the golden runs of sensor_regression that are missing or differ",
+    )
+    group.addoption("--simkit-golden-reason", metavar="TEXT", default="", help="why that is right; kept with them")
+    group.addoption(
+        "--simkit-bless-other-renderer",
+        action="store_true",
+        help="write them also where pictures were drawn by another renderer",
+    )
+    group.addoption("--simkit-report", metavar="DIR", default="", help="a page for each golden run that differs")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -116,7 +174,19 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestR
             text = opened.text()
             if text:
                 report.sections.append((f"simkit {opened.label}", text))
+    if report.when == "call" and _GOLDEN in item.stash and item.stash[_GOLDEN]:
+        vars(report)["simkit_golden"] = item.stash[_GOLDEN]  # plain texts, which come through from workers of xdist
     return report
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Says which golden runs were written."""
+    reports = [report for some in terminalreporter.stats.values() for report in some]
+    lines = sorted(line for report in reports for line in getattr(report, "simkit_golden", ()))
+    if lines:
+        terminalreporter.section("simkit golden runs")
+        for line in lines:
+            terminalreporter.line(line)
 
 
 def _label(source: str | os.PathLike[str]) -> str:

@@ -1,0 +1,1 @@
+"""Golden runs: what a scenario gave once, kept and compared with what it gives now."""

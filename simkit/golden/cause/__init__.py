@@ -1,0 +1,8 @@
+"""Where differences come from; it knows no list of causes."""
+
+from __future__ import annotations
+
+from simkit.golden.cause.again import rerun_scenario
+from simkit.golden.cause.explanation import explain
+
+__all__ = ["explain", "rerun_scenario"]

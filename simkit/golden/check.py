@@ -1,0 +1,174 @@
+"""Checks a golden run: the same scenario again, compared, and explained where it differs."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.errors import InputError
+from simkit.golden.capture import ENVIRONMENT, run_record
+from simkit.golden.compare import compare
+from simkit.golden.difference import Verdict
+from simkit.golden.fingerprint import RENDERER
+from simkit.golden.record import Record
+from simkit.golden.store import folder_of, history_of, read_golden, write_golden
+from simkit.scenario import Scenario
+
+BUDGET: Final = 60.0
+"""Wall time [s] that looking for causes may take."""
+_MOST_CHANGES: Final = 12  # differences that a blessing lists
+
+
+def check_golden(
+    folder: str | os.PathLike[str],
+    *,
+    scenario: Scenario | None = None,
+    bless: str | None = None,
+    other_renderer: bool = False,
+    causes: bool = True,
+    budget_s: float = BUDGET,
+) -> Verdict:
+    """Runs a golden run's scenario again and compares.
+
+    Args:
+        folder: of the golden run.
+        scenario: what is run; None for the scenario's file, or, where there is none, what stands in the golden run.
+        bless: why what differs is right: then it becomes golden. What does not differ stays as it is.
+        other_renderer: whether pictures of another renderer may be blessed.
+        causes: whether differences are explained.
+        budget_s: wall time that this may take [s].
+
+    Returns:
+        The verdict; of what was blessed it says what differed.
+
+    Raises:
+        InputError: SK-GOLDEN-002 to SK-GOLDEN-004 the golden run cannot be read; SK-GOLDEN-006 it cannot be run again
+            from here; SK-GOLDEN-007 it is not blessed; or the world cannot be loaded.
+        RenderError: there are pictures, and nothing that draws.
+    """
+    if bless is not None and not bless.strip():
+        raise InputError("SK-GOLDEN-007 a blessing needs a reason: --bless 'wheels are 1 mm larger'", "SK-GOLDEN-007")
+    place = folder_of(folder)
+    golden = read_golden(place)
+    asked = _scenario(place, golden, scenario)
+    with _surrounded(golden.environment):
+        return _checked(place, golden, asked, bless, other_renderer, budget_s if causes else None)
+
+
+def _checked(
+    place: Path, golden: Record, scenario: Scenario, bless: str | None, other_renderer: bool, budget_s: float | None
+) -> Verdict:
+    """The verdict over a run of today."""
+    started = time.perf_counter()
+    run = run_record(scenario)
+    try:
+        elapsed = time.perf_counter() - started
+        comparison = compare(golden, run)
+        verdict = Verdict(name_of(place), golden, run, comparison, None, run.checks, elapsed)
+        if not comparison.passed and bless is not None:
+            make_golden(place, verdict, bless.strip(), other_renderer=other_renderer)
+        elif not comparison.passed and budget_s is not None:
+            from simkit.golden.cause import explain
+
+            verdict.explanation = explain(golden, run, comparison, budget_s=budget_s)
+        return verdict
+    finally:
+        if run.simulation is not None:
+            run.simulation.close()
+            run.simulation = None
+
+
+def name_of(folder: Path) -> str:
+    """What a golden run is called: its folder."""
+    return folder.resolve().name
+
+
+def _scenario(place: Path, golden: Record, given: Scenario | None) -> Scenario:
+    """What is run: read anew from the scenario's file, for that is what somebody may have changed."""
+    if given is not None:
+        return given
+    stored = golden.scenario
+    if stored.file is not None:
+        if not stored.file.is_file():
+            raise InputError(
+                f"SK-GOLDEN-006 {place}: its scenario {stored.file.resolve()} is not there\n"
+                "    help: put it back, or record anew",
+                "SK-GOLDEN-006",
+            )
+        from simkit.scenario.read import read_scenario
+
+        return read_scenario(stored.file)
+    if stored.test:
+        raise InputError(
+            f"SK-GOLDEN-006 {place} is of a test that makes plugins or steps by itself\n"
+            f"    help: pytest {shlex.quote(os.path.normpath(place / '../../..' / stored.test))}",
+            "SK-GOLDEN-006",
+        )
+    if stored.plugins:
+        raise InputError(
+            f"SK-GOLDEN-006 {place} was recorded with plugins made in Python ({', '.join(stored.plugins)}), "
+            "which are not here\n    help: check it where they are made: the fixture sensor_regression, or "
+            "simkit.golden.check.check_golden(folder, scenario=...)",
+            "SK-GOLDEN-006",
+        )
+    return stored
+
+
+@contextmanager
+def _surrounded(environment: Mapping[str, str]) -> Iterator[None]:
+    """Has the variables that say what the world is be as they were."""
+    kept = {name: os.environ.get(name) for name in ENVIRONMENT if name in environment}
+    try:
+        os.environ.update({name: environment[name] for name in kept})
+        yield
+    finally:
+        for name, value in kept.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: bool = False) -> None:
+    """Makes the run of a verdict golden, with what differs in its history.
+
+    Args:
+        place: folder of the golden run that it was compared with.
+        verdict: the run, and what differs.
+        reason: why that is right.
+        other_renderer: whether pictures of another renderer may become golden.
+
+    Raises:
+        InputError: SK-GOLDEN-007 it failed, or its pictures are another renderer's.
+    """
+    golden, run = verdict.golden, verdict.run
+    refuse_failed(run, place)
+    if not other_renderer:
+        before, now = golden.fingerprint.get(RENDERER), run.fingerprint.get(RENDERER)
+        if before and now and before != now:
+            raise InputError(
+                f"SK-GOLDEN-007 {place} is not blessed: its pictures were drawn by {before}, here they are by {now}, "
+                "and everybody else's would differ\n    help: bless it where the others run (CI), or say "
+                "--bless-other-renderer",
+                "SK-GOLDEN-007",
+            )
+    words = [one.words for one in verdict.comparison.differences]
+    more = len(words) - _MOST_CHANGES
+    changed = [*words[:_MOST_CHANGES], *([f"and {more} more"] if more > 0 else [])]
+    history: list[Mapping[str, Any]] = history_of(place)
+    write_golden(place, run, reason=reason, changed=changed, history=history)
+
+
+def refuse_failed(run: Record, place: Path) -> None:
+    """A run that broke off is no example.
+
+    Raises:
+        InputError: SK-GOLDEN-007 it is one.
+    """
+    if run.error is not None:
+        raise InputError(f"SK-GOLDEN-007 {place}: the run failed, and is not made golden: {run.error}", "SK-GOLDEN-007")

@@ -1,0 +1,206 @@
+"""What is kept of the messages of one topic, by their type."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
+from zlib import crc32
+
+import numpy as np
+
+from simkit.golden.columns import Rows, joined
+from simkit.golden.record import Pictures, Stream
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.scenario import Scenario
+
+_IMAGE: Final = "sensor_msgs/msg/Image"
+_CLOUD: Final = "sensor_msgs/msg/PointCloud2"
+_BLOBS: Final = {
+    _IMAGE: frozenset(("data",)),
+    _CLOUD: frozenset(("data", "fields")),
+    "sensor_msgs/msg/CompressedImage": frozenset(("data",)),
+}
+_POINTS: Final = 64  # of a cloud's message that are kept
+_PICTURES: Final = 32  # of a run that are kept, at most
+_CHANNELS: Final = {
+    "mono8": ("uint8", 1),
+    "8UC1": ("uint8", 1),
+    "rgb8": ("uint8", 3),
+    "bgr8": ("uint8", 3),
+    "8UC3": ("uint8", 3),
+    "rgba8": ("uint8", 4),
+    "bgra8": ("uint8", 4),
+    "mono16": ("uint16", 1),
+    "16UC1": ("uint16", 1),
+    "32FC1": ("float32", 1),
+    "32FC3": ("float32", 3),
+    "bayer_rggb8": ("uint8", 1),
+    "bayer_bggr8": ("uint8", 1),
+    "bayer_gbrg8": ("uint8", 1),
+    "bayer_grbg8": ("uint8", 1),
+}
+_CLOUD_TYPES: Final = {
+    1: "int8", 2: "uint8", 3: "int16", 4: "uint16", 5: "int32", 6: "uint32", 7: "float32", 8: "float64"
+}  # fmt: skip
+
+
+class Taker(Protocol):
+    """Takes the messages of one topic, and says in the end what they were."""
+
+    def take(self, message: Any) -> None:
+        """One message more; what is kept of it is copied."""
+
+    def fill(self, stream: Stream) -> None:
+        """Puts what was taken into a stream."""
+
+
+def taker_of(scenario: Scenario, sim: Simulation, topic: str, type_name: str) -> Taker:
+    """What takes the messages of a topic."""
+    if type_name == _IMAGE:
+        return _Images(scenario.picture)
+    if type_name == _CLOUD:
+        return _Clouds()
+    from simkit.golden.residuals import residuals_of
+
+    plain = _Plain(type_name)
+    residuals = residuals_of(scenario, sim, topic, type_name)
+    return plain if residuals is None else _WithResiduals(plain, residuals)
+
+
+class _Plain:
+    """All fields as they are."""
+
+    def __init__(self, type_name: str) -> None:
+        self._rows = Rows(type_name, _BLOBS.get(type_name, frozenset()))
+
+    def take(self, message: Any) -> None:
+        self._rows.take(message)
+
+    def fill(self, stream: Stream) -> None:
+        stream.columns, stream.words = self._rows.columns()
+
+
+class _WithResiduals:
+    """All fields but those of which the statistics are kept."""
+
+    def __init__(self, plain: _Plain, residuals: Any) -> None:
+        self._plain, self._residuals = plain, residuals
+
+    def take(self, message: Any) -> None:
+        self._plain.take(message)
+        self._residuals.take(message)
+
+    def fill(self, stream: Stream) -> None:
+        self._plain.fill(stream)
+        self._residuals.fill(stream)
+
+
+class _Images:
+    """Pictures, made small."""
+
+    def __init__(self, longest: int) -> None:
+        self._plain, self._longest = _Plain(_IMAGE), longest
+        self._small: list[Any] = []
+        self._tiles: list[Any] = []
+        self._hashes: list[int] = []
+        self._every = 1
+        self._shape: tuple[int, int] | None = None
+        self._encoding, self._is_odd = "", False
+
+    def take(self, message: Any) -> None:
+        from simkit.golden.pictures import shrink, tile_hashes
+
+        number = len(self._hashes)
+        self._plain.take(message)
+        self._hashes.append(crc32(message.data))
+        shape = (int(message.height), int(message.width))
+        if self._shape is None:
+            self._shape, self._encoding = shape, str(message.encoding)
+        if number % self._every:
+            return
+        image = image_of(message)
+        if image is None or shape != self._shape:  # of another size from one to the next: the digest has it
+            self._is_odd = True
+            return
+        small = shrink(image, self._longest)
+        self._small.append(small if small.dtype != np.uint16 else small.astype(np.float32))
+        self._tiles.append(tile_hashes(image))
+        if len(self._small) > _PICTURES:  # every second of them, so that the numbers of two runs meet
+            self._every *= 2
+            del self._small[1::2], self._tiles[1::2]
+
+    def fill(self, stream: Stream) -> None:
+        self._plain.fill(stream)
+        if self._shape is None or not self._small or self._is_odd:
+            return
+        kept = np.arange(0, len(self._hashes), self._every)
+        stream.pictures = Pictures(
+            np.stack(self._small),
+            self._shape,
+            self._encoding,
+            np.stack(self._tiles).astype(np.uint32),
+            None if self._every == 1 else kept,
+            np.array(self._hashes, np.uint32),
+        )
+
+
+class _Clouds:
+    """Clouds of points, thinned; the digest has all of them."""
+
+    def __init__(self) -> None:
+        self._plain = _Plain(_CLOUD)
+        self._values: dict[str, list[Any]] = {}
+        self._names: list[str] = []
+
+    def take(self, message: Any) -> None:
+        self._plain.take(message)
+        points = points_of(message)
+        self._names.append(", ".join(points.dtype.names or ()))
+        step = max(1, -(-len(points) // _POINTS))
+        thin = points[::step]
+        for name in thin.dtype.names or ():
+            if thin.dtype[name].kind in "iuf" and not thin.dtype[name].shape:
+                self._values.setdefault(name, []).append(np.array(thin[name]))
+
+    def fill(self, stream: Stream) -> None:
+        self._plain.fill(stream)
+        stream.words["fields"] = list(self._names)
+        for name, arrays in self._values.items():
+            if len(arrays) == len(stream.times_ns):
+                stream.columns[f"points.{name}"] = joined(arrays, str(arrays[0].dtype))
+
+
+def image_of(message: Any) -> Any:
+    """The pixels of an Image message, shape (height, width, channels); None for an encoding that is not known."""
+    kind = _CHANNELS.get(str(message.encoding))
+    if kind is None:
+        return None
+    dtype, channels = np.dtype(kind[0]), kind[1]
+    data = np.asarray(message.data, dtype=np.uint8)
+    height, width, step = int(message.height), int(message.width), int(message.step)
+    wide = width * channels * dtype.itemsize
+    if height * step > data.size or wide > step:
+        return None
+    rows = np.ascontiguousarray(data[: height * step].reshape(height, step)[:, :wide])
+    pixels = rows.view(dtype.newbyteorder(">" if message.is_bigendian else "<")).reshape(height, width, channels)
+    return pixels.astype(dtype, copy=False)
+
+
+def points_of(message: Any) -> Any:
+    """The points of a PointCloud2 as a structured array."""
+    order: Literal[">", "<"] = ">" if message.is_bigendian else "<"
+    kinds: list[Any] = []
+    names: list[str] = []
+    offsets: list[int] = []
+    for field in message.fields:
+        if int(field.datatype) in _CLOUD_TYPES and field.name not in names:
+            kind = np.dtype(_CLOUD_TYPES[int(field.datatype)]).newbyteorder(order)
+            kinds.append(kind if int(field.count) <= 1 else (kind, (int(field.count),)))
+            names.append(str(field.name))
+            offsets.append(int(field.offset))
+    step = int(message.point_step)
+    dtype = np.dtype({"names": names, "formats": kinds, "offsets": offsets, "itemsize": step})
+    data = np.ascontiguousarray(np.asarray(message.data, dtype=np.uint8))
+    count = len(data) // step if step else 0
+    return np.frombuffer(data[: count * step].tobytes(), dtype=dtype)

@@ -1,0 +1,234 @@
+"""What was changed is named, proven by putting it back, and nothing else is blamed."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from simkit.golden.capture import run_record
+from simkit.golden.cause import explain
+from simkit.golden.compare import compare
+from simkit.golden.difference import Explanation
+from simkit.golden.record import Record
+from simkit.scenario import Scenario
+
+WORLD = """<sdf version="1.12"><world name="w">
+  <physics name="p" type="x"><max_step_size>0.002</max_step_size></physics>
+  <model name="ground"><static>true</static><link name="l">
+    <collision name="c"><geometry><plane><normal>0 0 1</normal></plane></geometry></collision>
+  </link></model>
+  <model name="arm">
+    <pose>1 0 0.6 0 0 0</pose>
+    <link name="foot"><inertial><mass>2</mass></inertial></link>
+    <link name="rod"><pose>0 0 0.1 0 0.3 0</pose>
+      <inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>
+      <collision name="skin"><geometry><cylinder><radius>0.03</radius><length>0.3</length></cylinder></geometry>
+      </collision>
+      <visual name="look"><geometry><cylinder><radius>0.03</radius><length>0.3</length></cylinder></geometry>
+        <material><diffuse>0.5 0.5 0.5 1</diffuse></material></visual>
+      <sensor name="imu" type="imu"><pose>0 0 0.1 0 0 0</pose><update_rate>50</update_rate><topic>/imu</topic>
+        <imu><angular_velocity>
+          <x><noise type="gaussian"><mean>0</mean><stddev>0.01</stddev></noise></x>
+          <y><noise type="gaussian"><mean>0</mean><stddev>0.01</stddev></noise></y>
+        </angular_velocity></imu></sensor>
+    </link>
+    <joint name="nail" type="fixed"><parent>world</parent><child>foot</child></joint>
+    <joint name="hinge" type="revolute"><parent>foot</parent><child>rod</child><pose>0 0 -0.1 0 0 0</pose>
+      <axis><xyz>0 1 0</xyz><dynamics><damping>0.1</damping></dynamics>
+        <limit><lower>-3</lower><upper>3</upper></limit></axis></joint>
+  </model>
+  <model name="box"><pose>-1 0 0.5 0.1 0 0</pose><link name="b">
+    <inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>
+    <collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
+    <visual name="v"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></visual>
+  </link></model>
+</world></sdf>
+"""
+
+
+def scenario(folder: Path, text: str, **more: Any) -> Scenario:
+    (folder / "w.sdf").write_text(text)
+    return replace(Scenario("w.sdf", duration=0.5, folder=folder), **more)
+
+
+def recorded(what: Scenario) -> Record:
+    record = run_record(what)
+    record.simulation.close()
+    record.simulation = None
+    return record
+
+
+@pytest.fixture(scope="module")
+def golden(tmp_path_factory: pytest.TempPathFactory) -> Record:
+    return recorded(scenario(tmp_path_factory.mktemp("golden"), WORLD))
+
+
+Explained = Callable[..., Explanation]
+
+
+@pytest.fixture
+def explained(golden: Record, tmp_path: Path) -> Explained:
+    """What is said of the golden world with texts in it replaced."""
+
+    def of(*replaced: tuple[str, str], count: int = 1, budget: float = 30.0) -> Explanation:
+        text = WORLD
+        for old, new in replaced:
+            assert old in text
+            text = text.replace(old, new, count)
+        run = recorded(scenario(tmp_path, text))
+        found = compare(golden, run)
+        assert not found.passed
+        return explain(golden, run, found, budget_s=budget)
+
+    return of
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("<damping>0.1<", "<damping>0.101<", "joint arm::hinge: damping 0.1 → 0.101 (+1 %)"),
+        ("<mass>1</mass>", "<mass>1.01</mass>", "link arm::rod: mass 1 → 1.01 kg (+1 %)"),
+        ("<size>0.2 0.2 0.2<", "<size>0.2 0.2 0.202<", "collision box::b::c: size z 0.2 → 0.202 m (+1 %)"),
+        ("<update_rate>50<", "<update_rate>51<", "sensor arm::rod::imu: update_rate 50 → 51 Hz (+2 %)"),
+        ("<stddev>0.01<", "<stddev>0.012<", "imu.angular_velocity.x.noise.stddev 0.01 → 0.012 (+20 %)"),
+        ("<max_step_size>0.002<", "<max_step_size>0.001<", "world: physics.max_step_size 0.002 → 0.001 s"),
+        ("<pose>1 0 0.6 0 0 0<", "<pose>1.002 0 0.6 0 0 0<", "model arm moved 2 mm along x (x 1 → 1.002)"),
+        ("<pose>-1 0 0.5 0.1 0 0<", "<pose>-1 0 0.5 0.117453 0 0<", "model box rotated 1° about x"),
+        ("<pose>0 0 0.1 0 0 0</pose><u", "<pose>0 0.002 0.1 0 0 0</pose><u", "sensor arm::rod::imu moved 2 mm along y"),
+        ("<xyz>0 1 0<", "<xyz>0.1 1 0<", "joint arm::hinge: axis xyz x 0 → 0.0995, y 1 → 0.995"),
+        ("<topic>/imu<", "<topic>/other<", "sensor arm::rod::imu: topic /imu → /other"),
+    ],
+)
+def test_one_change_is_named_and_proven(explained: Explained, old: str, new: str, words: str) -> None:
+    found = explained((old, new))
+    assert words in found.lines[0], found.lines
+    assert [c.proven for c in found.causes] == [True], found.lines
+    assert re.search(r"w\.sdf:\d+\)$", found.lines[0])
+    assert found.lines[1].endswith("with this put back the run gives the golden outputs")
+
+
+def test_a_link_that_moves_with_its_sensors_and_joint_is_one_change(explained: Explained) -> None:
+    found = explained(("<pose>0 0 0.1 0 0.3 0</pose>", "<pose>0.002 0 0.1 0 0.3 0</pose>"))
+    assert [c.words for c in found.causes] == ["link arm::rod moved 2 mm along x (x 0 → 0.002)"]
+    assert found.causes[0].proven
+
+
+def test_the_same_change_in_two_places_is_one_line(explained: Explained) -> None:
+    found = explained(("<radius>0.03<", "<radius>0.0303<"), count=2)
+    assert len(found.causes) == 1
+    assert (
+        "radius 0.03 → 0.0303 m (+1 %) in 2 places: collision arm::rod::skin, visual arm::rod::look" in found.lines[0]
+    )
+
+
+def test_of_several_changes_those_that_make_the_difference_are_told_from_those_that_do_not(
+    explained: Explained,
+) -> None:
+    found = explained(
+        ("<diffuse>0.5 ", "<diffuse>0.6 "), ("<damping>0.1<", "<damping>0.11<"), ("<stddev>0.01<", "<stddev>0.02<")
+    )
+    assert {c.path.rpartition(".")[2]: c.proven for c in found.causes} == {
+        "damping": True,
+        "stddev": True,
+        "ambient": False,
+    }
+    assert "proven: with these 2 put back" in found.lines[2]
+    assert found.lines[3].startswith("changed as well, without effect: visual arm::rod::look: material.ambient")
+
+
+def test_a_model_that_is_gone_or_new_is_one_change(explained: Explained) -> None:
+    box = WORLD[WORLD.index('<model name="box"') : WORLD.index("</world>")]
+    found = explained((box, ""))
+    assert (found.causes[0].words, found.causes[0].proven) == ("model box is gone", True)
+    found = explained((box, box + box.replace('"box"', '"crate"').replace("-1 0 0.5", "-3 0 0.5")))
+    assert (found.causes[0].words, found.causes[0].proven) == ("model crate is new", True)
+
+
+def test_another_name_is_called_that(explained: Explained) -> None:
+    found = explained(('sensor name="imu"', 'sensor name="imu_2"'))
+    assert found.causes[0].words == "sensor arm::rod::imu is called arm::rod::imu_2 now"
+    assert found.causes[0].proven  # its noise is another by its name
+
+
+def test_another_shape_is_one_change(explained: Explained) -> None:
+    found = explained(("<box><size>0.2 0.2 0.2</size></box>", "<sphere><radius>0.1</radius></sphere>"))
+    assert found.causes[0].words.startswith("collision box::b::c: shape Box → Sphere, with radius 0.1 instead of size")
+    assert len(found.causes) == 1 and found.causes[0].proven
+
+
+def test_an_element_that_is_gone_is_one_change(explained: Explained) -> None:
+    noise = '<noise type="gaussian"><mean>0</mean><stddev>0.01</stddev></noise>'
+    found = explained((f"<y>{noise}</y>", "<y></y>"))
+    assert "imu.angular_velocity.y.noise is gone (it had" in found.causes[0].words
+    assert len(found.causes) == 1 and found.causes[0].proven
+
+
+def test_a_change_that_nothing_recorded_shows_is_said_to_be_one(explained: Explained) -> None:
+    found = explained(("<diffuse>0.5 ", "<diffuse>0.6 "))
+    assert found.lines[0].startswith(
+        "cause: visual arm::rod::look: material.ambient r 0.5 → 0.6 (+20 %), diffuse r 0.5 → 0.6 (+20 %)"
+    )
+    assert found.lines[1:] == ["  nothing else was changed", "  nothing that is recorded shows it"]
+    assert found.tick is None
+
+
+def test_without_time_causes_are_named_without_proof(explained: Explained) -> None:
+    found = explained(("<damping>0.1<", "<damping>0.15<"), budget=0.0)
+    assert [(c.words, c.proven) for c in found.causes] == [("joint arm::hinge: damping 0.1 → 0.15 (+50 %)", None)]
+
+
+def test_the_first_tick_and_quantity_are_those_of_the_change(explained: Explained) -> None:
+    found = explained(("<damping>0.1<", "<damping>0.11<"))
+    assert found.tick is not None and found.tick <= 3
+    assert found.quantity.startswith("arm::hinge ")
+    assert "the same was put in" in found.lines[-1]
+
+
+def test_a_seed_is_named(golden: Record, tmp_path: Path) -> None:
+    run = recorded(scenario(tmp_path, WORLD, seed=1))
+    found = explain(golden, run, compare(golden, run))
+    assert (found.causes[0].words, found.causes[0].proven) == ("scenario: seed 0 → 1", True)
+
+
+PUSH = """from simkit import ModelPlugin
+from strength import NEWTON
+
+
+class Push(ModelPlugin):
+    filenames = ("push.py",)
+
+    def load(self, parent, params):
+        self.link = parent.links["b"]
+
+    def before_step(self):
+        if self.sim.time > 0.1:
+            self.link.apply_wrench((NEWTON, 0, 0))
+"""
+
+
+def test_code_that_a_plugin_imports_is_named_with_the_tick_at_which_it_put_in_something_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    text = WORLD.replace("</link></model>\n</world>", '</link><plugin name="push" filename="push.py"/></model></world>')
+    (tmp_path / "push.py").write_text(PUSH)
+    (tmp_path / "strength.py").write_text("NEWTON = 1.0\n")
+    before = recorded(scenario(tmp_path, text, options={"plugin_paths": [str(tmp_path)]}))
+    other = tmp_path / "other"
+    shutil.copytree(tmp_path, other, ignore=shutil.ignore_patterns("other", "__pycache__"))
+    (other / "strength.py").write_text("NEWTON = 1.5\n")
+    sys.modules.pop("strength", None)
+    monkeypatch.syspath_prepend(str(other))
+    run = recorded(scenario(other, text, options={"plugin_paths": [str(other)]}))
+    run.scenario = replace(run.scenario, options=before.scenario.options)
+    found = explain(before, run, compare(before, run), rerun=None)
+    assert found.lines[0] == "cause: the code of strength.py was changed"
+    assert found.tick == 52  # the step that begins at t = 0.102 s is the first that is pushed
+    assert found.lines[2].startswith("what plugins and commands put in is other first at tick 52")

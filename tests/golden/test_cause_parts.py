@@ -1,0 +1,162 @@
+"""The parts of an explanation, each by itself."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import simkit
+from simkit.build import read_scene
+from simkit.golden.cause.changes import changes_of
+from simkit.golden.cause.edits import model_edits
+from simkit.golden.cause.putback import ABSENT, CannotPutBack, files_in, put_back
+from simkit.golden.cause.search import effective
+from simkit.golden.cause.ticks import parting, shown
+from simkit.golden.leaves import leaves_of_world
+from simkit.golden.record import States
+from simkit.runtime.state_hash import state_hash
+from simkit.scene import SceneWorld
+
+
+@pytest.mark.parametrize("name", ["turtlebot3_world", "sensor_bench", "simple_office_with_people"])
+def test_a_world_can_be_made_of_its_leaves_alone(name: str) -> None:
+    world = read_scene(name)[0].world
+    leaves, _ = leaves_of_world(world)
+    nothing = SceneWorld()
+    empty, _ = leaves_of_world(nothing)
+    made = put_back(nothing, empty, {**dict.fromkeys(empty, ABSENT), **leaves}, files_in(world))
+    assert leaves_of_world(made)[0] == leaves
+
+
+def test_a_world_made_of_its_leaves_runs_to_the_same_bits() -> None:
+    with simkit.load("turtlebot3_world") as sim:
+        leaves, _ = leaves_of_world(sim.world)
+        sim.run(0.2)
+        wanted = state_hash(sim)
+    radius = "models[turtlebot3].links[wheel_left_link].collisions[tread].geometry.radius"
+    other = {radius: leaves[radius] * 1.01}
+    with simkit.load("turtlebot3_world", change_world=lambda world: put_back(world, leaves, other)) as sim:
+        changed, _ = leaves_of_world(sim.world)
+        assert {path for path in leaves if leaves[path] != changed[path]} == {radius}
+        sim.run(0.2)
+        assert state_hash(sim) != wanted
+
+    def there_and_back(world: SceneWorld) -> SceneWorld:
+        return put_back(put_back(world, leaves, other), changed, {radius: leaves[radius]})
+
+    with simkit.load("turtlebot3_world", change_world=there_and_back) as sim:
+        sim.run(0.2)
+        assert state_hash(sim) == wanted
+
+
+def test_what_was_in_a_file_that_is_not_there_any_more_cannot_be_put_back() -> None:
+    world = read_scene("turtlebot3_world")[0].world
+    leaves, _ = leaves_of_world(world)
+    path = next(path for path in leaves if path.endswith("geometry.file"))
+    with pytest.raises(CannotPutBack):
+        put_back(world, leaves, {path: "0123456789abcdef (10 bytes)"})
+
+
+@pytest.mark.parametrize(
+    "path", ["gravity", "models[turtlebot3].pose_world", "models[turtlebot3].links[base_link].inertial.com"]
+)
+@pytest.mark.parametrize("value", [3.0, "down", [1.0], [], {"a": 1}, [["x"]]])
+def test_leaves_that_somebody_tampered_with_are_no_traceback(path: str, value: object) -> None:
+    world = read_scene("turtlebot3_world")[0].world
+    leaves, _ = leaves_of_world(world)
+    with suppress(CannotPutBack):
+        put_back(world, leaves, {path: value})
+    golden = {**leaves, path: value}
+    changes = changes_of(model_edits(golden, leaves, {}), golden, leaves)
+    assert [change.path for change in changes] == [path]
+
+
+def test_leaves_that_are_nothing_of_the_kind_are_no_traceback() -> None:
+    leaves, places = leaves_of_world(read_scene("turtlebot3_world")[0].world)
+    odd = [None, "", [], "x", 3.0, [1.0, "a"], [[1.0]], True, {"a": [1]}, [0.0] * 7]
+    for start in range(5):
+        golden = {p: odd[n % len(odd)] if (n + start) % 5 == 0 else v for n, (p, v) in enumerate(leaves.items())}
+        golden.update({"models[": 1.0, "]": 2.0, "models[a]": "x", "": 3.0, ".": 1.0, "links[[": [1.0]})
+        assert changes_of(model_edits(golden, leaves, places), golden, leaves)
+
+
+@pytest.mark.parametrize("needed", [{0}, {3}, {1, 6}, {2, 3, 4}, {0, 7}])
+def test_the_changes_that_matter_are_found_in_few_runs(needed: set[int]) -> None:
+    asked: set[frozenset[int]] = set()
+
+    def same(back: frozenset[int]) -> bool:
+        asked.add(back)
+        return needed <= back
+
+    found = effective(range(8), same)
+    assert set(found.needed) == needed
+    assert set(found.idle) == set(range(8)) - needed
+    assert len(asked) <= 2 + 2 * len(needed) * 4
+
+
+def test_where_no_change_helps_nothing_is_blamed() -> None:
+    found = effective(range(3), lambda back: False)
+    assert (found.needed, found.idle, found.all_back) == ([], [], False)
+
+
+def states(marks: list[int], inputs: list[int], values: list[list[float]]) -> States:
+    ticks = np.linspace(0, len(marks), len(values)).astype(np.int64)
+    count = len(values[0])
+    return States(
+        0.01,
+        np.array(marks, np.uint8),
+        np.array(inputs, np.uint8),
+        ticks,
+        [f"q{i}" for i in range(count)],
+        np.array(values),
+        [],
+        np.zeros((len(values), 0)),
+        str(marks),
+    )
+
+
+def test_the_first_tick_is_that_of_the_first_mark_that_differs() -> None:
+    a = states([1, 2, 3, 4], [0, 0, 0, 0], [[0.0, 1.0], [1.0, 1.0]])
+    b = states([1, 2, 9, 9], [0, 0, 0, 0], [[0.0, 1.0], [1.0, 1.5]])
+    found = parting(a, b)
+    assert found is not None
+    assert (found.tick, found.is_put_in, found.quantity) == (3, False, "q1 1 → 1.5 at t = 0.04 s")
+    assert "the same was put in" in found.words
+
+
+def test_what_is_put_in_comes_before_what_follows_from_it() -> None:
+    a = states([1, 2, 3, 4], [0, 0, 0, 0], [[0.0], [1.0]])
+    b = states([1, 2, 9, 9], [0, 0, 7, 7], [[0.0], [2.0]])
+    found = parting(a, b)
+    assert found is not None and found.is_put_in
+    assert found.words.startswith("what plugins and commands put in is other first at tick 3 (t = 0.03 s)")
+
+
+def test_runs_that_start_elsewhere_are_said_to() -> None:
+    a = states([1, 2], [0, 0], [[0.0], [1.0]])
+    b = states([5, 6], [0, 0], [[0.5], [1.0]])
+    found = parting(a, b)
+    assert found is not None and found.tick == 0
+    assert found.words == "the run starts in another state: q0 0 → 0.5"
+
+
+def test_equal_runs_do_not_part() -> None:
+    a = states([1, 2], [0, 0], [[0.0], [1.0]])
+    assert parting(a, replace(a)) is None
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "words"),
+    [
+        (0.033, 0.0333, "0.033 → 0.0333"),
+        (30, 31, "30 → 31"),
+        (1 / 3, 1 / 3 * 1.01, "0.33333 → 0.33667"),
+        (1e-7, 1.2e-7, "1e-07 → 1.2e-07"),
+        (0.1, 0.1 + 1e-13, "0.1 → 0.1000000000001"),
+    ],
+)
+def test_numbers_have_the_digits_that_tell_them_apart(a: float, b: float, words: str) -> None:
+    assert shown(a, b) == words

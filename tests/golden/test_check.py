@@ -1,0 +1,129 @@
+"""A golden run is checked, blessed, and told about; by the command line too."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from falling import ball
+from typer.testing import CliRunner
+
+from simkit.cli import app
+from simkit.errors import InputError
+from simkit.golden.check import check_golden
+from simkit.golden.store import history_of, read_golden
+
+HEAVY = ("<radius>0.1</radius>", "<radius>0.101</radius>")
+
+
+def simkit(*words: object) -> tuple[int, str]:
+    result = CliRunner().invoke(app, [str(word) for word in words], catch_exceptions=False)
+    return result.exit_code, result.output
+
+
+@pytest.fixture
+def golden(tmp_path: Path) -> Path:
+    code, said = simkit("golden", "record", ball(tmp_path), "--out", tmp_path / "golden" / "ball", "--duration", 0.5)
+    assert code == 0, said
+    assert re.search(r"ball: 4 topics, \d+ messages, \d+\.\d kB", said)
+    return tmp_path / "golden" / "ball"
+
+
+def test_what_is_as_it_was_passes(golden: Path) -> None:
+    code, said = simkit("golden", "check", golden)
+    assert code == 0 and said.startswith("ok"), said
+    assert simkit("golden", "check", golden, "--quiet") == (0, "")
+
+
+def test_it_passes_from_another_folder_too(golden: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir("/")
+    assert simkit("golden", "check", golden)[0] == 0
+    monkeypatch.chdir(golden)
+    assert simkit("golden", "check", ".")[0] == 0
+
+
+def test_what_differs_ends_with_code_5_and_says_why(golden: Path, tmp_path: Path) -> None:
+    ball(tmp_path, HEAVY)
+    code, said = simkit("golden", "check", golden)
+    assert code == 5
+    assert said.startswith("FAILED") and "radius 0.1 → 0.101" in said
+
+
+def test_a_scenario_file_is_read_anew(tmp_path: Path) -> None:
+    ball(tmp_path)
+    scenario = tmp_path / "fall.yaml"
+    scenario.write_text("world: ball.sdf\nduration: 0.3\n")
+    assert simkit("golden", "record", scenario, "--out", tmp_path / "g")[0] == 0
+    assert simkit("golden", "check", tmp_path / "g")[0] == 0
+    scenario.write_text("world: ball.sdf\nduration: 0.3\nseed: 3\n")
+    code, said = simkit("golden", "check", tmp_path / "g")
+    assert code == 5 and "seed" in said
+    scenario.unlink()
+    code, said = simkit("golden", "check", tmp_path / "g")
+    assert code == 2 and "SK-GOLDEN-006" in said
+
+
+def test_a_blessing_needs_a_reason_and_keeps_it(golden: Path, tmp_path: Path) -> None:
+    ball(tmp_path, HEAVY)
+    with pytest.raises(InputError, match="SK-GOLDEN-007"):
+        check_golden(golden, bless=" ")
+    code, said = simkit("golden", "check", golden, "--bless", "the ball was measured")
+    assert code == 0 and "golden now" in said
+    history = history_of(golden)
+    assert [one["reason"] for one in history] == ["recorded", "the ball was measured"]
+    assert history[1]["changed"] and history[1]["mujoco"]
+    assert simkit("golden", "check", golden)[0] == 0
+
+
+def test_a_blessing_without_a_difference_changes_nothing(golden: Path) -> None:
+    before = {path.name: path.read_bytes() for path in golden.iterdir()}
+    assert simkit("golden", "check", golden, "--bless", "for the sake of it")[0] == 0
+    assert {path.name: path.read_bytes() for path in golden.iterdir()} == before
+
+
+def test_it_is_not_overwritten_unasked(golden: Path, tmp_path: Path) -> None:
+    code, said = simkit("golden", "record", tmp_path / "ball.sdf", "--out", golden)
+    assert code == 2 and "SK-GOLDEN-005" in said
+    words = ("golden", "record", tmp_path / "ball.sdf", "--out", golden, "--duration", 0.1, "--force")
+    assert simkit(*words)[0] == 0
+    assert read_golden(golden).scenario.duration == 0.1
+
+
+def test_the_worst_comes_first_of_several(golden: Path, tmp_path: Path) -> None:
+    simkit("golden", "record", ball(tmp_path), "--out", golden.parent / "apples", "--duration", 0.1)
+    (golden.parent / "pears").mkdir()
+    (golden.parent / "pears" / "golden.json").write_text("{")
+    main = golden / "golden.json"
+    main.write_text(main.read_text().replace('"seed": 0', '"seed": 1').replace('"duration": 0.5', '"duration": 0.4'))
+    code, said = simkit("golden", "check", golden.parent, "--json")
+    assert code == 2
+    found = json.loads(said)
+    assert [Path(one["folder"]).name for one in found] == ["pears", "ball", "apples"]
+    assert found[0]["error"]["code"] == "SK-GOLDEN-003"
+    assert found[1]["differences"] and found[2]["passed"]
+
+
+def test_reports_are_written(golden: Path, tmp_path: Path) -> None:
+    ball(tmp_path, HEAVY)
+    page, cases = tmp_path / "out.html", tmp_path / "out.xml"
+    assert simkit("golden", "check", golden, "--html", page, "--junit", cases)[0] == 5
+    assert "radius" in page.read_text() and "<failure" in cases.read_text()
+
+
+def test_a_run_that_fails_is_not_recorded(tmp_path: Path) -> None:
+    (tmp_path / "faulty.py").write_text(
+        "import simkit\nclass Faulty(simkit.WorldPlugin):\n    def load(self, sim, params):\n        pass\n"
+        "    def after_step(self):\n        raise ValueError('the wheel fell off')\n"
+    )
+    path = ball(tmp_path, ("</world>", '<plugin filename="faulty.py" name="Faulty"/></world>'))
+    code, said = simkit("golden", "record", path, "--out", tmp_path / "g", "--plugin-path", tmp_path)
+    assert code == 4 and "the wheel fell off" in said
+    assert not (tmp_path / "g").exists()
+
+
+def test_several_are_checked_at_once_with_the_same_outcome(golden: Path, tmp_path: Path) -> None:
+    simkit("golden", "record", tmp_path / "ball.sdf", "--out", golden.parent / "other", "--duration", 0.1)
+    code, said = simkit("golden", "check", golden.parent, "-n", 2)
+    assert code == 0 and "2 of 2 golden runs passed" in said

@@ -1,0 +1,54 @@
+"""Parts of a message that have no order by meaning are taken down by name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from simkit import msgs
+from simkit.golden.order import in_order
+
+TF = "tf2_msgs/msg/TFMessage"
+
+
+def frame(child: str, parent: str, x: float = 0.0) -> dict[str, Any]:
+    return {
+        "header": {"frame_id": parent}, "child_frame_id": child, "transform": {"translation": {"x": x}}
+    }  # fmt: skip
+
+
+def test_transforms_are_by_child_then_parent_and_equal_ones_keep_their_order() -> None:
+    message = msgs.make(TF, transforms=[frame("b", "o"), frame("a", "z"), frame("a", "o", 2.0), frame("a", "o", 1.0)])
+    before = msgs.serialize(message)
+    found = in_order(message, TF)
+    names = [(t.child_frame_id, t.header.frame_id, t.transform.translation.x) for t in found.transforms]
+    assert names == [("a", "o", 2.0), ("a", "o", 1.0), ("a", "z", 0.0), ("b", "o", 0.0)]
+    assert msgs.serialize(message) == before
+    assert in_order(found, TF) is found
+    other = msgs.make(TF, transforms=[frame("a", "o", 2.0), frame("b", "o"), frame("a", "o", 1.0), frame("a", "z")])
+    assert msgs.serialize(in_order(other, TF)) == msgs.serialize(found)
+
+
+def test_joints_of_a_model_stay_in_their_order() -> None:
+    kind = "sensor_msgs/msg/JointState"
+    message = msgs.make(kind, name=["wheel", "arm"], position=[1.0, 2.0])
+    assert in_order(message, kind) is message
+
+
+def test_states_of_all_models_are_by_name() -> None:
+    kind = "gazebo_msgs/msg/ModelStates"
+    poses = [{"position": {"x": float(i)}} for i in range(3)]
+    message = msgs.make(kind, name=["c", "a", "b"], pose=poses, twist=[{}, {}, {}])
+    found = in_order(message, kind)
+    assert list(found.name) == ["a", "b", "c"] and [p.position.x for p in found.pose] == [1.0, 2.0, 0.0]
+    odd = msgs.make(kind, name=["c", "a"], pose=poses, twist=[])
+    assert in_order(odd, kind) is odd
+    assert len(msgs.serialize(found)) == len(msgs.serialize(message))
+
+
+def test_contacts_are_by_what_touches() -> None:
+    kind = "ros_gz_interfaces/msg/Contacts"
+    pairs = [("b", "a"), ("a", "c"), ("a", "b")]
+    contacts = [{"collision1": {"name": a, "id": 4}, "collision2": {"name": b, "id": 10}} for a, b in pairs]
+    found = in_order(msgs.make(kind, contacts=contacts), kind)
+    assert [(c.collision1.name, c.collision2.name) for c in found.contacts] == sorted(pairs)
+    assert {c.collision1.id for c in found.contacts} == {0}, "an id counts the parts of the file"

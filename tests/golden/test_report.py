@@ -1,0 +1,295 @@
+"""Reports of golden runs: the first lines say it, the page is one file that nothing in a name can harm."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lxml import etree
+from report_samples import CAMERA, SCAN, difference, failing, passing, record
+
+from simkit.golden.difference import Cause, Comparison, Explanation, Verdict
+from simkit.golden.record import Column
+from simkit.golden.report import junit_cases, text_report, write_html
+from simkit.golden.report.html import page
+from simkit.golden.report.svg import Line, chart, thinned
+
+NASTY = "</title><script>alert('\"&\x00\u202e')</script>"
+XHTML = "{http://www.w3.org/1999/xhtml}"
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def words_of(element: etree._Element) -> str:
+    return "".join(map(str, element.itertext()))
+
+
+def tree(*verdicts: Verdict) -> etree._Element:
+    return etree.fromstring(page(verdicts).encode())
+
+
+# ---------------------------------------------------------------------- text
+
+
+def test_the_first_line_is_what_differs_first_and_the_second_its_cause() -> None:
+    first, second, *_ = text_report(failing(), 200)
+    assert first == "FAILED  drive: /scan.ranges: 14 of 360 rays +12 mm from t = 2.00 s"
+    assert second == (
+        "  cause   wheel::collision: radius 0.033 → 0.0333 m (model.sdf:123); put back, the outputs are the golden ones"
+    )
+
+
+def test_a_run_that_passes_is_one_line() -> None:
+    assert text_report(passing()) == ["ok      stand: 5 topics, 900 messages, bit for bit (0.5 s)"]
+
+
+def test_every_difference_check_note_and_other_version_is_told() -> None:
+    text = "\n".join(text_report(failing(), 200))
+    for said in (
+        "allowed 1 mm",
+        "/odom: 50 Hz became 51 Hz: 200 messages became 204",
+        "check   pose('cart').x > 2: it was 1.9 at most – drive on",
+        "tier    other machine (mujoco 4.0.0 → 4.0.1): within the tolerances",
+        "note    /imu: less than 1e-9 apart",
+    ):
+        assert said in text
+
+
+@pytest.mark.parametrize("width", [40, 60, 100])
+def test_lines_are_as_long_as_the_terminal_is_wide(width: int) -> None:
+    lines = text_report(failing(), width)
+    assert max(map(len, lines)) <= width
+    assert all(line.startswith(("FAILED", "  ")) for line in lines)
+
+
+def test_a_long_list_says_how_much_is_left_out() -> None:
+    verdict = failing()
+    many = [difference(f"/t{i}", "x", "value", f"/t{i}.x differs") for i in range(40)]
+    verdict.comparison.differences[:] = many
+    lines = text_report(verdict, most=5)
+    assert sum(".x differs" in line or "more diff" in line for line in lines) == 7
+    assert any("… and 34 more differences" in line for line in lines)
+
+
+def test_sentences_of_the_explanation_go_before_a_list_of_causes() -> None:
+    verdict = failing()
+    verdict.explanation = Explanation(lines=["cause: the wheel is larger", "nothing else was changed"])
+    assert text_report(verdict)[1:3] == ["  cause   the wheel is larger", "          nothing else was changed"]
+
+
+def test_a_run_that_broke_off_says_so_first() -> None:
+    verdict = failing()
+    verdict.run.end = "SK-PHYS-001 the physics diverged at 1.2 s: joint wheel\nsecond line"
+    assert text_report(verdict, 200)[0].endswith(
+        "the run failed: SK-PHYS-001 the physics diverged at 1.2 s: joint wheel"
+    )
+
+
+def test_a_world_that_is_another_without_effect_is_told_by_its_cause() -> None:
+    words = "the world is another in 2 places: [1.0, 2.0, …"
+    comparison = Comparison("exact", [difference("", "", "model", words, time=0.0)])
+    explanation = Explanation([Cause("model", "model wall moved 2 mm along x", "models[wall]", 2.0, 2.002)])
+    verdict = Verdict("w", record(), record(), comparison, explanation)
+    head = text_report(verdict, 200)[0]
+    assert head == (
+        "FAILED  w: the world is another, and nothing that is recorded shows it: model wall moved 2 mm along x"
+    )
+
+
+# ---------------------------------------------------------------------- the page
+
+
+def test_the_page_is_well_formed_and_loads_and_runs_nothing(tmp_path: Path) -> None:
+    write_html(tmp_path / "deep" / "report.html", [passing(), failing()])
+    text = (tmp_path / "deep" / "report.html").read_text(encoding="utf-8")
+    root = etree.fromstring(text.encode())
+    names = {element.tag for element in root.iter() if isinstance(element.tag, str)}
+    assert not names & {XHTML + name for name in ("script", "link", "iframe", "object")}
+    sources = [e.get("src", "") for e in root.iter(XHTML + "img")]
+    assert sources
+    assert all(source.startswith("data:image/png;base64,iVBOR") for source in sources)
+    assert not re.search(r"(src|href)=\"(?!data:|#)", text)
+    assert "default-src 'none'" in text
+    assert 'name="viewport"' in text
+    assert "prefers-color-scheme: dark" in text
+
+
+def test_what_differs_comes_first_with_its_plots_pictures_and_causes() -> None:
+    root = tree(passing(), failing())
+    sections = root.findall(f".//{XHTML}section")
+    assert [section.get("class") for section in sections] == ["failed", "passed"]
+    text = words_of(sections[0])
+    for said in (
+        "14 of 360 rays +12 mm",
+        "radius 0.033 → 0.0333 m",
+        "model.sdf:123",
+        "pose('cart').x > 2",
+        "SK-SDF-001",
+        "1 of 6 tiles of the whole picture differ",
+        "4.0.1",
+        "model::link.mass=2",
+    ):
+        assert said in text
+    # a scan 3, the state 2 of each of 2 quantities, an odometry 2, noise 2, a count 1
+    assert len(list(root.iter(SVG + "svg"))) == 3 + 4 + 2 + 2 + 1
+    assert len(list(root.iter(XHTML + "img"))) == 2 * 3
+
+
+def test_no_name_however_odd_becomes_markup() -> None:
+    verdict = replace(failing(), name=NASTY)
+    verdict.comparison.differences = [
+        replace(one, topic=NASTY if one.topic == SCAN else one.topic, words=NASTY, allowed=NASTY, unit=NASTY)
+        for one in verdict.comparison.differences
+    ]
+    for run in (verdict.golden, verdict.run):
+        stream = run.streams.pop(SCAN)
+        run.streams[NASTY] = stream
+        stream.topic = NASTY
+        run.fingerprint = {NASTY: NASTY}
+        run.diagnostics = {NASTY: id(run)}
+        run.states.names[0] = NASTY
+    verdict.run.end = NASTY
+    verdict.explanation = Explanation([Cause("model", NASTY, NASTY, NASTY, NASTY, NASTY)], lines=[NASTY])
+    root = tree(verdict, replace(passing(), name=NASTY))
+    assert not list(root.iter(XHTML + "script"))
+    for line in text_report(verdict):
+        assert line.isprintable()
+    assert junit_cases(verdict)
+
+
+def test_numbers_that_are_none_and_lists_of_other_lengths_are_drawn_or_left_out() -> None:
+    verdict = failing()
+    golden, run = verdict.golden.streams[SCAN], verdict.run.streams[SCAN]
+    golden.columns["ranges"] = Column(np.full((40, 5), np.nan))
+    run.columns["ranges"] = Column(np.arange(120.0), lengths=np.full(40, 3))
+    pictures = verdict.run.streams[CAMERA].pictures
+    assert pictures is not None
+    pictures.small = pictures.small[:, ::2]
+    pictures.encoding = "mono8"
+    text = page([verdict])
+    etree.fromstring(text.encode())
+    assert "NaN" not in text
+    assert "nan" not in re.sub(r"base64,[^\"]*", "", text)
+
+
+def test_streams_without_a_message_and_differences_of_unknown_fields_do_no_harm() -> None:
+    verdict = failing()
+    for stream in verdict.run.streams.values():
+        stream.times_ns = stream.times_ns[:0]
+    verdict.comparison.differences.append(difference("/odom", "nobody.knows", "value", "/odom.nobody.knows differs"))
+    etree.fromstring(page([verdict]).encode())
+
+
+def test_a_page_of_many_long_runs_stays_small() -> None:
+    verdicts = []
+    for number in range(30):
+        verdict = replace(failing(), name=f"run {number}")
+        for side in (verdict.golden, verdict.run):
+            odom = side.streams["/odom"]
+            odom.times_ns = np.arange(200_000) * 5_000_000
+            odom.columns["pose.pose.position.x"] = Column(np.random.default_rng(number).normal(size=200_000))
+        verdicts.append(verdict)
+    text = page(verdicts)
+    assert len(text) < 6_000_000
+    assert text.count("<figure>") <= 80
+    assert "run 29" in text
+
+
+def test_a_long_list_of_differences_is_cut() -> None:
+    verdict = failing()
+    verdict.comparison.differences += [difference(f"/t{i}", "x", "value", f"/t{i}.x") for i in range(1000)]
+    text = words_of(tree(verdict))
+    assert "/t100.x" in text
+    assert "/t900.x" not in text
+    assert "808 more differences" in text
+
+
+def test_pictures_that_were_kept_now_and_then_are_found_by_their_message() -> None:
+    verdict = failing()
+    for side in (verdict.golden, verdict.run):
+        pictures = side.streams[CAMERA].pictures
+        assert pictures is not None
+        pictures.small, pictures.tiles, pictures.kept = pictures.small[::2], pictures.tiles[::2], np.arange(0, 20, 2)
+    verdict.comparison.differences = [difference(CAMERA, "data", "picture", "it differs", index=9)]
+    assert "picture 10 at 2 s" in words_of(tree(verdict))
+
+
+# ---------------------------------------------------------------------- charts
+
+
+def test_a_thinned_line_keeps_the_highest_and_the_lowest_of_each_pixel() -> None:
+    rng = np.random.default_rng(1)
+    x, y = np.sort(rng.uniform(0.0, 400.0, 100_000)), rng.normal(size=100_000)
+    y[12_345] = 50.0
+    xs, ys = thinned(x, y)
+    assert len(xs) <= 2 * 401
+    assert np.all(np.diff(xs) >= 0.0)
+    for column in (0, 17, 399):
+        whole, kept = y[x.astype(int) == column], ys[xs.astype(int) == column]
+        assert (kept.min(), kept.max()) == (whole.min(), whole.max())
+    assert 50.0 in ys
+
+
+def labels(svg: str) -> list[str]:
+    return [words_of(text) for text in etree.fromstring(svg).iter(SVG + "text")]
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        ([0.0, 1.0], "0.5"),
+        ([0.0, 1e-9], "5e-10"),
+        ([9.80665, 9.80665 + 1e-7], "value, less 9.8066500"),
+        ([3.0, 3.0], "3.00"),
+        ([-1e7, 1e7], "5e6"),
+        ([np.nan, np.inf], "0.5"),
+    ],
+)
+def test_labels_tell_values_apart_at_any_size(values: list[float], expected: str) -> None:
+    svg = chart([Line(np.arange(2.0), np.array(values), "run")], title="t", x_label="x", y_label="value")
+    found = labels(svg)
+    assert any(label.startswith(expected.rstrip("0")) for label in found), found
+    assert len(set(found)) >= len(found) - 4  # of two axes, labels may be alike; of one they are not
+
+
+def test_a_gap_is_a_gap_and_a_single_value_is_a_dot() -> None:
+    y = np.array([1.0, 2.0, np.nan, 3.0, np.inf, 4.0, 5.0])
+    svg = chart([Line(np.arange(7.0), y, "run")], title="t", x_label="x", y_label="y")
+    path = next(p for p in etree.fromstring(svg).iter(SVG + "path") if "run" in (p.get("class") or ""))
+    d = path.get("d") or ""
+    assert d.count("M") == 3
+    assert d.count("h.01") == 1
+
+
+# ---------------------------------------------------------------------- JUnit
+
+
+def test_every_topic_and_check_is_a_case_and_those_that_differ_fail() -> None:
+    cases = junit_cases([failing(), passing()])
+    failed = {case.name for case in cases if case.failure is not None}
+    assert failed == {
+        "/scan",
+        "/odom",
+        "/imu",
+        "/camera/image",
+        "/camera/depth",
+        "/gone",
+        "state",
+        "pose('cart').x > 2",
+    }
+    assert {case.classname for case in cases} == {"golden.drive", "golden.drive.checks", "golden.stand"}
+    assert sum(case.seconds for case in cases) == 2.0
+    scan = next(case for case in cases if case.name == "/scan" and case.failure)
+    assert scan.failure is not None
+    assert scan.failure[0] == "/scan.ranges: 14 of 360 rays +12 mm from t = 2.00 s (allowed: 1 mm)"
+    assert "radius 0.033 → 0.0333 m" in scan.failure[1]
+
+
+def test_a_run_that_broke_off_is_an_error() -> None:
+    verdict = failing()
+    verdict.run.end = "SK-PHYS-001 diverged"
+    case = junit_cases(verdict)[0]
+    assert case.error is not None
+    assert case.error[0] == "the run failed: SK-PHYS-001 diverged"
