@@ -1,0 +1,222 @@
+"""Worlds that are the same wherever they run, and plugins that are not: found, named, with their first tick."""
+
+from __future__ import annotations
+
+import functools
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from simkit.apart import Ended
+from simkit.certify import Certificate, Difference, certify
+from simkit.certify.certificate import streams_hash
+from simkit.certify.outcome import Outcome
+from simkit.certify.runner import _stopped
+from simkit.certify.runs import _held_up
+from simkit.certify.variations import VARIATIONS, chosen
+from simkit.cli import app
+from simkit.errors import InputError
+from simkit.scenario import Scenario
+
+WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="m"><link name="l">
+<inertial><mass>1</mass></inertial><sensor name="imu" type="imu"><update_rate>100</update_rate><imu>
+<linear_acceleration><x><noise type="gaussian"><stddev>0.1</stddev></noise></x></linear_acceleration></imu></sensor>
+</link><plugin filename="mine:Mine" name="mine"/></model></world></sdf>"""
+HEAD = """
+import os, random, time
+from simkit.plugins import ModelPlugin
+
+
+class Other(ModelPlugin):
+    def load(self, parent, params):
+        time.time()
+
+
+class Mine(ModelPlugin):
+    count = []
+
+    def load(self, parent, params):
+        self.link, self.drawn = parent.link("l"), 0.0
+        self.out = self.advertise("told", "std_msgs/msg/String")
+
+    def before_step(self):
+"""
+COUNTED = "self.sim.told = getattr(self.sim, 'told', 0) + 1\nself.link.apply_wrench((self.sim.told, 0, 0))"
+PUSH = "        self.link.apply_wrench((0.1, 0, 0))\n"
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of the command line have no processes of their own."""
+    monkeypatch.setattr("simkit.certify.certify", functools.partial(certify, apart=False))
+
+
+def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool = False) -> Certificate:
+    """A plugin with that `before_step`, run twice: as it is, and in another way."""
+    (folder / "w.sdf").write_text(WORLD)
+    (folder / "mine.py").write_text(HEAD + PUSH + "".join(f"        {line}\n" for line in body.splitlines()))
+    scenario = Scenario(world=str(folder / "w.sdf"), duration=0.1, options={"plugin_paths": [folder]})
+    ways = [way for way in VARIATIONS if way.name in ("as it is", names)]
+    return certify(scenario, variations=ways, apart=apart)
+
+
+def test_what_is_steady_is_the_same_in_every_surrounding(tmp_path: Path) -> None:
+    (tmp_path / "w.sdf").write_text(WORLD.replace('<plugin filename="mine:Mine" name="mine"/>', ""))
+    made = certify(Scenario(world=str(tmp_path / "w.sdf"), duration=0.1), runs=6, jobs=2)
+    assert made.passed and not made.notes
+    assert [row.variation.name for row in made.rows] == [v.name for v in VARIATIONS]
+    assert len({row.outcome.state for row in made.rows}) == 1
+    assert {row.streams for row in made.rows if row.variation.listening in ("called", "kept")} == {made.rows[0].streams}
+    (heard,) = (h for t, h in made.rows[0].outcome.heard.items() if t.endswith("imu"))
+    assert len(heard.digests) == 11 and heard.owner.startswith("sensor 'm::l::imu' (")
+    assert made.rows[2].streams == "" and made.rows[3].outcome.heard_from == 50
+
+
+@pytest.mark.parametrize(
+    ("body", "way", "tick", "how", "hint"),
+    [
+        (
+            "if self.sim.tick >= 40:\n    self.link.apply_wrench((time.time() % 1, 0, 0))",
+            *("elsewhere", 40, "puts in", "wall"),
+        ),
+        (
+            "if self.sim.tick == 20:\n    self.drawn = random.random()\n"
+            "if self.sim.tick > 60:\n    self.link.apply_wrench((self.drawn, 0, 0))",
+            *("elsewhere", 61, "remembers something else: drawn (", "no seed"),
+        ),
+        (
+            "if self.sim.tick % 10 == 5:\n    names = {'alpha', 'beta', 'gamma', 'delta', 'epsilon'}\n"
+            "    self.out.publish({'data': ' '.join(n for n in names)})",
+            *("elsewhere", 5, "what it publishes is other: /told", "sorted()"),
+        ),
+        (
+            "if self.out.wanted and self.sim.tick == 30:\n    self.link.apply_wrench((1, 0, 0))",
+            *("unheard", 30, "puts in", "who listens"),
+        ),
+        (COUNTED, "restored", 50, "puts in", "no snapshot"),
+        (COUNTED, "reset", 0, "puts in", "no snapshot"),
+    ],
+    ids=["clock", "dice", "set", "listener", "restore", "reset"],
+)  # fmt: skip
+def test_who_is_to_blame_is_named_with_the_first_tick(
+    body: str, way: str, tick: int, how: str, hint: str, tmp_path: Path
+) -> None:
+    made = certified(tmp_path, body, way, apart="'alpha'" in body)  # the order of sets is a process's
+    (found,) = made.differences
+    assert not made.passed
+    assert found.owner.startswith("plugin 'm::mine' (") and "w.sdf:4)" in found.owner
+    assert found.tick in (tick, tick + 1) and how in found.how
+    assert any(hint in one.text and "mine.py:" in one.where for one in found.hints)
+    assert not any("time.time" in one.text for one in found.hints if hint != "wall"), "that is the other class's"
+
+
+def test_what_nothing_shows_is_a_note(tmp_path: Path) -> None:
+    made = certified(tmp_path, "self.seen = time.time()")
+    assert made.passed
+    (note,) = made.notes
+    assert "'m::mine'" in note and "(seen)" in note and "nothing shows it" in note
+
+
+def test_an_error_that_comes_in_every_run_at_the_same_tick_is_the_same(tmp_path: Path) -> None:
+    made = certified(tmp_path, "if self.sim.tick == 30:\n    raise ValueError('at the same time')")
+    assert made.passed
+    assert "at the same time" in made.rows[0].outcome.end and made.rows[1].outcome.end == made.rows[0].outcome.end
+
+
+def test_an_error_of_one_run_only_is_a_difference(tmp_path: Path) -> None:
+    made = certified(tmp_path, "if not self.out.wanted:\n    raise ValueError('nobody')", "unheard")
+    (found,) = made.differences
+    assert any("nobody" in text for text in (found.words, *found.more))
+
+
+def test_commands_of_a_scenario_are_sent_in_every_run(tmp_path: Path, in_this_process: None) -> None:
+    (tmp_path / "s.yaml").write_text(
+        "world: w.sdf\nduration: 0.1\ncommands:\n"
+        "  - {at: 0.03, until: 0.08, rate: 100, topic: /cmd, message: {data: 2}}\n"
+    )
+    plugin = '<plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">'
+    joint = '<link name="k"/><joint name="j" type="continuous"><parent>l</parent><child>k</child><axis/></joint>'
+    mine = '<plugin filename="mine:Mine" name="mine"/>'
+    (tmp_path / "w.sdf").write_text(
+        WORLD.replace(mine, f"{joint}{plugin}<joint_name>j</joint_name><topic>/cmd</topic></plugin>")
+    )
+    done = CliRunner().invoke(
+        app, ["certify", str(tmp_path / "s.yaml"), "--runs", "2", "--json", "-o", str(tmp_path / "c.json")]
+    )
+    assert done.exit_code == 0, done.output
+    said = json.loads(done.stdout)
+    assert said["passed"] and said["topics"]["/cmd"]["count"] == 6 and said["ticks"] == 100
+    assert json.loads((tmp_path / "c.json").read_text()) == said
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["c.json", "s.yaml", "w.sdf"]
+
+
+def test_the_command_says_who_and_exits_with_5(tmp_path: Path, in_this_process: None) -> None:
+    (tmp_path / "w.sdf").write_text(WORLD)
+    (tmp_path / "mine.py").write_text(HEAD + "        self.link.apply_wrench((time.time() % 1, 0, 0))\n")
+    given = ["certify", str(tmp_path / "w.sdf"), "--plugin-path", str(tmp_path), "--duration", "0.05", "--runs", "2"]
+    done = CliRunner().invoke(app, given)
+    assert done.exit_code == 5
+    assert "DIFFERENT" in done.stdout and "begun by plugin 'm::mine'" in done.stdout and "hint:" in done.stdout
+
+
+def test_a_world_with_errors_says_all_of_them_as_every_command_does(tmp_path: Path, in_this_process: None) -> None:
+    broken = WORLD.replace("<mass>1</mass>", "<mass>one</mass>").replace("update_rate>100", "update_rate>often")
+    (tmp_path / "w.sdf").write_text(broken)
+    certified, run = (CliRunner().invoke(app, [name, str(tmp_path / "w.sdf")]) for name in ("certify", "run"))
+    assert certified.exit_code == 2 == run.exit_code
+    assert certified.stderr.count(" error SK-") >= 2 and certified.stderr == run.stderr
+
+
+def test_an_error_that_comes_in_every_run_does_not_stop_the_life_before_a_reset(tmp_path: Path) -> None:
+    made = certified(tmp_path, "if self.sim.tick == 30:\n    raise ValueError('at the same time')", "reset")
+    assert made.passed and made.rows[1].streams == made.rows[0].streams != ""
+
+
+def test_a_run_whose_process_ends_is_other_and_says_where(tmp_path: Path) -> None:
+    made = certified(tmp_path, "if not self.out.wanted:\n    os._exit(7)", "unheard", apart=True)
+    (found,) = made.differences
+    assert found.words == "its process was ended with 7: nothing was said"
+
+
+def test_a_run_that_hangs_is_blamed_on_the_code_it_stood_in(tmp_path: Path) -> None:
+    (tmp_path / "stack").write_text(
+        'Timeout (0:00:02)!\nThread 0x2 (most recent call first):\n  File "other.py", line 3 in watch\n'
+        '\nThread 0x1 (most recent call first):\n  File "a.py", line 7 in inner\n  File "b.py", line 9 in outer\n'
+    )
+    found = _stopped(Ended(1, ""), 2.0, tmp_path / "stack")
+    assert found.stopped.startswith("it was still running after 2 s of wall time")
+    assert [str(place) for place in found.stack] == ["a.py:7", "b.py:9"]
+    first = Outcome(sources={"plugin 'p'": ("b.py", 5, 12)})
+    made = _held_up(Difference(VARIATIONS[1], "it hangs"), found, first)
+    assert made.owner == "plugin 'p'" and made.how == "it stood in outer at b.py:9"
+
+
+def test_more_runs_are_the_same_again_with_other_hash_seeds() -> None:
+    many = chosen(12)
+    assert len({(v.name, v.hash_seed) for v in many}) == 12
+    assert many[6].name == "elsewhere 2" and many[6].hash_seed != many[1].hash_seed
+
+
+def test_a_hash_of_streams_depends_on_every_message() -> None:
+    import numpy as np
+
+    from simkit.certify.outcome import Heard
+
+    one = Heard("T", np.zeros(1, np.uint64), np.zeros(1, np.int64), "aa")
+    other = Heard("T", np.zeros(1, np.uint64), np.zeros(1, np.int64), "ab")
+    assert streams_hash(Outcome(heard={"/a": one})) != streams_hash(Outcome(heard={"/a": other}))
+    assert streams_hash(Outcome()) == ""
+
+
+def test_one_run_is_none() -> None:
+    with pytest.raises(InputError, match="SK-CERT-001"):
+        certify(Scenario(world="empty"), runs=1)
+
+
+def test_a_scenario_that_does_not_fit_its_world_is_not_certified(tmp_path: Path) -> None:
+    """Every run would end at once, with the same nothing."""
+    command = {"at": 0.1, "topic": "/none", "message": {}}
+    with pytest.raises(InputError, match="no topic '/none'"):
+        certify(Scenario(world="empty", duration=0.2, commands=(command,)), runs=2)

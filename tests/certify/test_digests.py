@@ -1,0 +1,66 @@
+"""Hashes of what plugins remember depend on values, and on nothing else."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections import deque
+from pathlib import Path
+
+import numpy as np
+
+from simkit.certify.digests import digest, shown
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Thing:
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+
+class Slotted:
+    __slots__ = ("value",)
+
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+
+def test_equal_values_have_equal_hashes_and_others_have_not() -> None:
+    values = [
+        *(None, 0, 1, 1.0, -0.0, 0.0, float("nan"), "a", b"a", (1, 2), [1, 2], {"a": 1}, {1, 2}, deque([1])),
+        *(np.array([1.0, 2.0]), np.array([[1.0, 2.0]]), np.array([1.0, 2.0], np.float32), np.float64(3.0)),
+        *(Thing(1), Thing(2), Thing([1]), Slotted(1), Slotted(2), np.random.default_rng(1), np.random.default_rng(2)),
+    ]
+    hashes = [digest(value) for value in values]
+    assert len(set(hashes)) == len(values)
+    assert digest(Thing([1, {"a": np.arange(3)}])) == digest(Thing([1, {"a": np.arange(3)}]))
+
+
+def test_a_thing_that_holds_itself_has_a_hash() -> None:
+    thing = Thing(None)
+    thing.value = [thing]
+    assert digest(thing) == digest(thing)
+
+
+def test_the_order_of_sets_and_dicts_and_the_hash_seed_do_not_show() -> None:
+    script = (
+        "from simkit.certify.digests import digest; print(digest({'x': {'alpha', 'beta', 'gamma'}, 'y': object()}))"
+    )
+    answers = {
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "1")
+    }
+    assert len(answers) == 1
+    assert digest({"a": 1, "b": 2}) == digest({"b": 2, "a": 1})
+
+
+def test_short_values_can_be_shown_and_long_ones_are_not() -> None:
+    assert shown(0.25) == "0.25" and shown((1, 2.5)) == "(1, 2.5)" and shown(np.arange(3)) == "(0, 1, 2)"
+    assert shown(np.arange(100)) == "" and shown(object()) == "" and len(shown("x" * 100)) == 60

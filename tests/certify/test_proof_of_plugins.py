@@ -1,0 +1,65 @@
+"""Snapshot, restore and reset, proven for every plugin that comes with simkit: the same bits, whichever way back."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import proof
+import proof_worlds
+import pytest
+from renderer import RENDERS
+
+from simkit.certify.listening import called
+from simkit.certify.watching import Witness, watched
+from simkit.plugins import Plugin, plugin_kinds
+
+pytestmark = pytest.mark.slow  # processes and whole runs
+
+CLASSES = sorted(
+    {cls for cls in plugin_kinds().values() if cls.__module__.startswith("simkit.")}, key=lambda c: c.__name__
+)
+DRAWN = ("Camera", "RealSense", "Kinect", "Prosilica", "Thermal", "Label")
+
+
+@functools.cache
+def _names() -> list[str]:
+    return [cls.__name__ for cls in CLASSES]
+
+
+def test_every_plugin_has_a_world_in_which_it_is_proven() -> None:
+    named = [*proof_worlds.WORLDS, *proof_worlds.OPENED]
+    assert sorted(named) == _names(), "give tests/certify/proof_worlds.py a world for each plugin class"
+
+
+@pytest.mark.parametrize("cls", CLASSES, ids=_names())
+def test_a_run_with_the_plugin_repeats_whichever_way_it_is_brought_back(cls: type[Plugin], tmp_path: Path) -> None:
+    if not RENDERS and any(word in cls.__name__ for word in DRAWN):
+        pytest.skip("draws pictures, and there is no renderer")
+    with proof_worlds.open_world(cls.__name__, tmp_path) as sim:
+        plugins = [p for p in sim.structure.all_plugins() if type(p) is cls]
+        assert plugins, f"no {cls.__name__} in its world: {[str(d) for d in sim.diagnostics if d.severity != 'note']}"
+        at_first = proof.memory_of(sim)
+        found, seen = proof.proven(sim)
+        assert not found
+        is_busy = has_done_something(sim, plugins[0], at_first, *seen)
+    assert (cls.__name__ in proof_worlds.IDLE) != (is_busy or pushes_something(cls, tmp_path))
+
+
+def has_done_something(sim, plugin: Plugin, at_first, before: proof.Seen, after: proof.Seen) -> bool:
+    """Whether it came to remember something else, published, took a change of its parameters, or drives joints."""
+    name = f"{plugin.scoped}::{plugin.name}"
+    published = {topic for _, topic, _ in (*before.messages, *after.messages)}
+    ends = {topic for topic, end, _, does in sim.bus.ends() if does == "publishes" and end.owner is plugin}
+    changed = at_first[name] != before.memory[name] or before.memory[name] != after.memory[name]
+    adjustable = any(p.owner is plugin for found in sim.parameters.values() for p in found.values())
+    return changed or bool(ends & published) or adjustable or bool(plugin._actuators)
+
+
+def pushes_something(cls: type[Plugin], folder: Path) -> bool:
+    """Whether one of its hooks changes forces, controls or the state itself."""
+    witness = Witness()
+    with watched(witness), proof_worlds.open_world(cls.__name__, folder) as sim:
+        sim.step(20)
+        names = {called(p) for p in sim.structure.all_plugins() if type(p) is cls}
+    return any(event.before != event.after for event in witness.events if event.owner in names)

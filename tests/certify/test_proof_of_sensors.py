@@ -1,0 +1,31 @@
+"""Snapshot, restore and reset, proven for every kind of sensor that comes with simkit, with noise on all it has."""
+
+from __future__ import annotations
+
+import contract_worlds
+import proof
+import pytest
+from renderer import RENDERS
+
+import simkit
+from simkit.sensors import sensor_kinds
+
+pytestmark = pytest.mark.slow  # processes and whole runs
+
+KINDS = [kind for kind, cls in sensor_kinds().items() if cls.__module__.startswith("simkit.")]
+
+
+def thrown(sim: simkit.Simulation) -> None:
+    sim.model("m").set_velocity((0.5, 0.2, -1.0), (1.0, -0.5, 0.7))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_run_with_the_sensor_repeats_whichever_way_it_is_brought_back(kind: str) -> None:
+    if contract_worlds.is_rendered(kind) and not RENDERS:
+        pytest.skip("draws pictures, and there is no renderer")
+    with simkit.load(contract_worlds.source(kind, noisy=True), seed=5) as sim:
+        found, (before, first) = proof.proven(sim, 90, thrown)
+        assert not found
+        topics = set(contract_worlds.sensor_of(sim)._topics.values())
+        assert topics & {topic for _, topic, _ in first.messages}, "it said nothing"
+        assert before.readings != first.readings or kind in ("boundingbox", "boundingbox_camera", "segmentation")
