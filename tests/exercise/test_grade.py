@@ -1,0 +1,168 @@
+"""An exercise says what a plugin that was handed in got, and why, whatever the plugin does."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from simkit import LoadError
+from simkit.cli import app
+from simkit.exercise import grade, grade_all, read_exercise
+from simkit.exercise.grade import labels
+from simkit.exercise.text import graded_json, graded_text, junit_cases
+
+CART = """<sdf version="1.9"><world name="track"><model name="cart"><pose>0 0 0.05 0 0 0</pose><link name="body">
+<gravity>false</gravity><inertial><mass>1</mass></inertial></link></model></world></sdf>"""
+
+EXERCISE = """
+world: cart.sdf
+duration: 1
+goals:
+  - {name: goes half a metre, that: "pose('cart').x > 0.5", points: 2, hint: push it}
+limits:
+  - {name: stays on its line, that: "abs(pose('cart').y) < 0.01"}
+exercise:
+  title: Push the cart
+  hand_in: push.py
+  robot: cart
+  pass: 0.5
+  runs:
+    - {name: as it stands}
+    - {name: slowly, seed: 2, parameters: {speed: 0.1}}
+"""
+
+PUSH = """
+from simkit import ModelPlugin
+
+class Push(ModelPlugin):
+    def load(self, parent, params):
+        self.cart, self.speed = parent, params.number("speed", 1.0)
+        print("here I am")
+
+    def before_step(self):
+        BODY
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "cart.sdf").write_text(CART)
+    (tmp_path / "push.yaml").write_text(EXERCISE)
+    hand_in(tmp_path, "self.cart.set_velocity((self.speed, 0, 0))")
+    return tmp_path
+
+
+def hand_in(folder: Path, body: str) -> Path:
+    file = folder / "push.py"
+    file.write_text(PUSH.replace("BODY", body))
+    return file
+
+
+def test_each_run_and_check_gets_its_points_and_the_reason(folder):
+    graded = grade(read_exercise(folder / "push.yaml"), folder / "push.py")
+    first, second = graded.outcomes
+    assert [mark.points for mark in first.marks] == [2.0, 1.0]
+    assert [mark.points for mark in second.marks] == [0.0, 1.0]
+    assert (graded.points, graded.worth, graded.passed) == (4.0, 6.0, True)
+    assert first.marks[0].time == pytest.approx(0.501, abs=0.002)
+    assert (second.seed, second.printed) == (2, "here I am")
+    text = "\n".join(graded_text(graded))
+    assert "hint: push it" in text and "4 of 6 points (67%), 50% needed: passed" in text
+    assert [case.failure is None for case in junit_cases(graded)] == [True, True, False, True]
+    assert json.loads(json.dumps(graded_json(graded)))["points"] == 4.0
+
+
+def test_a_plugin_that_raises_gets_the_line_that_did(folder):
+    file = hand_in(folder, "self.cart.set_velocity((1 / 0, 0, 0))")
+    graded = grade(read_exercise(folder / "push.yaml"), file)
+    assert not graded.passed and graded.points == 0.0
+    assert "ZeroDivisionError" in graded.outcomes[0].error
+    assert "push.py:10: self.cart.set_velocity((1 / 0, 0, 0))" in graded.outcomes[0].error
+
+
+def test_a_plugin_that_ends_the_process_gets_nothing_and_harms_nobody(folder):
+    file = hand_in(folder, "__import__('os')._exit(0)")
+    graded = grade(read_exercise(folder / "push.yaml"), file)
+    assert graded.points == 0.0 and "its process ended with 0" in graded.outcomes[1].error
+
+
+def test_a_file_without_a_plugin_says_so(folder):
+    file = folder / "push.py"
+    file.write_text("x = 1\n")
+    graded = grade(read_exercise(folder / "push.yaml"), file)
+    assert "SK-PLUGIN-008" in graded.outcomes[0].error and graded.points == 0.0
+
+
+def test_the_command_grades_several_and_writes_junit(folder):
+    weak = folder / "weak.py"
+    weak.write_text(PUSH.replace("BODY", "pass"))
+    line = ["grade", str(folder / "push.yaml"), str(folder / "push.py"), str(weak), "--junit", str(folder / "o.xml")]
+    done = CliRunner().invoke(app, line)
+    assert done.exit_code == 5
+    assert "4 of 6 points" in done.stdout and "2 of 6 points" in done.stdout
+    assert (folder / "o.xml").read_text().count("<failure") == 3
+
+
+def test_every_problem_of_an_exercise_is_told(tmp_path):
+    (tmp_path / "e.yaml").write_text(
+        "world: cart.sdf\nexercise:\n  titel: x\n  pass: 3\n  runs:\n    - {seed: -1, duration: long}\n"
+    )
+    with pytest.raises(LoadError) as caught:
+        read_exercise(tmp_path / "e.yaml")
+    found = sorted((d.line or 0, d.code) for d in caught.value.diagnostics)
+    assert [code for _, code in found] == ["SK-SCEN-006", "SK-SCEN-002", "SK-SCEN-003", "SK-SCEN-003", "SK-SCEN-003"]
+    assert [line for line, _ in found[1:]] == [3, 4, 6, 6]
+
+
+def test_what_is_wrong_with_the_exercise_is_not_the_students_fault(folder):
+    file = folder / "push.yaml"
+    file.write_text(EXERCISE.replace("pose('cart').x", "pose('cat').x"))
+    done = CliRunner().invoke(app, ["grade", str(file), str(folder / "push.py")])
+    assert done.exit_code == 2
+    assert "push.yaml:5" in done.stderr and "'cart'" in done.stderr
+    file.write_text(EXERCISE.replace("cart.sdf", "card.sdf"))
+    assert CliRunner().invoke(app, ["grade", str(file), str(folder / "push.py")]).exit_code == 2
+
+
+HOSTILE = {
+    # what is handed in -> what it is told; empty where it does what is asked in spite of it
+    "import subprocess, sys; subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(9)'])": "",
+    "__import__('os').chdir('/')": "",
+    "print('x' * 5_000_000)": "",
+    "raise KeyboardInterrupt": "KeyboardInterrupt ended the run\npush.py:",
+    "raise simkit.InputError('mine', 'SK-X-001')": "push.py:",
+    "self.advertise('/out', 'std_msgs/msg/String')": "a text is compared with a number",
+    "import json; json.dumps = lambda found: '{}'": "its process ended with 0 in the middle of the run",
+    "import simkit.conditions.watch as w; w.Watch.results = lambda self, reason: ()": "its process ended with 0",
+}
+
+
+@pytest.mark.slow
+def test_a_hand_in_that_misbehaves_costs_its_own_points_and_nobody_elses(folder, monkeypatch):
+    """Also where files of the names of libraries lie about, and where one is called like one."""
+    exercise = EXERCISE.partition("  runs:")[0].replace("duration: 1\n", "duration: 0.6\n")
+    (folder / "push.yaml").write_text(exercise.replace("limits:", "limits:\n  - \"topic('/out').data > 3\""))
+    files = []
+    for number, line in enumerate(HOSTILE):
+        file = folder / str(number) / "push.py"
+        file.parent.mkdir()
+        text = PUSH.replace("BODY", "self.cart.set_velocity((self.speed, 0, 0))").replace('print("here I am")', line)
+        file.write_text("import simkit\n" + text)
+        files.append(file)
+    (folder / "numpy.py").write_text((folder / "push.py").read_text())
+    monkeypatch.chdir(folder)
+    found = list(grade_all(read_exercise("push.yaml"), [*files, Path("numpy.py")], jobs=2))
+    for graded, told in zip(found, [*HOSTILE.values(), ""], strict=True):
+        (outcome,) = graded.outcomes
+        assert told in outcome.error and bool(told) == bool(outcome.error), (graded.hand_in, outcome)
+        assert next(mark.passed for mark in outcome.marks) is not bool(told)
+    assert [graded.label for graded in found] == [*(f"{number}_push" for number in range(len(HOSTILE))), "numpy"]
+    assert len(found[2].outcomes[0].printed) <= 500
+
+
+def test_files_of_one_name_are_told_apart():
+    files = [Path("a/x.py"), Path("b/x.py"), Path("c/a/x.py"), Path("y.py"), None]
+    assert labels(files) == ["a_x_1", "b_x", "a_x_2", "y", ""]
