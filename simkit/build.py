@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import partial
@@ -66,6 +66,7 @@ def load(
     on_error: OnError | None = None,
     spawn: Sequence[str | Spawn] = (),
     params_files: Named | Sequence[Named] = (),
+    change_world: Callable[[SceneWorld], SceneWorld] | None = None,
 ) -> Simulation:
     """Opens a world or a bare model and makes it ready to step.
 
@@ -93,6 +94,7 @@ def load(
         params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2, or
             `"MODEL=FILE"` for those of one; models that are spawned later read them too. What they say goes over the
             files that the plugins name themselves.
+        change_world: is given what the file means, once all of the above is in it, and gives what is built instead.
 
     Returns:
         The simulation at t = 0.
@@ -116,6 +118,8 @@ def load(
         from simkit.plugins.actors.stage import with_actors
 
         world = with_actors(world, lambda uri, folder: resolver.search(uri, folder)[0], diagnostics)
+    if change_world is not None and not diagnostics.has_errors:
+        world = change_world(world)
     allowed = [Path(p) for p in plugin_paths]
     given = _given(params_files, resolver, diagnostics)
     if diagnostics.has_errors:
@@ -124,6 +128,7 @@ def load(
     builder = SpecBuilder(world, diagnostics)
     builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
     builder.parameter_files = given
+    builder.files_read += [one.file.path for one in given]
     parts = _all_parts(world, builder, diagnostics, allowed, plugins)
     if given and not diagnostics.has_errors:  # a plugin whose parameters are at fault is not among the parts
         from simkit.control.given_files import report_idle
@@ -140,6 +145,12 @@ def load(
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.write_sdf = _sdf_of
     simulation.render_thread = usable_cores() > 1 if render_thread is None else render_thread
+    simulation.origin = {
+        "source": source, "seed": seed, "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths),
+        "plugins": tuple(plugins), "base": base, "xacro_args": dict(xacro_args or {}), "overrides": tuple(overrides),
+        "sleep": sleep, "package_paths": dict(package_paths or {}), "on_error": on_error, "spawn": tuple(spawn),
+        "is_changed": change_world is not None, "folder": Path.cwd(),
+    }  # fmt: skip
     try:
         report_unread(parts.values())
         diagnostics.raise_if_errors(strict)

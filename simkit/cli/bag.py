@@ -9,7 +9,9 @@ import typer
 
 from simkit.cli.console import guarded, out
 from simkit.cli.options import Force, Json
+from simkit.cli.talking.bag_export import export
 from simkit.cli.talking.bag_play import play
+from simkit.cli.talking.bag_plot import plot
 from simkit.cli.talking.bag_record import record
 from simkit.cli.talking.printed import as_json, aside, line, quiet
 
@@ -51,6 +53,8 @@ def info(
 
 bag.command()(record)
 bag.command()(play)
+bag.command()(plot)
+bag.command()(export)
 
 
 @bag.command()

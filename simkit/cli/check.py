@@ -70,12 +70,11 @@ def _counts(found: Sequence[Diagnostic]) -> str:
 
 def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: list[Path], json_: bool) -> int:
     from simkit.fix_inertia import find_fixes
+    from simkit.writers.staging import check_file
 
     found = find_fixes(Path(file), resource_paths)
-    if output is not None and output.exists() and not force:
-        raise InputError(
-            f"SK-CLI-016 {output} exists already and is not overwritten\n    help: --force replaces it", "SK-CLI-016"
-        )
+    if output is not None:
+        check_file(output, overwrite=force)
     if json_:
         fixes = [
             {"file": str(f.file), "line": f.line, "link": f.link, "mass": f.mass, "old": f.before, "new": f.numbers,

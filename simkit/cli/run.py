@@ -25,17 +25,25 @@ from simkit.cli.options import (
     XacroArgs,
     source,
 )
+from simkit.cli.running.bundling import FOLDER as BUNDLES
 from simkit.cli.running.request import OnError, Request
 from simkit.sinks.blocked import BlockedPlugins
 
+_TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
+_UNITS = {"": 1.0, "s": 1.0, "ms": 1e-3, "min": 60.0}
 _TOPIC = re.compile(r"/[A-Za-z0-9_/]*")
 
 
 class RunCommand(TyperCommand):
-    """`--teleop` takes the topic after it, where that is one: a word that begins with a slash and names no file."""
+    """Options that take a value or none: `--teleop` and `--bundle-on-failure`.
+
+    `--teleop` takes the topic after it, where that is one: a word that begins with a slash and names no file.
+    `--bundle-on-failure` takes the folder after it, where that is one: it is there or ends with a slash, or the world
+    has been named before.
+    """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Gives `--teleop` the value that it has without a topic."""
+        """Gives both the value that they have without one."""
         given: list[str] = []
         for at, word in enumerate(args):
             if word == "--":
@@ -45,11 +53,24 @@ class RunCommand(TyperCommand):
                 follows = args[at + 1] if at + 1 < len(args) else ""
                 if not _TOPIC.fullmatch(follows) or Path(follows).exists():
                     word = "--teleop="
+            if word == "--bundle-on-failure":
+                follows = args[at + 1] if at + 1 < len(args) else ""
+                is_folder = follows.endswith("/") or Path(follows or "-").is_dir() or args[0][0:1] != "-"
+                if follows.startswith("-") or not follows or not is_folder:
+                    word = f"--bundle-on-failure={BUNDLES}"
             given.append(word)
         return super().parse_args(ctx, given)
 
 
 COMMAND = RunCommand
+
+
+def _seconds(text: str) -> float:
+    """A time: `30`, `30s`, `500ms` or `2min`."""
+    match = _TIME.fullmatch(text.strip())
+    if match is None or not float(match[1]) > 0:
+        raise typer.BadParameter(f"{text!r} is no time; allowed are seconds greater than 0, as 30, 30s, 500ms or 2min")
+    return float(match[1]) * _UNITS[match[2]]
 
 
 @guarded
@@ -104,6 +125,15 @@ def run(
         str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")
     ] = None,
     script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
+    play: Annotated[
+        Path | None, typer.Option(help="Commands of a recording, at their ticks; runs as long.", metavar="BAG")
+    ] = None,
+    play_topic: Annotated[
+        list[str],
+        typer.Option(
+            "--play-topic", help="Plays only this topic, or it on another one; repeatable.", metavar="TOPIC[:=NEW]"
+        ),
+    ] = [],
     resource_path: ResourcePaths = [],
     package_path: PackagePaths = [],
     plugin_path: PluginPaths = [],
@@ -117,15 +147,41 @@ def run(
             metavar="stop|disable",
         ),
     ] = None,
+    bundle_on_failure: Annotated[
+        Path | None,
+        typer.Option(
+            help="Where the run fails: writes it into one file there, which simkit replay repeats; else bundles/.",
+            metavar="[DIR]",
+        ),
+    ] = None,
     verbose: Verbose = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="One line at the end, no table of topics.")] = False,
+    until: Annotated[
+        str | None, typer.Option(help="Ends as soon as this holds: \"pose('tb3').x > 2\".", metavar="EXPR")
+    ] = None,
+    timeout: Annotated[
+        float | None,
+        typer.Option(help="Simulated time by which --until must hold, else exit 5.", metavar="S", parser=_seconds),
+    ] = None,
+    wall_timeout: Annotated[
+        float | None,
+        typer.Option(help="Wall time after which the run is given up, exit 5.", metavar="S", parser=_seconds),
+    ] = None,
+    assert_: Annotated[
+        list[str], typer.Option("--assert", help="Must hold at the end, else exit 5; repeatable.", metavar="EXPR")
+    ] = [],
+    junit: Annotated[
+        Path | None, typer.Option(help="Writes what held and what did not, for a CI.", metavar="FILE.xml")
+    ] = None,
 ) -> int:
     """Runs a world headless, as fast as it goes."""
     request = Request(
         world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict,
         view, picture, cmd_vel, script, tuple(plugin_path), _on_error(on_plugin_error), verbose, quiet, watch,
         tuple(spawn), tuple(params_file), name, teleop, _timeout(key_timeout), paused, step,
-        source(resource_path, package_path, xacro_arg, base),
+        _expression(until), _until_when(timeout, until), wall_timeout, tuple(assert_), junit,
+        source(resource_path, package_path, xacro_arg, base), play=play, play_topics=tuple(play_topic),
+        bundles=bundle_on_failure,
     )  # fmt: skip
     return execute(request)
 
@@ -144,6 +200,21 @@ def _timeout(seconds: float) -> float:
     return seconds
 
 
+def _expression(until: str | None) -> str:
+    """A condition; an empty one is a variable of a script that was not set, and asks for nothing by mistake."""
+    if until is not None and not until.strip():
+        raise typer.BadParameter("an expression is empty", param_hint="--until")
+    return until or ""
+
+
+def _until_when(timeout: float | None, until: str | None) -> float | None:
+    """The time by which a condition must hold."""
+    if timeout is not None and not until:
+        message = "there is no --until to wait for; --duration S ends a run by itself"
+        raise typer.BadParameter(message, param_hint="--timeout")
+    return timeout
+
+
 def _finite(number: float | None) -> float | None:
     """An infinite duration is none: until Ctrl-C."""
     return number if number is None or math.isfinite(number) else None
@@ -156,7 +227,9 @@ def execute(request: Request) -> int:
         SimkitError: what went wrong; the recording up to there is complete by then.
     """
     from simkit.build import load
+    from simkit.cli.running.bundling import Bundling
     from simkit.cli.running.session import Session, check_keyboard
+    from simkit.cli.running.verdict import Verdict
     from simkit.overrides import check_used
     from simkit.sinks import picture, recorder, viewer
 
@@ -167,19 +240,25 @@ def execute(request: Request) -> int:
     if request.view:
         viewer.check_possible()
     check_keyboard(request)
-    with BlockedPlugins(say) as blocked:
-        sim = load(
-            request.world,
-            seed=request.seed,
-            plugin_paths=request.plugin_paths,
-            strict=request.strict,
-            overrides=request.overrides,
-            on_error=request.on_plugin_error,
-            spawn=request.spawn,
-            params_files=request.params_files,
-            **request.source,
-        )
+    given: dict[str, Any] = {
+        "source": request.world,
+        "seed": request.seed,
+        "plugin_paths": request.plugin_paths,
+        "overrides": request.overrides,
+        "on_error": request.on_plugin_error,
+        "spawn": request.spawn,
+        "params_files": request.params_files,
+        **request.source,
+    }
+    with (
+        Verdict(request) as verdict,
+        BlockedPlugins(say) as blocked,
+        Bundling(request.bundles, verdict, given) as bundling,
+    ):
+        sim = load(strict=request.strict, **given)
         with sim:
+            bundling.keep(sim)
             check_used(sim.diagnostics)
             print_diagnostics(sim.diagnostics, verbose=request.verbose)
-            return Session(request, sim, blocked).execute()
+            verdict.code = Session(request, sim, blocked, verdict).execute()
+    return verdict.code

@@ -70,12 +70,6 @@ CODES: tuple[Code, ...] = (
         command("simkit bag recover run.mcap mended.mcap", {"run.mcap": "this is no recording\n"}),
     ),
     Code(
-        "SK-GOLDEN-001",
-        "stop",
-        "results differ from the recorded ones; exit code 5",
-        without="it comes from a comparison with recorded results, which a test of one's own makes",
-    ),
-    Code(
         "SK-CLI-010",
         "error",
         "`--cmd-vel` is not two numbers, or no single topic takes a Twist",

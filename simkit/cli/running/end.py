@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.cli.console import err, out
 from simkit.errors import RenderError
+from simkit.runtime.state_hash import state_hash
 
 if TYPE_CHECKING:
     from simkit.sinks.recorder import Recorder
@@ -49,11 +49,3 @@ def draw(sim: Any, path: Path, driven: Any) -> None:
         err().print(f"warning: no picture: {error}", style="yellow")
     else:
         out().print(f"picture {path}")
-
-
-def state_hash(sim: Any) -> str:
-    """SHA-256 of positions and velocities, as bits: equal for two runs that did the same."""
-    digest = hashlib.sha256()
-    digest.update(sim.mj_data.qpos.tobytes())
-    digest.update(sim.mj_data.qvel.tobytes())
-    return digest.hexdigest()

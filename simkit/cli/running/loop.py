@@ -46,7 +46,7 @@ class Loop:
         follow: whether slices are short enough to draw a path from.
 
     Attributes:
-        keep_going: asked between slices.
+        keep_going, is_over: asked between slices: the run was ended, or has come to its end.
         before_slice: called before each.
         senders: all that sends commands.
         poll_keys: called between slices and while the run waits: what a driver at the keyboard says.
@@ -72,6 +72,7 @@ class Loop:
         self._count_anew()
         self.senders: list[Sender] = [commands]
         self.keep_going: Callable[[], bool] = lambda: True
+        self.is_over: Callable[[], bool] = lambda: False
         self.before_slice: Callable[[], None] | None = None
         self.poll_keys: Callable[[], None] | None = None
         self.server: Server | None = None
@@ -88,7 +89,7 @@ class Loop:
         was_paused = False
         with sim.pausing.served():
             while end is None or sim.steps < end:
-                if self._interrupts.exit_code or not self.keep_going():
+                if self._interrupts.exit_code or not self.keep_going() or self.is_over():
                     return False
                 before = sim.tick
                 self._take_commands()

@@ -43,7 +43,24 @@ class Request:
     key_timeout: float = KEY_TIMEOUT
     paused: bool = False
     step: int | None = None
+    until: str = ""
+    timeout: float | None = None
+    wall_timeout: float | None = None
+    asserts: tuple[str, ...] = ()
+    junit: Path | None = None
     source: Source = field(default_factory=lambda: source((), (), ()))
+    play: Path | None = None
+    play_topics: tuple[str, ...] = ()
+    bundles: Path | None = None
+
+    def longest(self, played: float | None = None) -> float | None:
+        """The simulated time [s] after which the run ends at the latest; None for until Ctrl-C.
+
+        Args:
+            played: how long the recording is that is played, which is the run's length where nothing else is said.
+        """
+        duration = played if self.duration is None else self.duration
+        return min((t for t in (duration, self.timeout) if t is not None), default=None)
 
     @property
     def pace(self) -> float | None:

@@ -14,12 +14,14 @@ from simkit.cli.running.end import draw, summarise
 from simkit.cli.running.interrupts import Interrupts
 from simkit.cli.running.loop import Loop
 from simkit.cli.running.request import Request
+from simkit.cli.running.verdict import Verdict
 from simkit.errors import InputError
 from simkit.sinks.blocked import BlockedPlugins
 
 if TYPE_CHECKING:
     from simkit.cli.driving.keyboard import Keyboard, WindowsKeyboard
     from simkit.cli.driving.teleop import Teleop
+    from simkit.sinks.playback import Playback
     from simkit.sinks.progress import Progress
     from simkit.sinks.topic_counts import TopicCounter
 
@@ -40,6 +42,20 @@ def check_keyboard(request: Request) -> None:
         )
 
 
+def _endless(request: Request) -> str:
+    """What is said of a run that has no end of its own."""
+    if request.until:
+        return "running until the condition holds, or Ctrl-C (--timeout S gives up then)"
+    return "running until Ctrl-C (--duration S stops by itself)"
+
+
+def _who_ended(interrupts: Interrupts, loop: Loop) -> str:
+    """Who ended a run before its time; empty for nobody."""
+    if interrupts.exit_code:
+        return "an interrupt"
+    return "" if loop.keep_going() else "the viewer's"
+
+
 class Session:
     """One run of a loaded world.
 
@@ -47,10 +63,11 @@ class Session:
         request: what it is to do.
         sim: the simulation.
         blocked: tells of plugins that keep it waiting.
+        verdict: what is asked of it.
     """
 
-    def __init__(self, request: Request, sim: Any, blocked: BlockedPlugins) -> None:
-        self.request, self.sim, self.blocked = request, sim, blocked
+    def __init__(self, request: Request, sim: Any, blocked: BlockedPlugins, verdict: Verdict) -> None:
+        self.request, self.sim, self.blocked, self.verdict = request, sim, blocked, verdict
         self._teleop: Teleop | None = None
 
     def execute(self) -> int:
@@ -63,10 +80,15 @@ class Session:
 
         request, sim = self.request, self.sim
         commands, self._teleop = Commands(sim, self._commands()), self._driver()
-        if request.duration is None:
-            say("running until Ctrl-C (--duration S stops by itself)")
+        played = self._played()
+        duration = request.longest(played.duration if played is not None else None)
+        if duration is None:
+            say(_endless(request))
+        conditions = self.verdict.watch(sim, duration)
         driven = DrivenPath(sim) if request.picture is not None else None
         with ExitStack() as stack:
+            if played is not None:
+                stack.enter_context(played)
             interrupts = stack.enter_context(Interrupts(self.blocked.ask))
             recording = None
             if request.record is not None:
@@ -76,13 +98,15 @@ class Session:
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             keyboard = self._keyboard()
             watch = Stopwatch()
-            progress = stack.enter_context(self._progress(counter))
+            progress = stack.enter_context(self._progress(counter, duration))
             watchers: list[Any] = [progress.update]
             if recording is not None:
                 watchers.append(recording.check)
             if driven is not None:
                 watchers.append(driven.sample)
             loop = Loop(sim, commands, interrupts, watchers, rtf=request.pace, follow=driven is not None)
+            if played is not None:
+                loop.senders.append(played)
             if request.view:
                 self._open_viewer(stack, loop, watchers)
             if keyboard is not None:
@@ -90,18 +114,26 @@ class Session:
                 self._listen_to(keyboard, loop)
             self._serve(stack, loop)
             self._hold()
+            stack.enter_context(conditions)
+            loop.is_over = self.verdict.is_over
             advance = self._watched(loop, interrupts, watchers) if request.watch else loop.run
             try:
-                advance(request.duration)
+                advance(duration)
+            except BaseException as error:
+                self.verdict.end(error, "")
+                raise
+            else:
+                self.verdict.end(None, _who_ended(interrupts, loop))
             finally:
                 elapsed = watch.elapsed
                 progress.__exit__(None, None, None)
                 if recording is not None:
                     recording.close()
                 summarise(sim, counter, recording, elapsed, quiet=request.quiet)
+                self.verdict.tell()
         if driven is not None and request.picture is not None:
             draw(sim, request.picture, driven)
-        return interrupts.exit_code
+        return interrupts.exit_code or self.verdict.code
 
     # ------------------------------------------------------------------ who drives
 
@@ -115,6 +147,21 @@ class Session:
         if self.request.script is not None:
             found += read_script(self.request.script, topics)
         return found
+
+    def _played(self) -> Playback | None:
+        """The commands of the recording that is named, where one is."""
+        from simkit.sinks.playback import Playback
+
+        if self.request.play is None:
+            if self.request.play_topics:
+                raise InputError("SK-CLI-018 --play-topic: found no --play BAG beside it", "SK-CLI-018")
+            return None
+        played = Playback(self.sim, self.request.play, self.request.play_topics)
+        for note in played.notes:
+            say(f"note: {note}")
+        said = [old if old == new else f"{old} on {new}" for old, new in played.names.items()]
+        say(f"playing {', '.join(said)} of {self.request.play}")
+        return played
 
     def _driver(self) -> Teleop | None:
         from simkit.cli.driving.target import find_target
@@ -141,14 +188,14 @@ class Session:
         if self._teleop is not None:
             loop.senders.append(self._teleop)
 
-    def _progress(self, counter: TopicCounter) -> Progress:
+    def _progress(self, counter: TopicCounter, duration: float | None) -> Progress:
         from simkit.cli.driving.line import DriverLine
         from simkit.sinks.progress import Progress
 
         if self._teleop is None:
-            return Progress(self.sim, counter, self.request.duration, out())
+            return Progress(self.sim, counter, duration, out())
         console = out() if out().is_terminal else err()
-        return Progress(self.sim, counter, self.request.duration, console, DriverLine(self.sim, self._teleop).lines)
+        return Progress(self.sim, counter, duration, console, DriverLine(self.sim, self._teleop).lines)
 
     def _hold(self) -> None:
         """Has the run begin paused, or be so after some steps."""

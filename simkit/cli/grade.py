@@ -1,0 +1,74 @@
+"""`simkit grade`: an exercise, and what plugins that were handed in get for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from simkit.cli.console import guarded, out
+from simkit.cli.options import Json
+from simkit.errors import InputError
+
+_FAILED = 5
+
+
+@guarded
+def grade(
+    exercise: Annotated[
+        Path, typer.Argument(help="The exercise's YAML file.", metavar="EXERCISE.yaml", show_default=False)
+    ],
+    hand_ins: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Plugins that were handed in; that of the exercise where not given.", metavar="PLUGIN.py"),
+    ] = None,
+    junit: Annotated[Path | None, typer.Option(help="Writes the results for CI.", metavar="OUT.xml")] = None,
+    pictures: Annotated[
+        Path | None, typer.Option(help="Draws the path of each run into a folder.", metavar="DIR")
+    ] = None,
+    jobs: Annotated[int, typer.Option(help="Processes at a time.", metavar="N", min=1, max=256)] = 1,
+    json_: Json = False,
+) -> int:
+    """Runs an exercise with plugins that were handed in, and says what each got and why."""
+    from simkit.cli.talking.printed import as_json
+    from simkit.exercise import grade_all, read_exercise
+    from simkit.exercise.text import graded_json, graded_text, junit_cases
+
+    asked = read_exercise(exercise)
+    files = _files(hand_ins, exercise.parent / asked.hand_in if asked.hand_in else None)
+    if pictures is not None:
+        pictures.mkdir(parents=True, exist_ok=True)
+    graded = []
+    for one in grade_all(asked, files, pictures, jobs):
+        graded.append(one)
+        if not json_:
+            for line in graded_text(one):
+                out().print(line)
+    if json_:
+        as_json([graded_json(one) for one in graded])
+    if junit is not None:
+        from simkit.sinks.junit import write_junit
+
+        write_junit(junit, asked.title, [case for one in graded for case in junit_cases(one)])
+    if len(graded) > 1 and not json_:
+        out().print("")
+        for one in graded:
+            out().print(
+                f"{one.points:>6g} of {one.worth:g}  {'passed' if one.passed else 'not passed':<11}{one.hand_in}"
+            )
+    return 0 if all(one.passed for one in graded) else _FAILED
+
+
+def _files(given: list[Path] | None, own: Path | None) -> list[Path | None]:
+    """The plugins to be tried.
+
+    Raises:
+        InputError: SK-SCEN-007 one is not there.
+    """
+    files: list[Path | None] = list(given) if given else [own]
+    missing = [str(file) for file in files if file is not None and not file.is_file()]
+    if missing:
+        hint = "simkit grade EXERCISE.yaml PLUGIN.py"
+        raise InputError(f"SK-SCEN-007 no file {', '.join(missing)}\n    help: {hint}", "SK-SCEN-007")
+    return files

@@ -1,0 +1,251 @@
+"""What `simkit plot` and `simkit bag plot` draw: fields of bags, of worlds that are run for it, and of scenarios."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.cli.talking.printed import as_json, aside, line
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.sinks.chart import Chart, Style
+    from simkit.sinks.fields import Curve
+    from simkit.sinks.series import Series
+
+_BAGS: Final = (".mcap", ".db3")
+_SCENARIOS: Final = (".yaml", ".yml")
+_WORLDS: Final = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf", ".erb", ".config")
+_DURATION: Final = 10.0  # [s] that a world is run for where nobody says
+_SHOWN: Final = 20  # topics that are listed where no field is named
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is to be drawn, and how.
+
+    Attributes:
+        output: the file.
+        against: the field that is drawn to the right, in place of time.
+        start, end: times between which numbers are drawn [s].
+        title: above all.
+        run: how a world is run.
+    """
+
+    output: Path
+    against: str | None = None
+    start: float | None = None
+    end: float | None = None
+    title: str = ""
+    run: Run = field(default_factory=lambda: Run())
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a world is run for its numbers: as with `simkit run`."""
+
+    duration: float | None = None
+    seed: int | None = None
+    overrides: tuple[str, ...] = ()
+    cmd_vel: str | None = None
+    script: Path | None = None
+    plugin_paths: tuple[Path, ...] = ()
+    source: Mapping[str, Any] = field(default_factory=dict)
+
+
+def is_bag(path: Path) -> bool:
+    """Whether that is a recording."""
+    if path.suffix.lower() in _BAGS:
+        return True
+    return path.is_dir() and ((path / "metadata.yaml").exists() or any(path.glob("*.mcap")))
+
+
+def divided(words: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Sources and fields: the first word is a source, and so is each further one that is there or looks like one."""
+    sources: list[str] = list(words[:1])
+    fields: list[str] = []
+    for word in words[1:]:
+        path = Path(word)
+        known = path.suffix.lower() in (*_BAGS, *_SCENARIOS, *_WORLDS)
+        is_name = "/" not in word and "." not in word
+        (sources if known or is_name or path.exists() else fields).append(word)
+    return sources, fields
+
+
+def plot(sources: Sequence[str], fields: Sequence[str], wish: Wish, *, json_: bool) -> int:
+    """Draws fields of sources to a file.
+
+    Raises:
+        InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; what a world's loading raises.
+    """
+    from simkit.sinks.chart import check_ending, drawn
+    from simkit.sinks.whole_file import write_whole
+
+    check_ending(wish.output.name)
+    named = _names(sources)
+    found: list[tuple[Series, Style]] = []
+    for number, source in enumerate(sources):
+        prefix = f"{named[number]}: " if len(sources) > 1 else ""
+        found += _styled(_series(source, fields, wish), number, prefix, alone=len(sources) == 1)
+    found = [(one, style) for one, style in found if _told(one)]
+    if not found:
+        raise InputError("SK-BAG-011 there is nothing to draw: no number came", "SK-BAG-011")
+    if len(sources) > 1:
+        found.sort(key=lambda pair: pair[1].colour)
+    write_whole(wish.output, drawn(_chart(found, wish), wish.output.suffix))
+    _summary(wish.output, [one for one, _ in found], json_=json_)
+    return 0
+
+
+def _names(sources: Sequence[str]) -> list[str]:
+    """What sources are called in the chart: their stems, where those differ."""
+    stems = [Path(source).stem if "<" not in source else "world" for source in sources]
+    return stems if len(set(stems)) == len(stems) else list(sources)
+
+
+def _styled(series: list[Series], number: int, prefix: str, *, alone: bool) -> list[tuple[Series, Style]]:
+    """A colour for each field, a way of dashing for each source."""
+    from simkit.sinks.chart import Style
+
+    return [
+        (replace(one, label=prefix + one.label), Style(colour, number) if not alone else Style(colour))
+        for colour, one in enumerate(series)
+    ]
+
+
+def _told(one: Series) -> bool:
+    if not one.count:
+        aside(f"note: {one.label}: no number came, it is left out")
+    return bool(one.count)
+
+
+def _chart(found: list[tuple[Series, Style]], wish: Wish) -> Chart:
+    from simkit.sinks.chart import Chart
+
+    series = [one for one, _ in found]
+    # one source draws each curve in a colour of its own; with several, equal fields are equal in colour
+    label, is_plane = "time [s]", False
+    if wish.against is not None:
+        unit = series[0].base_unit
+        label = wish.against + (f" [{unit}]" if unit else "")
+        is_plane = unit == "m" and {one.unit for one in series} == {"m"}
+    return Chart(series, [style for _, style in found], wish.title, label, is_plane)
+
+
+def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
+    rows = [one.summary() for one in series]
+    if json_:
+        as_json({"output": str(output), "curves": rows})
+        return
+    width = max(len(row["label"]) for row in rows)
+    for row in rows:
+        unit = f" {row['unit']}" if row["unit"] else ""
+        numbers = "  ".join(f"{key} {row[key]:.6g}" for key in ("min", "max", "mean", "last"))
+        line(f"{row['label']:<{width}}  {row['count']:>7}  {numbers}{unit}")
+    line(f"{output}: {len(rows)} curve{'s' if len(rows) > 1 else ''}")
+
+
+# ---------------------------------------------------------------------- numbers of a source
+
+
+def _series(source: str, fields: Sequence[str], wish: Wish) -> list[Series]:
+    from simkit.sinks.series import against
+
+    path = Path(source)
+    take = _of_bag if is_bag(path) else _of_world
+    wanted = list(fields) if wish.against is None else [*fields, wish.against]
+    found, counts = take(source, wanted, wish)
+    if wish.start is not None or wish.end is not None:
+        found = [one.between(wish.start, wish.end) for one in found]
+    if wish.against is None:
+        return found
+    base = found[-counts[-1] :]
+    if len(base) != 1:
+        raise InputError(f"SK-BAG-010 --against {wish.against}: stands for {len(base)} numbers", "SK-BAG-010")
+    return against(found[: -counts[-1]], base[0])
+
+
+def _curves(
+    fields: Sequence[str], topics: Mapping[str, str], store_of: Callable[[str], Any], where: str
+) -> tuple[list[Curve], list[int]]:
+    """The curves of fields, and how many each field stands for."""
+    from simkit.golden.units import unit_of
+    from simkit.sinks.fields import curves_of
+
+    if not fields:
+        names = list(topics)
+        listed = ", ".join(names[:_SHOWN]) + (f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else "")
+        text = f"name a field to draw, such as /odom.pose.pose.position.x; {where} has {listed or 'no topics'}"
+        raise InputError(f"SK-BAG-011 {text}", "SK-BAG-011")
+    found = [curves_of(text, topics, store_of, where, unit_of) for text in fields]
+    return [curve for curves in found for curve in curves], [len(curves) for curves in found]
+
+
+def _of_bag(source: str, fields: Sequence[str], _: Wish) -> tuple[list[Series], list[int]]:
+    from simkit.sinks.bag_reader import open_bag_to_read
+    from simkit.sinks.series import bag_series
+
+    with open_bag_to_read(source) as bag:
+        if bag.broken:
+            aside(f"note: {source}: {bag.broken}")
+        topics = {t.name: t.type_name for t in sorted(bag.topics, key=lambda t: t.count)}
+        for topic in bag.topics:
+            if topic.type_name != topics[topic.name]:
+                aside(f"note: {topic.name} has messages of {topic.type_name} too, which are left out")
+        topics = dict(sorted(topics.items()))
+        curves, counts = _curves(fields, topics, bag.store_of, f"the bag {source}")
+        return bag_series(bag, curves), counts
+
+
+def _of_world(source: str, fields: Sequence[str], wish: Wish) -> tuple[list[Series], list[int]]:
+    from simkit import msgs
+    from simkit.cli.console import print_diagnostics
+    from simkit.scenario.run import open_scenario, run_scenario
+    from simkit.sinks.series import SeriesTap
+
+    scenario = _scenario(source, wish.run)
+    with ExitStack() as stack:
+        sim = stack.enter_context(open_scenario(scenario))
+        print_diagnostics(sim.diagnostics, verbose=False)
+        topics = sim.topics()
+        curves, counts = _curves(fields, topics, lambda _: msgs.type_store(), scenario.title)
+        tap = stack.enter_context(SeriesTap(sim, curves))
+        run_scenario(_commanded(scenario, wish.run, topics), sim)
+        return tap.series(), counts
+
+
+def _scenario(source: str, run: Run) -> Any:
+    """The scenario that a file describes, or one of a world alone; options of the command line go over it."""
+    from simkit.scenario import Scenario
+
+    if Path(source).suffix.lower() in _SCENARIOS:
+        from simkit.scenario.read import read_scenario
+
+        scenario = read_scenario(Path(source))
+    else:
+        scenario = Scenario(source, duration=_DURATION)
+    if run.duration is not None:
+        scenario = replace(scenario, duration=run.duration)
+    if run.seed is not None:
+        scenario = replace(scenario, seed=run.seed)
+    options = {**scenario.options, **{key: value for key, value in run.source.items() if value}}
+    if run.plugin_paths:
+        options["plugin_paths"] = run.plugin_paths
+    return replace(scenario, overrides=(*scenario.overrides, *run.overrides), options=options)
+
+
+def _commanded(scenario: Any, run: Run, topics: dict[str, str]) -> Any:
+    """The scenario with the commands of `--cmd-vel` and `--script`."""
+    from simkit.sinks.commands import read_script, steady_velocity
+
+    found = [steady_velocity(run.cmd_vel, topics)] if run.cmd_vel is not None else []
+    if run.script is not None:
+        found += read_script(run.script, topics)
+    more = [
+        {"at": c.at, "until": c.until, "rate": c.rate, "topic": c.topic, "message": c.message, "where": c.where}
+        for c in found
+    ]
+    return replace(scenario, commands=(*scenario.commands, *more))
