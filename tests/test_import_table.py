@@ -9,7 +9,7 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "simkit"
 
-SMALL_WORDS = frozenset({"pose", "params", "diagnostics", "errors", "msgs", "registry"})
+SMALL_WORDS = frozenset({"apart", "pose", "params", "diagnostics", "errors", "msgs", "registry"})
 ROOMS: dict[str, frozenset[str]] = {
     "scene": frozenset(),
     "engine": frozenset(),
@@ -23,7 +23,16 @@ ROOMS: dict[str, frozenset[str]] = {
     "control": frozenset({"plugins", "runtime", "compiler", "scene"}),
     "motion": frozenset({"control", "plugins", "runtime", "compiler", "scene"}),
     "authoring": frozenset({"plugins", "gzpython", "sensors", "runtime", "scene"}),
-    "pytest_plugin": frozenset({"runtime"}),
+    "pytest_plugin": frozenset({"golden", "runtime", "scenario"}),
+    "conditions": frozenset({"runtime", "scenario"}),
+    "scenario": frozenset({"build", "conditions", "runtime", "sinks"}),
+    "golden": frozenset({"compiler", "conditions", "engine", "runtime", "scenario", "scene", "sensors", "sinks"}),
+    "certify": frozenset({"engine", "golden", "runtime", "scenario", "sinks"}),
+    "bundle": frozenset(
+        {"build", "engine", "golden", "loaders", "runtime", "scenario", "scene", "sinks", "spawning", "vendor"}
+        | {"conditions", "writers"}
+    ),
+    "exercise": frozenset({"build", "conditions", "plugins", "runtime", "scenario", "scene", "sinks"}),
     "parts": frozenset({"control", "motion", "plugins", "sensors", "runtime", "scene"}),
     "sinks": frozenset({"runtime", "writers"}),
     "live": frozenset({"runtime"}),
@@ -39,7 +48,14 @@ ROOMS: dict[str, frozenset[str]] = {
     "cli": frozenset(
         {
             "authoring",
+            "bundle",
+            "certify",
+            "conditions",
             "control",
+            "exercise",
+            "golden",
+            "runtime",
+            "scenario",
             "live",
             "motion",
             "build",
