@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -12,6 +13,7 @@ from simkit.compiler.meshes.files import Companions
 from simkit.compiler.meshes.part import Floats, MeshFileError, MeshPart
 from simkit.compiler.meshes.text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan, indexed, integers_of, numbers_of
 
+_DEEPEST: Final = 500  # levels of elements, of which a node takes one and what it draws a few
 _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
 
 
@@ -24,20 +26,51 @@ def read_root(content: bytes) -> Any:
     """The document without entities: nothing outside of the file is read and nothing in it multiplies."""
     from lxml import etree
 
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True, recover=True, remove_comments=True
+    kind = partial(
+        etree.XMLParser,
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        huge_tree=True,
+        recover=True,
+        remove_comments=True,
     )
+    target: Any = _Untrusted()  # the stubs ask for more callbacks than lxml does
     try:
-        root = etree.fromstring(content, parser)
+        etree.fromstring(content, kind(target=target))
+        root = etree.fromstring(content, kind())
     except (etree.XMLSyntaxError, ValueError) as problem:
         raise MeshFileError(f"is not readable XML: {problem}") from None
     if root is None or not isinstance(root.tag, str):
         raise MeshFileError("is not readable XML")
-    if root.getroottree().docinfo.internalDTD is not None:
-        raise MeshFileError("has a document type definition, which is refused")
     if etree.QName(root).localname != "COLLADA":
         raise MeshFileError(f"begins with <{etree.QName(root).localname}>, a COLLADA file with <COLLADA>")
     return root
+
+
+class _Untrusted:
+    """Reads a document without keeping it, and refuses one with entities, or with elements that are too deep.
+
+    What lxml itself lets pass depends on the libxml2 that a process has loaded first: an old one, which comes with some
+    GL libraries, has no limit for levels, and to walk through a million of them takes hours.
+    """
+
+    def __init__(self) -> None:
+        self._level = 0
+
+    def doctype(self, name: str, public: str | None, system: str | None) -> None:
+        raise MeshFileError("has a document type definition, which is refused")
+
+    def start(self, tag: str | bytes, attrib: Any) -> None:
+        self._level += 1
+        if self._level > _DEEPEST:
+            raise MeshFileError(f"has elements that are nested more than {_DEEPEST} deep")
+
+    def end(self, tag: str | bytes) -> None:
+        self._level -= 1
+
+    def close(self) -> None:
+        """Nothing is kept."""
 
 
 class ColladaFile:
