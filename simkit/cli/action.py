@@ -129,6 +129,7 @@ class _Sending:
 
     def __init__(self, client: Client, json_: bool, feedback: bool) -> None:
         self._client, self._json, self._feedback = client, json_, feedback
+        self._early: list[Any] | None = []  # feedback that came before it was said that the goal is accepted
 
     def send(self, name: str, goal: Any, timeout: float | None) -> None:
         self._say("Waiting for an action server to become available...")
@@ -141,6 +142,9 @@ class _Sending:
                 self._ended(handle)
                 return
             self._say(f"Goal accepted with ID: {handle.id:032x}\n")
+            early, self._early = self._early or [], None
+            for message in early:
+                self._on_feedback(message)
             if not handle.wait(timeout):
                 self._call_off(handle)
         except KeyboardInterrupt:
@@ -168,7 +172,9 @@ class _Sending:
     def _on_feedback(self, message: Any) -> None:
         from simkit.msgs.text import plain
 
-        if self._json:
+        if self._early is not None:
+            self._early.append(message)
+        elif self._json:
             as_json({"feedback": plain(message)})
         else:
             line(f"Feedback:\n    {_yaml(message)}")
