@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from simkit.conditions.binding import bind
@@ -106,7 +107,7 @@ class Condition:
             self._fault = str(error)
 
 
-class Entry:
+class Entry(ABC):
     """A check of a run.
 
     Args:
@@ -128,8 +129,9 @@ class Entry:
             self._result = self._at_end(cut_short(reason))
         return self._result
 
+    @abstractmethod
     def _at_end(self, cut: str) -> CheckResult:
-        raise NotImplementedError
+        """What became of it where nothing was decided before the end; `cut` says why that came early, if it did."""
 
     def _decide(self, passed: bool, message: str, time: float | None = None) -> CheckResult:
         self.is_decided = True

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.errors import InputError
+from simkit.errors import InputError, LoadError
 from simkit.scenario.document import Document, beside, shown
 from simkit.scenario.python_file import scenario_of_python
 from simkit.scenario.scenario import Check, CheckKind, Scenario, Tolerance
@@ -23,7 +23,8 @@ _CHECKS: Final[dict[str, CheckKind]] = {
     "no_contact": "apart",
     "rates": "rate",
 }
-_LOADING: Final = ("resource_paths", "plugin_paths", "package_paths", "params_files", "xacro_args", "base")
+_OF_READING: Final = ("resource_paths", "package_paths", "xacro_args", "base")
+_LOADING: Final = ("plugin_paths", "params_files", *_OF_READING)
 KEYS: Final = (
     *("world", "name", "duration", "seed", "set", "spawn", "commands", "play", "play_topics", "topics"),
     *("skip", "tolerances", "statistics", "state", "model", "picture", "until", "timeout", "wall_timeout"),
@@ -68,8 +69,25 @@ def read_scenario(path: str | Path) -> Scenario:
     if document.values is None:
         diagnostics.raise_if_errors()
     scenario = scenario_of(document)
+    if diagnostics.has_errors:
+        _look_at_world(scenario, diagnostics)
     diagnostics.raise_if_errors()
     return scenario
+
+
+def _look_at_world(scenario: Scenario, diagnostics: Diagnostics) -> None:
+    """What is wrong with the world of a faulty scenario: it is told in the same pass."""
+    from simkit.build import read_scene
+
+    if not scenario.world:
+        return
+    options = {key: value for key, value in scenario.options.items() if key in _OF_READING}
+    try:
+        read_scene(scenario.source, **options)
+    except LoadError as error:
+        diagnostics.extend(error.diagnostics)
+    except InputError as error:
+        diagnostics.error(error.code, str(error).removeprefix(error.code).strip(), Where(str(scenario.file)))
 
 
 def scenario_of(document: Document, *, also: tuple[str, ...] = ()) -> Scenario:
@@ -117,7 +135,7 @@ class _Reader:
             state=self._flag("state", True),
             model=self._flag("model", True),
             picture=self._whole("picture", 64, 8),
-            until=self._text("until", ""),
+            until=self._expression(self._text("until", ""), "until"),
             timeout=self._number("timeout", None, above=0.0),
             wall_timeout=wall,
             checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
@@ -261,7 +279,7 @@ class _Reader:
         if "base" in self._said:
             found["base"] = self._text("base", "auto")
             if found["base"] not in ("auto", "fixed", "floating"):
-                self._wrong(found["base"], "auto, fixed or floating", "base")
+                self._wrong(found.pop("base"), "auto, fixed or floating", "base")
         return found
 
     # ------------------------------------------------------------------ what is compared
@@ -335,7 +353,7 @@ class _Reader:
         return Check(
             kind,
             name=self._text_of(said.get("name", ""), (*keys, "name")),
-            expression=self._text_of(said["that"], (*keys, "that")) if main == "that" else "",
+            expression=self._expression(self._text_of(said["that"], (*keys, "that")), *keys) if main == "that" else "",
             by=number_of(said.get("by"), None, (*keys, "by"), least=0.0),
             after=number_of(said.get("after", 0.0), 0.0, (*keys, "after"), least=0.0) or 0.0,
             models=self._models(said["models"], (*keys, "models")) if kind == "apart" else (),
@@ -346,6 +364,18 @@ class _Reader:
             hint=self._text_of(said.get("hint", ""), (*keys, "hint")),
             where=str(self._document.where(*keys)),
         )
+
+    def _expression(self, text: str, *keys: Any) -> str:
+        """An expression that can be read; whether the world has what it names is seen when it is bound to one."""
+        from simkit.conditions import parse
+
+        if text:
+            try:
+                parse(text)
+            except InputError as error:
+                message, _, hint = str(error).removeprefix(error.code).strip().partition("\n    help: ")
+                self._document.error(error.code, message, *keys, hint=hint)
+        return text
 
     def _text_of(self, value: Any, keys: tuple[Any, ...]) -> str:
         if isinstance(value, str) and (value.strip() or keys[-1] not in ("that", "topic")):

@@ -165,6 +165,31 @@ def test_every_problem_is_told_in_one_pass_with_its_line(tmp_path):
     ]
 
 
+def test_what_is_wrong_with_expressions_and_the_world_is_told_in_the_same_pass(tmp_path):
+    with pytest.raises(LoadError) as caught:
+        scenario(
+            tmp_path,
+            "world: turtlebot3_wrld\n"
+            "duraton: 3\n"
+            "base: floor\n"
+            "until: pose('ball').z >\n"
+            "goals:\n"
+            "  - pose('ball').z > > 2\n"
+            "  - {that: speed(, by: 1}\n",
+        )
+    found = [(one.line, one.code) for one in caught.value.diagnostics]
+    assert sorted(found, key=str) == [
+        (2, "SK-SCEN-002"),
+        (3, "SK-SCEN-003"),
+        (4, "SK-COND-001"),
+        (6, "SK-COND-001"),
+        (7, "SK-COND-001"),
+        (None, "SK-LOAD-002"),
+    ]
+    assert "turtlebot3_world" in str(caught.value)
+    assert "^" in str(caught.value), "the place within the expression is shown"
+
+
 @pytest.mark.parametrize(
     "text, code",
     [
@@ -275,7 +300,7 @@ def test_what_says_nothing_or_two_things_is_told(tmp_path, text, found):
 def test_windows_and_editors_leave_their_marks_and_a_scenario_is_read(tmp_path):
     (tmp_path / "ball.sdf").write_text(BALL)
     file = tmp_path / "drop.yaml"
-    file.write_bytes("\ufeffworld: ball.sdf\r\nname: größe 机\r\ngoals:\r\n  - 1 +\r\n".encode())
+    file.write_bytes("\ufeffworld: ball.sdf\r\nname: größe 机\r\ngoals:\r\n  - 1 > 0\r\n".encode())
     found = read_scenario(file)
     assert found.name == "größe 机" and found.checks[0].where.endswith(":4")
 
