@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from simkit.cli.console import guarded, out, print_diagnostics, say
 from simkit.cli.options import (
     Base,
+    CmdVel,
     Force,
+    Overrides,
     PackagePaths,
     ParamsFiles,
     PluginPaths,
     ResourcePaths,
+    Script,
+    Seed,
+    Spawned,
     XacroArgs,
     source,
 )
+from simkit.cli.running.asked import Asked
 
 
 @guarded
@@ -30,19 +35,11 @@ def bundle(
     duration: Annotated[
         float | None, typer.Option(help="Simulated seconds to run; 10, or the scenario's.", metavar="S", min=0)
     ] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = None,
-    cmd_vel: Annotated[
-        str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")
-    ] = None,
-    script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
-    set_: Annotated[
-        list[str],
-        typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
-    ] = [],
-    spawn: Annotated[
-        list[str],
-        typer.Option(help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"),
-    ] = [],
+    seed: Seed = None,
+    cmd_vel: CmdVel = None,
+    script: Script = None,
+    set_: Overrides = [],
+    spawn: Spawned = [],
     params_file: ParamsFiles = [],
     last: Annotated[float, typer.Option(help="Keeps the messages of so many last seconds.", metavar="S", min=0)] = 10.0,
     topic: Annotated[
@@ -69,20 +66,16 @@ def bundle(
     from simkit.writers.staging import check_file
 
     check_file(output, overwrite=force)
-    options: dict[str, Any] = dict(source(resource_path, package_path, xacro_arg, base))
-    options |= {"plugin_paths": tuple(plugin_path), "params_files": tuple(params_file)}
-    scenario = _scenario(world, {key: value for key, value in options.items() if value and value != "auto"})
-    scenario = replace(
-        scenario,
-        duration=scenario.duration if duration is None else duration,
-        seed=scenario.seed if seed is None else seed,
-        overrides=(*scenario.overrides, *set_),
-        spawn=(*scenario.spawn, *spawn),
-    )
+    asked = Asked(
+        world, duration, seed, overrides=tuple(set_), spawn=tuple(spawn), params_files=tuple(params_file),
+        cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
+        source=source(resource_path, package_path, xacro_arg, base),
+    )  # fmt: skip
+    scenario = asked.scenario()
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
         keeper = Keeper(sim, last, topic)
-        scenario = _with_commands(scenario, sim, cmd_vel, script)
+        scenario = asked.commanded(scenario, sim.topics())
         failure = None
         try:
             ended = run_scenario(scenario, sim)
@@ -100,27 +93,3 @@ def bundle(
         size = output.stat().st_size
         out().print(f"{output}: {sim.time:g} s, {keeper.journal.count} commands, {size / 1000:.0f} kB")
     return 0
-
-
-def _scenario(source: str, options: dict[str, Any]) -> Any:
-    """What is to be run: a scenario's file, or a world for some seconds."""
-    from simkit.scenario import Scenario
-    from simkit.scenario.read import is_scenario_file, read_scenario
-
-    if "<" not in source and is_scenario_file(source):
-        scenario = read_scenario(source)
-        return replace(scenario, options={**scenario.options, **options})
-    return Scenario(source, options=options)
-
-
-def _with_commands(scenario: Any, sim: Any, cmd_vel: str | None, script: Path | None) -> Any:
-    """The scenario with the commands of the command line added."""
-    from simkit.sinks.commands import script_items, steady_velocity
-
-    added: list[dict[str, Any]] = []
-    if cmd_vel is not None:
-        steady = steady_velocity(cmd_vel, sim.topics())
-        added.append({"at": steady.at, "topic": steady.topic, "message": steady.message, "where": steady.where})
-    if script is not None:
-        added += script_items(script)
-    return replace(scenario, commands=(*scenario.commands, *added))

@@ -12,12 +12,17 @@ import typer
 from simkit.cli.console import guarded, out, print_diagnostics, say
 from simkit.cli.options import (
     Base,
+    CmdVel,
     Force,
     Json,
+    Overrides,
     PackagePaths,
     ParamsFiles,
     PluginPaths,
     ResourcePaths,
+    Script,
+    Seed,
+    Spawned,
     XacroArgs,
     source,
 )
@@ -40,25 +45,18 @@ def record(
     duration: Annotated[
         float | None, typer.Option(help="Simulated seconds; 10 where nothing says it.", metavar="S", min=0)
     ] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = None,
+    seed: Seed = None,
     topic: Annotated[
         list[str], typer.Option(help="Keeps only topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
     skip: Annotated[
         list[str], typer.Option(help="Keeps all but topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
-    set_: Annotated[
-        list[str], typer.Option("--set", help="Changes one value, as of simkit run; repeatable.", metavar="PATH=VALUE")
-    ] = [],
-    spawn: Annotated[
-        list[str],
-        typer.Option(help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"),
-    ] = [],
+    set_: Overrides = [],
+    spawn: Spawned = [],
     params_file: ParamsFiles = [],
-    cmd_vel: Annotated[
-        str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")
-    ] = None,
-    script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
+    cmd_vel: CmdVel = None,
+    script: Script = None,
     resource_path: ResourcePaths = [],
     package_path: PackagePaths = [],
     plugin_path: PluginPaths = [],
@@ -67,13 +65,15 @@ def record(
     force: Force = False,
 ) -> int:
     """Runs a scenario and keeps what it gives as a golden run."""
-    from simkit.cli.goldens.recording import Given, keep
+    from simkit.cli.goldens.recording import keep
+    from simkit.cli.running.asked import Asked
 
-    given = Given(
-        world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file), cmd_vel,
-        script, tuple(plugin_path), source(resource_path, package_path, xacro_arg, base),
+    asked = Asked(
+        world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file),
+        cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
+        source=source(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
-    found = keep(given, out_, force=force)
+    found = keep(asked, out_, force=force)
     if found.simulation is not None:
         print_diagnostics(found.simulation.diagnostics, verbose=False)
         found.simulation.close()

@@ -49,6 +49,22 @@ ParamsFiles = Annotated[
         metavar="[MODEL=]FILE.yaml",
     ),
 ]
+Overrides = Annotated[
+    list[str],
+    typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
+]
+Spawned = Annotated[
+    list[str],
+    typer.Option(
+        "--spawn", help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"
+    ),
+]
+CmdVel = Annotated[
+    str | None,
+    typer.Option("--cmd-vel", help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W"),
+]
+Script = Annotated[Path | None, typer.Option("--script", help="Commands over time.", metavar="FILE.yaml")]
+Seed = Annotated[int | None, typer.Option("--seed", help="Seed of all noise.", metavar="N", min=0)]
 Strict = Annotated[bool, typer.Option("--strict", help="Warnings are errors.")]
 Json = Annotated[bool, typer.Option("--json", help="For programs: one JSON value.")]
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Shows every note, not only how many there are.")]

@@ -7,9 +7,22 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.options import Base, Json, PackagePaths, PluginPaths, ResourcePaths, XacroArgs, source
+from simkit.cli.options import (
+    Base,
+    CmdVel,
+    Json,
+    Overrides,
+    PackagePaths,
+    PluginPaths,
+    ResourcePaths,
+    Script,
+    Seed,
+    XacroArgs,
+    source,
+)
+from simkit.cli.running.asked import Asked
 from simkit.cli.talking.plot_options import Against, End, Output, Start, Title
-from simkit.cli.talking.plotted import Run, Wish, divided
+from simkit.cli.talking.plotted import Wish, divided
 from simkit.cli.talking.plotted import plot as draw
 from simkit.cli.talking.printed import quiet
 
@@ -33,15 +46,10 @@ def plot(
         float | None,
         typer.Option(help="Simulated seconds that a world is run for; 10 where not given.", metavar="S", min=0),
     ] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of all noise.", metavar="N", min=0)] = None,
-    set_: Annotated[
-        list[str],
-        typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
-    ] = [],
-    cmd_vel: Annotated[
-        str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")
-    ] = None,
-    script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
+    seed: Seed = None,
+    set_: Overrides = [],
+    cmd_vel: CmdVel = None,
+    script: Script = None,
     resource_path: ResourcePaths = [],
     package_path: PackagePaths = [],
     plugin_path: PluginPaths = [],
@@ -51,6 +59,8 @@ def plot(
 ) -> int:
     """Draws fields of topics over time: of bags, and of worlds that are run for it."""
     sources, fields = divided(words)
-    given = source(resource_path, package_path, xacro_arg, base)
-    run = Run(duration, seed, tuple(set_), cmd_vel, script, tuple(plugin_path), dict(given))
-    return draw(sources, fields, Wish(output, against, start, end, title, run), json_=json_)
+    asked = Asked(
+        "", duration, seed, overrides=tuple(set_), cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
+        source=source(resource_path, package_path, xacro_arg, base),
+    )  # fmt: skip
+    return draw(sources, fields, Wish(output, against, start, end, title, asked), json_=json_)

@@ -14,11 +14,15 @@ from simkit.cli.console import guarded, print_diagnostics, say
 from simkit.cli.driving.teleop import KEY_TIMEOUT
 from simkit.cli.options import (
     Base,
+    CmdVel,
     Force,
+    Overrides,
     PackagePaths,
     ParamsFiles,
     PluginPaths,
     ResourcePaths,
+    Script,
+    Spawned,
     Strict,
     Verbose,
     World,
@@ -107,24 +111,16 @@ def run(
         str | None,
         typer.Option(help="What other terminals call this run; else the world's or file's name.", metavar="NAME"),
     ] = None,
-    set_: Annotated[
-        list[str],
-        typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
-    ] = [],
-    spawn: Annotated[
-        list[str],
-        typer.Option(help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"),
-    ] = [],
+    set_: Overrides = [],
+    spawn: Spawned = [],
     params_file: ParamsFiles = [],
     strict: Strict = False,
     view: Annotated[bool, typer.Option("--view", help="Opens a viewer.")] = False,
     picture: Annotated[
         Path | None, typer.Option(help="Draws the scene at the end, with path and last scan.", metavar="OUT.png")
     ] = None,
-    cmd_vel: Annotated[
-        str | None, typer.Option(help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W")
-    ] = None,
-    script: Annotated[Path | None, typer.Option(help="Commands over time.", metavar="FILE.yaml")] = None,
+    cmd_vel: CmdVel = None,
+    script: Script = None,
     play: Annotated[
         Path | None, typer.Option(help="Commands of a recording, at their ticks; runs as long.", metavar="BAG")
     ] = None,

@@ -53,6 +53,11 @@ class Command:
         time = self.at + index / self.rate
         return time if time <= self.until else None
 
+    def plain(self) -> dict[str, Any]:
+        """As a mapping, as a scenario has it."""
+        found = {"at": self.at, "topic": self.topic, "message": self.message, "where": self.where}
+        return found if self.until is None else {**found, "until": self.until, "rate": self.rate}
+
 
 class Commands:
     """Sends commands at the first tick at or after their time.

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit.cli.running.asked import Asked
 from simkit.cli.talking.printed import as_json, aside, line
 from simkit.errors import InputError
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 _BAGS: Final = (".mcap", ".db3")
 _SCENARIOS: Final = (".yaml", ".yml")
 _WORLDS: Final = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf", ".erb", ".config")
-_DURATION: Final = 10.0  # [s] that a world is run for where nobody says
 _SHOWN: Final = 20  # topics that are listed where no field is named
 
 
@@ -40,20 +40,7 @@ class Wish:
     start: float | None = None
     end: float | None = None
     title: str = ""
-    run: Run = field(default_factory=lambda: Run())
-
-
-@dataclass(frozen=True)
-class Run:
-    """How a world is run for its numbers: as with `simkit run`."""
-
-    duration: float | None = None
-    seed: int | None = None
-    overrides: tuple[str, ...] = ()
-    cmd_vel: str | None = None
-    script: Path | None = None
-    plugin_paths: tuple[Path, ...] = ()
-    source: Mapping[str, Any] = field(default_factory=dict)
+    run: Asked = field(default_factory=lambda: Asked(""))
 
 
 def is_bag(path: Path) -> bool:
@@ -206,46 +193,13 @@ def _of_world(source: str, fields: Sequence[str], wish: Wish) -> tuple[list[Seri
     from simkit.scenario.run import open_scenario, run_scenario
     from simkit.sinks.series import SeriesTap
 
-    scenario = _scenario(source, wish.run)
+    asked = replace(wish.run, world=source)
+    scenario = asked.scenario()
     with ExitStack() as stack:
         sim = stack.enter_context(open_scenario(scenario))
         print_diagnostics(sim.diagnostics, verbose=False)
         topics = sim.topics()
         curves, counts = _curves(fields, topics, lambda _: msgs.type_store(), scenario.title)
         tap = stack.enter_context(SeriesTap(sim, curves))
-        run_scenario(_commanded(scenario, wish.run, topics), sim)
+        run_scenario(asked.commanded(scenario, topics), sim)
         return tap.series(), counts
-
-
-def _scenario(source: str, run: Run) -> Any:
-    """The scenario that a file describes, or one of a world alone; options of the command line go over it."""
-    from simkit.scenario import Scenario
-
-    if Path(source).suffix.lower() in _SCENARIOS:
-        from simkit.scenario.read import read_scenario
-
-        scenario = read_scenario(Path(source))
-    else:
-        scenario = Scenario(source, duration=_DURATION)
-    if run.duration is not None:
-        scenario = replace(scenario, duration=run.duration)
-    if run.seed is not None:
-        scenario = replace(scenario, seed=run.seed)
-    options = {**scenario.options, **{key: value for key, value in run.source.items() if value}}
-    if run.plugin_paths:
-        options["plugin_paths"] = run.plugin_paths
-    return replace(scenario, overrides=(*scenario.overrides, *run.overrides), options=options)
-
-
-def _commanded(scenario: Any, run: Run, topics: dict[str, str]) -> Any:
-    """The scenario with the commands of `--cmd-vel` and `--script`."""
-    from simkit.sinks.commands import read_script, steady_velocity
-
-    found = [steady_velocity(run.cmd_vel, topics)] if run.cmd_vel is not None else []
-    if run.script is not None:
-        found += read_script(run.script, topics)
-    more = [
-        {"at": c.at, "until": c.until, "rate": c.rate, "topic": c.topic, "message": c.message, "where": c.where}
-        for c in found
-    ]
-    return replace(scenario, commands=(*scenario.commands, *more))
