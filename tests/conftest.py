@@ -1,0 +1,10 @@
+"""What all tests stand on."""
+
+from __future__ import annotations
+
+import signal
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # A shell that begins the tests in the background has interrupts ignored, and a process that a test begins would
+    # take that over: then no interrupt ends it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
