@@ -173,3 +173,8 @@ def did_you_mean(name: str, allowed: Iterable[str]) -> str:
     """`did you mean 'x'?`, or an empty text."""
     near = closest(name, allowed)
     return f"did you mean {near!r}?" if near else ""
+
+
+def shortened(text: str, most: int) -> str:
+    """A text of no more than so many letters; where some are left out it ends with an ellipsis."""
+    return text if len(text) <= most else text[: most - 1] + "…"

@@ -161,6 +161,9 @@ class Pose:
             ),
         )
 
+    def __rmatmul__(self, other: object) -> Pose:
+        raise TypeError(f"a pose is a simkit.Pose, such as simkit.Pose((0, 0, 1)), got {other!r}")
+
     def inverse(self) -> Pose:
         w, x, y, z = self.quaternion.tolist()
         vx, vy, vz = self.position.tolist()

@@ -190,8 +190,10 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
 
 
 def _label(source: str | os.PathLike[str]) -> str:
+    from simkit.diagnostics import shortened
+
     text = " ".join(str(source).split())
-    return text if "<" not in text or len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+    return shortened(text, _LONGEST) if "<" in text else text
 
 
 def _lines(found: Iterable[Diagnostic]) -> str:

@@ -77,8 +77,9 @@ def certify(
     from simkit.certify import text
     from simkit.cli.talking.printed import as_json
     from simkit.scenario.run import open_scenario
-    from simkit.sinks.whole_file import write_whole
+    from simkit.sinks.whole_file import check_whole, write_whole
 
+    check_whole(output)
     asked = Asked(
         world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file),
         cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),

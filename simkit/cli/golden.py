@@ -114,7 +114,10 @@ def check(
     """Runs golden runs again and compares; says what differs first, and why. Exit code 5 where something does."""
     from simkit.cli.goldens.checking import Wanted, check_all
     from simkit.cli.goldens.telling import tell
+    from simkit.sinks.whole_file import check_whole
 
+    check_whole(html)
+    check_whole(junit)
     wanted = Wanted(bless, bless_other_renderer, causes, budget)
     with redirect_stdout(sys.stderr) if json_ else nullcontext():  # what a plugin prints is no JSON
         results = check_all(folders, wanted, jobs)

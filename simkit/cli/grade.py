@@ -34,7 +34,9 @@ def grade(
     from simkit.cli.talking.printed import as_json
     from simkit.exercise import grade_all, read_exercise
     from simkit.exercise.text import graded_json, graded_text, junit_cases
+    from simkit.sinks.whole_file import check_whole
 
+    check_whole(junit)
     asked = read_exercise(exercise)
     files = _files(hand_ins, exercise.parent / asked.hand_in if asked.hand_in else None)
     if pictures is not None:

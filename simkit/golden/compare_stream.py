@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from simkit.diagnostics import shortened
 from simkit.golden.bits import difference_in_bits
 from simkit.golden.compare_numbers import compare_column
 from simkit.golden.compare_orientation import compare_orientation, quaternions
@@ -183,7 +184,7 @@ def _texts(pair: Pair, count: int) -> Ranked:
         if not apart:
             continue
         first, rest = apart[0], both - apart[0]
-        words = f"{run.topic}.{path}: “{_short(mine[first])}” became “{_short(other[first])}”"
+        words = f"{run.topic}.{path}: “{_line(mine[first])}” became “{_line(other[first])}”"
         time = float(run.times_ns[first]) * 1e-9
         words += f" {'at' if len(apart) == 1 else 'from'} {moment(time)}"
         if len(apart) < rest:
@@ -193,9 +194,8 @@ def _texts(pair: Pair, count: int) -> Ranked:
     return ranked
 
 
-def _short(text: str, longest: int = 60) -> str:
-    text = text.replace("\n", " ")
-    return text if len(text) <= longest else text[: longest - 1] + "…"
+def _line(text: str) -> str:
+    return shortened(text.replace("\n", " "), 60)
 
 
 # ---------------------------------------------------------------------- noise

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.diagnostics import Diagnostics, Where, did_you_mean, shortened
 
 LARGEST = 1 << 20  # bytes of a file that people write by hand
 _DEEPEST = 6  # levels whose lines are known
@@ -115,5 +115,4 @@ def beside(folder: Path, spawn: str) -> str:
 
 def shown(value: Any) -> str:
     """A value for a message, short."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "…"
+    return shortened(repr(value), 60)

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from simkit.diagnostics import shortened
 from simkit.errors import InputError
 from simkit.sinks.canvas import Canvas, PngCanvas, Points, SvgCanvas, width_of
 from simkit.sinks.series import Series
@@ -265,5 +266,4 @@ def _legend(labels: list[str]) -> list[tuple[float, int]]:
 
 def _cut(text: str, width: float, size: float) -> str:
     """As much of a text as there is room for."""
-    most = int(width / width_of("x", size))
-    return text if len(text) <= most else text[: most - 1] + "…"
+    return shortened(text, int(width / width_of("x", size)))

@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from simkit.diagnostics import shortened
+
 LONGEST: Final = 100_000
 """Letters of one text that are kept: the beginning and the end, with a word on what is left out."""
 
@@ -117,4 +119,4 @@ def _text(text: str) -> str:
 def _named(text: str) -> str:
     """Text of an attribute: one line."""
     line = " ".join(_COLOURS.sub("", text).split())
-    return _text(line if len(line) <= _NAMED else line[: _NAMED - 1] + "…").replace('"', "&quot;")
+    return _text(shortened(line, _NAMED)).replace('"', "&quot;")

@@ -7,8 +7,29 @@ import tempfile
 from pathlib import Path
 
 from simkit.errors import InputError
+from simkit.writers.staging import why_unwritable
 
 _MODE = 0o666  # less the process's mask: what `open` would give
+
+
+def check_whole(path: str | os.PathLike[str] | None) -> None:
+    """Whether `write_whole` can write a file: to be asked before the work whose outcome goes into it.
+
+    Args:
+        path: the file; None for none.
+
+    Raises:
+        InputError: SK-CLI-016 the place cannot be written.
+    """
+    if path is None:
+        return
+    target = Path(path)
+    try:
+        why = "it is a folder" if target.is_dir() else "" if target.exists() else why_unwritable(target)
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+    if why:
+        raise InputError(f"SK-CLI-016 cannot write {path}: {why}", "SK-CLI-016")
 
 
 def write_whole(path: str | os.PathLike[str], data: bytes) -> None:

@@ -82,6 +82,14 @@ def test_a_file_is_written_where_the_world_cannot_be_loaded(tmp_path: Path) -> N
     assert result.exit_code == 2 and cases(tmp_path / "out.xml") == {"run": "error"}
 
 
+def test_a_file_that_cannot_be_written_is_told_before_the_run(yard: Path, tmp_path: Path) -> None:
+    bag = tmp_path / "run.mcap"
+    for place in (tmp_path, yard / "out.xml"):  # a folder, and one that would be in a file
+        result = run(yard, "--duration", "0.1", "--junit", place, "--record", bag)
+        assert result.exit_code == 2 and "SK-CLI-016" in result.stderr
+        assert "simulated" not in result.stdout and not bag.exists()
+
+
 @pytest.mark.parametrize("words", [("--timeout", "3"), ("--until", "time > 1", "--timeout", "3 h")])
 def test_a_timeout_is_a_time_and_waits_for_something(words: tuple[str, ...], yard: Path) -> None:
     result = run(yard, *words)

@@ -199,6 +199,18 @@ def test_restore_brings_back_what_was_removed_and_takes_away_what_was_spawned():
         assert set(sim.models) == {"ball"}
 
 
+@pytest.mark.parametrize("place", [(0, 0, 1), "0 0 1", 3])
+def test_a_place_that_is_no_pose_is_an_error_that_says_what_is(place):
+    with load(BALL.format(extra="")) as sim:
+        for put in (
+            lambda: sim.spawn(BOX.format(name="box", x=1.0), pose=place),
+            lambda: sim.model("ball").set_pose(place),
+        ):
+            with pytest.raises(TypeError, match=r"a pose is a simkit.Pose, such as simkit.Pose\(\(0, 0, 1\)\), got"):
+                put()
+        assert list(sim.models) == ["ball"]
+
+
 def test_a_spawned_name_that_is_taken_is_an_error():
     with load(BALL.format(extra="")) as sim, pytest.raises(simkit.LoadError, match="SK-LOAD-011"):
         sim.spawn(BOX.format(name="ball", x=1.0))

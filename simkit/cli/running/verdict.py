@@ -43,6 +43,9 @@ class Verdict:
         self._wall = WallTime(request.wall_timeout, say, self._give_up)
 
     def __enter__(self) -> Verdict:
+        from simkit.sinks.whole_file import check_whole
+
+        check_whole(self._request.junit)
         self._wall.__enter__()
         return self
 

@@ -69,9 +69,10 @@ def plot(sources: Sequence[str], fields: Sequence[str], wish: Wish, *, json_: bo
         InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; what a world's loading raises.
     """
     from simkit.sinks.chart import check_ending, drawn
-    from simkit.sinks.whole_file import write_whole
+    from simkit.sinks.whole_file import check_whole, write_whole
 
     check_ending(wish.output.name)
+    check_whole(wish.output)
     named = _names(sources)
     found: list[tuple[Series, Style]] = []
     for number, source in enumerate(sources):

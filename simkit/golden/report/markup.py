@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Final
 
+from simkit.diagnostics import shortened
+
 _LONGEST: Final = 2_000
 # what XML cannot hold, and the marks that turn the order of letters round, which could make a name read as another
 _ILLEGAL: Final = re.compile(
@@ -21,10 +23,7 @@ def cleaned(text: str) -> str:
 
 def escaped(text: object) -> str:
     """Any text, for between tags and in attributes; a very long one is cut."""
-    said = str(text)
-    if len(said) > _LONGEST:
-        said = said[: _LONGEST - 1] + "…"
-    return escape(cleaned(said), quote=True)
+    return escape(cleaned(shortened(str(text), _LONGEST)), quote=True)
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], marked: Iterable[bool] = ()) -> str:
