@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -10,10 +9,10 @@ from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
-from simkit.scenario.document import Document, beside, shown
+from simkit.scenario.document import Document, beside
 from simkit.scenario.python_file import scenario_of_python
 from simkit.scenario.scenario import Check, CheckKind, Scenario, Tolerance
-from simkit.sinks.yaml_text import finite_number
+from simkit.scenario.values import Values
 
 _SUFFIXES: Final = (".yaml", ".yml", ".py")
 _CHECKS: Final[dict[str, CheckKind]] = {
@@ -105,11 +104,8 @@ def scenario_of(document: Document, *, also: tuple[str, ...] = ()) -> Scenario:
     return _Reader(document, said).scenario()
 
 
-class _Reader:
-    """Reads the values of one file."""
-
-    def __init__(self, document: Document, said: Mapping[str, Any]) -> None:
-        self._document, self._said = document, said
+class _Reader(Values):
+    """Reads the values of a scenario."""
 
     def scenario(self) -> Scenario:
         wall = self._number("wall_timeout", None, above=0.0)
@@ -143,71 +139,6 @@ class _Reader:
             folder=self._document.path.parent,
             file=self._document.path,
         )
-
-    # ------------------------------------------------------------------ plain values
-
-    def _wrong(self, value: Any, allowed: str, *keys: Any) -> None:
-        label = ".".join(str(key) for key in keys)
-        self._document.error("SK-SCEN-003", f"{label}: found {shown(value)}, allowed is {allowed}", *keys)
-
-    def _text(self, key: str, default: str) -> str:
-        value = self._said.get(key, default)
-        if isinstance(value, str) and (value.strip() or value == default):
-            return value
-        self._wrong(value, "a text", key)
-        return default
-
-    def _flag(self, key: str, default: bool) -> bool:
-        value = self._said.get(key, default)
-        if isinstance(value, bool):
-            return value
-        self._wrong(value, "true or false", key)
-        return default
-
-    def _number(
-        self, key: str, default: float | None, *, least: float = -math.inf, above: float = -math.inf
-    ) -> float | None:
-        return self._number_of(self._said.get(key, default), default, (key,), least=least, above=above)
-
-    def _number_of(
-        self,
-        value: Any,
-        default: float | None,
-        keys: tuple[Any, ...],
-        *,
-        least: float = -math.inf,
-        above: float = -math.inf,
-    ) -> float | None:
-        if value is default:  # nothing was said
-            return None if value is None else float(value)
-        number = finite_number(value)
-        if number is not None and number >= least and number > above:
-            return number
-        bound = f" of at least {least:g}" if least > -math.inf else f" above {above:g}" if above > -math.inf else ""
-        self._wrong(value, f"a number{bound}", *keys)
-        return default
-
-    def _whole(self, key: str, default: int, least: int) -> int:
-        value = self._said.get(key, default)
-        if isinstance(value, int) and not isinstance(value, bool) and value >= least:
-            return value
-        self._wrong(value, f"a whole number of at least {least}", key)
-        return default
-
-    def _texts(self, key: str) -> tuple[str, ...]:
-        value = self._said.get(key, ())
-        listed = [value] if isinstance(value, str) else value
-        if isinstance(listed, (list, tuple)) and all(isinstance(one, str) and one.strip() for one in listed):
-            return tuple(listed)
-        self._wrong(value, "a text, or a list of them", key)
-        return ()
-
-    def _mapping(self, key: str) -> dict[str, Any]:
-        value = self._said.get(key, {})
-        if isinstance(value, dict) and all(isinstance(one, str) for one in value):
-            return value
-        self._wrong(value, "a mapping with texts before the colons", key)
-        return {}
 
     # ------------------------------------------------------------------ what is loaded and done
 
