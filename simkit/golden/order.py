@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from operator import attrgetter
 from typing import Any, Final
+
+import numpy as np
 
 _CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
 _PARTS: Final[dict[str, tuple[str, Callable[[Any], Any]]]] = {
@@ -14,6 +17,13 @@ _PARTS: Final[dict[str, tuple[str, Callable[[Any], Any]]]] = {
     "gazebo_msgs/msg/ContactsState": ("states", attrgetter("collision1_name", "collision2_name")),
 }
 """A list of parts that each say whose they are, and what they say; those that say the same keep their order."""
+_POINTS: Final[dict[str, tuple[str, ...]]] = {
+    _CONTACTS: ("positions", "normals", "depths", "wrenches"),
+    "gazebo_msgs/msg/ContactsState": ("contact_positions", "contact_normals", "depths", "wrenches"),
+}
+"""Lists side by side, of the points where two things touch; the first says where."""
+_ACROSS: Final = (1.0, math.sqrt(0.5), math.sqrt(1.0 / 3.0))
+"""Points are in order along this direction, which is none that the corners of a box have in common."""
 _ROWS: Final[dict[str, tuple[str, ...]]] = {
     "gazebo_msgs/msg/ModelStates": ("name", "pose", "twist"),
     "gazebo_msgs/msg/LinkStates": ("name", "pose", "twist"),
@@ -33,11 +43,12 @@ def in_order(message: Any, type_name: str) -> Any:
         parts = getattr(message, field)
         if type_name == _CONTACTS and any(one.collision1.id or one.collision2.id for one in parts):
             return in_order(replace(message, contacts=[_by_name_only(one) for one in parts]), type_name)
-        names = [key(part) for part in parts]
-        order = sorted(range(len(names)), key=names.__getitem__)
-        if order == list(range(len(names))):
+        if type_name in _POINTS:
+            parts = [_along(part, _POINTS[type_name]) for part in parts]
+        ordered = sorted(parts, key=key)
+        if all(a is b for a, b in zip(ordered, getattr(message, field), strict=True)):
             return message
-        return replace(message, **{field: [parts[i] for i in order]})
+        return replace(message, **{field: ordered})
     if type_name in _ROWS:
         names = list(getattr(message, _ROWS[type_name][0]))
         order = sorted(range(len(names)), key=names.__getitem__)
@@ -46,6 +57,22 @@ def in_order(message: Any, type_name: str) -> Any:
             return message
         return replace(message, **{field: [column[i] for i in order] for field, column in columns.items()})
     return message
+
+
+def _along(part: Any, fields: tuple[str, ...]) -> Any:
+    """A contact with its points in one order: the engine's depends on which of the two came first in the file."""
+    columns = {field: getattr(part, field) for field in fields}
+    places = columns[fields[0]]
+    keys = [p.x * _ACROSS[0] + p.y * _ACROSS[1] + p.z * _ACROSS[2] for p in places]
+    order = sorted(range(len(keys)), key=keys.__getitem__)
+    if order == list(range(len(keys))):
+        return part
+    moved = {field: _picked(column, order) for field, column in columns.items() if len(column) == len(keys)}
+    return replace(part, **moved)
+
+
+def _picked(column: Any, order: list[int]) -> Any:
+    return column[order] if isinstance(column, np.ndarray) else [column[i] for i in order]
 
 
 def _by_name_only(contact: Any) -> Any:

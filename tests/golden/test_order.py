@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from simkit import msgs
 from simkit.golden.order import in_order
 
@@ -52,3 +54,27 @@ def test_contacts_are_by_what_touches() -> None:
     found = in_order(msgs.make(kind, contacts=contacts), kind)
     assert [(c.collision1.name, c.collision2.name) for c in found.contacts] == sorted(pairs)
     assert {c.collision1.id for c in found.contacts} == {0}, "an id counts the parts of the file"
+
+
+@pytest.mark.parametrize("first", [0, 1, 3])
+@pytest.mark.parametrize(
+    ("kind", "part"),
+    [("ros_gz_interfaces/msg/Contacts", "contacts"), ("gazebo_msgs/msg/ContactsState", "states")],
+)
+def test_points_of_a_contact_are_in_one_order_whichever_the_engine_began_with(first: int, kind: str, part: str) -> None:
+    is_gz = part == "contacts"
+    prefix = "" if is_gz else "contact_"
+    corners = [(0.1, 0.1), (-0.1, 0.1), (-0.1, -0.1), (0.1, -0.1)]
+    turned = [(*corners[(first + i) % 4], (first + i) % 4) for i in range(4)]
+    contact = {
+        f"{prefix}positions": [{"x": x, "y": y} for x, y, _ in turned],
+        f"{prefix}normals": [{"z": 1.0 + n} for _, _, n in turned],
+        "depths": [0.001 * n for _, _, n in turned],
+        "wrenches": [{"body_1_wrench": {"force": {"z": n}}} if is_gz else {"force": {"z": n}} for *_, n in turned],
+    }  # fmt: skip
+    found = getattr(in_order(msgs.make(kind, **{part: [contact]}), kind), part)[0]
+    assert [(p.x, p.y) for p in getattr(found, f"{prefix}positions")] == [corners[i] for i in (2, 1, 3, 0)]
+    assert [n.z for n in getattr(found, f"{prefix}normals")] == [3.0, 2.0, 4.0, 1.0]
+    assert list(found.depths) == [0.002, 0.001, 0.003, 0.0]
+    forces = [(w.body_1_wrench if is_gz else w).force.z for w in found.wrenches]
+    assert forces == [2.0, 1.0, 3.0, 0.0]
