@@ -7,10 +7,11 @@ import shlex
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from simkit.errors import InputError
+from simkit.errors import InputError, SimkitError
 from simkit.golden.capture import ENVIRONMENT, run_record
 from simkit.golden.compare import compare
 from simkit.golden.difference import Verdict
@@ -21,6 +22,7 @@ from simkit.scenario import Scenario
 
 BUDGET: Final = 60.0
 """Wall time [s] that looking for causes may take."""
+_MOST_NAMED: Final = 5  # changes of a world in which a scenario cannot be run any more
 _MOST_CHANGES: Final = 12  # differences that a blessing lists
 
 
@@ -65,7 +67,10 @@ def _checked(
 ) -> Verdict:
     """The verdict over a run of today."""
     started = time.perf_counter()
-    run = run_record(scenario)
+    try:
+        run = run_record(scenario)
+    except InputError as error:
+        raise _with_changes(error, golden, scenario) from None
     try:
         elapsed = time.perf_counter() - started
         comparison = compare(golden, run)
@@ -81,6 +86,27 @@ def _checked(
         if run.simulation is not None:
             run.simulation.close()
             run.simulation = None
+
+
+def _with_changes(error: InputError, golden: Record, scenario: Scenario) -> InputError:
+    """Why a run was not even begun, with what has changed in its world: a topic that it needs may have gone with it."""
+    from simkit.golden.cause import world_changes
+
+    still = replace(scenario, commands=(), play="", play_topics=(), checks=(), until="", timeout=None, duration=0.0)
+    try:
+        run = run_record(still)
+    except SimkitError:
+        return error  # the world itself cannot be used
+    if run.simulation is not None:
+        run.simulation.close()
+    changes = world_changes(golden, run)
+    if not changes:
+        return error
+    told = [f"{change.words} ({change.where})" if change.where else change.words for change in changes[:_MOST_NAMED]]
+    if len(changes) > len(told):
+        told.append(f"{len(changes) - len(told)} more")
+    lines = "\n".join(f"    since it was golden: {one}" for one in told)
+    return InputError(f"{error}\n{lines}", error.code)
 
 
 def name_of(folder: Path) -> str:

@@ -65,6 +65,32 @@ def test_a_scenario_file_is_read_anew(tmp_path: Path) -> None:
     assert code == 2 and "SK-GOLDEN-006" in said
 
 
+def test_a_scenario_that_the_world_no_longer_serves_says_what_has_changed(tmp_path: Path) -> None:
+    plugin = '<plugin filename="gz-sim-apply-link-wrench-system" name="gz::sim::systems::ApplyLinkWrench"/>'
+    world = (
+        f'<sdf version="1.9"><world name="w">{plugin}<model name="m"><link name="l">'
+        "<inertial><mass>2</mass></inertial></link></model></world></sdf>"
+    )
+    (tmp_path / "w.sdf").write_text(world)
+    scenario = tmp_path / "push.yaml"
+    scenario.write_text(
+        "world: w.sdf\nduration: 0.1\ncommands:\n"
+        "  - {at: 0, topic: /world/w/wrench, message: {entity: {name: m, type: 2}, wrench: {force: {z: 1}}}}\n"
+    )
+    code, said = simkit("golden", "record", scenario, "--out", tmp_path / "g")
+    assert code == 0, said
+    heavy = world.replace(plugin, "").replace(">2<", ">3<")
+    (tmp_path / "w.sdf").write_text(heavy)
+    code, said = simkit("golden", "check", tmp_path / "g")
+    assert code == 2 and "push.yaml:4: SK-CLI-011 no topic '/world/w/wrench'" in said
+    changed = [line.strip() for line in said.splitlines() if "since it was golden" in line]
+    assert any("ApplyLinkWrench is gone" in line for line in changed), said
+    assert any("mass" in line and "2 → 3" in line and "w.sdf:1" in line for line in changed), said
+    (tmp_path / "w.sdf").write_text("<sdf")
+    code, said = simkit("golden", "check", tmp_path / "g")
+    assert code == 2 and "since it was golden" not in said
+
+
 def test_a_blessing_needs_a_reason_and_keeps_it(golden: Path, tmp_path: Path) -> None:
     ball(tmp_path, HEAVY)
     with pytest.raises(InputError, match="SK-GOLDEN-007"):

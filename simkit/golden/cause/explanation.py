@@ -35,8 +35,7 @@ def explain(
         rerun: runs a scenario again, in a world that is given a change; None for no proofs.
         budget_s: wall time for proofs [s].
     """
-    changes = changes_of(model_edits(golden.leaves, run.leaves, run.leaf_places), golden.leaves, run.leaves)
-    changes, beside = beside_the_world(changes, golden, run)
+    changes, beside = beside_the_world(world_changes(golden, run), golden, run)
     engine = engine_changes(golden, run, changes)
     parted = parting(golden.states, run.states)
     scenario = [c for c in beside if c.kind == "scenario"]
@@ -54,6 +53,11 @@ def explain(
     )
     explanation.lines = _lines([cause for _, cause in causes], proof, parted, golden, run, comparison)
     return explanation
+
+
+def world_changes(golden: Record, run: Record) -> list[Change]:
+    """What is other in the world of a run than in that of the golden one."""
+    return changes_of(model_edits(golden.leaves, run.leaves, run.leaf_places), golden.leaves, run.leaves)
 
 
 class _Proof:
