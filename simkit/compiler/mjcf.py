@@ -30,6 +30,7 @@ from simkit.compiler.mjcf_changes import (
 from simkit.compiler.names import GeomOwner, JointBinding, LightBinding, LinkBinding, ModelRecord
 from simkit.compiler.tree import WORLD
 from simkit.diagnostics import Diagnostics
+from simkit.engine import unheard
 from simkit.pose import IDENTITY
 from simkit.scene import SceneJoint, SceneModel, SceneWorld
 from simkit.scene.mjcf import MjcfSource
@@ -266,15 +267,11 @@ def regroup(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
 def quietly() -> Iterator[None]:
     """Keeps the engine's warnings of a compile off the terminal and out of a log file; Python's own still come."""
     before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(_unheard)
+    mujoco.set_mju_user_warning(unheard)
     try:
         yield
     finally:
         mujoco.set_mju_user_warning(before)
-
-
-def _unheard(_text: str) -> None:
-    """Drops it."""
 
 
 def is_expected(text: str) -> bool:

@@ -10,6 +10,9 @@ def import_engine() -> None:
 
     MuJoCo opens the renderer's library when it is imported: a value that it does not know, or a library that is not
     there, would end a run that draws nothing. Whoever does draw gets the reason from `simkit.sensors.rendering.gl`.
+
+    Its warnings then go neither to the terminal nor to a log file in the working folder, unless somebody else hears
+    them already: those of a simulation are among its diagnostics.
     """
     try:
         import mujoco
@@ -20,6 +23,12 @@ def import_engine() -> None:
             raise
         os.environ["MUJOCO_GL"] = "disable"
         try:
-            import mujoco  # noqa: F401
+            import mujoco
         finally:
             os.environ["MUJOCO_GL"] = wanted
+    if mujoco.get_mju_user_warning() is None:
+        mujoco.set_mju_user_warning(unheard)
+
+
+def unheard(_text: str) -> None:
+    """Drops it."""
