@@ -119,7 +119,8 @@ def _other(element: etree._Element, tag: str, said: str) -> Iterator[tuple[str, 
         if len(numbers) == 6:
             yield _joined(numbers, 5, numbers[5] + _ANGLE), "turned"
     elif tag in ("xyz", "gravity", "direction", "magnetic_field"):
-        yield _joined(numbers, 0, numbers[0] + 0.02), ""
+        place = numbers.index(0.0) if 0.0 in numbers else 0  # of a direction the length means nothing
+        yield _joined(numbers, place, numbers[place] + 0.02), ""
     elif len(numbers) == 1:
         value = numbers[0]
         if _RATES.match(tag):
@@ -198,6 +199,8 @@ def _named(element: etree._Element) -> tuple[str, ...]:
     """The names around an element, its own tag included."""
     names = [_tag(element).removesuffix("_deg")]
     above = element.getparent()
+    if _tag(element) == "origin" and above is not None and above.find("child") is not None:
+        names.append(above.find("child").get("link"))  # what a joint's origin moves
     if above is not None and not above.get("name"):
         names[0] += f" {_tag(above)}"
     if above is not None and above.find("uri") is not None:  # what is included goes by its file's name
