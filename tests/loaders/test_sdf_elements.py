@@ -129,6 +129,11 @@ def test_a_wrong_name_is_an_error_that_names_the_closest(load):
     assert (error.code, error.hint) == ("SK-SDF-004", "did you mean 'a'?")
 
 
+def test_the_ends_of_a_joint_of_no_known_type_are_looked_at_too(load):
+    _, found = load(joint("<axis/>", "revolut").replace("<parent>a<", "<parent>aa<"))
+    assert sorted(d.code for d in found if d.severity == "error") == ["SK-SDF-004", "SK-SDF-008"]
+
+
 def test_all_problems_come_in_one_pass(load):
     text = joint("<axis><xyz>0 0 0</xyz></axis>").replace(
         '<link name="a"/>', '<link name="a"/><link name="a"/><lnik name="z"/>'

@@ -44,6 +44,7 @@ def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | Non
     element, diagnostics = part.element, workspace.diagnostics
     own = scoped(model, part.name)
     kind = element.attribute("type").strip()
+    parent, child = _end(part, "parent", workspace), _end(part, "child", workspace)
     if kind not in AXES:
         hint = did_you_mean(kind, AXES)
         diagnostics.error(
@@ -51,7 +52,6 @@ def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | Non
         )
         element.mark_all_read()
         return None
-    parent, child = _end(part, "parent", workspace), _end(part, "child", workspace)
     if parent is None or child is None:
         if child is not None:
             _axes(part, kind, IDENTITY, workspace)  # for what is wrong with them
