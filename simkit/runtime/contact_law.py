@@ -1,39 +1,150 @@
-"""What stands between the engine's stages: states that are kept for later readings, and laws that change contacts."""
+"""The contact law: what slides stays in contact, what hits comes to rest, what overlaps parts slowly.
+
+MuJoCo solves for contact forces f with R f + J a - aref in the dual of the friction cone. That cone is convex, so a
+contact that slides is asked for a normal acceleration of mu times the tangential one that friction could not give, 250
+times g at 3 m/s. It is lifted off, falls back, and hops. De Saxce and Feng (1998) take just that part off the normal
+row: with u = aref - J a - R f along the tangents, the normal reference becomes aref_n - s, s = |mu u|. Normal force and
+friction are then Coulomb's, mu N against the slip. As u depends on the solution, s is found by repetition: the first
+guess is the acceleration of the step before, which is part of the state; in steady sliding one solution is enough.
+
+Two more corrections of the normal row, for contacts that are rigid (not for a `<kp>` that makes them soft):
+a contact that closes fast is stopped within the step, as Gazebo's engines do it, and not over two time constants;
+and one that opens, or overlaps, is pushed apart at no more than `EXIT_SPEED`.
+
+`docs/physics.md` has the formulas, the limits, and what was measured.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+import math
+from typing import Any, Final, Protocol
 
+import mujoco
 import numpy as np
-import numpy.typing as npt
 
+from simkit.runtime.corrected_contacts import EXIT_SPEED, FewContacts, ManyContacts, find_few, find_many
 
-class HeldState:
-    """The physics state of one tick, kept so that a reading can be made of it later."""
+TOLERANCE: Final = 0.02
+"""Accuracy of the correction, in units of g: a contact is lost from about 0.1 g on, which its softness bears."""
 
-    __slots__ = ("model", "tick", "told", "values")
+MOST_SOLUTIONS: Final = 10
+"""Solutions a step at most; wheels much lighter than what they carry need several while they begin to skid."""
 
-    def __init__(self, tick: int, model: Any, values: npt.NDArray[np.float64], told: Any = None) -> None:
-        self.tick, self.model, self.values, self.told = tick, model, values, told
+MANY: Final = 64
+"""From this number of contacts on arrays are faster than plain numbers; the results have the same bits."""
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
-        return self
+QUIET_SPEED: Final = 1e-4
+"""Root sum square [m/s, rad/s] of the velocities along all constraints below which nothing slides."""
 
+_LEAST_GRAVITY: Final = 1.0  # [m/s²]; without weight there is no scale for the tolerance
+_AFTER_VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
+_PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 
-class ContactLaw(Protocol):
-    """What changes contacts in every forward pass, once velocities are known and before forces are."""
+mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
+
+WINDOW: Final = 8
+"""Steps for which one look at the contacts decides whether they follow the law."""
+
+class ContactShaper(Protocol):
+    """Changes contacts in every forward pass, once velocities are known and before forces are."""
 
     model: Any
 
     @property
     def acts(self) -> bool:
-        """Whether there is anything to change; else the engine goes on by itself."""
+        """Whether there is anything to change; else the engine's contacts stay as they are."""
 
-    def shape(self, data: Any, told: Any = None) -> None:
-        """Changes the contacts of data of its model, as is asked for now or as was once `told`."""
+    def shape(self, data: Any, request: Any = None) -> None:
+        """Change the contacts of data of its model, as is asked for now or as was once asked for by `request`."""
+
+    def request(self) -> Any:
+        """Return what is asked of contacts now, for `shape`."""
+
+
+class ContactLaw:
+    """Forces of the contacts of one compiled model.
+
+    Args:
+        model: of the engine.
+    """
+
+    def __init__(self, model: Any) -> None:
+        self.model = model
+        self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
+        self._product = np.empty(0)
+        trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last for contacts without a geom
+        collides = (model.geom_contype | model.geom_conaffinity) != 0
+        self._tree_of = np.where(trees >= 0, trees, model.ntree)
+        self._colliding = np.unique(trees[:-1][collides & (trees[:-1] >= 0)])
+        if collides.sum() < 2:
+            self._colliding = self._colliding[:0]
+
+    def is_needed(self, data: Any) -> bool:
+        """Return whether some contact slides, hits or overlaps, or some model is in flight and may land.
+
+        Args:
+            data: of the engine, with positions and velocities up to date.
+        """
+        if data.ncon and not self._is_quiet(data) and self._find(data, self._tolerance()) is not None:
+            return True
+        return self._has_flying(data)
 
     def solve(self, data: Any) -> None:
-        """Solves for the forces, after that."""
+        """Solve for accelerations and forces; leaves the references of the constraints as they were.
 
-    def told(self) -> Any:
-        """What is asked of contacts now, for `shape`."""
+        Args:
+            data: of the engine, with positions and velocities up to date.
+        """
+        if data.ncon and not self._is_quiet(data):
+            tolerance = self._tolerance()
+            found = self._find(data, tolerance)
+            if found is not None:
+                self._repeat(data, found, tolerance)
+                return
+        mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+
+    def _has_flying(self, data: Any) -> bool:
+        """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
+        trees = self._colliding
+        if not data.ncon or len(trees) < 2:
+            return len(trees) > 0 and not data.ncon
+        touches = np.zeros(self.model.ntree + 1, bool)
+        touches[self._tree_of[data.contact.geom]] = True
+        return bool((~touches[trees] & (data.tree_asleep[trees] < 0)).any())
+
+    def _is_quiet(self, data: Any) -> bool:
+        """Return whether all constraints are nearly at rest and none is asked to part fast."""
+        velocity, reference = data.efc_vel, data.efc_aref
+        if velocity.dot(velocity) > QUIET_SPEED * QUIET_SPEED:
+            return False
+        most = EXIT_SPEED / self.model.opt.timestep
+        return bool(reference.dot(reference) < most * most)
+
+    def _tolerance(self) -> float:
+        """Return the accuracy of normal references [m/s²]."""
+        x, y, z = self._gravity.tolist()
+        return TOLERANCE * max(_LEAST_GRAVITY, math.sqrt(x * x + y * y + z * z))
+
+    def _find(self, data: Any, tolerance: float) -> FewContacts | ManyContacts | None:
+        """Return the contacts whose normal reference has to be corrected."""
+        step = float(self.model.opt.timestep)
+        if data.ncon > MANY or self.model.opt.cone == _PYRAMID:
+            return find_many(self.model, data, tolerance, step)
+        return find_few(data, tolerance, step)
+
+    def _repeat(self, data: Any, found: FewContacts | ManyContacts, tolerance: float) -> None:
+        """Solve, correct the normal references by the solution, and solve again until they stay."""
+        model = self.model
+        if self._product.size != data.nefc:
+            self._product = np.empty(data.nefc)
+        product = self._product
+        mj_mul_jac_vec(model, data, product, data.qacc_warmstart)
+        found.guess(product)
+        for _ in range(MOST_SOLUTIONS - 1):
+            mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+            mj_mul_jac_vec(model, data, product, data.qacc)
+            if found.correct(product, data.efc_force, tolerance):
+                break
+        else:
+            mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+        found.restore()

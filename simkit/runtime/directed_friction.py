@@ -6,7 +6,7 @@ may slip: their surfaces pass each other at a speed of compliance times force (O
 
 So between the engine's pass over positions and velocities and its solving for forces, the contacts of such collisions
 get their tangents and coefficients, and their friction the softness that lets it slip. It is done in every forward
-pass (`Physics.contact_law`), whoever asks for it: no reader makes a difference. `softness` makes them soft.
+pass (`Physics.shaper`), whoever asks for it: no reader makes a difference. `softness` makes them soft.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ Slips = Callable[[], list[Pair]]
 """Of each wheel the compliances across (along its axle) and ahead, per turning rate [m/N]."""
 
 
-class Told(NamedTuple):
+class Request(NamedTuple):
     """What plugins ask of contacts at one tick: how belts run, and the slips of the wheels of each plugin."""
 
     runs: list[Run | None]
@@ -117,7 +117,7 @@ class DirectedFriction:
     def _install(self, table: _Table) -> None:
         """Has the physics use it, if there is anything in it and the engine's integrator lets it."""
         physics, has_place = self._sim.physics, table.model.opt.integrator != _RK4
-        physics.contact_law = table if table and has_place else None
+        physics.shaper = table if table and has_place else None
         if table and not has_place and not self._is_told:
             self._is_told = True
             message = (
@@ -235,14 +235,14 @@ class _Table:
 
     # ------------------------------------------------------------------ in a forward pass
 
-    def told(self) -> Told:
-        """What plugins ask for now."""
-        return Told(self.surfaces.runs(), [slips() for _, slips in self._sources.values()])
+    def request(self) -> Request:
+        """Return what plugins ask for now."""
+        return Request(self.surfaces.runs(), [slips() for _, slips in self._sources.values()])
 
-    def shape(self, data: Any, told: Any = None) -> None:
+    def shape(self, data: Any, request: Any = None) -> None:
         """Gives the contacts of such collisions their tangents, coefficients and softness."""
         model, surfaces = self.model, self.surfaces
-        runs, wheels = self.told() if told is None else told
+        runs, wheels = self.request() if request is None else request
         found = touches(data, self._concerns) if data.ncon else None
         flow = surfaces.look(data, found, runs)
         if found is None:
@@ -267,10 +267,6 @@ class _Table:
         if soft and not is_elliptic:
             for number, _, slip in soft:
                 self._softness.soften_pyramid(data, number, slip)
-
-    def solve(self, data: Any) -> None:
-        """The rest of a forward pass, after `shape`."""
-        self.surfaces.solve(data)
 
     def _soft(
         self, data: Any, found: Touches | ManyTouches, places: Places, wheels: list[list[Pair]]

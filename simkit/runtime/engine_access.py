@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.pose import IDENTITY
 from simkit.runtime.aspect import Aspect
-from simkit.runtime.contact_law import HeldState
 from simkit.runtime.entities import place_light
+from simkit.runtime.held_state import HeldState
 from simkit.runtime.physics import CONTROL
 
 if TYPE_CHECKING:

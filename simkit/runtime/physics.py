@@ -17,7 +17,8 @@ import numpy.typing as npt
 
 from simkit.errors import SimulationDiverged
 from simkit.runtime.clock import Clock
-from simkit.runtime.contact_law import ContactLaw, HeldState
+from simkit.runtime.contact_law import WINDOW, ContactLaw, ContactShaper
+from simkit.runtime.held_state import HeldState
 from simkit.runtime.sleep import Sleep
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)
@@ -42,6 +43,7 @@ mj_check_pos, mj_check_vel, mj_check_acc = mujoco.mj_checkPos, mujoco.mj_checkVe
 _HELD = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is heard
 
+_AFTER_VELOCITIES = _SKIP[CONTROL]
 _SHORT = 16  # steps; so few are not timed, which costs as much as a small step
 
 _engine_texts: list[str] = []
@@ -57,7 +59,8 @@ class Physics:
     """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date.
 
     Attributes:
-        contact_law: what changes the contacts, if anything does; of the present model.
+        law: forces of contacts that slide, hit or overlap; of the present model.
+        shaper: changes contacts before they are solved for, if anything does; of the present model.
         edition: another number after everything that was written, which steps do not count as.
     """
 
@@ -72,7 +75,9 @@ class Physics:
         """Other engine objects (after a spawn, a removal, a restore)."""
         self.model, self.data = model, data
         self.sleep = Sleep(model, data, self._may_sleep)
-        self.contact_law: ContactLaw | None = None
+        self.law = ContactLaw(model)
+        self.shaper: ContactShaper | None = None
+        self.window = (False, -1)
         self.stage = STALE
         self.edition += 1
         self.one_shot = False
@@ -99,6 +104,8 @@ class Physics:
         self._held = None
         self._accelerations_tick = -1
         self.sleep.rests = False
+        if stage > CONTROL:
+            self._until = -1  # velocities are others than those that decided how steps are made
 
     def changed_body(self, stage: int, body: int) -> None:
         """The same of one body, which wakes where it sleeps."""
@@ -148,58 +155,74 @@ class Physics:
         """The data with a forward pass of the state at this tick."""
         if self.hears_controls:
             self._hear_controls()
-        stage = self.stage
-        law = self._law
-        if law is not None:
-            self._forward_by_law(law)
-        elif stage == STALE:
-            if self.sleep.wants_all_awake:
-                self.sleep.forward()
-            else:
-                mj_forward(self.model, self.data)
-        elif stage:
-            mj_forward_skip(self.model, self.data, _SKIP[stage], 1)
-        self.stage = FRESH
+        if self.stage:
+            self._forward()
         return self.data
 
     def fresh_velocities(self) -> bool:
-        """Has all but accelerations computed for the state at this tick; the next step goes on from there.
+        """Compute all but accelerations for the state at this tick; the next step goes on from there.
 
         Returns:
-            Whether it was done: where trees may sleep the engine wants to do all of a pass at once.
+            Whether it was done: not where everything is to wake, nor under RK4.
         """
         if self.stage < VELOCITY:
             return True
-        if self.sleep.counts or self.sleep.wants_all_awake or self._integrate is None:
+        if self.sleep.wants_all_awake or self._integrate is None:
             return False
-        law = self._law
-        if self.stage == STALE or law is not None:  # a law changes contacts as they are found, not a second time
-            mj_fwd_position(self.model, self.data)
-        mj_fwd_velocity(self.model, self.data)
-        if law is not None:
-            law.shape(self.data)
-        self.stage = CONTROL
+        self._update_velocities()
         return True
 
-    @property
-    def _law(self) -> ContactLaw | None:
-        """What changes contacts now."""
-        law = self.contact_law
-        return law if law is not None and law.acts else None
+    def _update_velocities(self) -> None:
+        model, data, shaper = self.model, self.data, self._acting_shaper
+        if self.sleep.wants_all_awake:
+            self.sleep.forward()
+        else:
+            if self.stage == STALE or shaper is not None:  # contacts are shaped as they are found, not a second time
+                mj_fwd_position(model, data)
+            mj_fwd_velocity(model, data)
+        if shaper is not None:
+            shaper.shape(data)
+        self.stage = CONTROL
 
-    def _forward_by_law(self, law: ContactLaw) -> None:
-        """What is missing of the forward pass, with contacts as a law has them."""
+    @property
+    def window(self) -> tuple[bool, int]:
+        """Whether steps follow the contact law, and up to which tick that is decided; part of the state."""
+        return self._uses_law, self._until
+
+    @window.setter
+    def window(self, value: tuple[bool, int]) -> None:
+        self._uses_law, self._until = value
+
+    @property
+    def _acting_shaper(self) -> ContactShaper | None:
+        """The shaper, if it has anything to change now."""
+        shaper = self.shaper
+        return shaper if shaper is not None and shaper.acts else None
+
+    def _forward(self) -> None:
+        """Complete the forward pass: with the contact law where the steps of this window need it."""
         model, data, stage = self.model, self.data, self.stage
-        if stage == FRESH:
-            return
-        if stage > CONTROL and not self.fresh_velocities():
-            # where trees may sleep, all of a pass at once, and its forces again
-            if self.sleep.wants_all_awake:
+        if self._integrate is None or not (
+            self.tick >= self._until or self._uses_law or self._acting_shaper is not None
+        ):
+            if stage != STALE:
+                mj_forward_skip(model, data, _SKIP[stage], 1)
+            elif self.sleep.wants_all_awake:
                 self.sleep.forward()
             else:
                 mj_forward(model, data)
-            law.shape(data)
-        law.solve(data)
+            self.stage = FRESH
+            return
+        if stage > CONTROL:
+            self._update_velocities()
+        if self.tick >= self._until:
+            self._until = (self.tick // WINDOW + 1) * WINDOW
+            self._uses_law = self.law.is_needed(data)
+        if self._uses_law:
+            self.law.solve(data)
+        else:
+            mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+        self.stage = FRESH
 
     def _hear_controls(self) -> None:
         """Notices controls that were written to the engine's data directly."""
@@ -232,8 +255,9 @@ class Physics:
                 data.qfrc_applied[:], data.xfrc_applied[:] = applied, pushed
             else:
                 mj_get_state(self.model, data, values, _HELD)
-            law = self.contact_law
-            self._held = HeldState(self.tick, self.model, values, None if law is None else law.told())
+            shaper, uses_law = self.shaper, self._uses_law if self.tick < self._until else None
+            request = None if shaper is None else shaper.request()
+            self._held = HeldState(self.tick, self.model, values, request, uses_law)
         return self._held
 
     def data_of(self, held: HeldState) -> Any:
@@ -245,13 +269,25 @@ class Physics:
             self._second_of = None
         if self._second_of is not held:
             mujoco.mj_setState(held.model, self._second, held.values, _HELD)
-            mujoco.mj_forward(held.model, self._second)
-            if self.contact_law is not None and self.contact_law.model is held.model:
-                self.contact_law.shape(self._second, held.told)
-                self.contact_law.solve(self._second)
+            self._forward_held(held, self._second)
             mujoco.mj_rnePostConstraint(held.model, self._second)
             self._second_of = held
         return self._second
+
+    def _forward_held(self, held: HeldState, data: Any) -> None:
+        """Make the forward pass of a held state as the step did."""
+        law, shaper = self.law, self.shaper
+        if law.model is not held.model:  # a spawn or a removal has come between
+            law, shaper = ContactLaw(held.model), None
+        mujoco.mj_forward(held.model, data)
+        if self._integrate is None:
+            return
+        if shaper is not None:
+            shaper.shape(data, held.request)
+        if law.is_needed(data) if held.uses_law is None else held.uses_law:
+            law.solve(data)
+        elif shaper is not None:
+            mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
 
     def _has_passed(self) -> bool:
         """Whether the last step had forces of its own, and none is set for the next."""
@@ -297,8 +333,8 @@ class Physics:
 
     def single(self) -> None:
         """One step."""
-        plain = self._law is None and not (self.one_shot or self.shows_applied or self.sleep.watches)
-        if plain and self.stage == STALE:
+        plain = not (self._uses_law or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper)
+        if plain and self.stage == STALE and self.tick < self._until:
             mj_step(self.model, self.data)
             self.tick += 1
         else:
@@ -334,36 +370,46 @@ class Physics:
     def _steps(self, count: int) -> None:
         if self.hears_controls:
             self._hear_controls()
-        model, data, stage = self.model, self.data, self.stage
-        law = self._law
-        if law is not None and self._integrate is not None:
-            self._steps_by_law(law, self._integrate, count)
+        integrate, has_shaper = self._integrate, self._acting_shaper is not None
+        if integrate is None:
+            mj_step(self.model, self.data, count)
+            self.stage = STALE
+            self.tick += count
             return
-        if stage != STALE and self._integrate is not None:
+        end = self.tick + count
+        while self.tick < end:
+            if has_shaper or self._uses_law or self.tick >= self._until:
+                self._step_by_law(integrate)
+            else:
+                self._plain_steps(min(end, self._until) - self.tick, integrate)
+
+    def _plain_steps(self, count: int, integrate: Callable[[Any, Any], None]) -> None:
+        """Steps by the engine alone, which goes on from what of the forward pass is there."""
+        model, data, stage = self.model, self.data, self.stage
+        if stage == STALE:
+            mj_step(model, data, count)
+        else:
             if stage:
                 mj_forward_skip(model, data, _SKIP[stage], 1)
             mj_check_acc(model, data)
-            self._integrate(model, data)
-            count_left = count - 1
-            if count_left:
-                mj_step(model, data, count_left)
-        else:
-            mj_step(model, data, count)
+            integrate(model, data)
+            if count > 1:
+                mj_step(model, data, count - 1)
         self.stage = STALE
         self.tick += count
 
-    def _steps_by_law(self, law: ContactLaw, integrate: Callable[[Any, Any], None], count: int) -> None:
-        """Steps one by one, with contacts as a law has them."""
+    def _step_by_law(self, integrate: Callable[[Any, Any], None]) -> None:
+        """One step that stops at the velocities, to look at the contacts and to solve for them by the law."""
         model, data = self.model, self.data
-        for _ in range(count):
-            if self.stage == STALE:
-                mj_check_pos(model, data)
-                mj_check_vel(model, data)
-            self._forward_by_law(law)
-            mj_check_acc(model, data)
-            integrate(model, data)
-            self.stage = STALE
-        self.tick += count
+        if self.stage == STALE:
+            mj_check_pos(model, data)
+            mj_check_vel(model, data)
+        if self.stage:
+            self._forward()
+        mj_check_acc(model, data)
+        integrate(model, data)
+        self.stage = STALE
+        self.tick += 1
 
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied

@@ -43,6 +43,7 @@ class Snapshot:
     last_applied: Any
     sleep: tuple[Any, ...] = (False,)
     last_pushed: Any = None
+    window: tuple[bool, int] = (False, -1)
     seed: int = 0
     owner: Any = None
 
@@ -88,6 +89,7 @@ def take(sim: Simulation) -> Snapshot:
         last_applied=physics.last_applied.copy(),
         sleep=physics.sleep.get_state(),
         last_pushed=physics.last_pushed.copy(),
+        window=physics.window,
         seed=sim.seed,
         owner=sim,
     )
@@ -125,6 +127,7 @@ def bring_back(sim: Simulation, snapshot: Snapshot, *, with_inbox: bool = True) 
     physics.last_applied = snapshot.last_applied.copy()
     physics.last_pushed = snapshot.last_pushed.copy()
     physics.shows_applied = True
+    physics.window = snapshot.window
     physics.sleep.set_state(snapshot.sleep)
     if with_inbox:
         sim.bus.inbox.refill(snapshot.inbox)

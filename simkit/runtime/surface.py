@@ -12,16 +12,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import mujoco
 import numpy as np
 
-from simkit.runtime.sliding import MANY, solve_sliding
+from simkit.runtime.contact_law import MANY
 from simkit.runtime.surface_many import FLAT, Floats, Ints, along_tangents, ways_of
 
 Point = tuple[float, float, float]
 Numbers = list[float]
 
-_AFTER_VELOCITIES = int(mujoco.mjtStage.mjSTAGE_VEL)
 NOWHERE = (0.0, 0.0, 0.0)
 
 
@@ -148,7 +146,6 @@ class Surfaces:
         self.concerns = [False] * (model.ngeom + 1)
         self._owners: Ints = np.array(self._owner)
         self._flow: Flow | ManyFlow | None = None
-        self._flow_of: Any = None
 
     def add(self, belt: Belt) -> None:
         """A belt more."""
@@ -172,14 +169,13 @@ class Surfaces:
     def look(
         self, data: Any, found: Touches | ManyTouches | None, runs: Sequence[Run | None]
     ) -> Flow | ManyFlow | None:
-        """Finds the contacts with belts that run; also for `carry` and `solve`.
+        """Finds the contacts with belts that run; also for `carry`.
 
         Args:
             data: of the engine, with positions.
             found: its contacts that may be with belts.
             runs: how belts run.
         """
-        self._flow_of = data
         if found is None or not any(runs):
             self._flow = None
         elif isinstance(found, Touches):
@@ -267,16 +263,6 @@ class Surfaces:
             _, _, _, ax, ay, az, bx, by, bz = frames[place]
             surface[number, 0] = ax * x + ay * y + az * z
             surface[number, 1] = bx * x + by * y + bz * z
-
-    def solve(self, data: Any) -> None:
-        """The rest of a forward pass, from velocities that are known; leaves the references of constraints as found."""
-        if data is self._flow_of:
-            flow = self._flow
-        else:
-            runs = self.runs()
-            flow = self.look(data, touches(data, self.concerns) if any(runs) and data.ncon else None, runs)
-        if flow is None or not solve_sliding(self.model, data, flow.numbers):
-            mujoco.mj_forwardSkip(self.model, data, _AFTER_VELOCITIES, 1)
 
 
 def _axle(data: Any, belt: Belt) -> Point:

@@ -12,7 +12,7 @@ from simkit.sensors.timing import Departures, Flight, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
     from simkit.runtime import Publisher, Simulation
-    from simkit.runtime.contact_law import HeldState
+    from simkit.runtime.held_state import HeldState
     from simkit.runtime.scheduler import Timetable
     from simkit.runtime.topics import Later
 

@@ -128,7 +128,7 @@ def test_slips_that_differ_need_a_direction():
 
 
 def test_a_world_without_any_of_it_has_no_law():
-    assert simkit.load(world("<mu>1</mu><mu2>1</mu2>")).physics.contact_law is None
+    assert simkit.load(world("<mu>1</mu><mu2>1</mu2>")).physics.shaper is None
 
 
 def test_who_reads_in_between_changes_no_bits():
@@ -166,9 +166,9 @@ def test_it_is_the_same_after_a_reset_a_restore_and_a_spawn():
     assert sim.mj_data.qpos.tobytes() == here
     lone = '<sdf version="1.9"><model name="lone"><pose>5 5 1 0 0 0</pose><link name="l"/></model></sdf>'
     sim.spawn(lone, "lone")
-    assert sim.physics.contact_law is not None
+    assert sim.physics.shaper is not None
     sim.remove("box")
-    assert sim.physics.contact_law is None
+    assert sim.physics.shaper is None
 
 
 def test_boxes_with_a_direction_fall_asleep_and_wake():
@@ -245,5 +245,5 @@ def test_an_integrator_that_has_no_place_for_it_is_told_of_once(integrator, tmp_
         sim.spawn(f'<sdf version="1.9">{model}</sdf>', name)
     found = [one.code for one in sim.diagnostics]
     assert found.count("SK-PHYS-030") == (1 if integrator == "RK4" else 0)
-    assert (sim.physics.contact_law is None) == (integrator == "RK4")
+    assert (sim.physics.shaper is None) == (integrator == "RK4")
     sim.run(0.05)

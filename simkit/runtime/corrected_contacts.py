@@ -1,0 +1,232 @@
+"""Contacts whose normal reference the contact law corrects, and the size of the correction.
+
+The same law stands here twice, with the same bits: on plain numbers, which are faster for up to some 60 contacts (an
+array of four numbers costs as much as one of four hundred), and on arrays.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+EXIT_SPEED: Final = 0.05
+"""Speed [m/s] at which a contact lets go, or overlapping bodies part, at most: a hop of 0.13 mm."""
+
+_PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
+_ACCURACY: Final = 2e-3  # of what is asked of a contact that closes fast
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.integer[Any]]
+
+
+class FewContacts:
+    """Contacts under the elliptic cone, on plain numbers.
+
+    Args:
+        data: of the engine.
+        rows: of each contact, the row of its normal.
+        tangents: of each contact, the rows that slide with their coefficients of friction.
+        normals: of each contact, its reference [m/s²].
+        goals: of each contact, the acceleration along the normal that is asked for; NaN where the reference stays.
+    """
+
+    def __init__(
+        self,
+        data: Any,
+        rows: list[int],
+        tangents: list[list[tuple[int, float]]],
+        normals: list[float],
+        goals: list[float],
+    ) -> None:
+        self._aref, self._rows, self._tangents, self._normals, self._goals = data.efc_aref, rows, tangents, normals, goals
+        self._before: list[float] = self._aref.tolist()
+        self._softness: list[float] = data.efc_R.tolist()
+        self._asked: list[float] = []
+
+    def guess(self, moves: Floats) -> None:
+        """Set references by a guess of J a, shape (nefc,); of the forces nothing is known yet."""
+        accelerations, before, aref = moves.tolist(), self._before, self._aref
+        for row, tangents, normal, goal in zip(self._rows, self._tangents, self._normals, self._goals, strict=True):
+            total = 0.0
+            for place, mu in tangents:
+                one = mu * (before[place] - accelerations[place])
+                total += one * one
+            asked = (normal if goal != goal else goal) - math.sqrt(total)
+            aref[row] = asked
+            self._asked.append(asked)
+
+    def correct(self, moves: Floats, forces: Floats, tolerance: float) -> bool:
+        """Set references by a solution, J a and forces of shape (nefc,); False where they differ from the last."""
+        accelerations, force, before, softness = moves.tolist(), forces.tolist(), self._before, self._softness
+        asked, stays = [], True
+        each = zip(self._rows, self._tangents, self._normals, self._goals, self._asked, strict=True)
+        for row, tangents, normal, goal, last in each:
+            total = 0.0
+            for place, mu in tangents:
+                one = mu * (before[place] - accelerations[place] - softness[place] * force[place])
+                total += one * one
+            most = tolerance
+            if goal == goal:
+                normal = goal + softness[row] * force[row]
+                most = max(tolerance, _ACCURACY * goal)
+            now = normal - math.sqrt(total)
+            asked.append(now)
+            if abs(now - last) > most:
+                stays = False
+        if not stays:
+            self._asked, aref = asked, self._aref
+            for row, now in zip(self._rows, asked, strict=True):
+                aref[row] = now
+        return stays
+
+    def restore(self) -> None:
+        """Put the references back as they were."""
+        aref = self._aref
+        for row, normal in zip(self._rows, self._normals, strict=True):
+            aref[row] = normal
+
+
+def find_few(data: Any, tolerance: float, step: float) -> FewContacts | None:
+    """Return the contacts that slide, close or open fast, or overlap; None where there is none.
+
+    Args:
+        data: of the engine, with velocities up to date and an elliptic cone.
+        tolerance: of normal references [m/s²].
+        step: [s].
+    """
+    contact, square = data.contact, tolerance * tolerance
+    first, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
+    aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
+    distance: list[float] = contact.dist.tolist()
+    stiffness: list[list[float]] | None = None
+    rows, all_tangents, normals, goals = [], [], [], []
+    for number, (row, dim, mus) in enumerate(zip(first, dims, friction, strict=True)):
+        if row < 0:
+            continue
+        total = 0.0
+        for place in range(1, dim):
+            one = mus[place - 1] * aref[row + place]
+            total += one * one
+        normal, speed, goal = aref[row], velocity[row], math.nan
+        wanted = -speed / step if speed < -EXIT_SPEED else max(0.0, (EXIT_SPEED - speed) / step)
+        is_short = normal < wanted if speed < -EXIT_SPEED else normal > wanted
+        if is_short and distance[number] <= 0.0:
+            if stiffness is None:
+                stiffness = contact.solref.tolist()
+            if stiffness[number][0] > 0.0:
+                goal = wanted
+        if total > square:
+            all_tangents.append([(row + place, mus[place - 1]) for place in range(1, dim)])
+        elif goal == goal:
+            all_tangents.append([])
+        else:
+            continue
+        rows.append(row)
+        normals.append(normal)
+        goals.append(goal)
+    return FewContacts(data, rows, all_tangents, normals, goals) if rows else None
+
+
+class ManyContacts:
+    """Contacts under either cone, on arrays.
+
+    Args:
+        data: of the engine.
+        is_pyramid: whether the cone is one.
+        rows: of each contact, the row of its normal, or the first of its edges, shape (k,).
+        places: the rows of its friction, shape (k, most), or pairs of edges, shape (k, most, 2).
+        mu: their coefficients, zero for rows that it has not or that do not slide, shape (k, most).
+        edges: the rows that carry the normal, shape (k, n); rows that a contact has not repeat its first.
+        normals, goals: as for `FewContacts`, shape (k,).
+    """
+
+    def __init__(
+        self, data: Any, is_pyramid: bool, rows: Ints, places: Ints, mu: Floats, edges: Ints, normals: Floats, goals: Floats
+    ) -> None:
+        self._aref, self._softness, self._is_pyramid = data.efc_aref, data.efc_R, is_pyramid
+        self._rows, self._places, self._mu, self._edges, self._normals, self._goals = rows, places, mu, edges, normals, goals
+        self._has_goal = ~np.isnan(goals)
+        self._before: Floats = self._aref[edges]
+        self._tangents: Floats = self._aref[places]
+        self._compliance: Floats = self._softness[places]
+        self._asked: Floats = normals
+
+    def guess(self, moves: Floats) -> None:
+        """As `FewContacts.guess`."""
+        self._ask(np.where(self._has_goal, self._goals, self._normals) - self._size(self._tangents - moves[self._places]))
+
+    def correct(self, moves: Floats, forces: Floats, tolerance: float) -> bool:
+        """As `FewContacts.correct`."""
+        places = self._places
+        size = self._size(self._tangents - moves[places] - self._compliance * forces[places])
+        normals, most = self._normals, tolerance
+        if self._has_goal.any():
+            yields = (self._softness[self._edges] * forces[self._edges]).mean(axis=1)
+            normals = np.where(self._has_goal, self._goals + yields, normals)
+            most = np.where(self._has_goal, np.maximum(tolerance, _ACCURACY * self._goals), tolerance)
+        now = normals - size
+        if (np.abs(now - self._asked) <= most).all():
+            return True
+        self._ask(now)
+        return False
+
+    def restore(self) -> None:
+        """Put the references back as they were."""
+        self._aref[self._edges] = self._before
+
+    def _ask(self, normals: Floats) -> None:
+        self._asked = normals
+        self._aref[self._edges] = self._before + (normals - self._normals)[:, None] if self._is_pyramid else normals[:, None]
+
+    def _size(self, residual: Floats) -> Floats:
+        return _size(residual, self._mu, self._is_pyramid)
+
+
+def _size(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
+    """Return by how much a contact is lifted for residuals along its friction rows or pairs of edges (k,) [m/s²]."""
+    if is_pyramid:
+        apart = np.abs(residual[..., 0] - residual[..., 1]) / 2.0
+        found: Floats = np.where(mu > 0.0, apart, 0.0).max(axis=1, initial=0.0)
+        return found
+    total: Floats = np.zeros(len(mu))
+    for one in (mu * residual).T:
+        total += one * one
+    found = np.sqrt(total)
+    return found
+
+
+def find_many(model: Any, data: Any, tolerance: float, step: float) -> ManyContacts | None:
+    """As `find_few`, for either cone."""
+    contact, is_pyramid = data.contact, bool(model.opt.cone == _PYRAMID)
+    numbers = (contact.efc_address >= 0).nonzero()[0]
+    if not numbers.size:
+        return None
+    which: Any = slice(None) if numbers.size == data.ncon else numbers
+    rows, dims = contact.efc_address[which], contact.dim[which]
+    most = int(dims.max()) - 1
+    there = np.arange(most) < (dims - 1)[:, None]
+    mu = np.where(there, contact.friction[which, :most], 0.0)
+    if is_pyramid:
+        pairs = rows[:, None, None] + np.arange(2 * most).reshape(most, 2)
+        places = np.where(there[..., None], pairs, rows[:, None, None])
+        edges = places.reshape(len(rows), -1) if most else rows[:, None]
+    else:
+        places, edges = np.where(there, rows[:, None] + 1 + np.arange(most), rows[:, None]), rows[:, None]
+    aref, velocity = data.efc_aref, data.efc_vel
+    pair = edges[:, :2] if is_pyramid else edges
+    normals, speed = aref[pair].mean(axis=1), velocity[pair].mean(axis=1)
+    closes = speed < -EXIT_SPEED
+    wanted = np.where(closes, -speed / step, np.maximum(0.0, (EXIT_SPEED - speed) / step))
+    is_short = np.where(closes, normals < wanted, normals > wanted)
+    is_short &= (contact.dist[which] <= 0.0) & (contact.solref[which, 0] > 0.0)
+    slides = _size(aref[places], mu, is_pyramid) > tolerance
+    chosen = slides | is_short
+    if not chosen.any():
+        return None
+    mu = np.where(slides[:, None], mu, 0.0)[chosen]
+    goals = np.where(is_short, wanted, np.nan)[chosen]
+    return ManyContacts(data, is_pyramid, rows[chosen], places[chosen], mu, edges[chosen], normals[chosen], goals)

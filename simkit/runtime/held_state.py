@@ -1,0 +1,30 @@
+"""A physics state that is kept so that a sensor can be read later."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+
+class HeldState:
+    """The physics state of one tick.
+
+    Attributes:
+        tick: the tick.
+        model: of the engine, that the state is of.
+        values: of the engine (`mjSTATE_INTEGRATION`).
+        request: what plugins asked of contacts at that tick, for `ContactShaper.shape`.
+        uses_law: whether its step follows the contact law; None where that is still to be found from the state.
+    """
+
+    __slots__ = ("model", "request", "tick", "uses_law", "values")
+
+    def __init__(
+        self, tick: int, model: Any, values: npt.NDArray[np.float64], request: Any = None, uses_law: bool | None = None
+    ) -> None:
+        self.tick, self.model, self.values, self.request, self.uses_law = tick, model, values, request, uses_law
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
+        return self
