@@ -202,9 +202,8 @@ class Physics:
     def _forward(self) -> None:
         """Complete the forward pass: with the contact law where the steps of this window need it."""
         model, data, stage = self.model, self.data, self.stage
-        if self._integrate is None or not (
-            self.tick >= self._until or self._uses_law or self._acting_shaper is not None
-        ):
+        is_shaped = self._acting_shaper is not None
+        if self._integrate is None or not (self.tick >= self._until or self._uses_law or is_shaped):
             if stage != STALE:
                 mj_forward_skip(model, data, _SKIP[stage], 1)
             elif self.sleep.wants_all_awake:
@@ -218,7 +217,7 @@ class Physics:
         if self.tick >= self._until:
             self._until = (self.tick // WINDOW + 1) * WINDOW
             self._uses_law = self.law.is_needed(data)
-        if self._uses_law:
+        if self._uses_law or is_shaped:
             self.law.solve(data)
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
@@ -256,6 +255,8 @@ class Physics:
             else:
                 mj_get_state(self.model, data, values, _HELD)
             shaper, uses_law = self.shaper, self._uses_law if self.tick < self._until else None
+            if self._acting_shaper is not None:
+                uses_law = True
             request = None if shaper is None else shaper.request()
             self._held = HeldState(self.tick, self.model, values, request, uses_law)
         return self._held
