@@ -23,6 +23,7 @@ import mujoco
 import numpy as np
 
 from simkit.runtime.corrected_contacts import EXIT_SPEED, FewContacts, ManyContacts, find_few, find_many
+from simkit.runtime.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
 """Accuracy of the correction, in units of g: a contact is lost from about 0.1 g on, which its softness bears."""
@@ -72,12 +73,18 @@ class ContactLaw:
         self.model = model
         self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
         self._product = np.empty(0)
+        self._wheels = WheelContacts(model)
         trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last for contacts without a geom
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         self._tree_of = np.where(trees >= 0, trees, model.ntree)
         self._colliding = np.unique(trees[:-1][collides & (trees[:-1] >= 0)])
         if collides.sum() < 2:
             self._colliding = self._colliding[:0]
+
+    @property
+    def changes_contacts(self) -> bool:
+        """Whether `solve` may change the constraints, so that they have to be made anew for other velocities."""
+        return bool(self._wheels)
 
     def is_needed(self, data: Any) -> bool:
         """Return whether some contact slides, hits or overlaps, or some model is in flight and may land.
@@ -95,7 +102,7 @@ class ContactLaw:
         Args:
             data: of the engine, with positions and velocities up to date.
         """
-        if data.ncon and not self._is_quiet(data):
+        if data.ncon and not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data)):
             tolerance = self._tolerance()
             found = self._find(data, tolerance)
             if found is not None:

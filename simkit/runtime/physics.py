@@ -177,7 +177,8 @@ class Physics:
         if self.sleep.wants_all_awake:
             self.sleep.forward()
         else:
-            if self.stage == STALE or shaper is not None:  # contacts are shaped as they are found, not a second time
+            # what is changed of contacts is changed as they are found, not a second time
+            if self.stage == STALE or shaper is not None or self.law.changes_contacts:
                 mj_fwd_position(model, data)
             mj_fwd_velocity(model, data)
         if shaper is not None:

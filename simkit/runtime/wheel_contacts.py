@@ -1,0 +1,142 @@
+"""Friction of wheels in the middle of their treads.
+
+A wide wheel touches flat ground at the two ends of a line. While it turns about the vertical both ends slip, in opposite
+directions; under Coulomb's law the least drag then makes one of them stick, and the wheel rolls on that edge: half a
+width, 6 % of the speed of a TurtleBot3 that turns on the spot. Along the line of contact of a tyre the slip changes
+steadily, and friction of that size shifts the resting point by a small share of the width only (that share is the
+drag over mu N). So both contacts keep their own normals, which hold the wheel upright, and share one friction point:
+where the line of contact crosses the middle of the tread.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+_ALIGNED: Final = 0.999
+"""Cosine between the axis of a wheel's shape and that of its joint, at least."""
+
+_CENTRED: Final = 0.05
+"""Radii by which a wheel's shape may be off the axis of its joint, at most."""
+
+_LEVEL: Final = 0.9999
+"""Cosine between the normals of two contacts that count as one line, at least."""
+
+_NO_ISLANDS: Final = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+
+
+class WheelContacts:
+    """The wheels of one compiled model: shapes of revolution that turn freely about their own axis.
+
+    Args:
+        model: of the engine.
+    """
+
+    def __init__(self, model: Any) -> None:
+        self._model = model
+        self._is_sparse = bool(mujoco.mj_isSparse(model))
+        self._has_islands = not model.opt.disableflags & _NO_ISLANDS
+        self._axis_of: dict[int, int] = {}  # geom -> column of its matrix that is the axis
+        for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).tolist():
+            low, high = model.jnt_range[joint].tolist()
+            body = int(model.jnt_bodyid[joint])
+            is_free = not model.jnt_limited[joint] or high - low > 2.0 * np.pi
+            if is_free and model.body_jntnum[body] == 1:
+                first = int(model.body_geomadr[body])
+                for geom in range(first, first + int(model.body_geomnum[body])):
+                    column = self._axis(geom, joint)
+                    if column is not None:
+                        self._axis_of[geom] = column
+
+    def __bool__(self) -> bool:
+        return bool(self._axis_of)
+
+    def _axis(self, geom: int, joint: int) -> int | None:
+        """Return the axis of a geom, as a column of its matrix, about which it is a wheel on a joint; else None."""
+        model = self._model
+        kind = int(model.geom_type[geom])
+        collides = bool(model.geom_contype[geom] | model.geom_conaffinity[geom])
+        if not collides or kind not in (mujoco.mjtGeom.mjGEOM_CYLINDER, mujoco.mjtGeom.mjGEOM_MESH):
+            return None
+        matrix = np.empty(9)
+        mujoco.mju_quat2Mat(matrix, model.geom_quat[geom])
+        along = np.abs(matrix.reshape(3, 3).T @ model.jnt_axis[joint])
+        column = int(along.argmax())
+        centre, size = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+        across = [i for i in range(3) if i != column]
+        radius = float(size[across].max())
+        offset = model.geom_pos[geom] + matrix.reshape(3, 3) @ centre - model.jnt_pos[joint]
+        off_axis = np.linalg.norm(np.cross(offset, model.jnt_axis[joint]))
+        is_round = size[across].min() > (1.0 - _CENTRED) * radius
+        is_wheel = along[column] > _ALIGNED and is_round and off_axis < _CENTRED * radius and size[column] <= radius
+        return column if is_wheel else None
+
+    def merge(self, data: Any) -> bool:
+        """Give the contacts along a line one friction point: their Jacobians' tangent rows become the same.
+
+        Args:
+            data: of the engine, with contacts, constraints and velocities.
+
+        Returns:
+            Whether there was one.
+        """
+        lines = self._lines(data) if self._axis_of else []
+        if not lines:
+            return False
+        jacobian, count = data.efc_J, self._model.nv
+        starts: list[int] | None = data.efc_J_rowadr.tolist() if self._is_sparse else None
+        for low, high, weight in lines:
+            first, second = low + 1, high + 1
+            if starts is None:
+                one = jacobian[first * count : (first + 2) * count]
+                other = jacobian[second * count : (second + 2) * count]
+            else:
+                one = jacobian[starts[first] : starts[first + 1] + int(data.efc_J_rownnz[first])]
+                other = jacobian[starts[second] : starts[second + 1] + int(data.efc_J_rownnz[second])]
+            one += weight * (other - one)
+            other[:] = one
+        if self._has_islands:
+            mujoco.mj_island(self._model, data)
+        mujoco.mj_referenceConstraint(self._model, data)
+        return True
+
+    def _lines(self, data: Any) -> list[tuple[int, int, float]]:
+        """Return the rows of both ends of each line of contact, and where between them the middle of the tread is."""
+        contact, axis_of = data.contact, self._axis_of
+        groups: dict[tuple[int, int], list[int]] = {}
+        for number, (first, second) in enumerate(contact.geom.tolist()):
+            if first in axis_of or second in axis_of:
+                pair = first, second
+                if pair in groups:
+                    groups[pair].append(number)
+                else:
+                    groups[pair] = [number]
+        lines: list[tuple[int, int, float]] = []
+        if not groups:
+            return lines
+        rows, points = contact.efc_address.tolist(), contact.pos.tolist()
+        frames = contact.frame.tolist()
+        for (first, second), numbers in groups.items():
+            if len(numbers) > 1:
+                wheel = second if second in axis_of else first
+                column = axis_of[wheel]
+                a, b, c = data.geom_xmat[wheel].tolist()[column::3]
+                u, v, w = data.geom_xpos[wheel].tolist()
+                low = high = 0.0
+                one = other = -1
+                for number in numbers:
+                    x, y, z = points[number]
+                    place = a * (x - u) + b * (y - v) + c * (z - w)
+                    if rows[number] < 0:
+                        continue
+                    if place < low:
+                        low, one = place, number
+                    elif place > high:
+                        high, other = place, number
+                if one >= 0 and other >= 0 and contact.dim[one] > 1:
+                    (d, e, f), (g, h, i) = frames[one][:3], frames[other][:3]
+                    if d * g + e * h + f * i > _LEVEL:
+                        lines.append((rows[one], rows[other], -low / (high - low)))
+        return lines
