@@ -9,7 +9,8 @@ guess is the acceleration of the step before, which is part of the state; in ste
 
 Two more corrections of the normal row, for contacts that are rigid (not for a `<kp>` that makes them soft):
 a contact that closes fast is stopped within the step, as Gazebo's engines do it, and not over two time constants;
-and one that opens, or overlaps, is pushed apart at no more than `EXIT_SPEED`.
+and one that opens, or overlaps, is pushed apart at no more than
+`EXIT_SPEED`.
 
 `docs/physics.md` has the formulas, the limits, and what was measured.
 """
@@ -22,7 +23,9 @@ from typing import Any, Final, Protocol
 import mujoco
 import numpy as np
 
-from simkit.runtime.corrected_contacts import EXIT_SPEED, FewContacts, ManyContacts, find_few, find_many
+from simkit.compiler.options import contact_time_constant
+from simkit.runtime.carried_contacts import CarriedContacts
+from simkit.runtime.corrected_contacts import DEEP, FewContacts, ManyContacts, find_few, find_many
 from simkit.runtime.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
@@ -73,7 +76,9 @@ class ContactLaw:
         self.model = model
         self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
         self._product = np.empty(0)
-        self._wheels = WheelContacts(model)
+        constant = contact_time_constant(float(model.opt.timestep))
+        self._least_reference = (DEEP / (constant * constant)) ** 2
+        self._wheels, self._carried = WheelContacts(model), CarriedContacts(model)
         trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last for contacts without a geom
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         self._tree_of = np.where(trees >= 0, trees, model.ntree)
@@ -94,7 +99,7 @@ class ContactLaw:
         """
         if data.ncon and not self._is_quiet(data) and self._find(data, self._tolerance()) is not None:
             return True
-        return self._has_flying(data)
+        return self._has_flying(data) or bool(self._carried.find(data))
 
     def solve(self, data: Any) -> None:
         """Solve for accelerations and forces; leaves the references of the constraints as they were.
@@ -102,13 +107,20 @@ class ContactLaw:
         Args:
             data: of the engine, with positions and velocities up to date.
         """
-        if data.ncon and not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data)):
+        if not data.ncon:
+            mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+            return
+        found, carried = None, self._carried.find(data)
+        if not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data)):
             tolerance = self._tolerance()
             found = self._find(data, tolerance)
-            if found is not None:
-                self._repeat(data, found, tolerance)
-                return
-        mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+        before = self._carried.correct(data, carried) if carried else []
+        if found is not None:
+            self._repeat(data, found, tolerance)
+        else:
+            mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+        for row, reference in before:
+            data.efc_aref[row] = reference
 
     def _has_flying(self, data: Any) -> bool:
         """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
@@ -124,8 +136,7 @@ class ContactLaw:
         velocity, reference = data.efc_vel, data.efc_aref
         if velocity.dot(velocity) > QUIET_SPEED * QUIET_SPEED:
             return False
-        most = EXIT_SPEED / self.model.opt.timestep
-        return bool(reference.dot(reference) < most * most)
+        return bool(reference.dot(reference) < self._least_reference)
 
     def _tolerance(self) -> float:
         """Return the accuracy of normal references [m/s²]."""

@@ -16,6 +16,11 @@ import numpy.typing as npt
 EXIT_SPEED: Final = 0.05
 """Speed [m/s] at which a contact lets go, or overlapping bodies part, at most: a hop of 0.13 mm."""
 
+DEEP: Final = 1e-3
+"""Penetration [m] from which the way out is watched even before it begins; a contact at rest has some micrometres."""
+
+_LEAVES: Final = 0.2 * EXIT_SPEED  # [m/s] from which a contact counts as on its way out
+
 _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 _ACCURACY: Final = 2e-3  # of what is asked of a contact that closes fast
 
@@ -43,13 +48,14 @@ class FewContacts:
         goals: list[float],
     ) -> None:
         self._aref, self._rows, self._tangents, self._normals, self._goals = data.efc_aref, rows, tangents, normals, goals
-        self._before: list[float] = self._aref.tolist()
+        self._before: list[float] = []
         self._softness: list[float] = data.efc_R.tolist()
         self._asked: list[float] = []
 
     def guess(self, moves: Floats) -> None:
         """Set references by a guess of J a, shape (nefc,); of the forces nothing is known yet."""
-        accelerations, before, aref = moves.tolist(), self._before, self._aref
+        accelerations, aref = moves.tolist(), self._aref
+        self._before = before = aref.tolist()
         for row, tangents, normal, goal in zip(self._rows, self._tangents, self._normals, self._goals, strict=True):
             total = 0.0
             for place, mu in tangents:
@@ -71,7 +77,9 @@ class FewContacts:
                 total += one * one
             most = tolerance
             if goal == goal:
-                normal = goal + softness[row] * force[row]
+                # a contact that closes is stopped, also by more than its softness asks; one that opens gets no more
+                wanted = goal + softness[row] * force[row]
+                normal = max(normal, wanted) if normal < goal else min(normal, wanted)
                 most = max(tolerance, _ACCURACY * goal)
             now = normal - math.sqrt(total)
             asked.append(now)
@@ -112,9 +120,14 @@ def find_few(data: Any, tolerance: float, step: float) -> FewContacts | None:
             one = mus[place - 1] * aref[row + place]
             total += one * one
         normal, speed, goal = aref[row], velocity[row], math.nan
-        wanted = -speed / step if speed < -EXIT_SPEED else max(0.0, (EXIT_SPEED - speed) / step)
-        is_short = normal < wanted if speed < -EXIT_SPEED else normal > wanted
-        if is_short and distance[number] <= 0.0:
+        depth = -distance[number]
+        if speed < -EXIT_SPEED:
+            wanted = -speed / step
+            is_wrong = normal < wanted and depth >= 0.0
+        else:
+            wanted = max(0.0, (EXIT_SPEED - speed) / step)
+            is_wrong = normal > wanted and (speed > _LEAVES or depth > DEEP)
+        if is_wrong:
             if stiffness is None:
                 stiffness = contact.solref.tolist()
             if stiffness[number][0] > 0.0:
@@ -151,13 +164,15 @@ class ManyContacts:
         self._rows, self._places, self._mu, self._edges, self._normals, self._goals = rows, places, mu, edges, normals, goals
         self._has_goal = ~np.isnan(goals)
         self._before: Floats = self._aref[edges]
-        self._tangents: Floats = self._aref[places]
+        self._tangents: Floats = self._before
         self._compliance: Floats = self._softness[places]
         self._asked: Floats = normals
 
     def guess(self, moves: Floats) -> None:
         """As `FewContacts.guess`."""
-        self._ask(np.where(self._has_goal, self._goals, self._normals) - self._size(self._tangents - moves[self._places]))
+        self._tangents = self._aref[self._places]
+        normals = np.where(self._has_goal, self._goals, self._normals)
+        self._ask(normals - self._size(self._tangents - moves[self._places]))
 
     def correct(self, moves: Floats, forces: Floats, tolerance: float) -> bool:
         """As `FewContacts.correct`."""
@@ -166,7 +181,9 @@ class ManyContacts:
         normals, most = self._normals, tolerance
         if self._has_goal.any():
             yields = (self._softness[self._edges] * forces[self._edges]).mean(axis=1)
-            normals = np.where(self._has_goal, self._goals + yields, normals)
+            wanted = self._goals + yields
+            limited = np.where(normals < self._goals, np.maximum(normals, wanted), np.minimum(normals, wanted))
+            normals = np.where(self._has_goal, limited, normals)
             most = np.where(self._has_goal, np.maximum(tolerance, _ACCURACY * self._goals), tolerance)
         now = normals - size
         if (np.abs(now - self._asked) <= most).all():
@@ -221,12 +238,15 @@ def find_many(model: Any, data: Any, tolerance: float, step: float) -> ManyConta
     normals, speed = aref[pair].mean(axis=1), velocity[pair].mean(axis=1)
     closes = speed < -EXIT_SPEED
     wanted = np.where(closes, -speed / step, np.maximum(0.0, (EXIT_SPEED - speed) / step))
-    is_short = np.where(closes, normals < wanted, normals > wanted)
-    is_short &= (contact.dist[which] <= 0.0) & (contact.solref[which, 0] > 0.0)
+    depth = -contact.dist[which]
+    is_wrong = np.where(
+        closes, (normals < wanted) & (depth >= 0.0), (normals > wanted) & ((speed > _LEAVES) | (depth > DEEP))
+    )
+    is_wrong &= contact.solref[which, 0] > 0.0
     slides = _size(aref[places], mu, is_pyramid) > tolerance
-    chosen = slides | is_short
+    chosen = slides | is_wrong
     if not chosen.any():
         return None
     mu = np.where(slides[:, None], mu, 0.0)[chosen]
-    goals = np.where(is_short, wanted, np.nan)[chosen]
+    goals = np.where(is_wrong, wanted, np.nan)[chosen]
     return ManyContacts(data, is_pyramid, rows[chosen], places[chosen], mu, edges[chosen], normals[chosen], goals)
