@@ -120,13 +120,12 @@ def find_few(data: Any, tolerance: float, step: float) -> FewContacts | None:
             one = mus[place - 1] * aref[row + place]
             total += one * one
         normal, speed, goal = aref[row], velocity[row], math.nan
-        depth = -distance[number]
-        if speed < -EXIT_SPEED:
-            wanted = -speed / step
-            is_wrong = normal < wanted and depth >= 0.0
+        depth, closes = -distance[number], speed < -EXIT_SPEED
+        if closes and normal < -speed / step:
+            wanted, is_wrong = -speed / step, depth >= 0.0
         else:
             wanted = max(0.0, (EXIT_SPEED - speed) / step)
-            is_wrong = normal > wanted and (speed > _LEAVES or depth > DEEP)
+            is_wrong = normal > wanted and (closes or speed > _LEAVES or depth > DEEP)
         if is_wrong:
             if stiffness is None:
                 stiffness = contact.solref.tolist()
@@ -237,11 +236,11 @@ def find_many(model: Any, data: Any, tolerance: float, step: float) -> ManyConta
     pair = edges[:, :2] if is_pyramid else edges
     normals, speed = aref[pair].mean(axis=1), velocity[pair].mean(axis=1)
     closes = speed < -EXIT_SPEED
-    wanted = np.where(closes, -speed / step, np.maximum(0.0, (EXIT_SPEED - speed) / step))
+    is_late = closes & (normals < -speed / step)
+    wanted = np.where(is_late, -speed / step, np.maximum(0.0, (EXIT_SPEED - speed) / step))
     depth = -contact.dist[which]
-    is_wrong = np.where(
-        closes, (normals < wanted) & (depth >= 0.0), (normals > wanted) & ((speed > _LEAVES) | (depth > DEEP))
-    )
+    is_fast = (normals > wanted) & (closes | (speed > _LEAVES) | (depth > DEEP))
+    is_wrong = np.where(is_late, depth >= 0.0, is_fast)
     is_wrong &= contact.solref[which, 0] > 0.0
     slides = _size(aref[places], mu, is_pyramid) > tolerance
     chosen = slides | is_wrong
