@@ -17,6 +17,8 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
+from simkit.runtime.corrected_contacts import MANY
+
 _LEAST_TURN: Final = 0.03
 """Angular velocity [rad/s] from which the correction counts: at 1 m it is 0.9 mm/s²."""
 
@@ -39,6 +41,7 @@ class CarriedContacts:
         bodies = model.geom_bodyid
         moves = model.body_treeid[bodies] >= 0
         self._body_of: list[int] = [*np.where(moves, bodies, -1).tolist(), -1]
+        self._moves = np.array([*moves.tolist(), False])
         self._tree_of: list[int] = model.body_treeid.tolist()
         self._can_carry = model.ntree > 1 and self._is_elliptic
         self._jacobian = np.empty((3, model.nv))
@@ -51,6 +54,8 @@ class CarriedContacts:
         """
         found: list[tuple[int, int, int]] = []
         if not self._can_carry:
+            return found
+        if data.ncon > MANY and not self._moves[data.contact.geom].all(axis=1).any():
             return found
         body_of, tree_of = self._body_of, self._tree_of
         turns: dict[tuple[int, int], bool] = {}

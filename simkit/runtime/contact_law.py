@@ -25,7 +25,7 @@ import numpy as np
 
 from simkit.compiler.options import contact_time_constant
 from simkit.runtime.carried_contacts import CarriedContacts
-from simkit.runtime.corrected_contacts import DEEP, FewContacts, ManyContacts, find_few, find_many
+from simkit.runtime.corrected_contacts import DEEP, MANY, FewContacts, ManyContacts, find_few, find_many
 from simkit.runtime.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
@@ -33,9 +33,6 @@ TOLERANCE: Final = 0.02
 
 MOST_SOLUTIONS: Final = 10
 """Solutions a step at most; wheels much lighter than what they carry need several while they begin to skid."""
-
-MANY: Final = 64
-"""From this number of contacts on arrays are faster than plain numbers; the results have the same bits."""
 
 QUIET_SPEED: Final = 1e-4
 """Root sum square [m/s, rad/s] of the velocities along all constraints below which nothing slides."""

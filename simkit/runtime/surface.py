@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from simkit.runtime.contact_law import MANY
+from simkit.runtime.corrected_contacts import MANY
 from simkit.runtime.surface_many import FLAT, Floats, Ints, along_tangents, ways_of
 
 Point = tuple[float, float, float]
