@@ -32,7 +32,7 @@ _CAR = """<plugin filename="libgazebo_ros_ackermann_drive.so" name="drive"/>"""
 
 _RUBS = "<surface><friction><ode><mu>1</mu><mu2>0.1</mu2><fdir1{}>1 0 0</fdir1></ode></friction></surface>"
 _BOX = "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry>{}</collision>"
-_YARD = """<mujoco><option integrator="RK4"/><worldbody><geom type="plane" size="5 5 1"/></worldbody></mujoco>"""
+_YARD = """<mujoco><option integrator="discrete"/><worldbody><geom type="plane" size="5 5 1"/></worldbody></mujoco>"""
 
 
 def _directed(frame: str = "") -> str:
@@ -52,8 +52,8 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-PHYS-030",
         "warning",
-        "direction and slip of friction, or a surface that runs, in a world whose MJCF file asks for RK4",
-        "RK4 has no place between velocities and forces; the other integrators have one",
+        "direction and slip of friction, or a surface that runs, in a world whose MJCF file asks for the discrete integrator",
+        "the discrete integrator has no place between velocities and forces; the other integrators have one",
         python(_SPAWNS, {"yard.xml": _YARD}),
     ),
     Code(

@@ -98,11 +98,13 @@ class ContactLaw:
             return True
         return self._has_flying(data) or bool(self._carried.find(data))
 
-    def solve(self, data: Any) -> None:
-        """Solve for accelerations and forces; leaves the references of the constraints as they were.
+    def solve(self, data: Any, *, keeps_references: bool = False) -> None:
+        """Solve for accelerations and forces.
 
         Args:
             data: of the engine, with positions and velocities up to date.
+            keeps_references: whether the references of constraints stay corrected, for the engine to solve once more;
+                else they are put back as they were.
         """
         if not data.ncon:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
@@ -116,8 +118,11 @@ class ContactLaw:
             self._repeat(data, found, tolerance)
         else:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
-        for row, reference in before:
-            data.efc_aref[row] = reference
+        if not keeps_references:
+            if found is not None:
+                found.restore()
+            for row, reference in before:
+                data.efc_aref[row] = reference
 
     def _has_flying(self, data: Any) -> bool:
         """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
@@ -162,4 +167,3 @@ class ContactLaw:
                 break
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
-        found.restore()

@@ -36,7 +36,7 @@ Numbers = list[float]
 Pair = tuple[float, float]
 
 _ELLIPTIC = mujoco.mjtCone.mjCONE_ELLIPTIC
-_RK4 = mujoco.mjtIntegrator.mjINT_RK4
+_DISCRETE = mujoco.mjtIntegrator.mjINT_DISCRETE
 _NO_ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 _SHARED = "directed friction"
 _UPRIGHT = 1e-2  # of the square of a direction: with less of it along a surface it has none there
@@ -115,14 +115,14 @@ class DirectedFriction:
         self._sim.physics.changed(STALE)
 
     def _install(self, table: _Table) -> None:
-        """Has the physics use it, if there is anything in it and the engine's integrator lets it."""
-        physics, has_place = self._sim.physics, table.model.opt.integrator != _RK4
+        """Have the physics use it, if there is anything in it and the engine's integrator lets it."""
+        physics, has_place = self._sim.physics, table.model.opt.integrator != _DISCRETE
         physics.shaper = table if table and has_place else None
         if table and not has_place and not self._is_told:
             self._is_told = True
             message = (
                 "directions and slip of friction, and surfaces that run, have no effect: the engine's integrator is "
-                "RK4, which has no place for them between velocities and forces"
+                "discrete, which has no place for them between velocities and forces"
             )
             self._sim.reports.warning("SK-PHYS-030", message, table.where(), 'integrator="implicitfast" in <option>')
 

@@ -20,6 +20,7 @@ from simkit.runtime.clock import Clock
 from simkit.runtime.contact_law import WINDOW, ContactLaw, ContactShaper
 from simkit.runtime.held_state import HeldState
 from simkit.runtime.sleep import Sleep
+from simkit.runtime.stage_callback import called_before_forces
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)
 """How much of the forward pass is out of date: nothing, accelerations, velocities on, all."""
@@ -29,6 +30,7 @@ _INTEGRATORS = {
     int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST): mujoco.mj_implicit,
     int(mujoco.mjtIntegrator.mjINT_IMPLICIT): mujoco.mj_implicit,
     int(mujoco.mjtIntegrator.mjINT_EULER): mujoco.mj_Euler,
+    int(mujoco.mjtIntegrator.mjINT_RK4): lambda model, data: mujoco.mj_RungeKutta(model, data, 4),
 }
 _BAD = _BAD_POS, _BAD_VEL, _BAD_ACC = [
     int(w)
@@ -94,6 +96,7 @@ class Physics:
         self.hears_controls = False  # whether the user may write to `data.ctrl` without a word
         self._controls = data.ctrl.copy()
         self._integrate = _INTEGRATORS.get(int(model.opt.integrator))
+        self._has_stages = model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
 
     # ------------------------------------------------------------------ writing
 
@@ -163,7 +166,7 @@ class Physics:
         """Compute all but accelerations for the state at this tick; the next step goes on from there.
 
         Returns:
-            Whether it was done: not where everything is to wake, nor under RK4.
+            Whether it was done: not where everything is to wake, nor under an integrator of another kind.
         """
         if self.stage < VELOCITY:
             return True
@@ -409,9 +412,20 @@ class Physics:
         if self.stage:
             self._forward()
         mj_check_acc(model, data)
-        integrate(model, data)
+        if self._has_stages and (self._uses_law or self._acting_shaper is not None):
+            with called_before_forces(data, self._correct_stage):
+                integrate(model, data)
+        else:
+            integrate(model, data)
         self.stage = STALE
         self.tick += 1
+
+    def _correct_stage(self) -> None:
+        """Change the contacts of one of the inner stages of an integrator; the engine then solves for them."""
+        shaper = self._acting_shaper
+        if shaper is not None:
+            shaper.shape(self.data)
+        self.law.solve(self.data, keeps_references=True)
 
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied

@@ -15,7 +15,6 @@ from simkit.runtime.clashes import report_clashes
 from simkit.runtime.entities import carry_fields, leave_as_compiled
 from simkit.runtime.faults import called
 from simkit.runtime.loop import guarded
-from simkit.runtime.overlap import soften
 from simkit.runtime.parts import SPAWNED, Parts, Structure, awake_bodies, in_order
 from simkit.runtime.snapshot import Snapshot, bring_back, take
 from simkit.scene import SceneJoint, SceneModel
@@ -65,9 +64,6 @@ class Population:
         compiled = builder.recompile(old.compiled, sim.mj_data)
         self.switch(Structure(builder, compiled, models, old.movable, parts))
         self._start_or_restore([parts[name] for name in names], found, before)
-        # a new schedule asks every sensor when it is due, so they have been started
-        new = {link.scoped for name in names for link in models[name].all_links()}
-        soften(sim, {g for n, link in compiled.names.links.items() if n in new for g in link.geoms})
         return names
 
     def read(self, source: Any) -> SceneModel:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.runtime import overlap, sleep, together
+from simkit.runtime import sleep, together
 from simkit.runtime.joint import Joint
 from simkit.runtime.scheduler import Scheduler, Task
 
@@ -37,8 +37,6 @@ def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -
 
     if resting.watches:
         scheduler.every(sleep.RATE, look_for_rest, "after")
-    if overlap.is_any_gentle(sim.mj_model):
-        scheduler.every(overlap.RATE, lambda _: overlap.harden(sim), "sense")
     coasting = []
     for joint in sim.entities.tables["joint"].values():
         if joint in exact_limits:

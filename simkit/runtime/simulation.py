@@ -20,7 +20,6 @@ from simkit.runtime.interfaces import Interfaces
 from simkit.runtime.joint import Joint
 from simkit.runtime.labels import Labels
 from simkit.runtime.loop import Loop, guarded
-from simkit.runtime.overlap import soften
 from simkit.runtime.parts import Structure
 from simkit.runtime.physics import Physics
 from simkit.runtime.population import ModelLoader, PartsMaker, Population
@@ -87,7 +86,6 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self._population = Population(self, load_model, make_parts)
         self._population.adopt(structure)
         self._population.start(list(structure.parts.values()), diagnostics)
-        soften(self)
         self.reschedule()
         self._loaded = self.snapshot()
 

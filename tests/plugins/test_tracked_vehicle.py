@@ -48,14 +48,17 @@ def test_it_drives_straight_at_the_speed_it_is_told_as_friction_lets_it() -> Non
 
 
 def test_it_turns_on_the_spot_and_along_a_circle() -> None:
-    """Gazebo's test of it has 0.1 rad and 0.1 m of room: skidding is not exact there either."""
+    """The tracks carry along circles at 0.1 m/s, which touch the ground between 0.29 and 0.35 m from the middle.
+
+    So the vehicle turns by 0.28 to 0.34 rad/s; Gazebo's test of it has 0.1 rad and 0.1 m of room.
+    """
     with opened(gz_tank()) as sim:
         sim.run(0.3)
         drive(sim, 0.0, 0.25)
         sim.run(2.0)
         x, y, yaw = planar(sim)
-        assert yaw == pytest.approx(0.5, abs=0.15)
-        assert math.hypot(x, y) < 0.1
+        assert 2.0 * 0.1 / math.hypot(0.25, 0.25) - 0.01 < yaw < 2.0 * 0.1 / math.hypot(0.25, 0.15) + 0.01
+        assert math.hypot(x, y) < 0.001
         drive(sim, 0.5, 0.2)
         sim.run(1.0)
         after = planar(sim)
