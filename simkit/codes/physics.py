@@ -87,7 +87,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-PHYS-003",
         "note",
-        "restitution is approximated by a contact with less damping",
+        "a restitution coefficient holds at any speed; its threshold is not used",
         "",
         surface("<bounce><restitution_coefficient>0.8</restitution_coefficient><threshold>0</threshold></bounce>"),
     ),

@@ -270,6 +270,7 @@ def _colliding(contact: Contact, group: int) -> dict[str, Any]:
         "friction": contact.friction,
         "solref": contact.solref,
         "solimp": contact.solimp,
+        "solmix": contact.solmix,
     }
 
 

@@ -110,8 +110,8 @@ friction/torsional/surface_radius              = radius of the surface [m], of w
 friction/torsional/ode                         = ODE's own
 friction/torsional/ode/slip                    = slip of the torsional friction
 bounce                                         = bounce
-bounce/restitution_coefficient                 ~ the rebound of a hit from 1 m/s is right; MuJoCo has no restitution
-bounce/threshold                               = from this velocity on it bounces
+bounce/restitution_coefficient                 = speed after a hit over the speed before it
+bounce/threshold                               ~ kept, but a body bounces at any speed
 contact                                        = contact
 contact/collide_bitmask                        = which collisions it touches
 contact/category_bitmask                       = which category it is of
