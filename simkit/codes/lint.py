@@ -37,7 +37,7 @@ _STACK = f"""
   {_BOX.format(0.1)}
 </link></model>
 <model name="rock"><pose>0 0 0.5995 0 0 0</pose><link name="body">
-  <inertial><mass>100</mass><inertia><ixx>10</ixx><iyy>10</iyy><izz>10</izz></inertia></inertial>
+  <inertial><mass>2000</mass><inertia><ixx>333</ixx><iyy>333</iyy><izz>333</izz></inertia></inertial>
   {_BOX.format(1)}
 </link></model>
 """
@@ -81,8 +81,8 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-LINT-006",
         "warning",
-        "something stands on something of less than a hundredth of its mass",
-        "give the lower one more mass, or take a smaller step",
+        "a body stands on one of less than a ten-thousandth of its mass and sinks in by more than 1 mm",
+        "give the lower one more mass",
         world(_STACK),
     ),
     Code(

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from simkit.compiler.options import CONTACT_SOLIMP, contact_time_constant
+from simkit.compiler.options import CONTACT_SOLIMP, SOFT_SOLIMP, contact_time_constant, rigid_time_constant
 from simkit.diagnostics import Diagnostics
 from simkit.scene import Surface
 
@@ -65,7 +65,7 @@ def contact_of(surface: Surface, timestep: float, mass: float, diagnostics: Diag
     """
     mu = _sliding(surface, diagnostics)
     solref = _softness(surface, timestep, mass, diagnostics)
-    solimp, solmix = _impedance(surface.restitution)
+    solimp, solmix = _impedance(surface.restitution, solref, timestep)
     contype, conaffinity = masks_of(surface)
     if surface.collide_without_contact:
         diagnostics.warning(
@@ -161,10 +161,14 @@ def _turning(surface: Surface, diagnostics: Diagnostics) -> tuple[float, float]:
     return torsion, roll
 
 
-def _impedance(restitution: float) -> tuple[tuple[float, float, float, float, float], float]:
-    """Return impedance and its weight: of two surfaces the one that rebounds decides."""
+def _impedance(
+    restitution: float, solref: tuple[float, float], timestep: float
+) -> tuple[tuple[float, float, float, float, float], float]:
+    """Return impedance and its weight: of two surfaces the one that rebounds or is soft decides."""
     if restitution > 0.0:
         return BOUNCE_SOLIMP, _DECIDES
+    if solref[0] > rigid_time_constant(timestep):
+        return SOFT_SOLIMP, _DECIDES
     return CONTACT_SOLIMP, 1.0
 
 
@@ -184,14 +188,14 @@ def _softness(surface: Surface, timestep: float, mass: float, diagnostics: Diagn
                 f"contact stiffness {surface.kp:g} N/m counts as rigid: {world * 1e3:g} ms, critically damped",
                 surface.where,
             )
-        return world, 1.0
+        return rigid_time_constant(timestep), 1.0
     if mass <= 0.0:
         diagnostics.note(
             "SK-PHYS-004",
             f"contact stiffness {surface.kp:g} N/m of a static surface is not used; that of what touches it is",
             surface.where,
         )
-        return world, 1.0
+        return rigid_time_constant(timestep), 1.0
     omega = math.sqrt(surface.kp / mass)
     damping = max(1.0, (surface.kd or 0.0) / (2.0 * mass * omega))
     constant = max(1.0 / (damping * omega), world)

@@ -14,7 +14,7 @@ from simkit.compiler.bodies import add_twin
 from simkit.compiler.couplings import Couplings
 from simkit.compiler.joint_checks import is_sound
 from simkit.compiler.names import Follower, JointBinding, ModelRecord
-from simkit.compiler.options import CONTACT_SOLIMP, contact_time_constant
+from simkit.compiler.options import SOFT_SOLIMP, contact_time_constant
 from simkit.compiler.tree import WORLD, Edge
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY, Pose
@@ -157,9 +157,9 @@ class JointWriter:
         joint = body.add_joint(name=name, type=kind, pos=frame.position, axis=axis)
         constant = contact_time_constant(self.timestep)
         joint.solref_limit = (constant, 1.0)
-        joint.solimp_limit = CONTACT_SOLIMP
+        joint.solimp_limit = SOFT_SOLIMP
         joint.solref_friction = (constant, 1.0)
-        joint.solimp_friction = CONTACT_SOLIMP
+        joint.solimp_friction = SOFT_SOLIMP
         return joint
 
     def _dynamics(self, made: Any, axis: Axis) -> None:

@@ -12,8 +12,16 @@ import numpy.typing as npt
 from simkit.diagnostics import Diagnostics
 from simkit.scene import SceneWorld
 
-CONTACT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
-"""Impedance of contacts and limits. A higher one settles no better and makes a robot rock longer on its casters."""
+CONTACT_SOLIMP: Final = (0.9, 0.999, 0.0005, 0.5, 2.0)
+"""Impedance of rigid contacts: 0.9 at the surface, 0.999 from a penetration of 0.5 mm on.
+
+A body rests on the ground with a penetration of 4 to 10 µm at any mass, where the impedance is still 0.9. A higher one
+there settles no better and makes a robot rock longer on its casters. Only a heavy body on a light one reaches 0.999:
+1 kg carries 10⁴ kg with 0.8 mm of penetration, where an impedance of 0.95 gives 36 mm.
+"""
+
+SOFT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
+"""Impedance of joint limits, of dry friction in joints and of contacts with a stiffness of their own."""
 
 SHORTEST_STEP: Final = 1e-9
 """[s]; time is counted in nanoseconds."""
@@ -32,6 +40,14 @@ def contact_time_constant(timestep: float) -> float:
     A shorter one rings at steps of 2 ms and more; a longer one lets what is gripped creep.
     """
     return max(0.004, 2.0 * timestep)
+
+
+def rigid_time_constant(timestep: float) -> float:
+    """Return the time constant [s] that gives a rigid contact the stiffness and damping of the world-wide softness.
+
+    The engine divides both by the largest impedance, which rigid contacts have higher; it takes at least two steps.
+    """
+    return max(contact_time_constant(timestep) * SOFT_SOLIMP[1] / CONTACT_SOLIMP[1], 2.0 * timestep)
 
 
 def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnostics) -> None:

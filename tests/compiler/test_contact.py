@@ -122,6 +122,37 @@ def test_a_box_that_bounces_comes_to_rest(make, compiled):
     assert c.data.qpos[2] == pytest.approx(0.1, abs=1e-4)
 
 
+@pytest.mark.parametrize("step", [0.0005, 0.001, 0.002])
+def test_a_cube_of_one_kilogram_carries_ten_tonnes(make, compiled, step):
+    cubes = [
+        make.solid(f"c{i}", Box((0.1,) * 3), Pose((0, 0, 0.05 + 0.1 * i)), mass=mass, inertia=mass / 600)
+        for i, mass in enumerate((1.0, 1e4))
+    ]
+    c = compiled(make.ground(), *cubes, step=step)
+    deepest = 0.0
+    for _ in range(round(2.0 / step)):
+        mujoco.mj_step(c.model, c.data)
+        deepest = max(deepest, -float(c.data.contact.dist.min(initial=0.0)))
+    assert 1e-4 < deepest < 1e-3
+    assert np.abs(c.data.qpos[7:9]).max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    "masses", [(1.0, 1000.0) * 5, (1000.0, 1.0) * 5, [1000.0 ** (i / 9) for i in range(10)]],
+    ids=["light_heavy", "heavy_light", "rising"],
+)  # fmt: skip
+def test_a_stack_of_ten_cubes_of_very_different_mass_stands(make, compiled, masses):
+    cubes = [
+        make.solid(f"c{i}", Box((0.1,) * 3), Pose((0, 0, 0.05 + 0.1 * i)), mass=mass, inertia=mass / 600)
+        for i, mass in enumerate(masses)
+    ]
+    c = compiled(make.ground(), *cubes)
+    mujoco.mj_step(c.model, c.data, 60_000)
+    places = c.data.qpos.reshape(10, 7)
+    assert np.abs(places[:, :2]).max() < 1e-3
+    assert places[:, 2] == pytest.approx(0.05 + 0.1 * np.arange(10), abs=5e-3)
+
+
 def test_stiff_kp_counts_as_rigid_and_soft_kp_gives_way(make, compiled):
     depths = []
     for kp in (1e5, 1e3):
