@@ -15,6 +15,13 @@ from simkit.scene import Mimic, SceneJoint
 STIFF_SOLIMP: Final = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 """Impedance of equality constraints that stand for a mechanism: as hard as the solver takes."""
 
+LOOP_DAMPING: Final = 0.5
+"""Damping ratio of the weld that closes a loop.
+
+With a time constant of two steps it corrects a gap within one step. The engine's step goes along a chord of the path,
+which opens a joint on a circle of radius R at speed omega by omega² R · step · time constant · damping ratio².
+"""
+
 _ONE_NUMBER: Final = ("revolute", "continuous", "prismatic", "universal", "revolute2", "screw", "planar")
 _ALONG: Final = 1.0 - 1e-6
 
@@ -32,14 +39,17 @@ class Couplings:
         data[:2] = offset, ratio
         equality.data = data
 
-    def weld(self, name: str, body: str, other: str, anchor_in_other: Any, active: bool = True) -> None:
-        """Holds two MuJoCo bodies as they stand in the specification."""
+    def weld(
+        self, name: str, body: str, other: str, anchor_in_other: Any, active: bool = True, damping: float = 1.0
+    ) -> None:
+        """Holds two MuJoCo bodies as they stand in the specification, with a damping ratio."""
         equality = self._equality(name, mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY, body, other)
         data = np.zeros(len(equality.data))
         # a relative pose of zeros lets MuJoCo take the one of the specification
         data[:3] = anchor_in_other
         data[10] = 1.0
         equality.data = data
+        equality.solref = (equality.solref[0], damping)
         equality.active = active
 
     def _equality(self, name: str, kind: Any, of: Any, first: str, second: str) -> Any:

@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.bodies import add_twin
-from simkit.compiler.couplings import Couplings
+from simkit.compiler.couplings import LOOP_DAMPING, Couplings
 from simkit.compiler.joint_checks import is_sound
 from simkit.compiler.names import Follower, JointBinding, ModelRecord
 from simkit.compiler.options import SOFT_SOLIMP, contact_time_constant
@@ -210,7 +210,7 @@ class JointWriter:
         names, followers = self._move(body, joint, at, is_reversed)
         weld, thread = f"{joint.scoped}#loop", f"{joint.scoped}#thread"
         anchor = at.inverse() @ joint.pose_world
-        self.couplings.weld(weld, twin, self._body(carrier), anchor.position)
+        self.couplings.weld(weld, twin, self._body(carrier), anchor.position, damping=LOOP_DAMPING)
         self.diagnostics.note(
             "SK-PHYS-020", f"joint {joint.scoped} closes a loop: it is held by a constraint", joint.where
         )

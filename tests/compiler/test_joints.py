@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 
+import simkit
 from simkit.compiler import SpecBuilder
 from simkit.compiler.tree import plan_tree
 from simkit.diagnostics import Diagnostics, Where
@@ -382,3 +383,46 @@ def test_a_chain_deeper_than_the_engine_takes_is_an_error(make):
     found = Diagnostics()
     SpecBuilder(make.world(make.model("m", *long, joints=ties)), found)
     assert [d.code for d in found] == ["SK-JOINT-015"]
+
+
+@pytest.mark.parametrize(("step", "most"), [(0.0005, 1e-4), (0.001, 2e-4), (0.002, 6e-4)])
+def test_a_four_bar_that_turns_at_35_radians_a_second_stays_closed(step, most):
+    """Crank 0.1 m, coupler 0.3 m, rocker 0.25 m, ground 0.3 m; a heavy crank holds the speed."""
+    crank, coupler, rocker, ground = 0.1, 0.3, 0.25, 0.3
+    across = math.hypot(crank, ground)
+    turn = math.acos((coupler**2 + across**2 - rocker**2) / (2 * coupler * across)) - math.atan2(crank, ground)
+    end = np.array([coupler * math.cos(turn), crank + coupler * math.sin(turn)])
+    lean = math.atan2(end[1], end[0] - ground)
+
+    def link(name, x, y, yaw, length, inertia):
+        return (
+            f'<link name="{name}"><pose>{x} {y} 0 0 0 {yaw}</pose><inertial><pose>{length / 2} 0 0 0 0 0</pose>'
+            f"<mass>1</mass><inertia><ixx>{inertia}</ixx><iyy>{inertia}</iyy><izz>{inertia}</izz></inertia></inertial>"
+            "</link>"
+        )
+
+    def hinge(name, parent, child, x=0.0):
+        return (
+            f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{child}</child>'
+            f"<pose>{x} 0 0 0 0 0</pose><axis><xyz>0 0 1</xyz></axis></joint>"
+        )
+
+    sim = simkit.load(
+        f"""<sdf version="1.9"><world name="w"><physics name="p" type="p"><max_step_size>{step}</max_step_size>
+        </physics><model name="m">{link("crank", 0, 0, math.pi / 2, crank, 50.0)}
+        {link("coupler", 0, crank, turn, coupler, 7.5e-3)}{link("rocker", ground, 0, lean, rocker, 5e-3)}
+        {hinge("a", "world", "crank")}{hinge("b", "crank", "coupler")}
+        {hinge("d", "world", "rocker")}{hinge("c", "coupler", "rocker", rocker)}</model></world></sdf>"""
+    )
+    model, data = sim.mj_model, sim.mj_data
+    bodies = [sim.names.link(f"m::{name}").body for name in ("coupler", "rocker")]
+    lengths, dof = (coupler, rocker), sim.names.joints["m::a"].dofs[0]
+    widest = 0.0
+    while data.time < 2.0:
+        data.qfrc_applied[dof] = 3000.0 if data.qvel[dof] < 35.0 else 0.0
+        mujoco.mj_step(model, data)
+        mujoco.mj_kinematics(model, data)
+        one, other = (data.xpos[b] + data.xmat[b].reshape(3, 3)[:, 0] * x for b, x in zip(bodies, lengths, strict=True))
+        widest = max(widest, float(np.linalg.norm(one - other)))
+    assert data.qvel[dof] == pytest.approx(35.0, rel=0.05)
+    assert 1e-6 < widest < most
