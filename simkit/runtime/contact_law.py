@@ -25,7 +25,7 @@ import numpy as np
 
 from simkit.compiler.options import contact_time_constant
 from simkit.runtime.carried_contacts import CarriedContacts
-from simkit.runtime.corrected_contacts import DEEP, MANY, FewContacts, ManyContacts, find_few, find_many
+from simkit.runtime.corrected_contacts import DEEP, MANY, Circumstances, FewContacts, ManyContacts, find_few, find_many
 from simkit.runtime.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
@@ -67,10 +67,15 @@ class ContactLaw:
 
     Args:
         model: of the engine.
+
+    Attributes:
+        closing: speed [m/s] with which each geom may still close after it was stopped, in a window with speculative
+            contacts; None in others.
     """
 
     def __init__(self, model: Any) -> None:
         self.model = model
+        self.closing: list[float] | None = None
         self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
         self._product = np.empty(0)
         constant = contact_time_constant(float(model.opt.timestep))
@@ -94,7 +99,7 @@ class ContactLaw:
         Args:
             data: of the engine, with positions and velocities up to date.
         """
-        if data.ncon and not self._is_quiet(data) and self._find(data, self._tolerance()) is not None:
+        if data.ncon and not self._is_quiet(data) and self._finds(data):
             return True
         return self._has_flying(data) or bool(self._carried.find(data))
 
@@ -111,11 +116,10 @@ class ContactLaw:
             return
         found, carried = None, self._carried.find(data)
         if not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data)):
-            tolerance = self._tolerance()
-            found = self._find(data, tolerance)
+            found = self._find(data)
         before = self._carried.correct(data, carried) if carried else []
         if found is not None:
-            self._repeat(data, found, tolerance)
+            self._repeat(data, found)
         else:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
         if not keeps_references:
@@ -123,6 +127,14 @@ class ContactLaw:
                 found.restore()
             for row, reference in before:
                 data.efc_aref[row] = reference
+
+    def _finds(self, data: Any) -> bool:
+        """Return whether some contact has to be corrected; leaves the references as they were."""
+        found = self._find(data)
+        if found is None:
+            return False
+        found.restore()
+        return True
 
     def _has_flying(self, data: Any) -> bool:
         """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
@@ -140,19 +152,17 @@ class ContactLaw:
             return False
         return bool(reference.dot(reference) < self._least_reference)
 
-    def _tolerance(self) -> float:
-        """Return the accuracy of normal references [m/s²]."""
-        x, y, z = self._gravity.tolist()
-        return TOLERANCE * max(_LEAST_GRAVITY, math.sqrt(x * x + y * y + z * z))
-
-    def _find(self, data: Any, tolerance: float) -> FewContacts | ManyContacts | None:
+    def _find(self, data: Any) -> FewContacts | ManyContacts | None:
         """Return the contacts whose normal reference has to be corrected."""
-        step = float(self.model.opt.timestep)
+        gravity: list[float] = self._gravity.tolist()
+        x, y, z = gravity
+        tolerance = TOLERANCE * max(_LEAST_GRAVITY, math.sqrt(x * x + y * y + z * z))
+        around = Circumstances(float(self.model.opt.timestep), gravity, tolerance, self.closing)
         if data.ncon > MANY or self.model.opt.cone == _PYRAMID:
-            return find_many(self.model, data, tolerance, step)
-        return find_few(data, tolerance, step)
+            return find_many(self.model, data, around)
+        return find_few(data, around)
 
-    def _repeat(self, data: Any, found: FewContacts | ManyContacts, tolerance: float) -> None:
+    def _repeat(self, data: Any, found: FewContacts | ManyContacts) -> None:
         """Solve, correct the normal references by the solution, and solve again until they stay."""
         model = self.model
         if self._product.size != data.nefc:
@@ -163,7 +173,7 @@ class ContactLaw:
         for _ in range(MOST_SOLUTIONS - 1):
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
             mj_mul_jac_vec(model, data, product, data.qacc)
-            if found.correct(product, data.efc_force, tolerance):
+            if found.correct(product, data.efc_force):
                 break
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)

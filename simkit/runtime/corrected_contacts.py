@@ -7,6 +7,7 @@ array of four numbers costs as much as one of four hundred), and on arrays.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, Final
 
 import mujoco
@@ -25,10 +26,30 @@ DEEP: Final = 1e-3
 _LEAVES: Final = 0.2 * EXIT_SPEED  # [m/s] from which a contact counts as on its way out
 
 _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
+_PRESSED: Final = 1e-4  # [m] of penetration from which the impedance is looked at
+_BORNE: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in units of the tolerance
+_SLOW: Final = 4.0  # times the speed that gravity gives in a step: slower contacts rest and do not rebound
 _ACCURACY: Final = 2e-3  # of what is asked of a contact that closes fast
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.integer[Any]]
+
+
+@dataclass(slots=True)
+class Circumstances:
+    """What the correction of contacts depends on besides the state.
+
+    Attributes:
+        step: [s].
+        gravity: [m/s²].
+        tolerance: of normal references [m/s²].
+        closing: speed [m/s] that is left to each geom when its contact is stopped, where contacts are speculative.
+    """
+
+    step: float
+    gravity: list[float]
+    tolerance: float
+    closing: list[float] | None
 
 
 class FewContacts:
@@ -37,11 +58,18 @@ class FewContacts:
     Args:
         data: of the engine.
         contacts: of each the row of its normal, its coefficients of friction (none where it does not slide), the
-            reference of the normal, and the acceleration asked for along it [m/s²], NaN where the reference stays.
+            reference of the normal, the acceleration asked for along it [m/s²], NaN where the reference stays, whether
+            it rebounds and gets just that, and the tolerance of its reference [m/s²].
+        changed: other rows whose references are no longer as they were, with those.
     """
 
-    def __init__(self, data: Any, contacts: list[tuple[int, list[float], float, float]]) -> None:
-        self._data, self._aref, self._contacts = data, data.efc_aref, contacts
+    def __init__(
+        self,
+        data: Any,
+        contacts: list[tuple[int, list[float], float, float, bool, float]],
+        changed: list[tuple[int, float]],
+    ) -> None:
+        self._data, self._aref, self._contacts, self._changed = data, data.efc_aref, contacts, changed
         self._before: list[float] = []
         self._softness: list[float] = []
         self._asked: list[float] = []
@@ -50,7 +78,7 @@ class FewContacts:
         """Set references by a guess of J a, shape (nefc,); of the forces nothing is known yet."""
         accelerations, aref, asked = moves.tolist(), self._aref, self._asked
         self._before = before = aref.tolist()
-        for row, mus, normal, goal in self._contacts:
+        for row, mus, normal, goal, _, _ in self._contacts:
             if len(mus) == 2:  # written out, as nearly all have two tangents: a third of the time of the loop
                 one = mus[0] * (before[row + 1] - accelerations[row + 1])
                 other = mus[1] * (before[row + 2] - accelerations[row + 2])
@@ -64,13 +92,13 @@ class FewContacts:
             aref[row] = now
             asked.append(now)
 
-    def correct(self, moves: Floats, forces: Floats, tolerance: float) -> bool:
+    def correct(self, moves: Floats, forces: Floats) -> bool:
         """Set references by a solution, J a and forces of shape (nefc,); False where they differ from the last."""
         accelerations, force, before, softness = moves.tolist(), forces.tolist(), self._before, self._softness
         if not softness:
             self._softness = softness = self._data.efc_R.tolist()
         asked, stays = [], True
-        for (row, mus, normal, goal), last in zip(self._contacts, self._asked, strict=True):
+        for (row, mus, normal, goal, rebounds, most), last in zip(self._contacts, self._asked, strict=True):
             if len(mus) == 2:
                 place = row + 1
                 one = mus[0] * (before[place] - accelerations[place] - softness[place] * force[place])
@@ -82,44 +110,44 @@ class FewContacts:
                 for place, mu in enumerate(mus, row + 1):
                     one = mu * (before[place] - accelerations[place] - softness[place] * force[place])
                     total += one * one
-            most = tolerance
             if goal == goal:
                 # a contact that closes is stopped, also by more than its softness asks; one that opens gets no more
                 wanted = goal + softness[row] * force[row]
-                normal = max(normal, wanted) if normal < goal else min(normal, wanted)
-                most = max(tolerance, _ACCURACY * goal)
+                normal = wanted if rebounds else max(normal, wanted) if normal < goal else min(normal, wanted)
+                most = max(most, _ACCURACY * goal)
             now = normal - math.sqrt(total)
             asked.append(now)
             if abs(now - last) > most:
                 stays = False
         if not stays:
             self._asked, aref = asked, self._aref
-            for (row, _, _, _), now in zip(self._contacts, asked, strict=True):
+            for (row, _, _, _, _, _), now in zip(self._contacts, asked, strict=True):
                 aref[row] = now
         return stays
 
     def restore(self) -> None:
         """Put the references back as they were."""
         aref = self._aref
-        for row, _, normal, _ in self._contacts:
+        for row, _, normal, _, _, _ in self._contacts:
             aref[row] = normal
+        for row, reference in self._changed:
+            aref[row] = reference
 
 
-def find_few(data: Any, tolerance: float, step: float) -> FewContacts | None:
+def find_few(data: Any, around: Circumstances) -> FewContacts | None:
     """Return the contacts that slide, close or open fast, or overlap; None where there is none.
 
     Args:
         data: of the engine, with velocities up to date and an elliptic cone.
-        tolerance: of normal references [m/s²].
-        step: [s].
+        around: step, gravity and tolerance.
     """
-    contact, square = data.contact, tolerance * tolerance
-    first, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
+    contact, step, closing = data.contact, around.step, around.closing
+    all_rows, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
     aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
     distance: list[float] = contact.dist.tolist()
     stiffness: list[list[float]] | None = None
-    found = []
-    for number, row in enumerate(first):
+    found, changed = [], []
+    for number, row in enumerate(all_rows):
         if row < 0:
             continue
         dim, mus = dims[number], friction[number]
@@ -131,23 +159,65 @@ def find_few(data: Any, tolerance: float, step: float) -> FewContacts | None:
             for place in range(1, dim):
                 one = mus[place - 1] * aref[row + place]
                 total += one * one
-        normal, speed, goal = aref[row], velocity[row], math.nan
-        depth, closes = -distance[number], speed < -EXIT_SPEED
-        if closes and normal < -speed / step:
-            wanted, is_wrong = -speed / step, depth >= 0.0
+        normal, speed, goal, depth = aref[row], velocity[row], math.nan, -distance[number]
+        closes, tolerance = speed < -EXIT_SPEED, around.tolerance
+        after, rebounds = speed, False
+        if closes and closing is not None:  # what is stopped ahead of the surface goes on towards it, slowly
+            first, second = contact.geom[number].tolist()
+            after = min(0.0, speed + closing[first] + closing[second])
+        if closes and normal < -after / step:
+            wanted, is_wrong = -after / step, depth >= 0.0
         else:
-            wanted = max(0.0, (EXIT_SPEED - speed) / step)
+            wanted = max(0.0, (EXIT_SPEED - after) / step)
             is_wrong = normal > wanted and (closes or speed > _LEAVES or depth > DEEP)
-        if is_wrong:
+        if is_wrong or closes:
             if stiffness is None:
                 stiffness = contact.solref.tolist()
             if stiffness[number][0] > 0.0:
-                goal = wanted
-        if total > square:
-            found.append((row, mus[: dim - 1], normal, goal))
+                goal = wanted if is_wrong else math.nan
+            elif closes:
+                goal, slower = _rebound(data, number, speed, around)
+                if goal == goal:
+                    rebounds = True
+                    total *= slower * slower
+                    for place in range(row + 1, row + dim):
+                        changed.append((place, aref[place]))
+                        data.efc_aref[place] = slower * aref[place]
+        if depth > _PRESSED:  # the impedance is near 1 there, and a contact is lost from less lift on
+            impedance = data.efc_KBIP.item(row, 2)
+            tolerance = min(tolerance, _BORNE * tolerance * (1.0 - impedance) / impedance)
+        if total > tolerance * tolerance:
+            found.append((row, mus[: dim - 1], normal, goal, rebounds, tolerance))
         elif goal == goal:
-            found.append((row, [], normal, goal))
-    return FewContacts(data, found) if found else None
+            found.append((row, [], normal, goal, rebounds, tolerance))
+    return FewContacts(data, found, changed) if found else None
+
+
+def _rebound(data: Any, number: int, speed: float, around: Circumstances) -> tuple[float, float]:
+    """Return the acceleration with which a contact that closes leaves, and what is left of its tangents' references.
+
+    A bouncing contact has the damping d (1 + e) / dt (`simkit.compiler.friction.bouncing`), which reverses the speed
+    within a step. The step in which a hit is noticed begins below the surface, by up to a step's way; the energy that
+    the integrator keeps in flight, u² / 2 + q u - g depth with q = g dt / 2, becomes e² of it as seen from the surface.
+    Friction has the same damping: without a share of 1 / (1 + e) of it, a hit would reverse the slip as well.
+
+    Returns:
+        The acceleration [m/s²], NaN for a contact that is too slow to rebound, and the share.
+    """
+    contact, gravity, step = data.contact, around.gravity, around.step
+    weight = math.sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2])
+    if speed > -_SLOW * weight * step:
+        return math.nan, 1.0
+    restitution = -contact.solref.item(number, 1) * step / contact.solimp.item(number, 1) - 1.0
+    if restitution < 0.0:  # stiffness and damping that an MJCF file gives
+        return math.nan, 1.0
+    x, y, z = contact.frame[number, :3].tolist()
+    along = abs(x * gravity[0] + y * gravity[1] + z * gravity[2])
+    depth = 0.0 if around.closing is not None else max(0.0, -contact.dist.item(number))
+    u, q = -speed, along * step / 2.0
+    arrives = max(0.0, u * u + 2.0 * q * u - 2.0 * along * depth)
+    leaves = -q + math.sqrt(q * q + restitution * restitution * arrives + 2.0 * along * depth)
+    return (leaves - speed) / step, 1.0 / (1.0 + restitution)
 
 
 class ManyContacts:
@@ -160,14 +230,27 @@ class ManyContacts:
         places: the rows of its friction, shape (k, most), or pairs of edges, shape (k, most, 2).
         mu: their coefficients, zero for rows that it has not or that do not slide, shape (k, most).
         edges: the rows that carry the normal, shape (k, n); rows that a contact has not repeat its first.
-        normals, goals: as for `FewContacts`, shape (k,).
+        normals, goals, rebounds, tolerances: as for `FewContacts`, shape (k,).
+        changed: as for `FewContacts`.
     """
 
     def __init__(
-        self, data: Any, is_pyramid: bool, rows: Ints, places: Ints, mu: Floats, edges: Ints, normals: Floats, goals: Floats
+        self,
+        data: Any,
+        is_pyramid: bool,
+        rows: Ints,
+        places: Ints,
+        mu: Floats,
+        edges: Ints,
+        normals: Floats,
+        goals: Floats,
+        rebounds: npt.NDArray[np.bool_],
+        tolerances: Floats,
+        changed: list[tuple[int, float]],
     ) -> None:
         self._aref, self._softness, self._is_pyramid = data.efc_aref, data.efc_R, is_pyramid
-        self._rows, self._places, self._mu, self._edges, self._normals, self._goals = rows, places, mu, edges, normals, goals
+        self._rows, self._places, self._mu, self._edges, self._normals = rows, places, mu, edges, normals
+        self._goals, self._rebounds, self._tolerances, self._changed = goals, rebounds, tolerances, changed
         self._has_goal = ~np.isnan(goals)
         self._before: Floats = self._aref[edges]
         self._tangents: Floats = self._before
@@ -180,17 +263,17 @@ class ManyContacts:
         normals = np.where(self._has_goal, self._goals, self._normals)
         self._ask(normals - self._size(self._tangents - moves[self._places]))
 
-    def correct(self, moves: Floats, forces: Floats, tolerance: float) -> bool:
+    def correct(self, moves: Floats, forces: Floats) -> bool:
         """As `FewContacts.correct`."""
         places = self._places
         size = self._size(self._tangents - moves[places] - self._compliance * forces[places])
-        normals, most = self._normals, tolerance
+        normals, most = self._normals, self._tolerances
         if self._has_goal.any():
             yields = (self._softness[self._edges] * forces[self._edges]).mean(axis=1)
             wanted = self._goals + yields
             limited = np.where(normals < self._goals, np.maximum(normals, wanted), np.minimum(normals, wanted))
-            normals = np.where(self._has_goal, limited, normals)
-            most = np.where(self._has_goal, np.maximum(tolerance, _ACCURACY * self._goals), tolerance)
+            normals = np.where(self._has_goal, np.where(self._rebounds, wanted, limited), normals)
+            most = np.where(self._has_goal, np.maximum(most, _ACCURACY * self._goals), most)
         now = normals - size
         if (np.abs(now - self._asked) <= most).all():
             return True
@@ -200,6 +283,8 @@ class ManyContacts:
     def restore(self) -> None:
         """Put the references back as they were."""
         self._aref[self._edges] = self._before
+        for row, reference in self._changed:
+            self._aref[row] = reference
 
     def _ask(self, normals: Floats) -> None:
         self._asked = normals
@@ -222,9 +307,9 @@ def _size(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
     return found
 
 
-def find_many(model: Any, data: Any, tolerance: float, step: float) -> ManyContacts | None:
+def find_many(model: Any, data: Any, around: Circumstances) -> ManyContacts | None:
     """As `find_few`, for either cone."""
-    contact, is_pyramid = data.contact, bool(model.opt.cone == _PYRAMID)
+    contact, is_pyramid, step = data.contact, bool(model.opt.cone == _PYRAMID), around.step
     numbers = (contact.efc_address >= 0).nonzero()[0]
     if not numbers.size:
         return None
@@ -243,17 +328,33 @@ def find_many(model: Any, data: Any, tolerance: float, step: float) -> ManyConta
     pair = edges[:, :2] if is_pyramid else edges
     normals, speed = aref[pair], velocity[pair]
     normals, speed = (normals.mean(axis=1), speed.mean(axis=1)) if is_pyramid else (normals[:, 0], speed[:, 0])
-    closes = speed < -EXIT_SPEED
-    is_late = closes & (normals < -speed / step)
-    wanted = np.where(is_late, -speed / step, np.maximum(0.0, (EXIT_SPEED - speed) / step))
-    depth = -contact.dist[which]
+    depth, closes = -contact.dist[which], speed < -EXIT_SPEED
+    after = speed
+    if around.closing is not None:
+        left = np.array(around.closing)[contact.geom[which]]
+        after = np.where(closes, np.minimum(0.0, speed + left[:, 0] + left[:, 1]), speed)
+    is_late = closes & (normals < -after / step)
+    wanted = np.where(is_late, -after / step, np.maximum(0.0, (EXIT_SPEED - after) / step))
     is_fast = (normals > wanted) & (closes | (speed > _LEAVES) | (depth > DEEP))
-    is_wrong = np.where(is_late, depth >= 0.0, is_fast)
-    is_wrong &= contact.solref[which, 0] > 0.0
-    slides = _size(aref[places], mu, is_pyramid) > tolerance
-    chosen = slides | is_wrong
+    is_rigid = contact.solref[which, 0] > 0.0
+    goals = np.where(np.where(is_late, depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
+    changed: list[tuple[int, float]] = []
+    for index in (closes & ~is_rigid).nonzero()[0].tolist():
+        goals[index], slower = _rebound(data, int(numbers[index]), float(speed[index]), around)
+        if goals[index] == goals[index]:
+            middle = normals[index] if is_pyramid else 0.0
+            for row in places[index][there[index]].reshape(-1).tolist():
+                changed.append((row, aref.item(row)))
+                aref[row] = middle + slower * (aref[row] - middle)
+    tolerances: Floats = np.full(len(rows), around.tolerance)
+    pressed = (depth > _PRESSED).nonzero()[0]
+    if pressed.size:
+        impedance = data.efc_KBIP[rows[pressed], 2]
+        tolerances[pressed] = np.minimum(around.tolerance, _BORNE * around.tolerance * (1.0 - impedance) / impedance)
+    slides = _size(aref[places], mu, is_pyramid) > tolerances
+    chosen = slides | ~np.isnan(goals)
     if not chosen.any():
         return None
     mu = np.where(slides[:, None], mu, 0.0)[chosen]
-    goals = np.where(is_wrong, wanted, np.nan)[chosen]
-    return ManyContacts(data, is_pyramid, rows[chosen], places[chosen], mu, edges[chosen], normals[chosen], goals)
+    rest = (edges[chosen], normals[chosen], goals[chosen], ~is_rigid[chosen], tolerances[chosen], changed)
+    return ManyContacts(data, is_pyramid, rows[chosen], places[chosen], mu, *rest)

@@ -16,15 +16,23 @@ class HeldState:
         model: of the engine, that the state is of.
         values: of the engine (`mjSTATE_INTEGRATION`).
         request: what plugins asked of contacts at that tick, for `ContactShaper.shape`.
-        uses_law: whether its step follows the contact law; None where that is still to be found from the state.
+        uses_law, is_fast: whether its step follows the contact law, and has speculative contacts; None where that is
+            still to be found from the state.
     """
 
-    __slots__ = ("model", "request", "tick", "uses_law", "values")
+    __slots__ = ("is_fast", "model", "request", "tick", "uses_law", "values")
 
     def __init__(
-        self, tick: int, model: Any, values: npt.NDArray[np.float64], request: Any = None, uses_law: bool | None = None
+        self,
+        tick: int,
+        model: Any,
+        values: npt.NDArray[np.float64],
+        request: Any,
+        uses_law: bool | None,
+        is_fast: bool | None,
     ) -> None:
-        self.tick, self.model, self.values, self.request, self.uses_law = tick, model, values, request, uses_law
+        self.tick, self.model, self.values, self.request = tick, model, values, request
+        self.uses_law, self.is_fast = uses_law, is_fast
 
     def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
         return self

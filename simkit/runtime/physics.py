@@ -20,6 +20,7 @@ from simkit.runtime.clock import Clock
 from simkit.runtime.contact_law import WINDOW, ContactLaw, ContactShaper
 from simkit.runtime.held_state import HeldState
 from simkit.runtime.sleep import Sleep
+from simkit.runtime.speculative import FLAG, FastBodies
 from simkit.runtime.stage_callback import called_before_forces
 
 FRESH, CONTROL, VELOCITY, STALE = range(4)
@@ -79,7 +80,8 @@ class Physics:
         self.sleep = Sleep(model, data, self._may_sleep)
         self.law = ContactLaw(model)
         self.shaper: ContactShaper | None = None
-        self.window = (False, -1)
+        self.fast_bodies = FastBodies(model)
+        self.window = (False, -1, False, -1)
         self.stage = STALE
         self.edition += 1
         self.one_shot = False
@@ -108,7 +110,7 @@ class Physics:
         self._accelerations_tick = -1
         self.sleep.rests = False
         if stage > CONTROL:
-            self._until = -1  # velocities are others than those that decided how steps are made
+            self._until = self._fast_until = -1  # velocities are others than those that decided how steps are made
 
     def changed_body(self, stage: int, body: int) -> None:
         """The same of one body, which wakes where it sleeps."""
@@ -177,6 +179,8 @@ class Physics:
 
     def _update_velocities(self) -> None:
         model, data, shaper = self.model, self.data, self._acting_shaper
+        if self.tick >= self._fast_until:
+            self._look_for_fast()
         if self.sleep.wants_all_awake:
             self.sleep.forward()
         else:
@@ -189,13 +193,26 @@ class Physics:
         self.stage = CONTROL
 
     @property
-    def window(self) -> tuple[bool, int]:
-        """Whether steps follow the contact law, and up to which tick that is decided; part of the state."""
-        return self._uses_law, self._until
+    def window(self) -> tuple[bool, int, bool, int]:
+        """Whether steps follow the contact law, and have speculative contacts, each with the tick it is decided up to.
+
+        It is part of the state.
+        """
+        return self._uses_law, self._until, self._is_fast, self._fast_until
 
     @window.setter
-    def window(self, value: tuple[bool, int]) -> None:
-        self._uses_law, self._until = value
+    def window(self, value: tuple[bool, int, bool, int]) -> None:
+        self._uses_law, self._until, self._is_fast, self._fast_until = value
+        _set_speculative(self.model, self._is_fast)
+
+    def _look_for_fast(self) -> None:
+        """Decide at the beginning of a window, from the state alone, whether it needs speculative contacts."""
+        self._fast_until = (self.tick // WINDOW + 1) * WINDOW
+        is_fast = self.fast_bodies.wants(self.data)
+        if is_fast != self._is_fast:
+            self._is_fast = is_fast
+            _set_speculative(self.model, is_fast)
+            self.stage = STALE  # contacts are found otherwise
 
     @property
     def _acting_shaper(self) -> ContactShaper | None:
@@ -220,7 +237,8 @@ class Physics:
             self._update_velocities()
         if self.tick >= self._until:
             self._until = (self.tick // WINDOW + 1) * WINDOW
-            self._uses_law = self.law.is_needed(data)
+            self._uses_law = self._is_fast or self.law.is_needed(data)
+        self.law.closing = self.fast_bodies.closing if self._is_fast else None
         if self._uses_law or is_shaped:
             self.law.solve(data)
         else:
@@ -262,7 +280,8 @@ class Physics:
             if self._acting_shaper is not None:
                 uses_law = True
             request = None if shaper is None else shaper.request()
-            self._held = HeldState(self.tick, self.model, values, request, uses_law)
+            is_fast = self._is_fast if self.tick < self._fast_until else None
+            self._held = HeldState(self.tick, self.model, values, request, uses_law, is_fast)
         return self._held
 
     def data_of(self, held: HeldState) -> Any:
@@ -281,18 +300,22 @@ class Physics:
 
     def _forward_held(self, held: HeldState, data: Any) -> None:
         """Make the forward pass of a held state as the step did."""
-        law, shaper = self.law, self.shaper
+        law, shaper, fast = self.law, self.shaper, self.fast_bodies
         if law.model is not held.model:  # a spawn or a removal has come between
-            law, shaper = ContactLaw(held.model), None
+            law, shaper, fast = ContactLaw(held.model), None, FastBodies(held.model)
+        is_fast = fast.wants(data) if held.is_fast is None else held.is_fast
+        _set_speculative(held.model, is_fast)
         mujoco.mj_forward(held.model, data)
-        if self._integrate is None:
-            return
-        if shaper is not None:
-            shaper.shape(data, held.request)
-        if law.is_needed(data) if held.uses_law is None else held.uses_law:
-            law.solve(data)
-        elif shaper is not None:
-            mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
+        if self._integrate is not None:
+            if shaper is not None:
+                shaper.shape(data, held.request)
+            law.closing = fast.closing if is_fast else None
+            if is_fast or (law.is_needed(data) if held.uses_law is None else held.uses_law):
+                law.solve(data)
+            elif shaper is not None:
+                mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
+        if held.model is self.model:
+            _set_speculative(self.model, self._is_fast)
 
     def _has_passed(self) -> bool:
         """Whether the last step had forces of its own, and none is set for the next."""
@@ -476,3 +499,8 @@ class Physics:
         """Forgets what the engine warned of (a restored state is sound)."""
         self._warnings[:] = 0
         _engine_texts.clear()
+
+
+def _set_speculative(model: Any, is_on: bool) -> None:
+    flags = model.opt.enableflags
+    model.opt.enableflags = flags | FLAG if is_on else flags & ~FLAG

@@ -212,6 +212,7 @@ class Population:
         sim.labels.bind(structure)
         sim.temperatures.bind(structure)
         sim.friction.bind(structure)
+        sim.physics.fast_bodies.tell = sim.fast_body_reports
         sim.stand_wrenches(are_applied=True)
         sim.set_active(sim.faults.living(structure))
         for sensor in structure.all_sensors():

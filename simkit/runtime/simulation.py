@@ -15,6 +15,7 @@ from simkit.runtime.divergence import name_drivers
 from simkit.runtime.doors import door
 from simkit.runtime.engine_access import EngineAccess
 from simkit.runtime.entities import Entities
+from simkit.runtime.fast_body_reports import FastBodyReports
 from simkit.runtime.faults import Faults, OnError
 from simkit.runtime.interfaces import Interfaces
 from simkit.runtime.joint import Joint
@@ -83,6 +84,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self.labels = Labels(self)
         self.temperatures = Temperatures(self)
         self.friction = DirectedFriction(self)
+        self.fast_body_reports = FastBodyReports(self)
         self._population = Population(self, load_model, make_parts)
         self._population.adopt(structure)
         self._population.start(list(structure.parts.values()), diagnostics)

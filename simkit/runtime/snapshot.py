@@ -43,7 +43,7 @@ class Snapshot:
     last_applied: Any
     sleep: tuple[Any, ...] = (False,)
     last_pushed: Any = None
-    window: tuple[bool, int] = (False, -1)
+    window: tuple[bool, int, bool, int] = (False, -1, False, -1)
     seed: int = 0
     owner: Any = None
 

@@ -13,6 +13,8 @@ from simkit.compiler import SpecBuilder
 from simkit.compiler.friction import MU_MOST, contact_of, priority_of
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
+from simkit.runtime.clock import Clock
+from simkit.runtime.physics import Physics
 from simkit.scene import Box, Sphere, Surface
 
 G = 9.8
@@ -24,7 +26,8 @@ def slide(make, compiled, mu_slope, mu_box, heading=0.0):
     normal = tuple(tilt.rotate((0, 0, 1)))
     box = make.solid("box", Box((0.4, 0.4, 0.1)), tilt @ Pose((0, 0, 0.05)), surface=Surface(mu=mu_box, mu2=mu_box))
     c = compiled(make.ground(mu_slope, normal), box)
-    mujoco.mj_step(c.model, c.data, 1000)
+    physics = Physics(c.model, c.data, Clock(0.001))
+    physics.advance(1000)
     return float(np.linalg.norm(c.data.qvel[:3]))
 
 
