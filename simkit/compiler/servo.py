@@ -8,7 +8,8 @@ model has at that joint, and light joints get an armature.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import mujoco
@@ -24,6 +25,27 @@ ARMATURE_LINEAR: Final = 2e-2
 """[kg] at least, on a slider that a servo drives."""
 
 GAIN: Final = 1.5
+
+_GRAVITY: Final = 9.81
+_FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
+_SLIDE: Final = int(mujoco.mjtJoint.mjJNT_SLIDE)
+
+
+@dataclass(frozen=True, slots=True)
+class ServoTraits:
+    """What the integral action of a velocity servo goes by (SI units of a hinge; N and m for a slider).
+
+    Attributes:
+        gain: kv [N·m·s/rad].
+        max_effort: [N·m]; infinite where there is no limit.
+        largest_load: greatest constant load that is worth a correction [N·m].
+        response_time: time constant of the servo when it moves all of the robot [s].
+    """
+
+    gain: float
+    max_effort: float
+    largest_load: float
+    response_time: float
 
 
 def add_actuator(spec: mujoco.MjSpec, ref: ActuatorRef, joint_name: str) -> None:
@@ -82,6 +104,50 @@ def gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[float, flo
         return 0.0, kv
     stiffest = kv * kv / (4.0 * inertia) if ref.kv is None else 0.25 * inertia / timestep**2
     return (stiffest if ref.kp is None else min(ref.kp, 0.25 * inertia / timestep**2)), kv
+
+
+def servo_traits(model: mujoco.MjModel, refs: Sequence[ActuatorRef]) -> list[ServoTraits]:
+    """Return the traits of the velocity servos of a model, in its first pose.
+
+    A wheel on the ground moves the robot's mass at its radius, shared with the other servos of the robot. The largest
+    load is twice the robot's weight at that radius: no tyre transmits more. On a fixed base it is ten times the weight
+    of what the joint moves.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_makeM(model, data)
+    ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name) for ref in refs]
+    joints = [int(model.actuator_trnid[i, 0]) for i in ids]
+    trees = [int(model.dof_treeid[model.jnt_dofadr[joint]]) for joint in joints]
+    found = []
+    for i, joint, tree in zip(ids, joints, trees, strict=True):
+        dof, first = int(model.jnt_dofadr[joint]), int(model.tree_dofadr[tree])
+        mass = float(model.body_subtreemass[model.dof_bodyid[first]])
+        reach = 1.0 if model.jnt_type[joint] == _SLIDE else _reach(model, data, joint)
+        locked = float(data.M[model.M_rowadr[dof] + model.M_rownnz[dof] - 1])
+        inertia = max(locked, mass * reach**2 / trees.count(tree))
+        gain = float(model.actuator_gainprm[i, 0])
+        weights = 2.0 if model.jnt_type[model.dof_jntid[first]] == _FREE else 10.0
+        most = float(model.actuator_forcerange[i, 1]) if model.actuator_forcelimited[i] else math.inf
+        response = inertia / gain if gain > 0.0 else math.inf
+        found.append(ServoTraits(gain, most, min(most, weights * mass * _GRAVITY * reach), response))
+    return found
+
+
+def _reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> float:
+    """Return how far what a hinge moves reaches from its axis [m]: the radius of a wheel."""
+    first, axis = int(model.jnt_bodyid[joint]), data.xaxis[joint]
+    moved = {first}
+    for body in range(first + 1, model.nbody):
+        if int(model.body_parentid[body]) in moved:
+            moved.add(body)
+    geoms = [g for g in range(model.ngeom) if int(model.geom_bodyid[g]) in moved]
+    geoms = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]] or geoms
+    if not geoms:
+        return 0.1
+    arms = data.geom_xpos[geoms] - data.xanchor[joint]
+    return float((np.linalg.norm(np.cross(arms, axis), axis=1) + model.geom_rbound[geoms]).max())
 
 
 def _felt_inertia(model: mujoco.MjModel, refs: list[ActuatorRef]) -> list[float]:

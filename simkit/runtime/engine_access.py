@@ -71,12 +71,14 @@ class EngineAccess(Aspect):
     def set_control(self, actuator: Any, value: float) -> None:
         """Writes the control of an actuator that a plugin added; the next step sees it.
 
-        A velocity is kept within the joint's velocity limit.
+        A velocity is kept within the joint's velocity limit; the control is what its servo makes of it.
         """
         limit = _LARGEST_CONTROL
         if actuator.kind == "velocity":
             limit = min(limit, float(self._whole.joint(actuator.joint)._velocity_limit[actuator.axis]))
-        self.mj_data.ctrl[self.names.actuator(actuator)] = max(-limit, min(limit, value))
+            self._whole.velocity_servos.command(actuator, max(-limit, min(limit, value)))
+        else:
+            self.mj_data.ctrl[self.names.actuator(actuator)] = max(-limit, min(limit, value))
         self.physics.changed(CONTROL)
 
     def touch(self, field: str) -> Any:

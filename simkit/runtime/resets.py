@@ -45,6 +45,7 @@ def reset_models(sim: Simulation, loaded: Snapshot) -> None:
     _copy_activations(first, first_data, model, data)
     _copy_rows(mujoco.mjtObj.mjOBJ_EQUALITY, first, first_data.eq_active, model, data.eq_active)
     _copy_mocap(first, first_data, model, data)
+    sim.velocity_servos.set_state(next(state for part, state in loaded.handles if part is sim.velocity_servos))
     sim.physics.one_shot = False
     sim.physics.changed_model()
     sim.physics.changed(STALE)

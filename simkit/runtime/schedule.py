@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from simkit.runtime import sleep, together
+from simkit.runtime import sleep, together, velocity_servos
 from simkit.runtime.joint import Joint
 from simkit.runtime.scheduler import Scheduler, Task
 
@@ -46,6 +46,8 @@ def fill(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -
 
     if coasting:
         scheduler.every(_LIMIT_GRID, _holder(sim, coasting), "sense")
+    if sim.velocity_servos.are_there:  # before any command of the step: the last one had no time to be obeyed
+        scheduler.every(velocity_servos.RATE, sim.velocity_servos.correct, "before")
     _report_shared_topics(sim)
     _team_up(sim)
     plugins = [plugin for plugin in sim.structure.all_plugins() if not sim.faults.is_disabled(plugin)]

@@ -29,6 +29,7 @@ from simkit.runtime.schedule import fill
 from simkit.runtime.scheduler import Scheduler
 from simkit.runtime.snapshot import Snapshot, bring_back, promise, take
 from simkit.runtime.temperatures import Temperatures
+from simkit.runtime.velocity_servos import VelocityServos
 from simkit.runtime.wind import Wind
 from simkit.runtime.world_control import WorldControl
 from simkit.runtime.wrenches import StandingWrenches
@@ -80,6 +81,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self.open_world(self)
         self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
         self._loop = Loop(self.physics, self.bus, self._fill)
+        self.velocity_servos = VelocityServos(self)
         self.entities = Entities(self, world)
         self.labels = Labels(self)
         self.temperatures = Temperatures(self)

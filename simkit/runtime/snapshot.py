@@ -82,7 +82,7 @@ def take(sim: Simulation) -> Snapshot:
         plugins=plugins,
         handles=[(h, h.get_state()) for h in sim.entities.stateful()]
         + [(part, part.get_state()) for part in (sim.faults, sim.parameter_table, sim.action_table)]
-        + [(part, part.get_state()) for part in (sim.pausing, sim.site)]
+        + [(part, part.get_state()) for part in (sim.pausing, sim.site, sim.velocity_servos)]
         + [(m, m._rest) for m in sim.entities.tables["model"].values()],
         inbox=tuple(sim.bus.inbox.values()),
         one_shot=physics.one_shot,

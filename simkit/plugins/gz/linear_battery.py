@@ -149,7 +149,7 @@ class LinearBattery(Battery):
             return False
         dofs, actuators = self.sim.names.shared(f"battery {id(self)}", self._find_parts)
         pushed = np.abs(physics.last_applied[dofs]) > _LEAST_EFFORT
-        return bool(physics.data.ctrl[actuators].any() or pushed.any())
+        return self.sim.velocity_servos.is_commanded(actuators) or bool(pushed.any())
 
     def _find_parts(self) -> tuple[Any, Any]:
         """Degrees of freedom of the model's joints, and the actuators on them."""
