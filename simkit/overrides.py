@@ -17,12 +17,12 @@ from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.errors import InputError
 from simkit.params import Params
 from simkit.scene import Scene, SceneJoint, SceneLight, SceneLink, SceneModel, ScenePlugin, SceneSensor, SceneWorld
-from simkit.scene.world import QUALITIES
+from simkit.scene.world import CONTACT_LAWS, QUALITIES
 
 _CODE = "SK-CLI-014"
 _PLACE = "--set "
 
-_PHYSICS = ("max_step_size", "real_time_factor", "sleep")
+_PHYSICS = ("max_step_size", "real_time_factor", "sleep", "contact_law")
 _WORLD = {"gravity": 3, "magnetic_field": 3}
 _SCENE = ("quality", "shadows", "sky", "ambient", "background")
 _LINK = ("gravity", "self_collide", "kinematic", "inertial.mass")
@@ -171,6 +171,8 @@ class _Override:
             self._known(element, _PHYSICS)
             if element == "sleep":
                 return replace(world, physics=replace(world.physics, sleep=self._boolean()))
+            if element == "contact_law":
+                return replace(world, physics=replace(world.physics, contact_law=self._one_of(CONTACT_LAWS)))
             positive = element == "max_step_size"
             number = self._number(lambda v: math.isfinite(v) and (v > 0 if positive else v >= 0), "a positive number")
             return replace(world, physics=replace(world.physics, **_change(element, number)))
@@ -183,9 +185,7 @@ class _Override:
         """How pictures are drawn."""
         self._known(element, _SCENE)
         if element == "quality":
-            if self.value not in QUALITIES:
-                raise _bad(self.text, f"found {self.value!r}, allowed is one of {', '.join(QUALITIES)}")
-            return replace(world, quality=self.value)
+            return replace(world, quality=self._one_of(QUALITIES))
         if element in ("shadows", "sky"):
             return replace(world, surroundings=replace(world.surroundings, **_change(element, self._boolean())))
         red, green, blue = self._vector(3)
@@ -284,6 +284,11 @@ class _Override:
         if math.isnan(value) or not fits(value):
             raise _bad(self.text, f"found {self.value!r}, allowed is {allowed}")
         return value
+
+    def _one_of(self, allowed: Sequence[str]) -> str:
+        if self.value not in allowed:
+            raise _bad(self.text, f"found {self.value!r}, allowed is one of {', '.join(allowed)}")
+        return self.value
 
     def _boolean(self) -> bool:
         folded = self.value.lower()

@@ -28,6 +28,7 @@ from simkit.compiler.mjcf_changes import (
     write_masses,
 )
 from simkit.compiler.names import GeomOwner, JointBinding, LightBinding, LinkBinding, ModelRecord
+from simkit.compiler.options import CONTACT_LAW
 from simkit.compiler.tree import WORLD
 from simkit.diagnostics import Diagnostics
 from simkit.engine import unheard
@@ -56,6 +57,8 @@ def adopt_settings(spec: mujoco.MjSpec, world: SceneWorld) -> None:
         world.gravity,
         world.magnetic_field,
     )
+    if spec.text(CONTACT_LAW) is not None and source.text(CONTACT_LAW) is not None:
+        spec.delete(spec.text(CONTACT_LAW))  # the file's own comes with its bodies
     for name in ("center", "extent", "meansize", "meanmass", "meaninertia"):
         setattr(spec.stat, name, getattr(source.stat, name))
 

@@ -23,6 +23,9 @@ there settles no better and makes a robot rock longer on its casters. Only a hea
 SOFT_SOLIMP: Final = (0.9, 0.95, 0.001, 0.5, 2.0)
 """Impedance of joint limits, of dry friction in joints and of contacts with a stiffness of their own."""
 
+CONTACT_LAW: Final = "simkit:contact_law"
+"""Name of the text in a model that says "mujoco" where contacts are to be as the engine alone has them."""
+
 SHORTEST_STEP: Final = 1e-9
 """[s]; time is counted in nanoseconds."""
 
@@ -68,6 +71,8 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     # a pyramid has 0.7 of the friction on its diagonals; with 100, what is gripped creeps 100 times less than with 1
     option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 100.0
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    if world.physics.contact_law != "simkit":
+        spec.add_text(name=CONTACT_LAW, data=world.physics.contact_law)
     compiler = spec.compiler
     compiler.degree = False
     compiler.autolimits = False
@@ -77,6 +82,15 @@ def apply_options(spec: mujoco.MjSpec, world: SceneWorld, diagnostics: Diagnosti
     head = spec.visual.headlight
     head.ambient = world.surroundings.ambient[:3]
     head.diffuse = head.specular = (0.0, 0.0, 0.0)
+
+
+def has_engine_contacts(model: mujoco.MjModel) -> bool:
+    """Return whether a compiled model asks for contacts and integration as the engine alone has them."""
+    number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_TEXT, CONTACT_LAW)
+    if number < 0:
+        return False
+    start = int(model.text_adr[number])
+    return bytes(model.text_data[start : start + int(model.text_size[number])]).rstrip(b"\0") == b"mujoco"
 
 
 def apply_size(spec: mujoco.MjSpec, colliding_geoms: int) -> None:

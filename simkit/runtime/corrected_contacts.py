@@ -29,7 +29,7 @@ _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 _PRESSED: Final = 1e-4  # [m] of penetration from which the impedance is looked at
 _BORNE: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in units of the tolerance
 _SLOW: Final = 4.0  # times the speed that gravity gives in a step: slower contacts rest and do not rebound
-_ACCURACY: Final = 2e-3  # of what is asked of a contact that closes fast
+_ACCURACY: Final = 2e-4  # of what is asked of a contact that closes fast
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.integer[Any]]

@@ -15,9 +15,11 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.options import has_engine_contacts
 from simkit.errors import SimulationDiverged
 from simkit.runtime.clock import Clock
 from simkit.runtime.contact_law import WINDOW, ContactLaw, ContactShaper
+from simkit.runtime.free_motion import FreeMotion
 from simkit.runtime.held_state import HeldState
 from simkit.runtime.sleep import Sleep
 from simkit.runtime.speculative import FLAG, FastBodies
@@ -81,6 +83,8 @@ class Physics:
         self.law = ContactLaw(model)
         self.shaper: ContactShaper | None = None
         self.fast_bodies = FastBodies(model)
+        is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+        self.free_motion = FreeMotion.of(model) if is_implicit and not has_engine_contacts(model) else None
         self.window = (False, -1, False, -1)
         self.stage = STALE
         self.edition += 1
@@ -361,7 +365,7 @@ class Physics:
 
     def single(self) -> None:
         """One step."""
-        plain = not (self._uses_law or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper)
+        plain = self.free_motion is None and not (self._uses_law or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper)
         if plain and self.stage == STALE and self.tick < self._until:
             mj_step(self.model, self.data)
             self.tick += 1
@@ -404,9 +408,13 @@ class Physics:
             self.stage = STALE
             self.tick += count
             return
-        end = self.tick + count
+        end, free_motion = self.tick + count, self.free_motion
         while self.tick < end:
-            if has_shaper or self._uses_law or self.tick >= self._until:
+            if free_motion is not None:
+                free_motion.prepare(self.data)
+                self._step_by_law(integrate)
+                free_motion.correct(self.data)
+            elif has_shaper or self._uses_law or self.tick >= self._until:
                 self._step_by_law(integrate)
             else:
                 self._plain_steps(min(end, self._until) - self.tick, integrate)

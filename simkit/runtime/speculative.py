@@ -15,7 +15,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from simkit.compiler.options import contact_time_constant
+from simkit.compiler.options import contact_time_constant, has_engine_contacts
 from simkit.runtime.contact_law import WINDOW
 from simkit.runtime.travel_bounds import (
     Floats,
@@ -123,7 +123,7 @@ class FastBodies:
         self._rooted = weights * np.sqrt(counts[trees]) if nv else weights
         self._terms = np.empty(nv)
         self._starts = model.tree_dofadr.astype(np.intp)
-        self._can_be_fast = bool(len(self._moving)) and bool(weights.any())
+        self._can_be_fast = bool(len(self._moving)) and bool(weights.any()) and not has_engine_contacts(model)
 
     # ------------------------------------------------------------------ the look
 

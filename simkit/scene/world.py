@@ -12,6 +12,9 @@ from simkit.scene.geometry import Vec3
 from simkit.scene.model import Colour, SceneFrame, SceneJoint, SceneLight, SceneModel, ScenePlugin
 
 
+CONTACT_LAWS = ("simkit", "mujoco")
+
+
 @dataclass(frozen=True, slots=True)
 class Physics:
     """Step [s] and the wanted real-time factor (0: as fast as it goes).
@@ -19,6 +22,7 @@ class Physics:
     Attributes:
         max_contacts: of one pair of collisions; 20 where the file says nothing.
         sleep: whether what rests may be left out of the physics until something reaches it.
+        contact_law: "simkit", or "mujoco" for contacts and integration as the engine alone has them.
     """
 
     max_step_size: float = 0.001
@@ -26,6 +30,7 @@ class Physics:
     where: Where = NOWHERE
     max_contacts: int = 20
     sleep: bool = True
+    contact_law: str = "simkit"
 
 
 @dataclass(frozen=True, slots=True)

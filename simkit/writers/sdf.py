@@ -308,6 +308,7 @@ def _physics(world: SceneWorld) -> list[Params]:
     children = [
         text("max_step_size", physics.max_step_size),
         text("real_time_factor", physics.real_time_factor),
+        None if physics.contact_law == "simkit" else text("simkit:contact_law", physics.contact_law),
         None if physics.max_contacts == 20 else text("max_contacts", str(physics.max_contacts)),
     ]
     return [element("physics", "", children, name="default", type="ode")]

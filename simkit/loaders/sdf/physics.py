@@ -6,6 +6,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.scene import Physics
 from simkit.scene.geometry import Vec3
+from simkit.scene.world import CONTACT_LAWS
 
 _GRAVITY: Vec3 = (0.0, 0.0, -9.8)
 _SHORTEST = 1e-9  # seconds of one step
@@ -32,7 +33,9 @@ def read_physics(world: Params, diagnostics: Diagnostics) -> tuple[Physics, Vec3
         allowed = "it must be positive" if step <= 0 else f"time is counted in nanoseconds: at least {_SHORTEST:g} s"
         diagnostics.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, {allowed}", block.where)
         step = 0.001
-    return Physics(step, max(0.0, _real_time_factor(block, step)), block.where, _contacts(block)), gravity
+    law = block.choice("contact_law", CONTACT_LAWS, "simkit")
+    factor = max(0.0, _real_time_factor(block, step))
+    return Physics(step, factor, block.where, _contacts(block), contact_law=law), gravity
 
 
 def _contacts(block: Params) -> int:
