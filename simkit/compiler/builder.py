@@ -265,7 +265,8 @@ class SpecBuilder:
         Args:
             max_effort: [N·m or N]; the joint's own effort limit counts too.
             owner: who drives it; part of the actuator's name.
-            kv: wanted gain; None takes the highest that does not ring.
+            kv: wanted gain, with which a load slows the joint down; None takes the highest that does not ring, and
+                integral action, so that a constant load does not.
 
         Raises:
             KeyError: no such joint or axis.

@@ -144,9 +144,9 @@ class VelocityServos:
         for row, position, velocity in zip(rows, positions, velocities, strict=True):
             servo = row.servo
             load = 0.0
-            if tick - servo.tick <= self._longest:
-                mean = (position - servo.position) / ((tick - servo.tick) * timestep)
-                load = _unmet_load(row, mean, velocity)
+            ticks = tick - servo.tick
+            if 0 < ticks <= self._longest:
+                load = _unmet_load(row, (position - servo.position) / (ticks * timestep), velocity)
             servo.tick, servo.position, servo.velocity, servo.last_command = tick, position, velocity, servo.command
             if load:
                 is_changed = True
