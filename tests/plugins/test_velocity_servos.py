@@ -91,6 +91,7 @@ def speeds(sim: simkit.Simulation, seconds: float, torque: float = 0.0) -> np.nd
         ({"mass": 50.0, "mu": 0.3, "shape": "cylinder"}, 0.001),
         ({"mass": 10.0, "mu": 0.3, "shape": "sphere"}, 0.001),
         ({"mass": 50.0, "mu": 1.0, "shape": "sphere"}, 0.002),
+        ({"mass": 50.0, "mu": 1.0, "shape": "cylinder"}, 0.004),
         ({"mass": 10.0, "mu": 1.0, "width": 0.6, "length": 0.35}, 0.001),
         ({"mass": 50.0, "mu": 1.0, "width": 0.4, "length": 0.5}, 0.001),
     ],
