@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Final
 
 import mujoco
@@ -29,6 +30,8 @@ _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 _PRESSED: Final = 1e-4  # [m] of penetration from which the impedance is looked at
 _BORNE: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in units of the tolerance
 _SLOW: Final = 4.0  # times the speed that gravity gives in a step: slower contacts rest and do not rebound
+_FURTHEST: Final = 100.0  # times the square of a miss by which the acceleration goes beyond what was given
+_GROWS: Final = 1.0  # times the square of a miss from which the acceleration begins anew
 _ACCURACY: Final = 2e-4  # of what is asked of a contact that closes fast
 
 Floats = npt.NDArray[np.float64]
@@ -52,6 +55,55 @@ class Circumstances:
     closing: list[float] | None
 
 
+class Acceleration:
+    """Anderson's acceleration of a fixed-point iteration, with the last two differences.
+
+    Plain repetition gains a tenth of the distance a time where wheels are light, and 2 % where four wheels share the
+    load of a stiff vehicle, as a change of that share moves nothing.
+    """
+
+    def __init__(self) -> None:
+        self._misses: list[list[float]] = []
+        self._given: list[list[float]] = []
+
+    def next(self, asked: list[float], given: list[float]) -> list[float]:
+        """Return what to ask next, after `asked` has given `given`."""
+        miss = [g - x for x, g in zip(asked, given, strict=True)]
+        size = math.fsum(one * one for one in miss)
+        if self._misses and size > _GROWS * math.fsum(one * one for one in self._misses[-1]):
+            self._misses, self._given = [], []  # contacts have opened or closed: what was before says nothing
+        self._misses, self._given = [*self._misses[-2:], miss], [*self._given[-2:], given]
+        if len(self._misses) < 2:
+            return given
+        steps = [_difference(b, a) for a, b in pairwise(self._misses)]
+        moves = [_difference(b, a) for a, b in pairwise(self._given)]
+        shares = _least_squares(steps, miss)
+        further = [-math.fsum(share * move[i] for share, move in zip(shares, moves, strict=True)) for i in range(len(given))]
+        if math.fsum(one * one for one in further) > _FURTHEST * size:
+            return given
+        return [g + one for g, one in zip(given, further, strict=True)]
+
+
+def _difference(a: list[float], b: list[float]) -> list[float]:
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def _least_squares(columns: list[list[float]], wanted: list[float]) -> list[float]:
+    """Return the shares of one or two columns that come nearest to a vector."""
+    first, second = columns[-1], columns[0]
+    a = math.fsum(x * x for x in first)
+    e = math.fsum(x * y for x, y in zip(first, wanted, strict=True))
+    if len(columns) == 1:
+        return [e / a if a > 0.0 else 0.0]
+    b = math.fsum(x * y for x, y in zip(first, second, strict=True))
+    c = math.fsum(x * x for x in second)
+    f = math.fsum(x * y for x, y in zip(second, wanted, strict=True))
+    determinant = a * c - b * b
+    if determinant <= 1e-8 * a * c:
+        return [0.0, e / a if a > 0.0 else 0.0]
+    return [(a * f - b * e) / determinant, (c * e - b * f) / determinant]
+
+
 class FewContacts:
     """Contacts under the elliptic cone, on plain numbers.
 
@@ -73,6 +125,7 @@ class FewContacts:
         self._before: list[float] = []
         self._softness: list[float] = []
         self._asked: list[float] = []
+        self._sequence = Acceleration()
 
     def guess(self, moves: Floats) -> None:
         """Set references by a guess of J a, shape (nefc,); of the forces nothing is known yet."""
@@ -97,7 +150,7 @@ class FewContacts:
         accelerations, force, before, softness = moves.tolist(), forces.tolist(), self._before, self._softness
         if not softness:
             self._softness = softness = self._data.efc_R.tolist()
-        asked, stays = [], True
+        given, stays = [], True
         for (row, mus, normal, goal, rebounds, most), last in zip(self._contacts, self._asked, strict=True):
             if len(mus) == 2:
                 place = row + 1
@@ -116,12 +169,12 @@ class FewContacts:
                 normal = wanted if rebounds else max(normal, wanted) if normal < goal else min(normal, wanted)
                 most = max(most, _ACCURACY * goal)
             now = normal - math.sqrt(total)
-            asked.append(now)
+            given.append(now)
             if abs(now - last) > most:
                 stays = False
         if not stays:
-            self._asked, aref = asked, self._aref
-            for (row, _, _, _, _, _), now in zip(self._contacts, asked, strict=True):
+            self._asked, aref = self._sequence.next(self._asked, given), self._aref
+            for (row, _, _, _, _, _), now in zip(self._contacts, self._asked, strict=True):
                 aref[row] = now
         return stays
 
@@ -256,6 +309,7 @@ class ManyContacts:
         self._tangents: Floats = self._before
         self._compliance: Floats = self._softness[places]
         self._asked: Floats = normals
+        self._sequence = Acceleration()
 
     def guess(self, moves: Floats) -> None:
         """As `FewContacts.guess`."""
@@ -277,6 +331,7 @@ class ManyContacts:
         now = normals - size
         if (np.abs(now - self._asked) <= most).all():
             return True
+        now = np.array(self._sequence.next(self._asked.tolist(), now.tolist()))
         self._ask(now)
         return False
 
