@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit.compiler.options import SHORTEST_STEP
 from simkit.compiler.servo import ServoTraits, servo_traits
 from simkit.runtime.physics import CONTROL
 
@@ -107,7 +108,8 @@ class VelocityServos:
         self._sim = sim
         self.servos: dict[str, _Servo] = {}
         self._period = max(1.0 / RATE, sim.clock.timestep)
-        self._longest = math.ceil(1.5 * self._period / sim.clock.timestep)  # ticks; after more it begins anew
+        # in ticks; after more it begins anew
+        self._longest = math.ceil(min(1.5 * self._period / max(sim.clock.timestep, SHORTEST_STEP), 1e15))
         self._model: Any = None
         self._rows: list[_Row] = []
         self._dofs = self._places = np.zeros(0, np.intp)
