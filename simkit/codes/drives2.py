@@ -52,7 +52,7 @@ CODES: tuple[Code, ...] = (
     Code(
         "SK-PHYS-030",
         "warning",
-        "direction and slip of friction, or a surface that runs, in a world whose MJCF file asks for the discrete integrator",
+        "direction and slip of friction, or a surface that runs, in a world whose MJCF file asks for `discrete`",
         "the discrete integrator has no place between velocities and forces; the other integrators have one",
         python(_SPAWNS, {"yard.xml": _YARD}),
     ),

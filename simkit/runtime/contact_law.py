@@ -52,6 +52,7 @@ mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
 WINDOW: Final = 8
 """Steps for which one look at the contacts decides whether they follow the law."""
 
+
 class ContactShaper(Protocol):
     """Changes contacts in every forward pass, once velocities are known and before forces are."""
 
@@ -84,6 +85,7 @@ class ContactLaw:
         self.closing: list[float] | None = None
         self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
         self._product = np.empty(0)
+        self._around = Circumstances(float(model.opt.timestep), [], 0.0, None)
         constant = contact_time_constant(float(model.opt.timestep))
         self._least_reference = (DEEP / (constant * constant)) ** 2
         self._wheels, self._carried = WheelContacts(model), CarriedContacts(model)
@@ -109,7 +111,7 @@ class ContactLaw:
         """
         if not self._is_on:
             return False
-        if data.ncon and (self._always_merges or not self._is_quiet(data) and self._finds(data)):
+        if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._finds(data))):
             return True
         return self._has_flying(data) or bool(self._carried.find(data))
 
@@ -170,9 +172,11 @@ class ContactLaw:
     def _find(self, data: Any) -> FewContacts | ManyContacts | None:
         """Return the contacts whose normal reference has to be corrected."""
         gravity: list[float] = self._gravity.tolist()
-        x, y, z = gravity
-        tolerance = TOLERANCE * max(_LEAST_GRAVITY, math.sqrt(x * x + y * y + z * z))
-        around = Circumstances(float(self.model.opt.timestep), gravity, tolerance, self.closing)
+        around = self._around
+        if gravity != around.gravity:
+            around.gravity = gravity
+            around.tolerance = TOLERANCE * max(_LEAST_GRAVITY, math.hypot(*gravity))
+        around.closing = self.closing
         if data.ncon > MANY or self.model.opt.cone == _PYRAMID:
             return find_many(self.model, data, around)
         return find_few(data, around)

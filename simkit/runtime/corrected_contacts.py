@@ -78,7 +78,9 @@ class Acceleration:
         steps = [_difference(b, a) for a, b in pairwise(self._misses)]
         moves = [_difference(b, a) for a, b in pairwise(self._given)]
         shares = _least_squares(steps, miss)
-        further = [-math.fsum(share * move[i] for share, move in zip(shares, moves, strict=True)) for i in range(len(given))]
+        further = [
+            -math.fsum(share * move[i] for share, move in zip(shares, moves, strict=True)) for i in range(len(given))
+        ]
         if math.fsum(one * one for one in further) > _FURTHEST * size:
             return given
         return [g + one for g, one in zip(given, further, strict=True)]
@@ -125,7 +127,7 @@ class FewContacts:
         self._before: list[float] = []
         self._softness: list[float] = []
         self._asked: list[float] = []
-        self._sequence = Acceleration()
+        self._sequence: Acceleration | None = None
 
     def guess(self, moves: Floats) -> None:
         """Set references by a guess of J a, shape (nefc,); of the forces nothing is known yet."""
@@ -173,6 +175,8 @@ class FewContacts:
             if abs(now - last) > most:
                 stays = False
         if not stays:
+            if self._sequence is None:
+                self._sequence = Acceleration()
             self._asked, aref = self._sequence.next(self._asked, given), self._aref
             for (row, _, _, _, _, _), now in zip(self._contacts, self._asked, strict=True):
                 aref[row] = now
@@ -343,7 +347,9 @@ class ManyContacts:
 
     def _ask(self, normals: Floats) -> None:
         self._asked = normals
-        self._aref[self._edges] = self._before + (normals - self._normals)[:, None] if self._is_pyramid else normals[:, None]
+        self._aref[self._edges] = (
+            self._before + (normals - self._normals)[:, None] if self._is_pyramid else normals[:, None]
+        )
 
     def _size(self, residual: Floats) -> Floats:
         return _size(residual, self._mu, self._is_pyramid)
@@ -358,8 +364,8 @@ def _size(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
     total: Floats = np.zeros(len(mu))
     for one in (mu * residual).T:
         total += one * one
-    found = np.sqrt(total)
-    return found
+    lengths: Floats = np.sqrt(total)
+    return lengths
 
 
 def find_many(model: Any, data: Any, around: Circumstances) -> ManyContacts | None:

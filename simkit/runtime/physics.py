@@ -365,7 +365,9 @@ class Physics:
 
     def single(self) -> None:
         """One step."""
-        plain = self.free_motion is None and not (self._uses_law or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper)
+        plain = self.free_motion is None and not (
+            self._uses_law or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper
+        )
         if plain and self.stage == STALE and self.tick < self._until:
             mj_step(self.model, self.data)
             self.tick += 1

@@ -1,11 +1,12 @@
 """Friction of wheels in the middle of their treads.
 
-A wide wheel touches flat ground at the two ends of a line. While it turns about the vertical both ends slip, in opposite
-directions; under Coulomb's law the least drag then makes one of them stick, and the wheel rolls on that edge: half a
-width, 6 % of the speed of a TurtleBot3 that turns on the spot. Along the line of contact of a tyre the slip changes
-steadily, and friction of that size shifts the resting point by a small share of the width only (that share is the
-drag over mu N). So both contacts keep their own normals, which hold the wheel upright, and share one friction point:
-where the line of contact crosses the middle of the tread.
+A wide wheel touches flat ground at the two ends of a line. While it turns about the vertical, both ends slip in
+opposite directions. Under Coulomb's law the least drag then makes one end stick, and the wheel rolls on that edge. Its
+track is wrong by half a width, 6 % of the speed of a TurtleBot3 that turns on the spot. On the line of contact of a
+tyre the slip changes steadily. There a drag D moves the point without slip by the share D / (mu N) of half the width.
+
+So both contacts keep their own normals, which hold the wheel upright, and share one friction point: the place where
+the line of contact crosses the middle of the tread.
 """
 
 from __future__ import annotations

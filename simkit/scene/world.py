@@ -11,7 +11,6 @@ from simkit.pose import IDENTITY, Pose
 from simkit.scene.geometry import Vec3
 from simkit.scene.model import Colour, SceneFrame, SceneJoint, SceneLight, SceneModel, ScenePlugin
 
-
 CONTACT_LAWS = ("simkit", "mujoco")
 
 

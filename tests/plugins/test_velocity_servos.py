@@ -109,7 +109,7 @@ def test_skid_steering_on_the_spot_turns_at_the_coulomb_balance_of_what_was_aske
         sim.run(2.0)
         turned = (before.inverse() @ sim.model("cart").pose).rpy[2]
         rims = [abs(wheel(sim, name).velocity) * RADIUS for name in WHEELS]
-        assert rims == pytest.approx([0.5 * width / 2] * 4, rel=0.01)
+        assert rims == pytest.approx([0.5 * width / 2] * 4, rel=0.01 if step < 0.004 else 0.02)
     assert turned == pytest.approx(0.5 * 2.0 * width**2 / (width**2 + length**2), rel=0.02)
 
 
