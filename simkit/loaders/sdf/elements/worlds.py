@@ -80,7 +80,7 @@ PHYSICS = table(
 @type                 - the engine is MuJoCo
 @default              = whether it is the profile that counts
 max_step_size         = the time step [s]
-contact_law           = simkit, or mujoco for the engine's own contacts (our own: `<simkit:contact_law>`; docs/physics.md)
+contact_law           = simkit, or mujoco: the engine's own contacts (our own: `<simkit:contact_law>`; docs/physics.md)
 real_time_factor      = how fast it runs when asked to keep pace with the clock
 real_time_update_rate = the same in steps a second, where the factor is not given
 update_rate           = the same before 1.5
