@@ -115,35 +115,43 @@ class ContactLaw:
             return True
         return self._has_flying(data) or bool(self._carried.find(data))
 
-    def solve(self, data: Any, *, keeps_references: bool = False) -> None:
+    def solve(self, data: Any, *, keeps_references: bool = False, probes: bool = False) -> bool:
         """Solve for accelerations and forces.
 
         Args:
             data: of the engine, with positions and velocities up to date.
             keeps_references: whether the references of constraints stay corrected, for the engine to solve once more;
                 else they are put back as they were.
+            probes: whether contacts that do not slide yet may be pushed into it by a new control or force.
+
+        Returns:
+            Whether some contact was corrected.
         """
         if not (data.ncon and self._is_on):
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
-            return
+            return False
         found, carried = None, self._carried.find(data)
         if self._always_merges:
             self._wheels.merge(data)
             has_to_look = not self._is_quiet(data)
         else:
             has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
-        if has_to_look:
+        if probes:
+            mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+            found = self._find(data, data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force)
+        elif has_to_look:
             found = self._find(data)
         before = self._carried.correct(data, carried) if carried else []
         if found is not None:
             self._repeat(data, found)
-        else:
+        elif before or not probes:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
         if not keeps_references:
             if found is not None:
                 found.restore()
             for row, reference in before:
                 data.efc_aref[row] = reference
+        return found is not None
 
     def _finds(self, data: Any) -> bool:
         """Return whether some contact has to be corrected; leaves the references as they were."""
@@ -169,7 +177,7 @@ class ContactLaw:
             return False
         return bool(reference.dot(reference) < self._least_reference)
 
-    def _find(self, data: Any) -> FewContacts | ManyContacts | None:
+    def _find(self, data: Any, residual: Any = None) -> FewContacts | ManyContacts | None:
         """Return the contacts whose normal reference has to be corrected."""
         gravity: list[float] = self._gravity.tolist()
         around = self._around
@@ -178,21 +186,23 @@ class ContactLaw:
             around.tolerance = TOLERANCE * max(_LEAST_GRAVITY, math.hypot(*gravity))
         around.closing = self.closing
         if data.ncon > MANY or self.model.opt.cone == _PYRAMID:
-            return find_many(self.model, data, around)
-        return find_few(data, around)
+            return find_many(self.model, data, around, residual)
+        return find_few(data, around, residual)
 
     def _repeat(self, data: Any, found: FewContacts | ManyContacts) -> None:
         """Solve, correct the normal references by the solution, and solve again until they stay."""
         model = self.model
-        if self._product.size != data.nefc:
-            self._product = np.empty(data.nefc)
-        product = self._product
-        mj_mul_jac_vec(model, data, product, data.qacc_warmstart)
-        found.guess(product)
+        found.guess(self._multiplied(data, data.qacc_warmstart))
         for _ in range(MOST_SOLUTIONS - 1):
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
-            mj_mul_jac_vec(model, data, product, data.qacc)
-            if found.correct(product, data.efc_force):
+            if found.correct(self._multiplied(data, data.qacc), data.efc_force):
                 break
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+
+    def _multiplied(self, data: Any, acceleration: Any) -> Any:
+        """Return J a, shape (nefc,); the array is used again at the next call."""
+        if self._product.size != data.nefc:
+            self._product = np.empty(data.nefc)
+        mj_mul_jac_vec(self.model, data, self._product, acceleration)
+        return self._product

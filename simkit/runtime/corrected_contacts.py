@@ -191,16 +191,19 @@ class FewContacts:
             aref[row] = reference
 
 
-def find_few(data: Any, around: Circumstances) -> FewContacts | None:
+def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -> FewContacts | None:
     """Return the contacts that slide, close or open fast, or overlap; None where there is none.
 
     Args:
         data: of the engine, with velocities up to date and an elliptic cone.
         around: step, gravity and tolerance.
+        residual: aref - J a - R f of a solution, shape (nefc,), for contacts that only begin to slide; without it a
+            contact slides by its velocity.
     """
     contact, step, closing = data.contact, around.step, around.closing
     all_rows, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
     aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
+    slip: list[float] = aref if residual is None else residual.tolist()
     distance: list[float] = contact.dist.tolist()
     stiffness: list[list[float]] | None = None
     found, changed = [], []
@@ -209,12 +212,12 @@ def find_few(data: Any, around: Circumstances) -> FewContacts | None:
             continue
         dim, mus = dims[number], friction[number]
         if dim == 3:
-            one, other = mus[0] * aref[row + 1], mus[1] * aref[row + 2]
+            one, other = mus[0] * slip[row + 1], mus[1] * slip[row + 2]
             total = one * one + other * other
         else:
             total = 0.0
             for place in range(1, dim):
-                one = mus[place - 1] * aref[row + place]
+                one = mus[place - 1] * slip[row + place]
                 total += one * one
         normal, speed, goal, depth = aref[row], velocity[row], math.nan, -distance[number]
         closes, tolerance = speed < -EXIT_SPEED, around.tolerance
@@ -368,7 +371,7 @@ def _size(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
     return lengths
 
 
-def find_many(model: Any, data: Any, around: Circumstances) -> ManyContacts | None:
+def find_many(model: Any, data: Any, around: Circumstances, residual: Floats | None = None) -> ManyContacts | None:
     """As `find_few`, for either cone."""
     contact, is_pyramid, step = data.contact, bool(model.opt.cone == _PYRAMID), around.step
     numbers = (contact.efc_address >= 0).nonzero()[0]
@@ -412,7 +415,7 @@ def find_many(model: Any, data: Any, around: Circumstances) -> ManyContacts | No
     if pressed.size:
         impedance = data.efc_KBIP[rows[pressed], 2]
         tolerances[pressed] = np.minimum(around.tolerance, _BORNE * around.tolerance * (1.0 - impedance) / impedance)
-    slides = _size(aref[places], mu, is_pyramid) > tolerances
+    slides = _size((aref if residual is None else residual)[places], mu, is_pyramid) > tolerances
     chosen = slides | ~np.isnan(goals)
     if not chosen.any():
         return None

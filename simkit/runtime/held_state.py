@@ -18,9 +18,10 @@ class HeldState:
         request: what plugins asked of contacts at that tick, for `ContactShaper.shape`.
         uses_law, is_fast: whether its step follows the contact law, and has speculative contacts; None where that is
             still to be found from the state.
+        probes: whether controls or forces have changed before that step so that contacts may begin to slide.
     """
 
-    __slots__ = ("is_fast", "model", "request", "tick", "uses_law", "values")
+    __slots__ = ("is_fast", "model", "probes", "request", "tick", "uses_law", "values")
 
     def __init__(
         self,
@@ -30,9 +31,10 @@ class HeldState:
         request: Any,
         uses_law: bool | None,
         is_fast: bool | None,
+        probes: bool,
     ) -> None:
         self.tick, self.model, self.values, self.request = tick, model, values, request
-        self.uses_law, self.is_fast = uses_law, is_fast
+        self.uses_law, self.is_fast, self.probes = uses_law, is_fast, probes
 
     def __deepcopy__(self, memo: dict[int, Any]) -> HeldState:
         return self

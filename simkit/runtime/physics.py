@@ -49,6 +49,8 @@ _HELD = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 _WALL_LIMIT = 0.04  # [s] of one call into the engine, so that an interrupt is heard
 
 _AFTER_VELOCITIES = _SKIP[CONTROL]
+_LEAST_PUSH = 0.2  # [m/s²] of the rims of wheels, by a change of controls, from which contacts are looked at
+_LEVER = 0.1  # [m] of what a hinge moves
 _SHORT = 16  # steps; so few are not timed, which costs as much as a small step
 
 _engine_texts: list[str] = []
@@ -85,7 +87,8 @@ class Physics:
         self.fast_bodies = FastBodies(model)
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self.free_motion = FreeMotion.of(model) if is_implicit and not has_engine_contacts(model) else None
-        self.window = (False, -1, False, -1)
+        self._probed, self._push = data.ctrl.copy(), _accelerations_by_control(model)
+        self.window = (False, -1, False, -1, False)
         self.stage = STALE
         self.edition += 1
         self.one_shot = False
@@ -115,6 +118,8 @@ class Physics:
         self.sleep.rests = False
         if stage > CONTROL:
             self._until = self._fast_until = -1  # velocities are others than those that decided how steps are made
+        elif not self._probes:
+            self._probes = self.one_shot or self._is_pushed()
 
     def changed_body(self, stage: int, body: int) -> None:
         """The same of one body, which wakes where it sleeps."""
@@ -197,17 +202,26 @@ class Physics:
         self.stage = CONTROL
 
     @property
-    def window(self) -> tuple[bool, int, bool, int]:
+    def window(self) -> tuple[bool, int, bool, int, bool]:
         """Whether steps follow the contact law, and have speculative contacts, each with the tick it is decided up to.
 
-        It is part of the state.
+        The last is whether controls or forces have changed so that contacts may begin to slide. It is all part of the
+        state.
         """
-        return self._uses_law, self._until, self._is_fast, self._fast_until
+        return self._uses_law, self._until, self._is_fast, self._fast_until, self._probes
 
     @window.setter
-    def window(self, value: tuple[bool, int, bool, int]) -> None:
-        self._uses_law, self._until, self._is_fast, self._fast_until = value
+    def window(self, value: tuple[bool, int, bool, int, bool]) -> None:
+        self._uses_law, self._until, self._is_fast, self._fast_until, self._probes = value
         _set_speculative(self.model, self._is_fast)
+
+    def _is_pushed(self) -> bool:
+        """Return whether controls differ so much from those of the last look that wheels may begin to slip."""
+        change = (self.data.ctrl - self._probed) * self._push
+        if change.dot(change) <= _LEAST_PUSH * _LEAST_PUSH:
+            return False
+        self._probed[:] = self.data.ctrl
+        return True
 
     def _look_for_fast(self) -> None:
         """Decide at the beginning of a window, from the state alone, whether it needs speculative contacts."""
@@ -228,7 +242,7 @@ class Physics:
         """Complete the forward pass: with the contact law where the steps of this window need it."""
         model, data, stage = self.model, self.data, self.stage
         is_shaped = self._acting_shaper is not None
-        if self._integrate is None or not (self.tick >= self._until or self._uses_law or is_shaped):
+        if self._integrate is None or not (self.tick >= self._until or self._uses_law or self._probes or is_shaped):
             if stage != STALE:
                 mj_forward_skip(model, data, _SKIP[stage], 1)
             elif self.sleep.wants_all_awake:
@@ -243,7 +257,10 @@ class Physics:
             self._until = (self.tick // WINDOW + 1) * WINDOW
             self._uses_law = self._is_fast or self.law.is_needed(data)
         self.law.closing = self.fast_bodies.closing if self._is_fast else None
-        if self._uses_law or is_shaped:
+        if self._probes:
+            self._probes = False
+            self._uses_law = self.law.solve(data, probes=True) or self._uses_law
+        elif self._uses_law or is_shaped:
             self.law.solve(data)
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
@@ -285,7 +302,7 @@ class Physics:
                 uses_law = True
             request = None if shaper is None else shaper.request()
             is_fast = self._is_fast if self.tick < self._fast_until else None
-            self._held = HeldState(self.tick, self.model, values, request, uses_law, is_fast)
+            self._held = HeldState(self.tick, self.model, values, request, uses_law, is_fast, self._probes)
         return self._held
 
     def data_of(self, held: HeldState) -> Any:
@@ -314,7 +331,9 @@ class Physics:
             if shaper is not None:
                 shaper.shape(data, held.request)
             law.closing = fast.closing if is_fast else None
-            if is_fast or (law.is_needed(data) if held.uses_law is None else held.uses_law):
+            if held.probes:
+                law.solve(data, probes=True)
+            elif is_fast or (law.is_needed(data) if held.uses_law is None else held.uses_law):
                 law.solve(data)
             elif shaper is not None:
                 mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
@@ -366,7 +385,7 @@ class Physics:
     def single(self) -> None:
         """One step."""
         plain = self.free_motion is None and not (
-            self._uses_law or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper
+            self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper
         )
         if plain and self.stage == STALE and self.tick < self._until:
             mj_step(self.model, self.data)
@@ -416,7 +435,7 @@ class Physics:
                 free_motion.prepare(self.data)
                 self._step_by_law(integrate)
                 free_motion.correct(self.data)
-            elif has_shaper or self._uses_law or self.tick >= self._until:
+            elif has_shaper or self._uses_law or self._probes or self.tick >= self._until:
                 self._step_by_law(integrate)
             else:
                 self._plain_steps(min(end, self._until) - self.tick, integrate)
@@ -514,3 +533,14 @@ class Physics:
 def _set_speculative(model: Any, is_on: bool) -> None:
     flags = model.opt.enableflags
     model.opt.enableflags = flags | FLAG if is_on else flags & ~FLAG
+
+
+def _accelerations_by_control(model: Any) -> npt.NDArray[np.float64]:
+    """Return how fast a unit of each control accelerates what its joint moves [m/s²], shape (nu,)."""
+    found = np.zeros(model.nu)
+    for i in range(model.nu):
+        if model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_JOINT:
+            joint = int(model.actuator_trnid[i, 0])
+            lever = 1.0 if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE else _LEVER
+            found[i] = lever * model.actuator_gainprm[i, 0] * model.dof_invweight0[model.jnt_dofadr[joint]]
+    return found

@@ -43,7 +43,7 @@ class Snapshot:
     last_applied: Any
     sleep: tuple[Any, ...] = (False,)
     last_pushed: Any = None
-    window: tuple[bool, int, bool, int] = (False, -1, False, -1)
+    window: tuple[bool, int, bool, int, bool] = (False, -1, False, -1, False)
     seed: int = 0
     owner: Any = None
 
