@@ -21,6 +21,7 @@ from simkit.compiler.meshes.part import Colour, Floats, Ints, MeshFileError, Mes
 from simkit.compiler.names import GeomOwner, ModelRecord
 from simkit.compiler.shapes import cone, polyline, polyline_pieces, primitive_of, sizes_of
 from simkit.compiler.shapes_textured import textured
+from simkit.compiler.wheel_meshes import RoundMesh, TurningAxis, round_mesh
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
@@ -41,6 +42,7 @@ class Place:
         offset: the link frame in the body's frame.
         fixed: nothing moves it but the user (world geoms and mocap bodies).
         mass: of the moving tree [kg]; 0 where fixed.
+        axis: line about which the link turns freely.
     """
 
     body: Any
@@ -48,6 +50,7 @@ class Place:
     fixed: bool
     mass: float
     link: str
+    axis: TurningAxis | None = None
 
 
 class GeomWriter:
@@ -124,6 +127,11 @@ class GeomWriter:
         vertices, faces = joined(parts)
         optimization, most = (shape.optimization, shape.max_hulls) if isinstance(shape, Mesh) else ("", 16)
         bodies = bodies_of(vertices, faces, fixed=place.fixed, optimization=optimization, most=most)
+        if isinstance(shape, Mesh) and place.axis is not None:
+            wheel = round_mesh(bodies.shapes, collision.pose_link, place.axis)
+            if wheel is not None:
+                self._wheel(place, owner, collision, wheel, contact)
+                return
         for severity, code, text, hint in bodies.findings:
             once(self.diagnostics, severity, code, f"{_title(shape)} {text}", collision.where, hint)
         settings = _colliding(contact, COLLISION if bodies.is_exact else COLLISION_CONTACT)
@@ -132,6 +140,18 @@ class GeomWriter:
             self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
         if not bodies.is_exact:
             self._ray_copy(place, owner, collision.pose_link, vertices, faces)
+
+    def _wheel(
+        self, place: Place, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, contact: Contact
+    ) -> None:
+        size = (wheel.radius, wheel.length / 2, 0.0)
+        cylinder = f"a cylinder of radius {wheel.radius:.4g} m and length {wheel.length:.4g} m"
+        text = f"{_title(collision.geometry)} is round about the axis of its joint: it collides as {cylinder}"
+        once(self.diagnostics, "note", "SK-MESH-016", text, collision.where)
+        kind = mujoco.mjtGeom.mjGEOM_CYLINDER
+        self._add(
+            place, owner, collision.pose_link @ wheel.pose, type=kind, size=size, **_colliding(contact, COLLISION)
+        )
 
     def _ray_copy(self, place: Place, owner: GeomOwner, pose: Pose, vertices: Floats, faces: Ints) -> None:
         name = self.assets.surface(vertices, faces)

@@ -17,6 +17,7 @@ from simkit.compiler.lights import add_light, report_light
 from simkit.compiler.masks import keep_apart
 from simkit.compiler.names import LightBinding, LinkBinding, ModelRecord
 from simkit.compiler.tree import WORLD, Tree, plan_tree
+from simkit.compiler.wheel_meshes import turning_axis
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
 from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneWorld
@@ -145,7 +146,8 @@ class ModelWriter:
             if not is_free and (link.kinematic or any(link.velocity_decay)):
                 self._only_when_free(link)
             self.record.links[link.scoped] = binding
-            self._fill(Place(body, IDENTITY, False, tree.masses[tree.root_of(link.scoped)], link.scoped), link)
+            mass = tree.masses[tree.root_of(link.scoped)]
+            self._fill(Place(body, IDENTITY, False, mass, link.scoped, turning_axis(link, tree)), link)
         for link in tree.order:
             edge = tree.edges.get(link.scoped)
             if edge is not None:

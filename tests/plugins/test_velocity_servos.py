@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from plugin_worlds import GROUND, element, world
 
 import simkit
@@ -15,7 +17,16 @@ WHEELS = ("front_left", "rear_left", "front_right", "rear_right")
 SHAPES = {
     "cylinder": f"<cylinder><radius>{RADIUS}</radius><length>0.05</length></cylinder>",
     "sphere": f"<sphere><radius>{RADIUS}</radius></sphere>",
+    "mesh": "<mesh><uri>wheel.obj</uri></mesh>",
 }
+
+
+@pytest.fixture(scope="session")
+def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the mesh of a wheel: a prism of 48 sides."""
+    folder = tmp_path_factory.mktemp("meshes")
+    trimesh.creation.cylinder(RADIUS, 0.05, sections=48).export(folder / "wheel.obj")
+    return folder
 
 
 def inertial(mass: float, size: float) -> str:
@@ -55,13 +66,21 @@ def vehicle(
     return f"<model name='cart'>{''.join(parts)}{extra}{plugin}</model>"
 
 
-def opened(step: float = 0.001, slope: float = 0.0, held: bool = False, **values: object) -> simkit.Simulation:
-    """The vehicle on a plane inclined by `slope` [rad] (gravity has a part along +x), or with its chassis held."""
+def opened(
+    step: float = 0.001, slope: float = 0.0, held: bool = False, folder: Path | None = None, **values: object
+) -> simkit.Simulation:
+    """The vehicle on a plane inclined by `slope` [rad] (gravity has a part along +x), or with its chassis held.
+
+    Args:
+        folder: holds the meshes.
+    """
+    folders = [] if folder is None else [folder]
     gravity = f"<gravity>{9.81 * math.sin(slope)} 0 {-9.81 * math.cos(slope)}</gravity>"
     if held:
         weld = "<joint name='hold' type='fixed'><parent>world</parent><child>base</child></joint>"
         return simkit.load(world("<gravity>0 0 0</gravity>", vehicle(extra=weld, **values), step=step))  # type: ignore[arg-type]
-    return simkit.load(world(gravity, GROUND, vehicle(**values), step=step))  # type: ignore[arg-type]
+    text = world(gravity, GROUND, vehicle(**values), step=step)  # type: ignore[arg-type]
+    return simkit.load(text, resource_paths=folders)
 
 
 def drive(sim: simkit.Simulation, linear: float = 0.0, angular: float = 0.0) -> None:
@@ -92,16 +111,17 @@ def speeds(sim: simkit.Simulation, seconds: float, torque: float = 0.0) -> np.nd
         ({"mass": 10.0, "mu": 0.3, "shape": "sphere"}, 0.001),
         ({"mass": 50.0, "mu": 1.0, "shape": "sphere"}, 0.002),
         ({"mass": 50.0, "mu": 1.0, "shape": "cylinder"}, 0.004),
+        *(({"mass": mass, "mu": mu, "shape": "mesh"}, 0.001) for mass in (10.0, 50.0) for mu in (0.3, 1.0)),
         ({"mass": 10.0, "mu": 1.0, "width": 0.6, "length": 0.35}, 0.001),
         ({"mass": 50.0, "mu": 1.0, "width": 0.4, "length": 0.5}, 0.001),
     ],
 )
 def test_skid_steering_on_the_spot_turns_at_the_coulomb_balance_of_what_was_asked(
-    values: dict[str, object], step: float
+    values: dict[str, object], step: float, meshes: Path
 ) -> None:
     """Each wheel slips against its friction; without a net torque the yaw rate is W²/(W²+L²) of the wheels'."""
     width, length = values.get("width", 0.5), values.get("length", 0.4)
-    with opened(step, **values) as sim:
+    with opened(step, folder=meshes, **values) as sim:
         sim.run(0.5)
         drive(sim, angular=0.5)
         sim.run(1.0)
