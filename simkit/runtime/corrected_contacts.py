@@ -27,6 +27,7 @@ DEEP: Final = 1e-3
 _LEAVES: Final = 0.2 * EXIT_SPEED  # [m/s] from which a contact counts as on its way out
 
 _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
+_CLOSES: Final = -EXIT_SPEED  # [m/s] of a contact below which it closes fast
 _PRESSED: Final = 1e-4  # [m] of penetration from which the impedance is looked at
 _BORNE: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in units of the tolerance
 _SLOW: Final = 4.0  # times the speed that gravity gives in a step: slower contacts rest and do not rebound
@@ -205,8 +206,9 @@ def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -
     aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
     slip: list[float] = aref if residual is None else residual.tolist()
     distance: list[float] = contact.dist.tolist()
-    stiffness: list[list[float]] | None = None
-    found, changed = [], []
+    found: list[tuple[int, list[float], float, float, bool, float]] = []
+    changed: list[tuple[int, float]] = []
+    nothing, square = math.nan, around.tolerance * around.tolerance
     for number, row in enumerate(all_rows):
         if row < 0:
             continue
@@ -219,9 +221,13 @@ def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -
             for place in range(1, dim):
                 one = mus[place - 1] * slip[row + place]
                 total += one * one
-        normal, speed, goal, depth = aref[row], velocity[row], math.nan, -distance[number]
-        closes, tolerance = speed < -EXIT_SPEED, around.tolerance
-        after, rebounds = speed, False
+        speed, depth = velocity[row], -distance[number]
+        if _CLOSES <= speed <= _LEAVES and depth <= _PRESSED:  # it slides at most: most contacts, most of the time
+            if total > square:
+                found.append((row, mus[: dim - 1], aref[row], nothing, False, around.tolerance))
+            continue
+        normal, goal, after, rebounds = aref[row], nothing, speed, False
+        closes, tolerance = speed < _CLOSES, around.tolerance
         if closes and closing is not None:  # what is stopped ahead of the surface goes on towards it, slowly
             first, second = contact.geom[number].tolist()
             after = min(0.0, speed + closing[first] + closing[second])
@@ -231,10 +237,8 @@ def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -
             wanted = max(0.0, (EXIT_SPEED - after) / step)
             is_wrong = normal > wanted and (closes or speed > _LEAVES or depth > DEEP)
         if is_wrong or closes:
-            if stiffness is None:
-                stiffness = contact.solref.tolist()
-            if stiffness[number][0] > 0.0:
-                goal = wanted if is_wrong else math.nan
+            if contact.solref.item(number, 0) > 0.0:
+                goal = wanted if is_wrong else nothing
             elif closes:
                 goal, slower = _rebound(data, number, speed, around)
                 if goal == goal:
@@ -392,7 +396,7 @@ def find_many(model: Any, data: Any, around: Circumstances, residual: Floats | N
     pair = edges[:, :2] if is_pyramid else edges
     normals, speed = aref[pair], velocity[pair]
     normals, speed = (normals.mean(axis=1), speed.mean(axis=1)) if is_pyramid else (normals[:, 0], speed[:, 0])
-    depth, closes = -contact.dist[which], speed < -EXIT_SPEED
+    depth, closes = -contact.dist[which], speed < _CLOSES
     after = speed
     if around.closing is not None:
         left = np.array(around.closing)[contact.geom[which]]
