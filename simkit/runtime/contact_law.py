@@ -49,8 +49,13 @@ _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
 
 mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
 
-WINDOW: Final = 8
-"""Steps for which one look at the contacts decides whether they follow the law."""
+def window_of(timestep: float) -> int:
+    """Return for how many steps one look at the contacts decides whether they follow the law.
+
+    A look costs 3 to 6 µs: at 16 steps 1 to 4 % of what they take, at 8 twice that. Longer steps have the shorter
+    window, as what begins to slide within it is lifted until it ends.
+    """
+    return 16 if timestep <= 0.001 else 8
 
 
 class ContactShaper(Protocol):

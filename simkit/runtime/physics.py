@@ -18,7 +18,7 @@ import numpy.typing as npt
 from simkit.compiler.options import has_engine_contacts
 from simkit.errors import SimulationDiverged
 from simkit.runtime.clock import Clock
-from simkit.runtime.contact_law import WINDOW, ContactLaw, ContactShaper
+from simkit.runtime.contact_law import ContactLaw, ContactShaper, window_of
 from simkit.runtime.free_motion import FreeMotion
 from simkit.runtime.held_state import HeldState
 from simkit.runtime.sleep import Sleep
@@ -82,7 +82,7 @@ class Physics:
         """Other engine objects (after a spawn, a removal, a restore)."""
         self.model, self.data = model, data
         self.sleep = Sleep(model, data, self._may_sleep)
-        self.law = ContactLaw(model)
+        self.law, self._window = ContactLaw(model), window_of(float(model.opt.timestep))
         self.shaper: ContactShaper | None = None
         self.fast_bodies = FastBodies(model)
         is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -225,7 +225,7 @@ class Physics:
 
     def _look_for_fast(self) -> None:
         """Decide at the beginning of a window, from the state alone, whether it needs speculative contacts."""
-        self._fast_until = (self.tick // WINDOW + 1) * WINDOW
+        self._fast_until = (self.tick // self._window + 1) * self._window
         is_fast = self.fast_bodies.wants(self.data)
         if is_fast != self._is_fast:
             self._is_fast = is_fast
@@ -254,7 +254,7 @@ class Physics:
         if stage > CONTROL:
             self._update_velocities()
         if self.tick >= self._until:
-            self._until = (self.tick // WINDOW + 1) * WINDOW
+            self._until = (self.tick // self._window + 1) * self._window
             self._uses_law = self._is_fast or self.law.is_needed(data)
         self.law.closing = self.fast_bodies.closing if self._is_fast else None
         if self._probes:

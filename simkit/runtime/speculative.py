@@ -1,9 +1,10 @@
 """Detection of bodies that move so far in one step that they could pass through what they meet.
 
 MuJoCo's speculative contacts sweep geoms along their velocities and stop them before they touch. They cost 1.1 to 2.7
-times a step even where nothing is fast, so they are switched on for windows of `WINDOW` steps, by a rule that looks at
-positions and velocities alone. In such a window all steps follow the contact law, which stops within one step what
-closes fast: a body that strikes with an edge begins to spin, and its other corners would sink through a soft contact.
+times a step even where nothing is fast, so they are switched on for windows of some steps (`window_of`), by a rule that
+looks at positions and velocities alone. In such a window all steps follow the contact law, which stops within one step
+what closes fast: a body that strikes with an edge begins to spin, and its other corners would sink through a soft
+contact.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.options import contact_time_constant, has_engine_contacts
-from simkit.runtime.contact_law import WINDOW
+from simkit.runtime.contact_law import window_of
 from simkit.runtime.travel_bounds import (
     Floats,
     allowed_travel,
@@ -84,6 +85,7 @@ class FastBodies:
         self.model = model
         self.tell: Callable[[list[Approach]], None] | None = None
         step = float(model.opt.timestep)
+        self._window = window_of(step)
         # so long a body goes on into a soft contact, and twice as long into one that bounces
         bounces = bool((model.geom_solref[collides(model), 0] < 0.0).any())
         self._time = max(_GROWTH * step, contact_time_constant(step) / (1.0 if bounces else 2.0))
@@ -210,7 +212,7 @@ class FastBodies:
         """Find pairs of a fast geom and one that it may reach within a window, whatever it bounces off on the way."""
         model, others = self.model, self._others
         radius = model.geom_rbound
-        reach = (speeds[fast, None] + speeds[None, others]) * (WINDOW * _GROWTH * model.opt.timestep)
+        reach = (speeds[fast, None] + speeds[None, others]) * (self._window * _GROWTH * model.opt.timestep)
         reach += radius[fast, None]
         difference = places[fast, None] - places[None, others]
         distance = np.sqrt(np.einsum("ijk,ijk->ij", difference, difference))
@@ -255,7 +257,7 @@ class FastBodies:
         model = self.model
         start = self._inside(scratch.geom_xpos[one], other)
         turned = scratch.geom_xmat[other].reshape(-1, 3, 3)
-        way = np.einsum("nji,nj->ni", turned, linear[one] - linear[other]) * (WINDOW * model.opt.timestep)
+        way = np.einsum("nji,nj->ni", turned, linear[one] - linear[other]) * (self._window * model.opt.timestep)
         box = model.geom_aabb[other, 3:] + model.geom_rbound[one][:, None]
         way = np.where(np.abs(way) < 1e-12, 1e-12, way)
         ends = np.stack([(-box - start) / way, (box - start) / way])
