@@ -230,7 +230,8 @@ def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -
         closes, tolerance = speed < _CLOSES, around.tolerance
         if closes and closing is not None:  # what is stopped ahead of the surface goes on towards it, slowly
             first, second = contact.geom[number].tolist()
-            after = min(0.0, speed + closing[first] + closing[second])
+            left = closing[first] + closing[second]
+            after = speed + left if speed < -left else speed
         if closes and normal < -after / step:
             wanted, is_wrong = -after / step, depth >= 0.0
         else:
@@ -399,8 +400,9 @@ def find_many(model: Any, data: Any, around: Circumstances, residual: Floats | N
     depth, closes = -contact.dist[which], speed < _CLOSES
     after = speed
     if around.closing is not None:
-        left = np.array(around.closing)[contact.geom[which]]
-        after = np.where(closes, np.minimum(0.0, speed + left[:, 0] + left[:, 1]), speed)
+        geoms = np.array(around.closing)[contact.geom[which]]
+        left = geoms[:, 0] + geoms[:, 1]
+        after = np.where(closes & (speed < -left), speed + left, speed)
     is_late = closes & (normals < -after / step)
     wanted = np.where(is_late, -after / step, np.maximum(0.0, (EXIT_SPEED - after) / step))
     is_fast = (normals > wanted) & (closes | (speed > _LEAVES) | (depth > DEEP))

@@ -214,6 +214,7 @@ class Physics:
     def window(self, value: tuple[bool, int, bool, int, bool]) -> None:
         self._uses_law, self._until, self._is_fast, self._fast_until, self._probes = value
         _set_speculative(self.model, self._is_fast)
+        self.law.closing = self.fast_bodies.closing if self._is_fast else None
 
     def _is_pushed(self) -> bool:
         """Return whether controls differ so much from those of the last look that wheels may begin to slip."""
@@ -457,11 +458,16 @@ class Physics:
 
     def _step_by_law(self, integrate: Callable[[Any, Any], None]) -> None:
         """One step that stops at the velocities, to look at the contacts and to solve for them by the law."""
-        model, data = self.model, self.data
-        if self.stage == STALE:
+        model, data, stage = self.model, self.data, self.stage
+        if stage == STALE:
             mj_check_pos(model, data)
             mj_check_vel(model, data)
-        if self.stage:
+        is_decided = self._uses_law and self.tick < self._until and self.tick < self._fast_until
+        if is_decided and stage == STALE and not (self._probes or self.shaper or self.sleep.wants_all_awake):
+            mj_fwd_position(model, data)  # `_forward` without its questions: a tenth of a step with one box
+            mj_fwd_velocity(model, data)
+            self.law.solve(data)
+        elif stage:
             self._forward()
         mj_check_acc(model, data)
         if self._has_stages and (self._uses_law or self._acting_shaper is not None):
