@@ -8,7 +8,7 @@ model has at that joint, and light joints get an armature.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -106,13 +106,22 @@ def gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[float, flo
     return (stiffest if ref.kp is None else min(ref.kp, 0.25 * inertia / timestep**2)), kv
 
 
-def servo_traits(model: mujoco.MjModel, refs: Sequence[ActuatorRef]) -> list[ServoTraits]:
+def servo_traits(
+    model: mujoco.MjModel, refs: Sequence[ActuatorRef], compiled: Mapping[str, Any] | None = None
+) -> list[ServoTraits]:
     """Return the traits of the velocity servos of a model, in its first pose.
 
     A wheel on the ground moves the robot's mass at its radius, shared with the other servos of the robot. The largest
     load is twice the robot's weight at that radius: no tyre transmits more. On a fixed base it is ten times the weight
     of what the joint moves.
+
+    Args:
+        model: of the engine.
+        refs: the servos.
+        compiled: as they were compiled, the fields of the model that were written to since, by name.
     """
+    names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited"
+    strengths, ranges, limited = ((compiled or {}).get(name, getattr(model, name)) for name in names)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
@@ -127,9 +136,9 @@ def servo_traits(model: mujoco.MjModel, refs: Sequence[ActuatorRef]) -> list[Ser
         reach = 1.0 if model.jnt_type[joint] == _SLIDE else _reach(model, data, joint)
         locked = float(data.M[model.M_rowadr[dof] + model.M_rownnz[dof] - 1])
         inertia = max(locked, mass * reach**2 / trees.count(tree))
-        gain = float(model.actuator_gainprm[i, 0])
+        gain = float(strengths[i, 0])
         weights = 2.0 if model.jnt_type[model.dof_jntid[first]] == _FREE else 10.0
-        most = float(model.actuator_forcerange[i, 1]) if model.actuator_forcelimited[i] else math.inf
+        most = float(ranges[i, 1]) if limited[i] else math.inf
         response = inertia / gain if gain > 0.0 else math.inf
         found.append(ServoTraits(gain, most, min(most, weights * mass * _GRAVITY * reach), response))
     return found

@@ -175,7 +175,8 @@ class VelocityServos:
             refs = [r for record in records for r in record.actuators if r.kind == "velocity" and r.kv is None]
             self.servos = {ref.name: self.servos.get(ref.name) or _Servo() for ref in refs}
             indices = [sim.names.actuator(ref) for ref in refs]
-            traits = servo_traits(model, refs) if refs else []
+            # once, as compiled: after a restore they are the same, whatever was written to since
+            traits = sim.names.shared("velocity servos", lambda: servo_traits(model, refs, sim.originals))
             joints = model.actuator_trnid[indices, 0]
             self._dofs, self._places = (a[joints].astype(np.intp) for a in (model.jnt_dofadr, model.jnt_qposadr))
             places = zip(refs, indices, traits, strict=True)
