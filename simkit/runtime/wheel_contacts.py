@@ -40,6 +40,8 @@ class WheelContacts:
         self._is_sparse = bool(mujoco.mj_isSparse(model))
         self._has_islands = not model.opt.disableflags & _NO_ISLANDS
         self._axis_of: dict[int, int] = {}  # geom -> column of its matrix that is the axis
+        if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:  # its rows are edges, and not tangents
+            return
         for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).tolist():
             low, high = model.jnt_range[joint].tolist()
             body = int(model.jnt_bodyid[joint])
@@ -88,6 +90,7 @@ class WheelContacts:
             return False
         jacobian, count = data.efc_J, self._model.nv
         starts: list[int] | None = data.efc_J_rowadr.tolist() if self._is_sparse else None
+        is_changed = False
         for low, high, weight in lines:
             first, second = low + 1, high + 1
             if starts is None:
@@ -96,8 +99,13 @@ class WheelContacts:
             else:
                 one = jacobian[starts[first] : starts[first + 1] + int(data.efc_J_rownnz[first])]
                 other = jacobian[starts[second] : starts[second + 1] + int(data.efc_J_rownnz[second])]
-            one += weight * (other - one)
-            other[:] = one
+            apart = other - one
+            if apart.any():
+                one += weight * apart
+                other[:] = one
+                is_changed = True
+        if not is_changed:  # merged before: islands take more of the engine's memory each time
+            return True
         if self._has_islands:
             mujoco.mj_island(self._model, data)
         mujoco.mj_referenceConstraint(self._model, data)
