@@ -68,7 +68,8 @@ class CarriedContacts:
                 a, b, c = data.cvel[one, :3].tolist()
                 d, e, f = data.cvel[other, :3].tolist()
                 own = min(a * a + b * b + c * c, d * d + e * e + f * f)
-                apart = (a - d) ** 2 + (b - e) ** 2 + (c - f) ** 2
+                u, v, w = a - d, b - e, c - f
+                apart = u * u + v * v + w * w  # a power would raise where a world that diverges overflows
                 together = own > _LEAST_TURN * _LEAST_TURN and apart < _TOGETHER * _TOGETHER * own
                 turns[pair] = together
             if together:

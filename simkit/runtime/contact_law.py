@@ -58,6 +58,7 @@ def window_of(timestep: float) -> int:
     return 16 if timestep <= 0.001 else 8
 
 
+
 class ContactShaper(Protocol):
     """Changes contacts in every forward pass, once velocities are known and before forces are."""
 
@@ -79,15 +80,10 @@ class ContactLaw:
 
     Args:
         model: of the engine.
-
-    Attributes:
-        closing: speed [m/s] with which each geom may still close after it was stopped, in a window with speculative
-            contacts; None in others.
     """
 
     def __init__(self, model: Any) -> None:
         self.model = model
-        self.closing: list[float] | None = None
         self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
         self._product = np.empty(0)
         self._around = Circumstances(float(model.opt.timestep), [], 0.0, None)
@@ -120,11 +116,20 @@ class ContactLaw:
             return True
         return self._has_flying(data) or bool(self._carried.find(data))
 
-    def solve(self, data: Any, *, keeps_references: bool = False, probes: bool = False) -> bool:
+    def solve(
+        self,
+        data: Any,
+        closing: list[float] | None = None,
+        *,
+        keeps_references: bool = False,
+        probes: bool = False,
+    ) -> bool:
         """Solve for accelerations and forces.
 
         Args:
             data: of the engine, with positions and velocities up to date.
+            closing: speed [m/s] with which each geom may still close after it was stopped, in a window with speculative
+                contacts; None in others.
             keeps_references: whether the references of constraints stay corrected, for the engine to solve once more;
                 else they are put back as they were.
             probes: whether contacts that do not slide yet may be pushed into it by a new control or force.
@@ -143,9 +148,10 @@ class ContactLaw:
             has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
         if probes:
             mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
-            found = self._find(data, data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force)
+            residual = data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force
+            found = self._find(data, closing, residual)
         elif has_to_look:
-            found = self._find(data)
+            found = self._find(data, closing)
         before = self._carried.correct(data, carried) if carried else []
         if found is not None:
             self._repeat(data, found)
@@ -160,7 +166,7 @@ class ContactLaw:
 
     def _finds(self, data: Any) -> bool:
         """Return whether some contact has to be corrected; leaves the references as they were."""
-        found = self._find(data)
+        found = self._find(data, None)
         if found is None:
             return False
         found.restore()
@@ -182,14 +188,16 @@ class ContactLaw:
             return False
         return bool(reference.dot(reference) < self._least_reference)
 
-    def _find(self, data: Any, residual: Any = None) -> FewContacts | ManyContacts | None:
+    def _find(
+        self, data: Any, closing: list[float] | None, residual: Any = None
+    ) -> FewContacts | ManyContacts | None:
         """Return the contacts whose normal reference has to be corrected."""
         gravity: list[float] = self._gravity.tolist()
         around = self._around
         if gravity != around.gravity:
             around.gravity = gravity
             around.tolerance = TOLERANCE * max(_LEAST_GRAVITY, math.hypot(*gravity))
-        around.closing = self.closing
+        around.closing = closing
         if data.ncon > MANY or self.model.opt.cone == _PYRAMID:
             return find_many(self.model, data, around, residual)
         return find_few(data, around, residual)

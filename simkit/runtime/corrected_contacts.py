@@ -355,9 +355,8 @@ class ManyContacts:
 
     def _ask(self, normals: Floats) -> None:
         self._asked = normals
-        self._aref[self._edges] = (
-            self._before + (normals - self._normals)[:, None] if self._is_pyramid else normals[:, None]
-        )
+        changes = self._before + (normals - self._normals)[:, None]
+        self._aref[self._edges] = changes if self._is_pyramid else normals[:, None]
 
     def _size(self, residual: Floats) -> Floats:
         return _size(residual, self._mu, self._is_pyramid)

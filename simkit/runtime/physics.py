@@ -82,11 +82,9 @@ class Physics:
         """Other engine objects (after a spawn, a removal, a restore)."""
         self.model, self.data = model, data
         self.sleep = Sleep(model, data, self._may_sleep)
-        self.law, self._window = ContactLaw(model), window_of(float(model.opt.timestep))
         self.shaper: ContactShaper | None = None
-        self.fast_bodies = FastBodies(model)
-        is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-        self.free_motion = FreeMotion.of(model) if is_implicit and not has_engine_contacts(model) else None
+        self._analyse()
+        self._window = window_of(float(model.opt.timestep))
         self._probed, self._push = data.ctrl.copy(), _accelerations_by_control(model)
         self.window = (False, -1, False, -1, False)
         self.stage = STALE
@@ -106,6 +104,22 @@ class Physics:
         self._controls = data.ctrl.copy()
         self._integrate = _INTEGRATORS.get(int(model.opt.integrator))
         self._has_stages = model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
+
+    def _analyse(self) -> None:
+        """Find out of the model what decides how steps are made."""
+        model = self.model
+        self.law, self.fast_bodies = ContactLaw(model), FastBodies(model)
+        is_implicit = model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+        self.free_motion = FreeMotion.of(model) if is_implicit and not has_engine_contacts(model) else None
+        self._analysed, self._is_analysed = _deciding(model), True
+
+    def _analyse_again(self) -> None:
+        """Do it once more if a field was written to that it depends on, so that it follows from the present model."""
+        self._is_analysed = True
+        if _deciding(self.model) != self._analysed:
+            tell = self.fast_bodies.tell
+            self._analyse()
+            self.fast_bodies.tell = tell
 
     # ------------------------------------------------------------------ writing
 
@@ -151,7 +165,7 @@ class Physics:
     def changed_model(self) -> None:
         """Says that the model itself is about to be written to: everything wakes."""
         self.sleep.wake_all()
-        self._second = None
+        self._second, self._is_analysed = None, False
         self.changed(STALE)
 
     def changed_lights(self) -> None:
@@ -187,6 +201,8 @@ class Physics:
         return True
 
     def _update_velocities(self) -> None:
+        if not self._is_analysed:
+            self._analyse_again()
         model, data, shaper = self.model, self.data, self._acting_shaper
         if self.tick >= self._fast_until:
             self._look_for_fast()
@@ -214,7 +230,6 @@ class Physics:
     def window(self, value: tuple[bool, int, bool, int, bool]) -> None:
         self._uses_law, self._until, self._is_fast, self._fast_until, self._probes = value
         _set_speculative(self.model, self._is_fast)
-        self.law.closing = self.fast_bodies.closing if self._is_fast else None
 
     def _is_pushed(self) -> bool:
         """Return whether controls differ so much from those of the last look that wheels may begin to slip."""
@@ -232,6 +247,11 @@ class Physics:
             self._is_fast = is_fast
             _set_speculative(self.model, is_fast)
             self.stage = STALE  # contacts are found otherwise
+
+    @property
+    def _closing(self) -> list[float] | None:
+        """The speeds at which geoms may still close in this window, if it has speculative contacts."""
+        return self.fast_bodies.closing if self._is_fast else None
 
     @property
     def _acting_shaper(self) -> ContactShaper | None:
@@ -257,12 +277,13 @@ class Physics:
         if self.tick >= self._until:
             self._until = (self.tick // self._window + 1) * self._window
             self._uses_law = self._is_fast or self.law.is_needed(data)
-        self.law.closing = self.fast_bodies.closing if self._is_fast else None
         if self._probes:
             self._probes = False
-            self._uses_law = self.law.solve(data, probes=True) or self._uses_law
+            self.stage = STALE  # an interrupt amid it leaves constraints as they are while it solves
+            self._uses_law = self.law.solve(data, self._closing, probes=True) or self._uses_law
         elif self._uses_law or is_shaped:
-            self.law.solve(data)
+            self.stage = STALE
+            self.law.solve(data, self._closing)
         else:
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
         self.stage = FRESH
@@ -314,6 +335,7 @@ class Physics:
             self._second = mujoco.MjData(held.model)
             self._second_of = None
         if self._second_of is not held:
+            self._second_of = None
             mujoco.mj_setState(held.model, self._second, held.values, _HELD)
             self._forward_held(held, self._second)
             mujoco.mj_rnePostConstraint(held.model, self._second)
@@ -327,18 +349,19 @@ class Physics:
             law, shaper, fast = ContactLaw(held.model), None, FastBodies(held.model)
         is_fast = fast.wants(data) if held.is_fast is None else held.is_fast
         _set_speculative(held.model, is_fast)
-        mujoco.mj_forward(held.model, data)
-        if self._integrate is not None:
-            if shaper is not None:
-                shaper.shape(data, held.request)
-            law.closing = fast.closing if is_fast else None
-            if held.probes:
-                law.solve(data, probes=True)
-            elif is_fast or (law.is_needed(data) if held.uses_law is None else held.uses_law):
-                law.solve(data)
-            elif shaper is not None:
-                mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
-        if held.model is self.model:
+        try:
+            mujoco.mj_forward(held.model, data)
+            if self._integrate is not None:
+                if shaper is not None:
+                    shaper.shape(data, held.request)
+                closing = fast.closing if is_fast else None
+                if held.probes:
+                    law.solve(data, closing, probes=True)
+                elif is_fast or (law.is_needed(data) if held.uses_law is None else held.uses_law):
+                    law.solve(data, closing)
+                elif shaper is not None:
+                    mj_forward_skip(held.model, data, _AFTER_VELOCITIES, 1)
+        finally:
             _set_speculative(self.model, self._is_fast)
 
     def _has_passed(self) -> bool:
@@ -385,10 +408,9 @@ class Physics:
 
     def single(self) -> None:
         """One step."""
-        plain = self.free_motion is None and not (
-            self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches or self.shaper
-        )
-        if plain and self.stage == STALE and self.tick < self._until:
+        is_odd = self._uses_law or self._probes or self.one_shot or self.shows_applied or self.sleep.watches
+        is_odd = is_odd or self.shaper is not None or self.free_motion is not None
+        if not is_odd and self.stage == STALE and self.tick < self._until:
             mj_step(self.model, self.data)
             self.tick += 1
         else:
@@ -430,13 +452,11 @@ class Physics:
             self.stage = STALE
             self.tick += count
             return
-        end, free_motion = self.tick + count, self.free_motion
+        if not self._is_analysed:
+            self._analyse_again()
+        end, is_corrected = self.tick + count, self.free_motion is not None
         while self.tick < end:
-            if free_motion is not None:
-                free_motion.prepare(self.data)
-                self._step_by_law(integrate)
-                free_motion.correct(self.data)
-            elif has_shaper or self._uses_law or self._probes or self.tick >= self._until:
+            if is_corrected or has_shaper or self._uses_law or self._probes or self.tick >= self._until:
                 self._step_by_law(integrate)
             else:
                 self._plain_steps(min(end, self._until) - self.tick, integrate)
@@ -458,7 +478,7 @@ class Physics:
 
     def _step_by_law(self, integrate: Callable[[Any, Any], None]) -> None:
         """One step that stops at the velocities, to look at the contacts and to solve for them by the law."""
-        model, data, stage = self.model, self.data, self.stage
+        model, data, stage, free_motion = self.model, self.data, self.stage, self.free_motion
         if stage == STALE:
             mj_check_pos(model, data)
             mj_check_vel(model, data)
@@ -466,16 +486,20 @@ class Physics:
         if is_decided and stage == STALE and not (self._probes or self.shaper or self.sleep.wants_all_awake):
             mj_fwd_position(model, data)  # `_forward` without its questions: a tenth of a step with one box
             mj_fwd_velocity(model, data)
-            self.law.solve(data)
+            self.law.solve(data, self._closing)
         elif stage:
             self._forward()
         mj_check_acc(model, data)
+        self.stage = STALE
+        if free_motion is not None:  # after the forward pass, which wakes who sleeps
+            free_motion.prepare(data)
         if self._has_stages and (self._uses_law or self._acting_shaper is not None):
             with called_before_forces(data, self._correct_stage):
                 integrate(model, data)
         else:
             integrate(model, data)
-        self.stage = STALE
+        if free_motion is not None:
+            free_motion.correct(data)
         self.tick += 1
 
     def _correct_stage(self) -> None:
@@ -483,7 +507,7 @@ class Physics:
         shaper = self._acting_shaper
         if shaper is not None:
             shaper.shape(self.data)
-        self.law.solve(self.data, keeps_references=True)
+        self.law.solve(self.data, self._closing, keeps_references=True)
 
     def _clear_one_shot(self) -> None:
         self.last_applied[:] = self.data.qfrc_applied
@@ -534,6 +558,12 @@ class Physics:
         """Forgets what the engine warned of (a restored state is sound)."""
         self._warnings[:] = 0
         _engine_texts.clear()
+
+
+def _deciding(model: Any) -> list[bytes]:
+    """Return the fields of a model that are written to in a run and decide how steps are made."""
+    fields = model.geom_contype, model.geom_conaffinity, model.jnt_range, model.jnt_limited
+    return [field.tobytes() for field in (*fields, model.dof_damping, model.dof_frictionloss)]
 
 
 def _set_speculative(model: Any, is_on: bool) -> None:

@@ -122,6 +122,8 @@ def bring_back(sim: Simulation, snapshot: Snapshot, *, with_inbox: bool = True) 
     sim.jump(snapshot.tick - physics.tick)
     physics.tick = snapshot.tick
     physics.changed(STALE)
+    if sim.originals:
+        physics.changed_model()
     physics.clear_warnings()
     physics.one_shot = snapshot.one_shot
     physics.last_applied = snapshot.last_applied.copy()

@@ -190,10 +190,12 @@ class FastBodies:
         options = model.opt
         flags = options.enableflags
         options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # with it, what never moves is left out
-        mujoco.mj_kinematics(model, scratch)
-        mujoco.mj_comPos(model, scratch)
-        mujoco.mj_comVel(model, scratch)
-        options.enableflags = flags
+        try:
+            mujoco.mj_kinematics(model, scratch)
+            mujoco.mj_comPos(model, scratch)
+            mujoco.mj_comVel(model, scratch)
+        finally:
+            options.enableflags = flags
         return scratch
 
     def _velocities(self, scratch: Any) -> tuple[Floats, Floats]:
