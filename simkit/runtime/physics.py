@@ -309,6 +309,8 @@ class Physics:
 
     def hold(self) -> HeldState:
         """The state of this tick, with the forces of the step that led to it, shared by all who ask at it."""
+        if self.hears_controls:
+            self._hear_controls()
         if self._held is None or self._held.tick != self.tick:
             values, data = np.empty(self._held_size), self.data
             if self.shows_applied and self._has_passed():
@@ -329,6 +331,8 @@ class Physics:
 
     def data_of(self, held: HeldState) -> Any:
         """An `MjData` with forward pass and accelerations of a held state: a second one, unless it is that of now."""
+        if self.hears_controls:  # those of the held state are others then
+            self._hear_controls()
         if self._held is held and held.tick == self.tick and not (self.sleep.watches or self.shows_applied):
             return self.fresh_accelerations()  # nothing was written since: the step goes on from it
         if self._second is None or (self._second_of is not None and self._second_of.model is not held.model):
