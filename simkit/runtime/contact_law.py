@@ -174,11 +174,13 @@ class ContactLaw:
 
     def _has_flying(self, data: Any) -> bool:
         """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
-        trees = self._colliding
-        if not data.ncon or len(trees) < 2:
-            return len(trees) > 0 and not data.ncon
+        trees, contact = self._colliding, data.contact
+        # what lies exactly on a surface has a contact without rows, and no force yet
+        touching = contact.geom[contact.efc_address >= 0] if data.ncon else ()
+        if not len(touching) or len(trees) < 2:
+            return len(trees) > 0 and not len(touching)
         touches = np.zeros(self.model.ntree + 1, bool)
-        touches[self._tree_of[data.contact.geom]] = True
+        touches[self._tree_of[touching]] = True
         return bool((~touches[trees] & (data.tree_asleep[trees] < 0)).any())
 
     def _is_quiet(self, data: Any) -> bool:
