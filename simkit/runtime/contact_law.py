@@ -43,6 +43,12 @@ At 4 ms the edges of a TurtleBot3's wheels push against each other and turn it b
 QUIET_SPEED: Final = 1e-4
 """Root sum square [m/s, rad/s] of the velocities along all constraints below which nothing slides."""
 
+FAST_ENOUGH: Final = 0.5
+"""Speed [m/s] of a body from which it may hit something within a window; what rolls along touches, but slides not.
+
+The engine's own contacts throw it back with a sixth of its speed, three times `EXIT_SPEED` at most from here down.
+"""
+
 _LEAST_GRAVITY: Final = 1.0  # [m/s²]; without weight there is no scale for the tolerance
 _AFTER_VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
 _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
@@ -95,6 +101,9 @@ class ContactLaw:
         collides = (model.geom_contype | model.geom_conaffinity) != 0
         self._tree_of = np.where(trees >= 0, trees, model.ntree)
         self._colliding = np.unique(trees[:-1][collides & (trees[:-1] >= 0)])
+        free = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
+        free = free[np.isin(model.body_treeid[model.jnt_bodyid[free]], self._colliding)]
+        self._free = (model.jnt_dofadr[free][:, None] + np.arange(3)).reshape(-1).astype(np.intp)
         self._is_on = collides.sum() > 1 and not has_engine_contacts(model)
 
     @property
@@ -103,7 +112,7 @@ class ContactLaw:
         return bool(self._wheels)
 
     def is_needed(self, data: Any) -> bool:
-        """Return whether some contact slides, hits or overlaps, or some model is in flight and may land.
+        """Return whether some contact slides, hits or overlaps, or some model flies or is fast and may hit something.
 
         Never in a world that asks for the engine's own contacts.
 
@@ -114,7 +123,7 @@ class ContactLaw:
             return False
         if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._finds(data))):
             return True
-        return self._has_flying(data) or bool(self._carried.find(data))
+        return self._has_flying(data) or self._has_fast(data) or bool(self._carried.find(data))
 
     def solve(
         self,
@@ -182,6 +191,15 @@ class ContactLaw:
         touches = np.zeros(self.model.ntree + 1, bool)
         touches[self._tree_of[touching]] = True
         return bool((~touches[trees] & (data.tree_asleep[trees] < 0)).any())
+
+    def _has_fast(self, data: Any) -> bool:
+        """Return whether some body that moves freely is so fast that a hit within the window counts."""
+        velocities = data.qvel[self._free]
+        return (
+            bool(velocities.size)
+            and bool(velocities.dot(velocities) > FAST_ENOUGH * FAST_ENOUGH)
+            and bool((np.abs(velocities) > FAST_ENOUGH).any())
+        )
 
     def _is_quiet(self, data: Any) -> bool:
         """Return whether all constraints are nearly at rest and none is asked to part fast."""

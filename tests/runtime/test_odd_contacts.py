@@ -53,3 +53,18 @@ def test_what_lands_on_a_plane_while_another_body_is_fast_does_not_sink(step: fl
             lowest = min(lowest, float(sim.model("b").pose.position[2]))
         assert lowest > 0.1 - 3.5 * step  # it arrives at 3.4 m/s, and a hit is noticed below the surface
         assert sim.model("b").pose.position[2] == pytest.approx(0.1, abs=1e-4)
+
+
+@pytest.mark.parametrize("phase", range(8))
+def test_a_ball_that_rolls_into_a_wall_stops_whichever_step_it_hits_in(phase: int) -> None:
+    """It touches the ground all the time and slides nowhere before; each phase is another step of a window."""
+    wall = """<model name="barrier"><static>true</static><pose>1.1 0 1 0 0 0</pose><link name="l"><collision name="c">
+      <geometry><box><size>0.2 2 2</size></box></geometry></collision></link></model>"""
+    ball = body("b", "<sphere><radius>0.1</radius></sphere>", f"{0.7 + 0.005 * phase} 0 0.1 0 0 0")
+    with simkit.load(world(PLANE, wall, ball)) as sim:
+        sim.model("b").set_velocity((5, 0, 0), (0, 50, 0))
+        slowest = 5.0
+        for _ in range(100):
+            sim.step()
+            slowest = min(slowest, float(sim.link("b::l").linear_velocity[0]))
+        assert -0.06 < slowest < 0.01
