@@ -26,6 +26,7 @@ import numpy as np
 from simkit.compiler.options import contact_time_constant, has_engine_contacts
 from simkit.runtime.carried_contacts import CarriedContacts
 from simkit.runtime.corrected_contacts import DEEP, MANY, Circumstances, FewContacts, ManyContacts, find_few, find_many
+from simkit.runtime.height_field_contacts import HeightFieldContacts
 from simkit.runtime.wheel_contacts import WheelContacts
 
 TOLERANCE: Final = 0.02
@@ -95,6 +96,7 @@ class ContactLaw:
         self._around = Circumstances(float(model.opt.timestep), [], 0.0, None)
         constant = contact_time_constant(float(model.opt.timestep))
         self._least_reference = (DEEP / (constant * constant)) ** 2
+        self._fields = HeightFieldContacts(model)
         self._wheels, self._carried = WheelContacts(model), CarriedContacts(model)
         self._always_merges = bool(self._wheels) and model.opt.timestep > LONGEST_WITH_EDGES
         trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last for contacts without a geom
@@ -218,6 +220,8 @@ class ContactLaw:
             around.gravity = gravity
             around.tolerance = TOLERANCE * max(_LEAST_GRAVITY, math.hypot(*gravity))
         around.closing = closing
+        if self._fields:
+            around.inner = self._fields.inner(data)
         if data.ncon > MANY or self.model.opt.cone == _PYRAMID:
             return find_many(self.model, data, around, residual)
         return find_few(data, around, residual)

@@ -27,6 +27,7 @@ DEEP: Final = 1e-3
 _LEAVES: Final = 0.2 * EXIT_SPEED  # [m/s] from which a contact counts as on its way out
 
 _PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
+_NO_FORCE: Final = -1e9  # [m/s²] asked of a contact that shall not push
 _CLOSES: Final = -EXIT_SPEED  # [m/s] of a contact below which it closes fast
 _PRESSED: Final = 1e-4  # [m] of penetration from which the impedance is looked at
 _BORNE: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in units of the tolerance
@@ -48,12 +49,14 @@ class Circumstances:
         gravity: [m/s²].
         tolerance: of normal references [m/s²].
         closing: speed [m/s] that is left to each geom when its contact is stopped, where contacts are speculative.
+        inner: numbers of contacts that get no force.
     """
 
     step: float
     gravity: list[float]
     tolerance: float
     closing: list[float] | None
+    inner: frozenset[int] = frozenset()
 
 
 class Acceleration:
@@ -201,7 +204,7 @@ def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -
         residual: aref - J a - R f of a solution, shape (nefc,), for contacts that only begin to slide; without it a
             contact slides by its velocity.
     """
-    contact, step, closing = data.contact, around.step, around.closing
+    contact, step, closing, inner = data.contact, around.step, around.closing, around.inner
     all_rows, dims, friction = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
     aref, velocity = data.efc_aref.tolist(), data.efc_vel.tolist()
     slip: list[float] = aref if residual is None else residual.tolist()
@@ -211,6 +214,9 @@ def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -
     nothing, square = math.nan, around.tolerance * around.tolerance
     for number, row in enumerate(all_rows):
         if row < 0:
+            continue
+        if number in inner:
+            found.append((row, [], aref[row], _NO_FORCE, False, around.tolerance))
             continue
         dim, mus = dims[number], friction[number]
         if dim == 3:
@@ -407,6 +413,8 @@ def find_many(model: Any, data: Any, around: Circumstances, residual: Floats | N
     is_fast = (normals > wanted) & (closes | (speed > _LEAVES) | (depth > DEEP))
     is_rigid = contact.solref[which, 0] > 0.0
     goals = np.where(np.where(is_late, depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
+    if around.inner:
+        goals = np.where(np.isin(numbers, list(around.inner)), _NO_FORCE, goals)
     changed: list[tuple[int, float]] = []
     for index in (closes & ~is_rigid).nonzero()[0].tolist():
         goals[index], slower = _rebound(data, int(numbers[index]), float(speed[index]), around)
@@ -420,7 +428,8 @@ def find_many(model: Any, data: Any, around: Circumstances, residual: Floats | N
     if pressed.size:
         impedance = data.efc_KBIP[rows[pressed], 2]
         tolerances[pressed] = np.minimum(around.tolerance, _BORNE * around.tolerance * (1.0 - impedance) / impedance)
-    slides = _size((aref if residual is None else residual)[places], mu, is_pyramid) > tolerances
+    slides: npt.NDArray[np.bool_] = _size((aref if residual is None else residual)[places], mu, is_pyramid) > tolerances
+    slides &= goals != _NO_FORCE
     chosen = slides | ~np.isnan(goals)
     if not chosen.any():
         return None

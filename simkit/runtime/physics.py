@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -62,6 +62,26 @@ def _hear_engine(text: str) -> None:
         _engine_texts.append(text)
 
 
+class Window(NamedTuple):
+    """How the steps up to the next look at the contacts are made.
+
+    Attributes:
+        uses_law: whether they follow the contact law.
+        until: tick of the next look at the contacts.
+        is_fast: whether they have speculative contacts.
+        fast_until: tick of the next look at the speeds.
+        probes: whether controls or forces have changed so that contacts may begin to slide.
+        probed: the controls at the last look at what they push, shape (nu,); empty for those of now.
+    """
+
+    uses_law: bool = False
+    until: int = -1
+    is_fast: bool = False
+    fast_until: int = -1
+    probes: bool = False
+    probed: tuple[float, ...] = ()
+
+
 class Physics:
     """`MjModel` and `MjData`, the tick they stand at, and what of them is up to date.
 
@@ -81,12 +101,18 @@ class Physics:
     def rebind(self, model: Any, data: Any) -> None:
         """Other engine objects (after a spawn, a removal, a restore)."""
         self.model, self.data = model, data
+        self._uses_law: bool
+        self._until: int
+        self._is_fast: bool
+        self._fast_until: int
+        self._probes: bool
+        self._probed: npt.NDArray[np.float64]
         self.sleep = Sleep(model, data, self._may_sleep)
         self.shaper: ContactShaper | None = None
         self._analyse()
         self._window = window_of(float(model.opt.timestep))
-        self._probed, self._push = data.ctrl.copy(), _accelerations_by_control(model)
-        self.window = (False, -1, False, -1, False)
+        self._push = _accelerations_by_control(model)
+        self.window = Window()
         self.stage = STALE
         self.edition += 1
         self.one_shot = False
@@ -218,17 +244,16 @@ class Physics:
         self.stage = CONTROL
 
     @property
-    def window(self) -> tuple[bool, int, bool, int, bool]:
-        """Whether steps follow the contact law, and have speculative contacts, each with the tick it is decided up to.
-
-        The last is whether controls or forces have changed so that contacts may begin to slide. It is all part of the
-        state.
-        """
-        return self._uses_law, self._until, self._is_fast, self._fast_until, self._probes
+    def window(self) -> Window:
+        """How the steps up to the next look are made; part of the state."""
+        return Window(
+            self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, tuple(self._probed.tolist())
+        )
 
     @window.setter
-    def window(self, value: tuple[bool, int, bool, int, bool]) -> None:
-        self._uses_law, self._until, self._is_fast, self._fast_until, self._probes = value
+    def window(self, value: Window) -> None:
+        self._uses_law, self._until, self._is_fast, self._fast_until, self._probes, probed = value
+        self._probed = np.array(probed) if len(probed) == self.model.nu else self.data.ctrl.copy()
         _set_speculative(self.model, self._is_fast)
 
     def _is_pushed(self) -> bool:

@@ -12,7 +12,7 @@ import mujoco
 from simkit.runtime.entities import leave_as_compiled
 from simkit.runtime.model import Model
 from simkit.runtime.parts import Structure
-from simkit.runtime.physics import STALE
+from simkit.runtime.physics import STALE, Window
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -41,9 +41,9 @@ class Snapshot:
     inbox: tuple[tuple[str, Any], ...]
     one_shot: bool
     last_applied: Any
+    window: Window
     sleep: tuple[Any, ...] = (False,)
     last_pushed: Any = None
-    window: tuple[bool, int, bool, int, bool] = (False, -1, False, -1, False)
     seed: int = 0
     owner: Any = None
 

@@ -250,3 +250,46 @@ def test_a_wheel_turns_on_the_spot_about_the_middle_of_its_tread() -> None:
         said = (after[1] - before[1] - after[0] + before[0]) * 0.1 / 0.28
         assert said == pytest.approx(1.0, rel=5e-3)
         assert sim.model("cart").pose.rpy[2] - yaw == pytest.approx(said, rel=0.015)
+
+
+def test_a_box_slides_down_an_even_height_map_over_the_borders_of_its_cells(tmp_path: Path) -> None:
+    """The engine's prisms have inner walls, and one of them stopped it."""
+    image = pytest.importorskip("PIL.Image")
+    image.fromarray(np.tile(np.linspace(65535, 0, 33).round().astype(np.uint16), (33, 1))).save(tmp_path / "ramp.png")
+    tilt = math.atan(8.0 / 32.0)
+    x, z = -13.0 + 0.05 * math.sin(tilt), 8.0 - 3.0 * 0.25 + 0.05 * math.cos(tilt)
+    shape = "<heightmap><uri>ramp.png</uri><size>32 32 8</size><pos>0 0 0</pos></heightmap>"
+    ramp = f"""<model name="ramp"><static>true</static><link name="l"><collision name="c"><geometry>{shape}</geometry>
+      {mu(2.0)}</collision></link></model>"""
+    box = body("b", "<box><size>0.4 0.3 0.1</size></box>", f"{x} 0.13 {z} 0 {tilt} 0", 0.1, mass=5.0, inertia=0.06)
+    (tmp_path / "world.sdf").write_text(world(ramp, box))
+    with simkit.load(tmp_path / "world.sdf") as sim:
+        start = sim.model("b").pose.position.copy()
+        sim.run(2.0)
+        way = np.linalg.norm(sim.model("b").pose.position - start)
+        assert way == pytest.approx((math.sin(tilt) - 0.1 * math.cos(tilt)) * G * 2.0, rel=5e-3)
+
+
+def test_a_command_that_makes_wheels_slip_lifts_nothing_in_its_first_step(tmp_path: Path) -> None:
+    path = tmp_path / "world.xml"
+    path.write_text(
+        """<mujoco><option cone="elliptic" impratio="100" integrator="implicitfast" timestep="0.001"/>
+        <default><geom friction="0.7" solref="0.004 1"/></default>
+        <worldbody><geom type="plane" size="9 9 1"/><body name="base" pos="0 0 0.1"><freejoint/>
+        <geom type="box" size="0.3 0.2 0.02" mass="8" contype="0" conaffinity="0"/>"""
+        + "".join(
+            f"""<body name="w{n}" pos="{x} {y} 0"><joint name="j{n}" type="hinge" axis="0 1 0" armature="0.002"/>
+            <geom type="cylinder" size="0.1 0.02" euler="90 0 0" mass="0.5"/></body>"""
+            for n, (x, y) in enumerate(((0.2, 0.25), (0.2, -0.25), (-0.2, 0.25), (-0.2, -0.25)))
+        )
+        + "</body></worldbody><actuator>"
+        + "".join(f'<velocity name="a{n}" joint="j{n}" kv="6"/>' for n in range(4))
+        + "</actuator></mujoco>"
+    )
+    with simkit.load(path) as sim:
+        sim.run(0.305)
+        rest = float(sim.mj_data.qpos[2])
+        sim.mj_data.ctrl[:] = [2.5, -2.5, 2.5, -2.5]
+        for _ in range(100):
+            sim.step()
+            assert float(sim.mj_data.qpos[2]) - rest < 2e-5

@@ -15,7 +15,7 @@ import pytest
 import simkit
 from simkit.errors import SimulationDiverged
 from simkit.runtime import carried_contacts, contact_law
-from simkit.runtime.contact_law import WINDOW
+from simkit.runtime.contact_law import window_of
 from simkit.runtime.corrected_contacts import ManyContacts
 from simkit.runtime.physics import STALE, VELOCITY
 
@@ -174,7 +174,7 @@ def test_a_run_restored_to_any_tick_of_a_window_repeats(name: str) -> None:
         states.append(bits(alone))
     sim = WORLDS[name]()
     sim.step(40)
-    for _ in range(2 * WINDOW + 1):
+    for _ in range(2 * window_of(0.001) + 1):
         here, tick = sim.snapshot(), sim.tick
         for count in (5, 20):
             sim.model("ground").pose  # noqa: B018 - a reader

@@ -1,0 +1,79 @@
+"""Contacts with the inner walls of a height field, which are not there.
+
+MuJoCo makes a height field of prisms, one below each triangle. A body that lies on it may touch the wall between two
+prisms, with a normal along the ground: a box that slides down an even ramp is then stopped at the border of two cells.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+_STEEPEST: Final = 0.866
+"""Cosine of 30°: by more than that a normal has to differ from all of the ground around to be one of an inner wall."""
+
+Normal = tuple[float, float, float]
+
+
+class HeightFieldContacts:
+    """The height fields of one compiled model.
+
+    Args:
+        model: of the engine.
+    """
+
+    def __init__(self, model: Any) -> None:
+        self._model = model
+        self._fields: dict[int, int] = {
+            geom: int(model.geom_dataid[geom])
+            for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_HFIELD).tolist()
+        }
+
+    def __bool__(self) -> bool:
+        return bool(self._fields)
+
+    def inner(self, data: Any) -> frozenset[int]:
+        """Return the numbers of the contacts with inner walls.
+
+        Args:
+            data: of the engine, with contacts.
+        """
+        contact, fields, found = data.contact, self._fields, []
+        for number, (first, second) in enumerate(contact.geom.tolist()):
+            if first in fields or second in fields:
+                field, sign = (first, 1.0) if first in fields else (second, -1.0)
+                turn = data.geom_xmat[field].reshape(3, 3)
+                point = (contact.pos[number] - data.geom_xpos[field]) @ turn
+                normal = sign * contact.frame[number, :3] @ turn
+                if self._is_inner(fields[field], point, normal):
+                    found.append(number)
+        return frozenset(found)
+
+    def _is_inner(self, field: int, point: Any, normal: Any) -> bool:
+        """Check whether a normal is far from those of the ground around, which is nearly even.
+
+        Args:
+            field: number of the height field.
+            point, normal: in its frame [m].
+        """
+        model = self._model
+        rows, columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
+        half_x, half_y, height, _ = model.hfield_size[field].tolist()
+        step_x, step_y = 2.0 * half_x / (columns - 1), 2.0 * half_y / (rows - 1)
+        row, column = int((point[1] + half_y) / step_y), int((point[0] + half_x) / step_x)
+        start = int(model.hfield_adr[field])
+        heights = model.hfield_data[start : start + rows * columns].reshape(rows, columns)
+        around = heights[max(0, row - 1) : row + 3, max(0, column - 1) : column + 3] * height
+        if min(around.shape) < 2:
+            return False
+        along_x, along_y = np.diff(around, axis=1) / step_x, np.diff(around, axis=0) / step_y
+        # each triangle has one edge along x and one along y: of each cell four pairs, two of which are triangles
+        x = np.stack((along_x[:-1], along_x[1:], along_x[:-1], along_x[1:]))
+        y = np.stack((along_y[:, :-1], along_y[:, 1:], along_y[:, 1:], along_y[:, :-1]))
+        normals = np.stack((-x, -y, np.ones_like(x)), axis=-1).reshape(-1, 3)
+        normals /= np.sqrt((normals * normals).sum(axis=1))[:, None]
+        mean = normals.mean(axis=0)
+        is_even = (normals @ mean).min() > _STEEPEST * float(np.sqrt(mean @ mean))
+        return bool(is_even and (normals @ normal).max() < _STEEPEST)
