@@ -235,6 +235,7 @@ class ContactLaw:
             if found.correct(self._multiplied(data, data.qacc), data.efc_force):
                 break
         else:
+            found.settle()
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
 
     def _multiplied(self, data: Any, acceleration: Any) -> Any:

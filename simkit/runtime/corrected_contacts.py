@@ -64,9 +64,15 @@ class Acceleration:
 
     Plain repetition gains a tenth of the distance a time where wheels are light, and 2 % where four wheels share the
     load of a stiff vehicle, as a change of that share moves nothing.
+
+    Attributes:
+        best: what was asked when the least was missed, for contacts whose iteration does not converge: where friction
+            on a lever presses harder the more it is pressed.
     """
 
     def __init__(self) -> None:
+        self.best: list[float] = []
+        self._least = math.inf
         self._misses: list[list[float]] = []
         self._given: list[list[float]] = []
 
@@ -74,6 +80,8 @@ class Acceleration:
         """Return what to ask next, after `asked` has given `given`."""
         miss = [g - x for x, g in zip(asked, given, strict=True)]
         size = math.fsum(one * one for one in miss)
+        if size < self._least:
+            self._least, self.best = size, asked
         if self._misses and size > _GROWS * math.fsum(one * one for one in self._misses[-1]):
             self._misses, self._given = [], []  # contacts have opened or closed: what was before says nothing
         self._misses, self._given = [*self._misses[-2:], miss], [*self._given[-2:], given]
@@ -185,6 +193,12 @@ class FewContacts:
             for (row, _, _, _, _, _), now in zip(self._contacts, self._asked, strict=True):
                 aref[row] = now
         return stays
+
+    def settle(self) -> None:
+        """Ask for what has missed the least."""
+        if self._sequence is not None:
+            for (row, _, _, _, _, _), best in zip(self._contacts, self._sequence.best, strict=True):
+                self._aref[row] = best
 
     def restore(self) -> None:
         """Put the references back as they were."""
@@ -352,6 +366,11 @@ class ManyContacts:
         now = np.array(self._sequence.next(self._asked.tolist(), now.tolist()))
         self._ask(now)
         return False
+
+    def settle(self) -> None:
+        """As `FewContacts.settle`."""
+        if self._sequence.best:
+            self._ask(np.array(self._sequence.best))
 
     def restore(self) -> None:
         """Put the references back as they were."""
