@@ -32,6 +32,7 @@ _CLOSES: Final = -EXIT_SPEED  # [m/s] of a contact below which it closes fast
 _PRESSED: Final = 1e-4  # [m] of penetration from which the impedance is looked at
 _BORNE: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in units of the tolerance
 _SLOW: Final = 4.0  # times the speed that gravity gives in a step: slower contacts rest and do not rebound
+_NEAR: Final = 50.0  # tolerances
 _FURTHEST: Final = 100.0  # times the square of a miss by which the acceleration goes beyond what was given
 _GROWS: Final = 1.0  # times the square of a miss from which the acceleration begins anew
 _ACCURACY: Final = 2e-4  # of what is asked of a contact that closes fast
@@ -75,6 +76,10 @@ class Acceleration:
         self._least = math.inf
         self._misses: list[list[float]] = []
         self._given: list[list[float]] = []
+
+    def has_come_near(self, tolerance: float) -> bool:
+        """Return whether the root mean square of what was missed was ever within some tolerances, about g."""
+        return bool(self.best) and self._least < (_NEAR * tolerance) ** 2 * len(self.best)
 
     def next(self, asked: list[float], given: list[float]) -> list[float]:
         """Return what to ask next, after `asked` has given `given`."""
@@ -195,8 +200,10 @@ class FewContacts:
         return stays
 
     def settle(self) -> None:
-        """Ask for what has missed the least."""
-        if self._sequence is not None:
+        """Ask for what has missed the least; as the engine does where that was much."""
+        if self._sequence is not None and not self._sequence.has_come_near(self._contacts[0][5]):
+            self.restore()
+        elif self._sequence is not None:
             for (row, _, _, _, _, _), best in zip(self._contacts, self._sequence.best, strict=True):
                 self._aref[row] = best
 
@@ -369,8 +376,10 @@ class ManyContacts:
 
     def settle(self) -> None:
         """As `FewContacts.settle`."""
-        if self._sequence.best:
+        if self._sequence.has_come_near(float(self._tolerances[0])):
             self._ask(np.array(self._sequence.best))
+        else:
+            self.restore()
 
     def restore(self) -> None:
         """Put the references back as they were."""

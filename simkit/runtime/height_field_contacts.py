@@ -6,6 +6,7 @@ prisms, with a normal along the ground: a box that slides down an even ramp is t
 
 from __future__ import annotations
 
+import math
 from typing import Any, Final
 
 import mujoco
@@ -64,6 +65,14 @@ class HeightFieldContacts:
         step_x, step_y = 2.0 * half_x / (columns - 1), 2.0 * half_y / (rows - 1)
         row, column = int((point[1] + half_y) / step_y), int((point[0] + half_x) / step_x)
         start = int(model.hfield_adr[field])
+        if 0 <= row < rows - 1 and 0 <= column < columns - 1:  # most contacts are with the ground right there
+            at, data = start + row * columns + column, model.hfield_data
+            a, b, c, d = (height * data.item(i) for i in (at, at + 1, at + columns, at + columns + 1))
+            x, y, z = normal.tolist()
+            for slope_x, slope_y in (((b - a) / step_x, (c - a) / step_y), ((d - c) / step_x, (d - b) / step_y)):
+                size = math.sqrt(slope_x * slope_x + slope_y * slope_y + 1.0)
+                if z - slope_x * x - slope_y * y > _STEEPEST * size:
+                    return False
         heights = model.hfield_data[start : start + rows * columns].reshape(rows, columns)
         around = heights[max(0, row - 1) : row + 3, max(0, column - 1) : column + 3] * height
         if min(around.shape) < 2:
