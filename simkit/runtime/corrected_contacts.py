@@ -43,7 +43,7 @@ Ints = npt.NDArray[np.integer[Any]]
 
 @dataclass(slots=True)
 class Circumstances:
-    """What the correction of contacts depends on besides the state.
+    """Quantities besides the state that the correction of contacts depends on.
 
     Attributes:
         step: [s].

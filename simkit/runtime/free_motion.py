@@ -141,7 +141,7 @@ def _chain_lengths(model: Any) -> dict[int, int]:
 
 
 def _may_spin(model: Any, tree: int) -> bool:
-    """Whether a tree is passive and turns on a ball joint, or flies and has nothing that collides."""
+    """Check whether a tree is passive and turns on a ball joint, or flies and has nothing that collides."""
     dofs = _range(model.tree_dofadr, model.tree_dofnum, tree)
     kinds = set(model.jnt_type[model.dof_jntid[dofs]].tolist())
     if _resisting(model)[dofs].any():

@@ -22,7 +22,7 @@ _Control = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 
 
 class _Call:
-    """What is called for some data.
+    """Function that is called for some data.
 
     Attributes:
         error: what it raised, which cannot pass through the engine.

@@ -116,7 +116,7 @@ class VelocityServos:
 
     @property
     def are_there(self) -> bool:
-        """Whether there is any to correct."""
+        """True where the simulation has a servo to correct."""
         return bool(self._bound())
 
     def command(self, ref: ActuatorRef, velocity: float) -> None:
@@ -128,7 +128,7 @@ class VelocityServos:
         self._sim.mj_data.ctrl[self._sim.names.actuator(ref)] = velocity + servo.correction
 
     def is_commanded(self, actuators: Iterable[int]) -> bool:
-        """Whether one of these actuators of the engine has a command other than zero."""
+        """Check whether one of these actuators of the engine has a command other than zero."""
         controls = self._sim.mj_data.ctrl
         commands = {row.index: row.servo.command for row in self._bound()}
         return any(commands.get(int(i), controls[i]) != 0.0 for i in actuators)
@@ -186,7 +186,7 @@ class VelocityServos:
     # ------------------------------------------------------------------ state
 
     def get_state(self) -> dict[str, _Servo]:
-        """What a snapshot keeps."""
+        """Return the state that a snapshot keeps."""
         return {name: replace(servo) for name, servo in self.servos.items()}
 
     def set_state(self, state: Mapping[str, _Servo]) -> None:
