@@ -185,23 +185,22 @@ class ContactLaw:
 
     def _has_flying(self, data: Any) -> bool:
         """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
-        trees, contact = self._colliding, data.contact
+        trees = self._colliding
         # what lies exactly on a surface has a contact without rows, and no force yet
-        touching = contact.geom[contact.efc_address >= 0] if data.ncon else ()
-        if not len(touching) or len(trees) < 2:
-            return len(trees) > 0 and not len(touching)
+        if len(trees) < 2 or data.nefc == data.ne + data.nf + data.nl:
+            return len(trees) > 0 and data.nefc == data.ne + data.nf + data.nl
+        contact = data.contact
+        touching = contact.geom[contact.efc_address >= 0]
         touches = np.zeros(self.model.ntree + 1, bool)
         touches[self._tree_of[touching]] = True
         return bool((~touches[trees] & (data.tree_asleep[trees] < 0)).any())
 
     def _has_fast(self, data: Any) -> bool:
         """Return whether some body that moves freely is so fast that a hit within the window counts."""
-        velocities = data.qvel[self._free]
-        return (
-            bool(velocities.size)
-            and bool(velocities.dot(velocities) > FAST_ENOUGH * FAST_ENOUGH)
-            and bool((np.abs(velocities) > FAST_ENOUGH).any())
-        )
+        velocities = data.qvel
+        if velocities.dot(velocities) <= FAST_ENOUGH * FAST_ENOUGH:  # nothing at all is
+            return False
+        return bool((np.abs(velocities[self._free]) > FAST_ENOUGH).any())
 
     def _is_quiet(self, data: Any) -> bool:
         """Return whether all constraints are nearly at rest and none is asked to part fast."""
