@@ -1,4 +1,4 @@
-"""What the physics lint of `simkit check` finds."""
+"""Codes of the physics lint of `simkit check`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What mesh files bring along, and what becomes of them."""
+"""Codes of mesh files and of their conversion."""
 
 from __future__ import annotations
 

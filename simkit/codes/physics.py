@@ -1,4 +1,4 @@
-"""What becomes of the file's physics in the engine."""
+"""Codes of the file's physics and of its conversion for the engine."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ _TORSION, _ROLL, _LEAST = 0.005, 0.0001, 1e-5
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """What MuJoCo's geom gets."""
+    """Contact properties of a MuJoCo geom."""
 
     friction: tuple[float, float, float]
     condim: int
@@ -99,7 +99,7 @@ def _int32(bits: int) -> int:
 
 
 def has_direction(surface: Surface) -> bool:
-    """Whether friction or slip of a surface differ along and across a direction that it gives."""
+    """Check whether friction or slip of a surface differ along and across a direction that it gives."""
     along, across = coefficients_of(surface, has_one=True)
     return any(surface.fdir1) and (along != across or surface.slip1 != surface.slip2)
 

@@ -35,7 +35,7 @@ LEAST_AREA: Final = 1e-12
 
 @dataclass(slots=True)
 class Place:
-    """Where geoms of one link go.
+    """Body and frame that the geoms of one link are added to.
 
     Attributes:
         body: MuJoCo body handle.

@@ -9,8 +9,7 @@ guess is the acceleration of the step before, which is part of the state; in ste
 
 Two more corrections of the normal row, for contacts that are rigid (not for a `<kp>` that makes them soft):
 a contact that closes fast is stopped within the step, as Gazebo's engines do it, and not over two time constants;
-and one that opens, or overlaps, is pushed apart at no more than
-`EXIT_SPEED`.
+and one that opens, or overlaps, is pushed apart at no more than `EXIT_SPEED`.
 
 `docs/physics.md` has the formulas, the limits, and what was measured.
 """

@@ -34,7 +34,6 @@ _BORNE: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in unit
 _SLOW: Final = 4.0  # times the speed that gravity gives in a step: slower contacts rest and do not rebound
 _NEAR: Final = 50.0  # tolerances
 _FURTHEST: Final = 100.0  # times the square of a miss by which the acceleration goes beyond what was given
-_GROWS: Final = 1.0  # times the square of a miss from which the acceleration begins anew
 _ACCURACY: Final = 2e-4  # of what is asked of a contact that closes fast
 
 Floats = npt.NDArray[np.float64]
@@ -87,7 +86,7 @@ class Acceleration:
         size = math.fsum(one * one for one in miss)
         if size < self._least:
             self._least, self.best = size, asked
-        if self._misses and size > _GROWS * math.fsum(one * one for one in self._misses[-1]):
+        if self._misses and size > math.fsum(one * one for one in self._misses[-1]):
             self._misses, self._given = [], []  # contacts have opened or closed: what was before says nothing
         self._misses, self._given = [*self._misses[-2:], miss], [*self._given[-2:], given]
         if len(self._misses) < 2:

@@ -39,7 +39,6 @@ _ELLIPTIC = mujoco.mjtCone.mjCONE_ELLIPTIC
 _DISCRETE = mujoco.mjtIntegrator.mjINT_DISCRETE
 _NO_ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
 _SHARED = "directed friction"
-_UPRIGHT = 1e-2  # of the square of a direction: with less of it along a surface it has none there
 
 
 @dataclass(frozen=True, slots=True)
