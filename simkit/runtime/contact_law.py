@@ -92,8 +92,9 @@ class ContactLaw:
         self.model = model
         self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
         self._product = np.empty(0)
-        self._around = Circumstances(float(model.opt.timestep), [], 0.0, None)
         constant = contact_time_constant(float(model.opt.timestep))
+        softest = constant * (1.0 + 1e-9)
+        self._around = Circumstances(float(model.opt.timestep), [], 0.0, None, softest=softest)
         self._least_reference = (DEEP / (constant * constant)) ** 2
         self._fields = HeightFieldContacts(model)
         self._wheels, self._carried = WheelContacts(model), CarriedContacts(model)

@@ -50,6 +50,7 @@ class Circumstances:
         tolerance: of normal references [m/s²].
         closing: speed [m/s] that is left to each geom when its contact is stopped, where contacts are speculative.
         inner: numbers of contacts that get no force.
+        softest: longest time constant [s] of a rigid contact; a softer one, by a `<kp>`, closes and opens as it is.
     """
 
     step: float
@@ -57,6 +58,7 @@ class Circumstances:
     tolerance: float
     closing: list[float] | None
     inner: frozenset[int] = frozenset()
+    softest: float = math.inf
 
 
 class Acceleration:
@@ -264,8 +266,9 @@ def find_few(data: Any, around: Circumstances, residual: Floats | None = None) -
             wanted = max(0.0, (EXIT_SPEED - after) / step)
             is_wrong = normal > wanted and (closes or speed > _LEAVES or depth > DEEP)
         if is_wrong or closes:
-            if contact.solref.item(number, 0) > 0.0:
-                goal = wanted if is_wrong else nothing
+            constant = contact.solref.item(number, 0)
+            if constant > 0.0:
+                goal = wanted if is_wrong and constant <= around.softest else nothing
             elif closes:
                 goal, slower = _rebound(data, number, speed, around)
                 if goal == goal:
@@ -438,12 +441,13 @@ def find_many(model: Any, data: Any, around: Circumstances, residual: Floats | N
     is_late = closes & (normals < -after / step)
     wanted = np.where(is_late, -after / step, np.maximum(0.0, (EXIT_SPEED - after) / step))
     is_fast = (normals > wanted) & (closes | (speed > _LEAVES) | (depth > DEEP))
-    is_rigid = contact.solref[which, 0] > 0.0
+    constants = contact.solref[which, 0]
+    is_rigid, bounces = (constants > 0.0) & (constants <= around.softest), constants <= 0.0
     goals = np.where(np.where(is_late, depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
     if around.inner:
         goals = np.where(np.isin(numbers, list(around.inner)), _NO_FORCE, goals)
     changed: list[tuple[int, float]] = []
-    for index in (closes & ~is_rigid).nonzero()[0].tolist():
+    for index in (closes & bounces).nonzero()[0].tolist():
         goals[index], slower = _rebound(data, int(numbers[index]), float(speed[index]), around)
         if goals[index] == goals[index]:
             middle = normals[index] if is_pyramid else 0.0
@@ -461,5 +465,5 @@ def find_many(model: Any, data: Any, around: Circumstances, residual: Floats | N
     if not chosen.any():
         return None
     mu = np.where(slides[:, None], mu, 0.0)[chosen]
-    rest = (edges[chosen], normals[chosen], goals[chosen], ~is_rigid[chosen], tolerances[chosen], changed)
+    rest = (edges[chosen], normals[chosen], goals[chosen], bounces[chosen], tolerances[chosen], changed)
     return ManyContacts(data, is_pyramid, rows[chosen], places[chosen], mu, *rest)
