@@ -43,7 +43,6 @@ ROOMS: dict[str, frozenset[str]] = {
     "vendor": frozenset({"loaders", "scene", "writers"}),
     "writers": frozenset({"scene", "compiler"}),
     "description": frozenset({"scene", "loaders", "sensors"}),
-    "codes": frozenset(),
     "bench": frozenset({"build", "runtime", "compiler", "sensors", "plugins"}),
     "cli": frozenset(
         {
@@ -59,7 +58,6 @@ ROOMS: dict[str, frozenset[str]] = {
             "live",
             "motion",
             "build",
-            "codes",
             "fix_inertia",
             "description",
             "bench",

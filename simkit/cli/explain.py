@@ -22,19 +22,19 @@ def explain(
     json_: Json = False,
 ) -> int:
     """Says what a code means, what helps, and shows an input that brings it about."""
-    from simkit.codes import catalogue
-    from simkit.codes.page import explain as in_words
+    from simkit.cli.diagnostic_catalogue import catalogue
+    from simkit.cli.diagnostic_catalogue import explain as plain_text
 
-    known, wanted = catalogue(), code.strip().upper()
+    wanted = code.strip().upper()
     wanted = wanted if wanted.startswith("SK-") else f"SK-{wanted}"
-    found = [known[wanted]] if wanted in known else [c for name, c in known.items() if name.startswith(wanted)]
+    found = list(catalogue(wanted).values())
     if not found:
-        hint = did_you_mean(wanted, known) or "docs/diagnostics.md lists them all"
+        hint = did_you_mean(wanted, catalogue()) or "`simkit explain SK-` lists them all"
         raise InputError(f"SK-CLI-017 there is no code {code!r}; {hint}", "SK-CLI-017")
     if json_:
         out().file.write(json.dumps([asdict(c) for c in found], indent=2, default=_text) + "\n")
     elif len(found) == 1:
-        out().print(in_words(found[0]))
+        out().print(plain_text(found[0]))
     else:
         for entry in found:
             out().print(f"{entry.code}  {entry.severity:<14}  {entry.meaning}")

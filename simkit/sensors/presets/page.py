@@ -25,7 +25,7 @@ and the other way round. Plain `<preset>` is the same; with the prefix, and `xml
 Gazebo passes it over.
 
 Capitals, spaces and dashes in the name do not count. An unknown name is an error that names the closest
-([SK-SENSOR-090](../diagnostics.md)), so is a device of another kind (SK-SENSOR-091); a note says what the file got
+([SK-SENSOR-090](../commands/explain.md)), so is a device of another kind (SK-SENSOR-091); a note says what the file got
 (SK-SENSOR-092), and `simkit inspect` shows the result. From Python:
 
 ```python

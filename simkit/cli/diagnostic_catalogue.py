@@ -1,0 +1,198 @@
+"""Catalogue of diagnostic codes: read them from `diagnostic_codes/<area>.toml`, and write them out as text.
+
+`simkit explain` prints codes, `python -m simkit.cli.diagnostic_catalogue > docs/diagnostics.md` writes the page of all,
+and a test runs every example. A code keeps its meaning for ever and is never given to another.
+
+A file of an area has its `title` on the page, its `position` there (areas without one come last, in the order of the
+alphabet) and one table for each code, with the attributes of `Code`. A file of an example that is no text is
+`{ hex = "…" }`.
+"""
+
+from __future__ import annotations
+
+import sys
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Literal
+
+Kind = Literal["xml", "command", "python"]
+
+_FOLDER = Path(__file__).with_name("diagnostic_codes")
+_INTRODUCTION = """# Diagnostics
+
+Everything simkit has to say about your input carries a code, `SK-AREA-NNN`. A code keeps its meaning and is never given
+to another. `simkit check FILE` prints all of a file's at once; in Python `sim.diagnostics` holds them, and
+`simkit.LoadError` carries them in `.diagnostics`. `simkit explain CODE` prints what stands here.
+
+This page is written from the tables in `simkit/cli/diagnostic_codes` (`python -m simkit.cli.diagnostic_catalogue`), and
+a test runs every example.
+
+| severity | |
+|---|---|
+| error | the input cannot be used; exit code 2 |
+| warning | something has no effect here, or another one than written; an error with `--strict` |
+| note | a standing conversion that keeps the meaning as closely as the engine can |
+| stop | no report on a file but the reason why a run ended; its exit code is in the row |
+"""
+_LAST = sys.maxsize
+_LANGUAGE_OF_KIND = {"xml": "xml", "command": "sh", "python": "python"}
+_LANGUAGE_OF_ENDING = {
+    "sdf": "xml",
+    "urdf": "xml",
+    "xacro": "xml",
+    "xml": "xml",
+    "config": "xml",
+    "py": "python",
+    "yaml": "yaml",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """Input that causes a diagnostic code.
+
+    Attributes:
+        text: `xml`: a file that `simkit check` is given (SDF, URDF, ...); `command`: a line for the shell, beginning
+            with `simkit`, run in an empty folder that holds `files`; `python`: a script run there, which prints the
+            code, raises the error that carries it, or leaves it in a simulation called `sim`.
+        kind: how `text` is run.
+        files: further files by relative path, text or bytes.
+        suffix: of the file that `text` becomes, for `xml`.
+    """
+
+    text: str
+    kind: Kind = "xml"
+    files: Mapping[str, str | bytes] = field(default_factory=dict)
+    suffix: str = ".sdf"
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """One diagnostic code.
+
+    Attributes:
+        code: `SK-AREA-NNN`.
+        severity: "error", "warning", "note" or "stop"; two joined by ", " where it depends.
+        meaning: what was found, in general.
+        helps: what helps; may be empty.
+        example: None only where no input of a user causes the code; `without` then says why.
+        without: why there is no example.
+    """
+
+    code: str
+    severity: str
+    meaning: str
+    helps: str = ""
+    example: Example | None = None
+    without: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """One area of codes: the middle of their names, its title and position on the page, and its codes by name."""
+
+    name: str
+    title: str
+    position: int
+    codes: Mapping[str, Code]
+
+
+def catalogue(prefix: str = "SK-") -> Mapping[str, Code]:
+    """Return the codes whose names begin with `prefix`, in order; only the files of their areas are read."""
+    area, dash, _ = prefix.removeprefix("SK-").partition("-")
+    names = [name for name in _area_names() if (name == area if dash else name.startswith(area))]
+    codes = (code for name in names for code in _area(name).codes.values() if code.code.startswith(prefix))
+    return MappingProxyType({code.code: code for code in sorted(codes, key=lambda code: code.code)})
+
+
+def explain(code: Code) -> str:
+    """Format one code as plain text: severity, meaning, what helps, and an example."""
+    lines = [f"{code.code} ({code.severity})", f"  {code.meaning}"]
+    if code.helps:
+        lines.append(f"  help: {code.helps}")
+    if code.example is None:
+        lines.append(f"  no example: {code.without}")
+        return "\n".join(lines)
+    for title, text in _example_files(code.example):
+        lines += ["", f"  {title}", *(f"    {line}" for line in text.rstrip("\n").splitlines())]
+    return "\n".join(lines)
+
+
+def page() -> str:
+    """Format all codes as one page of Markdown."""
+    areas = sorted(map(_area, _area_names()), key=lambda area: (area.position, area.name))
+    return "\n".join([_INTRODUCTION, *("\n".join(_section(area)) for area in areas)])
+
+
+def _area_names() -> list[str]:
+    return sorted(path.stem.upper() for path in _FOLDER.glob("*.toml"))
+
+
+@cache
+def _area(name: str) -> Area:
+    """Read the file of one area."""
+    table = tomllib.loads((_FOLDER / f"{name.lower()}.toml").read_text(encoding="utf-8"))
+    title, position = table.pop("title"), table.pop("position", _LAST)
+    return Area(name, title, position, {code: _code(code, entry) for code, entry in sorted(table.items())})
+
+
+def _code(name: str, entry: dict[str, Any]) -> Code:
+    """Build a code from its table."""
+    example = entry.pop("example", None)
+    return Code(name, **entry, example=None if example is None else _example(example))
+
+
+def _example(entry: dict[str, Any]) -> Example:
+    """Build an example from its table."""
+    files = {
+        name: content if isinstance(content, str) else bytes.fromhex(content["hex"])
+        for name, content in entry.pop("files", {}).items()
+    }
+    return Example(**entry, files=files)
+
+
+def _example_files(example: Example) -> list[tuple[str, str]]:
+    """Return a title and a text for each part of an example; the part that is run comes last."""
+    files = [
+        (f"{name}:", content if isinstance(content, str) else f"({len(content)} bytes)")
+        for name, content in example.files.items()
+    ]
+    title = {"xml": f"example{example.suffix}:", "command": "then:", "python": "in Python:"}[example.kind]
+    return [*files, (title, example.text)]
+
+
+def _section(area: Area) -> Iterator[str]:
+    """Yield the lines of one area: a table of its codes, then each code with its example."""
+    yield f"## {area.title}\n"
+    yield "| code | severity | meaning | what helps |\n|---|---|---|---|"
+    for code in area.codes.values():
+        yield f"| [`{code.code}`](#{code.code.lower()}) | {code.severity} | {code.meaning} | {code.helps} |"
+    yield ""
+    for code in area.codes.values():
+        yield from _entry(code)
+
+
+def _entry(code: Code) -> Iterator[str]:
+    """Yield the lines of one code."""
+    yield f"### {code.code}\n"
+    yield f"{code.severity}: {code.meaning}." + (f" What helps: {code.helps}." if code.helps else "") + "\n"
+    if code.example is None:
+        yield f"No example: {code.without}.\n"
+        return
+    files = _example_files(code.example)
+    for position, (title, text) in enumerate(files):
+        is_last = position == len(files) - 1
+        name = title.removesuffix(":")
+        if len(files) > 1 and (not is_last or code.example.kind == "xml"):
+            yield f"`{name}`\n"
+        ending = name.rpartition(".")[2]
+        language = _LANGUAGE_OF_KIND[code.example.kind] if is_last else _LANGUAGE_OF_ENDING.get(ending, "text")
+        yield f"```{language}\n{text.rstrip()}\n```\n"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page())
