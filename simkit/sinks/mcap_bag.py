@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from simkit import msgs
-from simkit.sinks import qos
+from simkit.sinks.qos import as_yaml, profile
 
 _SECOND = 1_000_000_000
 _CHUNK_BYTES = 4 << 20
@@ -78,7 +78,7 @@ class McapBag:
                 text = msgs.definition(type_name).encode()
                 schema = self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
             metadata = {
-                "offered_qos_profiles": qos.as_yaml([qos.profile(latched)]),
+                "offered_qos_profiles": as_yaml([profile(latched)]),
                 "topic_type_hash": msgs.rihs(type_name),
             }
             number = self._writer.register_channel(topic, "cdr", schema, metadata)

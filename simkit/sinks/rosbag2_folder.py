@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from simkit import msgs
-from simkit.sinks import qos
+from simkit.sinks.qos import profile
 from simkit.sinks.mcap_bag import McapBag
 
 _VERSION = 9  # of the rosbag2 metadata format; the one of ROS 2 Jazzy
@@ -59,7 +59,7 @@ class Rosbag2Folder(McapBag):
                         "name": channel.topic,
                         "type": channel.type_name,
                         "serialization_format": "cdr",
-                        "offered_qos_profiles": [qos.profile(channel.latched)],
+                        "offered_qos_profiles": [profile(channel.latched)],
                         "type_description_hash": msgs.rihs(channel.type_name),
                     },
                     "message_count": channel.count,

@@ -13,11 +13,6 @@ DEGREE_PER_HOUR = DEGREE / 3600.0  # rad/s
 GRAVITY = 9.80665  # m/s²
 MICRO_G = 1e-6 * GRAVITY  # m/s²
 GAUSS = 1e-4  # T
-ALLAN_FLOOR = FLOOR
-"""Lowest Allan deviation of a bias instability of 1 (IEEE Std 952-1997, annex C): 0.664.
-
-Makers call that lowest point the in-run bias stability, so an instability is their number divided by this.
-"""
 CIRCULAR_50 = math.sqrt(2.0 * math.log(2.0))
 """Radius that holds half of the readings of two normal numbers of deviation 1: 1.177."""
 LINEAR_50 = 0.6744898
@@ -75,9 +70,9 @@ def inertial(gyro: float, accelerometer: float, gyro_floor: float = 0.0, acceler
     rate = {"noise_density": gyro * DEGREE}
     force = {"noise_density": accelerometer * MICRO_G}
     if gyro_floor:
-        rate["bias_instability"] = gyro_floor * DEGREE_PER_HOUR / ALLAN_FLOOR
+        rate["bias_instability"] = gyro_floor * DEGREE_PER_HOUR / FLOOR
     if accelerometer_floor:
-        force["bias_instability"] = accelerometer_floor * MICRO_G / ALLAN_FLOOR
+        force["bias_instability"] = accelerometer_floor * MICRO_G / FLOOR
     return imu(axes(gaussian(**rate)), axes(gaussian(**force)))
 
 
