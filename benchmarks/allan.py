@@ -20,7 +20,7 @@ import numpy.typing as npt
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import simkit
-from simkit.sensors.wander import FLOOR
+from simkit.sensors.bias_drift import ALLAN_FLOOR
 
 Values = npt.NDArray[np.float64]
 RATE = 100  # [Hz]
@@ -83,7 +83,7 @@ def fit(times: Values, deviation: Values, duration: float) -> tuple[float, float
 
     Each point counts by how well it is known: its variance to about √(τ/duration) of itself.
     """
-    terms = np.stack((1 / times, np.full_like(times, FLOOR**2), times / 3), axis=1)
+    terms = np.stack((1 / times, np.full_like(times, ALLAN_FLOOR**2), times / 3), axis=1)
     weight = np.sqrt(duration / times) / deviation**2
     n2, b2, k2 = np.linalg.lstsq(terms * weight[:, None], np.sqrt(duration / times), rcond=None)[0]
     if k2 < 0:  # none that can be told
@@ -105,10 +105,12 @@ def draw(times: Values, deviation: Values, out: Path) -> None:
         for j, axis in enumerate("xyz"):
             axes.loglog(times, deviation[:, 3 * i + j], lw=1, label=axis)
         n, b, k = sheet["noise_density"], sheet["bias_instability"], sheet["random_walk"]
-        total = np.sqrt(n**2 / times + (FLOOR * b) ** 2 + k**2 * times / 3)
+        total = np.sqrt(n**2 / times + (ALLAN_FLOOR * b) ** 2 + k**2 * times / 3)
         axes.loglog(times, total, "k--", lw=1.2, label="data sheet")
-        axes.axhline(FLOOR * b, color="grey", lw=0.8, ls=":")
-        axes.annotate(f"0.664 · B, B = {b:g} {unit}", (times[0], FLOOR * b), textcoords="offset points", xytext=(0, 4))
+        axes.axhline(ALLAN_FLOOR * b, color="grey", lw=0.8, ls=":")
+        axes.annotate(
+            f"0.664 · B, B = {b:g} {unit}", (times[0], ALLAN_FLOOR * b), textcoords="offset points", xytext=(0, 4)
+        )
         axes.annotate(
             f"N = {n:g} {unit}/√Hz", (times[4], n / math.sqrt(times[4])), textcoords="offset points", xytext=(8, 2)
         )

@@ -24,13 +24,12 @@ from measure import arguments, report
 
 import simkit
 from simkit import msgs
-from simkit.bench import Figure, interleaved
-from simkit.bench.bare import HandWritten
-from simkit.bench.pictures import BarePass
-from simkit.compiler.groups import VISUAL
-from simkit.sensors.rendered import RenderedSensor
-from simkit.sensors.rendering.view import aim
-from simkit.sinks.recorder import Recorder
+from simkit.cli.bench_bare_mujoco import BarePass, HandWrittenLoop
+from simkit.cli.bench_figures import Figure, time_interleaved
+from simkit.compiler.geom_groups import VISUAL
+from simkit.recording.bags.recorder import Recorder
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendering.view import aim
 
 EYE = "turtlebot3::camera_rgb_frame::camera"
 PLAIN = """<sdf version="1.9"><model name="plain"><static>true</static><link name="l">
@@ -40,13 +39,13 @@ PLAIN = """<sdf version="1.9"><model name="plain"><static>true</static><link nam
 _PICTURES = 5  # of each side at a time
 
 
-def eye_of(sim: Any) -> RenderedSensor:
-    found: RenderedSensor = sim.sensor(EYE)
+def eye_of(sim: Any) -> RenderedCamera:
+    found: RenderedCamera = sim.sensor(EYE)
     return found
 
 
 @contextlib.contextmanager
-def without_noise(eye: RenderedSensor) -> Iterator[None]:
+def without_noise(eye: RenderedCamera) -> Iterator[None]:
     """While it lasts, a sample's reading is its truth."""
     eye.perturb = lambda reading, index: reading  # type: ignore[method-assign]
     try:
@@ -76,7 +75,7 @@ def single(size: tuple[int, int], rounds: int, *, depth: bool) -> Iterator[Figur
             for _ in range(_PICTURES):
                 eye.sample(sim.tick)
 
-        ours, with_noise, theirs = interleaved([clean, noisy, lambda: bare.draw_many(_PICTURES)], rounds)
+        ours, with_noise, theirs = time_interleaved([clean, noisy, lambda: bare.draw_many(_PICTURES)], rounds)
         name = f"{'RGB-D' if depth else 'colour'} {size[0]}x{size[1]}, no noise"
         yield Figure(name, "picture", ours / _PICTURES, theirs / _PICTURES, 1.15)
         share = 1.25 if depth else 1.15
@@ -111,7 +110,7 @@ def beside_mujoco(rounds: int) -> Figure:
                     eye.sample(sim.tick)
 
             with without_noise(eye):
-                times = interleaved([ours, twice], rounds)
+                times = time_interleaved([ours, twice], rounds)
         del taps
     return Figure("RGB-D 640x480, beside mujoco.Renderer twice", "picture", times[0] / _PICTURES, times[1], 0.125)
 
@@ -120,12 +119,12 @@ def whole_loop(rounds: int) -> Iterator[Figure]:
     """IMU 200 Hz, lidar 5 Hz, RGB-D 30 Hz, with noise: a simulated second, and every message of it looked at."""
     for is_on, aim_, clock in ((False, 1 / 0.9, time.process_time), (True, 1 / 1.3, time.perf_counter)):
         with simkit.load("turtlebot3_world", render_thread=is_on) as sim:
-            sensors = [s for s in sim.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedSensor)]
+            sensors = [s for s in sim.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedCamera)]
             topics = [s.topic for s in sensors]
             topics.append(eye_of(sim)._topics["depth_image"])
             second = round(1.0 / sim.timestep)
             sim.step(second)
-            bare = HandWritten(sim, {s.topic: round(second / s.update_rate) for s in sensors})
+            bare = HandWrittenLoop(sim, {s.topic: round(second / s.update_rate) for s in sensors})
 
             def ours(sim: Any = sim, topics: list[str] = topics, second: int = second) -> None:
                 subs = [sim.subscribe(topic) for topic in topics]
@@ -134,10 +133,10 @@ def whole_loop(rounds: int) -> Iterator[Figure]:
                     assert len(sub.messages) > 3
                     sub.close()
 
-            def theirs(bare: HandWritten = bare, second: int = second) -> None:
+            def theirs(bare: HandWrittenLoop = bare, second: int = second) -> None:
                 bare.step(second)
 
-            times = interleaved([ours, theirs], rounds, clock)
+            times = time_interleaved([ours, theirs], rounds, clock)
             how = "with the render thread, wall time" if is_on else "on one thread"
             yield Figure(f"loop of imu, lidar, RGB-D, {how}", "second", *times, aim_)
 
@@ -145,7 +144,7 @@ def whole_loop(rounds: int) -> Iterator[Figure]:
 def messages(rounds: int) -> Figure:
     """Making and serialising all messages of a simulated second, beside the whole loop."""
     with simkit.load("turtlebot3_world", render_thread=False) as sim:
-        sensors = [s for s in sim.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedSensor)]
+        sensors = [s for s in sim.sensors.values() if s.kind in ("imu", "lidar") or isinstance(s, RenderedCamera)]
         topics = [s.topic for s in sensors] + [eye_of(sim)._topics["depth_image"]]
         sim.step(1000)
         made: list[Any] = []
@@ -161,13 +160,13 @@ def messages(rounds: int) -> Figure:
         def make() -> None:
             for sensor, (products, sample) in again.items():
                 count = round(sensor.update_rate)
-                is_eye = isinstance(sensor, RenderedSensor)
+                is_eye = isinstance(sensor, RenderedCamera)
                 names = ("image", "depth_image") if is_eye else (next(iter(sensor._topics)),)
                 for _ in range(count):
                     for name in names:
                         msgs.serialize(products[name].make(sample.noisy, sample.time_ns))
 
-        (took,) = interleaved([make], rounds)
+        (took,) = time_interleaved([make], rounds)
         del taps
     return Figure("messages and CDR of that, of the loop", "second", took, float(np.median(seconds)), 0.05)
 
@@ -180,7 +179,7 @@ def recording(rounds: int) -> Iterator[Figure]:
             topics = [eye._topics[product] for product in ("image", "depth_image")]
             sim.run(0.2)
             with Recorder(sim, Path(folder) / "x.mcap", topics=topics):
-                (took,) = interleaved([lambda sim=sim: sim.run(1.0)], rounds, time.perf_counter)
+                (took,) = time_interleaved([lambda sim=sim: sim.run(1.0)], rounds, time.perf_counter)
             size = (Path(folder) / "x.mcap").stat().st_size / (rounds + 1) / 1e6
             how = "with the render thread" if is_on else "on one thread"
             yield Figure(f"recording RGB-D at 30 Hz, {how}, {size:.0f} MB", "second", took, 1.0, 1.0)
@@ -217,7 +216,7 @@ def beside_pybullet(rounds: int) -> Figure | None:
 
         _compare(theirs(), eye.measure(sim.mj_model, data), 0.05, eye.options.model.far)
         with without_noise(eye):
-            times = interleaved([ours, theirs], rounds)
+            times = time_interleaved([ours, theirs], rounds)
         pybullet.disconnect(client)
         del taps
     return Figure("RGB-D 640x480, beside PyBullet's", "picture", times[0] / _PICTURES, times[1], 0.125)

@@ -32,10 +32,10 @@ WORLD = f"""<sdf version="1.9"><world name="w">
 
 
 def main() -> None:
-    from simkit.golden.capture import run_record
-    from simkit.golden.compare import compare
-    from simkit.golden.store import read_golden, write_golden
-    from simkit.scenario import Scenario, Tolerance
+    from simkit.testing.golden.compare.runs import compare
+    from simkit.testing.golden.store import read_golden, write_golden
+    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.scenarios import Scenario, Tolerance
 
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--checks", type=int, default=10_000, help="in all")

@@ -22,8 +22,8 @@ import measure  # noqa: F401  (finds simkit beside it)
 
 import simkit
 from simkit import msgs
-from simkit.bench import interleaved
-from simkit.bench.bare import Bare, bare_scan
+from simkit.cli.bench_bare_mujoco import BareEngine, cast_bare_scan
+from simkit.cli.bench_figures import time_interleaved
 
 BURGER = Path(__file__).resolve().parents[1] / "assets" / "turtlebot3" / "turtlebot3_burger" / "model.sdf"
 SPACING = 2.0  # [m]
@@ -129,8 +129,8 @@ def measured(robots: int, kind: str, rounds: int) -> Row:
     drive(sim)
     sim.run(0.3)
     topics = [topic for topic, kind in sim.topics().items() if kind in READ and topic not in sim.bus.aside]
-    bare = Bare(sim)
-    scans = [bare_scan(s, bare.model, bare.data) for s in sim.sensors.values() if s.kind == "lidar"]
+    bare = BareEngine(sim)
+    scans = [cast_bare_scan(s, bare.model, bare.data) for s in sim.sensors.values() if s.kind == "lidar"]
     received = 0
 
     def count(_: Any) -> None:
@@ -141,16 +141,16 @@ def measured(robots: int, kind: str, rounds: int) -> Row:
         sim.step(STRETCH)
 
     sides: list[Callable[[], object]] = [lambda: bare.step(STRETCH), lambda: [scan() for scan in scans], ours]
-    unread = interleaved(sides, rounds)
+    unread = time_interleaved(sides, rounds)
     kept = [sim.subscribe(topic, keep=1) for topic in topics]
-    later = interleaved(sides, rounds)
+    later = time_interleaved(sides, rounds)
     for subscription in kept:
         subscription.close()
     for topic in topics:
         sim.subscribe(topic, count, keep=1)
     sim.step(STRETCH)
     received = 0
-    called = interleaved(sides, rounds)
+    called = time_interleaved(sides, rounds)
     per_second = round(received / (rounds + 1) / STRETCH / sim.timestep)
     step, rays = (statistics.median(side[i] for side in (unread, later, called)) / STRETCH for i in (0, 1))
     start = time.process_time()
@@ -175,7 +175,7 @@ def publishing(rounds: int) -> float:
         for i in range(count):
             publisher.publish(make(float(i)))
 
-    built, published = interleaved([build, publish], rounds)
+    built, published = time_interleaved([build, publish], rounds)
     return (published - built) / count
 
 

@@ -12,10 +12,10 @@ from pathlib import Path
 
 from measure import arguments
 
-from simkit.golden.capture import run_record
-from simkit.golden.store import read_golden, write_golden
-from simkit.scenario import Scenario
-from simkit.scenario.run import open_scenario, run_scenario
+from simkit.testing.golden.store import read_golden, write_golden
+from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.scenarios import Scenario
+from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 _DURATION = 30.0  # [s] simulated
 _AIM = 200e3  # bytes, of half a minute of a TurtleBot3 with lidar and IMU

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from measure import arguments
 
-from simkit.bench import import_time
+from simkit.cli.bench_figures import import_time
 
 
 def main() -> None:

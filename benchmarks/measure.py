@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 
 def report(figures: Iterable[Any]) -> None:
-    """Prints one line for each `simkit.bench.Figure`."""
+    """Prints one line for each `simkit.cli.bench_figures.Figure`."""
     for f in figures:
         beside = "" if f.ratio is None else f"   bare {f.bare * 1e6:9.2f} us   ratio {f.ratio:6.3f}"
         aim = "" if f.aim is None else f"   aim <= {f.aim:.2f}"

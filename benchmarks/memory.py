@@ -8,7 +8,7 @@ from __future__ import annotations
 from measure import arguments
 
 import simkit
-from simkit.bench import memory_growth
+from simkit.cli.bench_figures import memory_growth
 
 
 def main() -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from measure import arguments
 
 import simkit
-from simkit.bench import interleaved
+from simkit.cli.bench_figures import time_interleaved
 from worlds import obstacles
 
 COUNT, STEPS = 5000, 200
@@ -22,7 +22,7 @@ def main() -> None:
             # nothing due: the plugins' and sensors' share is the same in both
             sim.scheduler.clear()
             sim.scheduler.rewind(sim.tick)
-        many, none = interleaved([lambda: full.step(STEPS), lambda: empty.step(STEPS)], rounds)
+        many, none = time_interleaved([lambda: full.step(STEPS), lambda: empty.step(STEPS)], rounds)
     print(
         f"a step with {COUNT} static obstacles {many / STEPS * 1e6:.1f} us, without {none / STEPS * 1e6:.1f} us, "
         f"ratio {many / none:.2f}   aim <= 2"

@@ -59,11 +59,11 @@ class Result:
 def prepare(name: str, folder: Path) -> Any:
     """A copy of a world with all that it needs, as a scenario, and its golden run beside it."""
     from simkit.build import describe
-    from simkit.golden.capture import run_record
-    from simkit.golden.store import write_golden
-    from simkit.scenario import Scenario
-    from simkit.scenario.read import read_scenario
-    from simkit.vendor import vendor
+    from simkit.testing.golden.store import write_golden
+    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.scenarios import Scenario
+    from simkit.testing.scenarios.scenario_file import read_scenario
+    from simkit.writers.vendor import vendor
 
     place = folder / name
     if name == "workshop":
@@ -77,7 +77,7 @@ def prepare(name: str, folder: Path) -> Any:
 
 
 def checked(golden: Path, scenario: Any, causes: bool = True) -> Any:
-    from simkit.golden.check import check_golden
+    from simkit.testing.golden.check import check_golden
 
     return check_golden(golden, scenario=scenario, causes=causes, budget_s=BUDGET)
 
@@ -132,10 +132,10 @@ def harmless_cases(name: str, folder: Path, scenario: Any) -> Iterator[tuple[str
 
 
 def _with_subscribers(golden: Path, scenario: Any) -> tuple[bool, str]:
-    from simkit.golden.capture import run_record
-    from simkit.golden.compare import compare
-    from simkit.golden.store import read_golden
-    from simkit.scenario.run import open_scenario
+    from simkit.testing.golden.compare.runs import compare
+    from simkit.testing.golden.store import read_golden
+    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.scenarios.scenario_run import open_scenario
 
     with open_scenario(scenario) as sim:
         for topic in sim.topics():

@@ -24,7 +24,7 @@ import measure  # noqa: F401 - finds simkit in the checkout
 import mujoco
 
 import simkit
-from simkit.sinks.mjcf import write_mjcf
+from simkit.writers.mjcf import write_mjcf
 
 ROUNDS = 9
 _ROBOT = Path("robots", "tiago_description", "robots", "tiago.urdf")

@@ -15,8 +15,8 @@ import numpy as np
 from measure import arguments, report
 
 import simkit
-from simkit.bench import Figure, interleaved, sensor_cost
-from simkit.bench.bare import bare_scan
+from simkit.cli.bench_bare_mujoco import cast_bare_scan
+from simkit.cli.bench_figures import Figure, sensor_cost, time_interleaved
 
 LAYERS, COLUMNS = 64, 1024
 TURTLEBOT = "turtlebot3::base_scan::lds"
@@ -73,10 +73,10 @@ def timed(text: str, folder: Path, rounds: int) -> list[float]:
     with simkit.load(text, resource_paths=[str(folder)]) as sim:
         sim.run(0.05)
         sensor = sim.sensor("m::l::s")
-        data, bare = sim.fresh_data(), bare_scan(sensor, sim.mj_model, sim.mj_data)
+        data, bare = sim.fresh_data(), cast_bare_scan(sensor, sim.mj_model, sim.mj_data)
         sim.bus.tap(sensor.topic + "/points", lambda _: None)
         sides = [lambda: sensor.measure(sim.mj_model, data), lambda: sensor.sample(sim.tick), bare]
-        return interleaved(sides, rounds)
+        return time_interleaved(sides, rounds)
 
 
 def accuracy() -> float:
@@ -124,7 +124,7 @@ def beside_pybullet(rounds: int) -> Figure | None:
         both = np.isfinite(found) & np.isfinite(ours)
         worst = np.abs(found[both] - ours[both]).max()
         print(f"PyBullet's scan is the same within {worst:.1e} m")
-        times = interleaved(
+        times = time_interleaved(
             [
                 lambda: [sensor.sample(sim.tick) for _ in range(100)],
                 lambda: [pybullet.rayTestBatch(starts, ends) for _ in range(10)],
@@ -137,7 +137,7 @@ def beside_pybullet(rounds: int) -> Figure | None:
 
 def _copy_shapes(pybullet: Any, model: Any, data: Any, own_body: int) -> None:
     """Collisions of the compiled model but the lidar's own, each a body of PyBullet's."""
-    from simkit.compiler.groups import COLLISION
+    from simkit.compiler.geom_groups import COLLISION
 
     for geom in np.flatnonzero(model.geom_group == COLLISION).tolist():
         if model.geom_bodyid[geom] == own_body:

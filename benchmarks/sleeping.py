@@ -8,8 +8,8 @@ from __future__ import annotations
 from measure import arguments
 
 import simkit
-from simkit.bench import interleaved
-from simkit.bench.bare import Bare
+from simkit.cli.bench_bare_mujoco import BareEngine
+from simkit.cli.bench_figures import time_interleaved
 from worlds import SHAPES, boxes
 
 COUNT = 500
@@ -22,7 +22,7 @@ def resting_boxes(rounds: int, robot: bool) -> str:
         for sim in (sleeper, waker):
             sim.run(1.0)
         steps = 20
-        asleep, awake = interleaved([lambda: sleeper.step(steps), lambda: waker.step(steps)], rounds)
+        asleep, awake = time_interleaved([lambda: sleeper.step(steps), lambda: waker.step(steps)], rounds)
     who = f"{COUNT} resting boxes" + (" and a TurtleBot3" if robot else "")
     return (
         f"a step of {who}: asleep {asleep / steps * 1e6:.1f} us, awake {awake / steps * 1e6:.1f} us, "
@@ -35,15 +35,15 @@ def shapes(rounds: int) -> list[str]:
     steps = 10
     with simkit.load(SHAPES, sleep=False) as sim:
         sim.run(0.1)
-        bare = Bare(sim)
-        ours, theirs = interleaved([lambda: sim.step(steps), lambda: bare.step(steps)], rounds)
+        bare = BareEngine(sim)
+        ours, theirs = time_interleaved([lambda: sim.step(steps), lambda: bare.step(steps)], rounds)
     lines = [
         f"3003 shapes awake: a step {ours / steps * 1e3:.2f} ms, bare {theirs / steps * 1e3:.2f} ms, "
         f"{theirs / ours:.3f} of bare stepping   aim >= 0.95"
     ]
     with simkit.load(SHAPES) as sim:
         sim.run(1.0)
-        (second,) = interleaved([lambda: sim.run(10.0)], rounds)
+        (second,) = time_interleaved([lambda: sim.run(10.0)], rounds)
     return [*lines, f"3003 shapes asleep: {10.0 / second:.0f} times real time   aim >= 100"]
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from measure import arguments, report
 
-from simkit.bench import measure
+from simkit.cli.bench_figures import measure
 
 
 def main() -> None:

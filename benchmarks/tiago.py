@@ -24,8 +24,8 @@ import measure  # noqa: F401 - finds simkit in the checkout
 from robot_loading import compare
 
 import simkit
-from simkit.bench import interleaved
-from simkit.bench.bare import Bare
+from simkit.cli.bench_bare_mujoco import BareEngine
+from simkit.cli.bench_figures import time_interleaved
 
 OFFICE = "simple_office_with_people"
 CHUNK = 500  # steps of a round
@@ -100,8 +100,8 @@ def steps(name: str, rounds: int) -> list[str]:
                     sim.step(CHUNK // 5)
 
             ours()
-            bare = Bare(sim)
-            mine, theirs = interleaved([ours, lambda bare=bare: bare.step(CHUNK)], rounds)  # type: ignore[misc]
+            bare = BareEngine(sim)
+            mine, theirs = time_interleaved([ours, lambda bare=bare: bare.step(CHUNK)], rounds)  # type: ignore[misc]
             text = f"step, all controllers, {what}: {mine / CHUNK * 1e6:.1f} us, bare {theirs / CHUNK * 1e6:.1f} us"
             lines.append(f"{text}, ratio {mine / theirs:.2f}   aim <= 1.25")
     return lines
@@ -135,7 +135,7 @@ def office(name: str, seconds: float, step: float, profile: bool) -> list[str]:
         taken = timed(lambda: live(seconds))
         at = f"at {sim.timestep * 1000:g} ms, {count} topics read"
         lines = [f"in the office, {at}: {seconds / taken:.1f} times real time   aim >= 10"]
-        bare = Bare(sim)
+        bare = BareEngine(sim)
         engine = timed(lambda: bare.step(round(seconds / sim.timestep)))
         lines.append(f"the engine alone there: {seconds / engine:.1f} times, {engine / taken:.0%} of it")
         if profile:

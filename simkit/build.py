@@ -12,24 +12,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import Diagnostics, Where, follows_from
-from simkit.engine import import_engine
 from simkit.errors import InputError, LoadError, SimkitError
 from simkit.loaders import Resolver, load_scene
-from simkit.parts import add_made, parts_of_model, parts_of_world, report_unread
+from simkit.mujoco_import import import_mujoco
+from simkit.plugins.discovery.scene_instances import (
+    add_python_plugins,
+    make_model_parts,
+    make_world_parts,
+    report_unread,
+)
 from simkit.pose import Pose
 from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
-    from simkit.control.given_files import GivenFile, Named
+    from simkit.loaders.spawn_option import SpawnedModel
+    from simkit.plugins.ros2_control.run_parameter_files import ParameterFileArgument, RunParameterFile
     from simkit.runtime import Simulation
-    from simkit.runtime.faults import OnError
-    from simkit.spawning import Spawn
+    from simkit.runtime.engine.plugin_faults import PluginErrorPolicy
 
 Source = str | os.PathLike[str]
 # what the engine says of a world that lacks its faulty parts
-_ENGINE = frozenset(("SK-PHYS-023", "SK-PHYS-025", "SK-PHYS-028"))
+_ENGINE_CODES = frozenset(("SK-PHYS-023", "SK-PHYS-025", "SK-PHYS-028"))
 
-_MOST_LOOKED_INTO = 5000
+_MAX_MODELS_SEARCHED = 5000
 """Models of a faulty world that are built to find more faults: the engine takes minutes for 20 000."""
 
 
@@ -63,9 +68,9 @@ def load(
     sleep: bool = True,
     package_paths: Mapping[str, Source] | None = None,
     render_thread: bool | None = None,
-    on_error: OnError | None = None,
-    spawn: Sequence[str | Spawn] = (),
-    params_files: Named | Sequence[Named] = (),
+    on_error: PluginErrorPolicy | None = None,
+    spawn: Sequence[str | SpawnedModel] = (),
+    params_files: ParameterFileArgument | Sequence[ParameterFileArgument] = (),
     change_world: Callable[[SceneWorld], SceneWorld] | None = None,
 ) -> Simulation:
     """Opens a world or a bare model and makes it ready to step.
@@ -89,7 +94,7 @@ def load(
         on_error: what becomes of a plugin that raises: "stop" ends the run with a PluginError, "disable" goes on
             without it. Goes over what the file (`<simkit:on_error>`) and the plugin's class say; None leaves it to
             them, and they to "stop".
-        spawn: models that come into the world as it is loaded: `"MODEL:x,y,yaw[:name]"`, or `Spawn` objects. MODEL is
+        spawn: models that come into the world as it is loaded: `"MODEL:x,y,yaw[:name]"`, or `SpawnedModel` objects. MODEL is
             a file or a bare name; unlike what `Simulation.spawn` adds later, they are there after a reset as well.
         params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2, or
             `"MODEL=FILE"` for those of one; models that are spawned later read them too. What they say goes over the
@@ -105,25 +110,25 @@ def load(
     """
     if on_error not in (None, "stop", "disable"):
         raise InputError(f"on_error is 'stop' or 'disable', got {on_error!r}")
-    import_engine()
+    import_mujoco()
     from simkit.compiler import SpecBuilder
-    from simkit.runtime import Simulation, Structure
-    from simkit.sensors.rendering.thread import usable_cores
+    from simkit.runtime import Simulation, WorldStructure
+    from simkit.sensors.cameras.rendering.render_thread import usable_cores
 
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], package_paths=package_paths)
     scene = _scene(source, resolver, diagnostics, xacro_args, base, overrides, spawn)
-    world = scene.world if sleep else _sleepless(scene.world)
+    world = scene.world if sleep else _without_sleep(scene.world)
     if world.actors:
-        from simkit.plugins.actors.stage import with_actors
+        from simkit.plugins.actors.actor_model import with_actors
 
         world = with_actors(world, lambda uri, folder: resolver.search(uri, folder)[0], diagnostics)
     if change_world is not None and not diagnostics.has_errors:
         world = change_world(world)
     allowed = [Path(p) for p in plugin_paths]
-    given = _given(params_files, resolver, diagnostics)
+    given = _read_parameter_files(params_files, resolver, diagnostics)
     if diagnostics.has_errors:
-        _look_further(world, diagnostics, allowed, resolver)
+        _find_more_problems(world, diagnostics, allowed, resolver)
     diagnostics.raise_if_errors()
     builder = SpecBuilder(world, diagnostics)
     builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
@@ -131,17 +136,19 @@ def load(
     builder.files_read += [one.file.path for one in given]
     parts = _all_parts(world, builder, diagnostics, allowed, plugins)
     if given and not diagnostics.has_errors:  # a plugin whose parameters are at fault is not among the parts
-        from simkit.control.given_files import report_idle
+        from simkit.plugins.ros2_control.run_parameter_files import report_unused_parameter_files
 
-        report_idle(given, [plugin for one in parts.values() for plugin, _ in one.plugins], world, diagnostics)
+        report_unused_parameter_files(
+            given, [plugin for one in parts.values() for plugin, _ in one.plugins], world, diagnostics
+        )
     diagnostics.raise_if_errors(strict)
     compiled = builder.compile()
     diagnostics.raise_if_errors(strict)
 
     load_model = partial(_model_to_spawn, resolver=resolver)
-    make_parts = partial(parts_of_model, plugin_paths=allowed)
+    make_parts = partial(make_model_parts, plugin_paths=allowed)
     movable = frozenset(m.name for m in world.models if m.moved_by is not None)
-    structure = Structure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
+    structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.write_sdf = _sdf_of
     simulation.render_thread = usable_cores() > 1 if render_thread is None else render_thread
@@ -160,13 +167,15 @@ def load(
     return simulation
 
 
-def _given(named: Named | Sequence[Named], resolver: Resolver, diagnostics: Diagnostics) -> tuple[GivenFile, ...]:
+def _read_parameter_files(
+    named: ParameterFileArgument | Sequence[ParameterFileArgument], resolver: Resolver, diagnostics: Diagnostics
+) -> tuple[RunParameterFile, ...]:
     """The parameter files that a run is given."""
     if not named:
         return ()
-    from simkit.control.given_files import read_given
+    from simkit.plugins.ros2_control.run_parameter_files import read_run_parameter_files
 
-    return read_given(named, lambda uri: resolver.search(uri, None)[0], diagnostics)
+    return read_run_parameter_files(named, lambda uri: resolver.search(uri, None)[0], diagnostics)
 
 
 def _all_parts(
@@ -176,15 +185,15 @@ def _all_parts(
     parts: dict[str, Any] = {}
     try:
         for model in world.models:
-            parts[model.name] = parts_of_model(model, builder, diagnostics, allowed)
-        parts[""] = parts_of_world(world, builder, diagnostics, allowed)
-        add_made(parts, plugins, world, builder, diagnostics)
+            parts[model.name] = make_model_parts(model, builder, diagnostics, allowed)
+        parts[""] = make_world_parts(world, builder, diagnostics, allowed)
+        add_python_plugins(parts, plugins, world, builder, diagnostics)
     except Exception:
         # What was left out for its own fault (a joint without a direction) may be asked for here.
         diagnostics.raise_if_errors()
         raise
     if diagnostics.has_errors:
-        _load_the_rest(world, builder, parts, diagnostics)
+        _load_sound_parts(world, builder, parts, diagnostics)
     return parts
 
 
@@ -201,7 +210,7 @@ def describe(
     Raises:
         LoadError: the file has errors.
     """
-    from simkit.description import describe_scene
+    from simkit.writers.description import describe_scene
 
     diagnostics = Diagnostics()
     resolver = Resolver([Path(p) for p in resource_paths], missing_meshes=True, package_paths=package_paths)
@@ -220,8 +229,8 @@ def check(
     base: str = "auto",
 ) -> Diagnostics:
     """Every problem of a file, also of compiling it and of loading its plugins; never raises for one."""
+    from simkit.compiler.lint import lint
     from simkit.errors import PluginError
-    from simkit.lint import lint
 
     diagnostics = Diagnostics()
     try:
@@ -243,10 +252,10 @@ def check(
 
 
 def render_view(simulation: Simulation, width: int, height: int, **view: Any) -> Any:
-    """A picture of a simulation from anywhere; see `simkit.sensors.rendering.overview.render_view`."""
-    from simkit.sensors.rendering import overview
+    """A picture of a simulation from anywhere; see `simkit.sensors.cameras.rendering.overview_image.render_view`."""
+    from simkit.sensors.cameras.rendering import overview_image
 
-    return overview.render_view(simulation, width, height, **view)
+    return overview_image.render_view(simulation, width, height, **view)
 
 
 def _scene(
@@ -256,7 +265,7 @@ def _scene(
     xacro_args: Mapping[str, str] | None,
     base: str,
     overrides: Sequence[str],
-    spawn: Sequence[str | Spawn] = (),
+    spawn: Sequence[str | SpawnedModel] = (),
 ) -> Scene:
     scene = load_scene(
         source,
@@ -264,14 +273,14 @@ def _scene(
         diagnostics=diagnostics,
         xacro_args=dict(xacro_args or {}),
         base=base,
-        mesh_reader=_triangles,
+        mesh_reader=_read_mesh,
     )
     if spawn:
-        from simkit.spawning import add_spawned
+        from simkit.loaders.spawn_option import add_spawned_models
 
-        scene = add_spawned(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
-    from simkit.overrides import apply_overrides
+        scene = add_spawned_models(scene, spawn, resolver, diagnostics, _spawned_reader(resolver), xacro_args)
     from simkit.plugins.gz.sensors import with_sensors_colours
+    from simkit.scene.overrides import apply_overrides
 
     if overrides:
         diagnostics.raise_if_errors()
@@ -292,18 +301,18 @@ def _spawned_reader(resolver: Resolver) -> Any:
     return read
 
 
-def _triangles(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:
+def _read_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[Any]:
     """The triangles of a mesh, for the loaders' automatic inertia."""
-    from simkit.compiler.meshes.mesh import load_mesh
+    from simkit.compiler.meshes.mesh_reader import load_mesh
 
     return load_mesh(mesh, diagnostics, where)
 
 
-def _sleepless(world: SceneWorld) -> SceneWorld:
+def _without_sleep(world: SceneWorld) -> SceneWorld:
     return replace(world, physics=replace(world.physics, sleep=False))
 
 
-def _look_further(
+def _find_more_problems(
     world: SceneWorld, diagnostics: Diagnostics, plugin_paths: Sequence[Path], resolver: Resolver
 ) -> None:
     """What else is wrong with a file that has errors: it is built without its faulty parts, as far as that goes.
@@ -313,32 +322,32 @@ def _look_further(
     """
     from simkit.compiler import SpecBuilder
 
-    if len(world.models) > _MOST_LOOKED_INTO:
+    if len(world.models) > _MAX_MODELS_SEARCHED:
         return
     before = tuple(diagnostics)
     try:
         builder = SpecBuilder(world, diagnostics)
         builder.find_file = lambda uri, folder: resolver.search(uri, folder)[0]
-        parts = {m.name: parts_of_model(m, builder, diagnostics, plugin_paths) for m in world.models}
-        parts[""] = parts_of_world(world, builder, diagnostics, plugin_paths)
-        _load_the_rest(world, builder, parts, diagnostics)
+        parts = {m.name: make_model_parts(m, builder, diagnostics, plugin_paths) for m in world.models}
+        parts[""] = make_world_parts(world, builder, diagnostics, plugin_paths)
+        _load_sound_parts(world, builder, parts, diagnostics)
     except Exception:  # noqa: BLE001 - on a file with errors anything may be missing; what was found by then counts
         pass
-    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE or follows_from(d, before))
+    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES or follows_from(d, before))
 
 
-def _load_the_rest(world: SceneWorld, builder: Any, parts: dict[str, Any], diagnostics: Diagnostics) -> None:
+def _load_sound_parts(world: SceneWorld, builder: Any, parts: dict[str, Any], diagnostics: Diagnostics) -> None:
     """What the sound parts of a faulty world say when they are compiled and loaded; nobody steps it."""
-    from simkit.runtime import Simulation, Structure
+    from simkit.runtime import Simulation, WorldStructure
 
     before = tuple(diagnostics)
     with suppress(SimkitError, ValueError, KeyError, AttributeError, TypeError):
         compiled = builder.compile()
-        structure = Structure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
-        with suppress(LoadError), Simulation(world, structure, diagnostics, 0, _nothing, _nothing):
+        structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, frozenset(), parts)
+        with suppress(LoadError), Simulation(world, structure, diagnostics, 0, _unused_callback, _unused_callback):
             pass  # what is wrong with a plugin is said once all of them have been loaded
         report_unread(parts.values())
-    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE)
+    diagnostics.drop(d for d in tuple(diagnostics)[len(before) :] if d.code in _ENGINE_CODES)
 
 
 def read_scene(
@@ -365,12 +374,12 @@ def read_scene(
 
 def _sdf_of(world: SceneWorld) -> str:
     """A world as SDF text, every file named as it was."""
-    from simkit.writers.sdf import sdf_text
+    from simkit.writers.sdf_world import sdf_text
 
     return sdf_text(Scene(worlds=(world,)), Diagnostics())
 
 
-def _nothing(*_: Any, **__: Any) -> Any:
+def _unused_callback(*_: Any, **__: Any) -> Any:
     """Stands for what a simulation that nobody steps never asks for."""
 
 
@@ -391,7 +400,7 @@ def _model_to_spawn(
         name=name,
         pose=pose,
         as_model=True,
-        mesh_reader=_triangles,
+        mesh_reader=_read_mesh,
         xacro_args=xacro_args,
     )
     diagnostics.raise_if_errors()

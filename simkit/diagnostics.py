@@ -175,6 +175,6 @@ def did_you_mean(name: str, allowed: Iterable[str]) -> str:
     return f"did you mean {near!r}?" if near else ""
 
 
-def shortened(text: str, most: int) -> str:
+def shorten(text: str, most: int) -> str:
     """A text of no more than so many letters; where some are left out it ends with an ellipsis."""
     return text if len(text) <= most else text[: most - 1] + "…"

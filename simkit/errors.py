@@ -31,10 +31,10 @@ class SimkitError(Exception):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Goes from one process to another whole, whatever its constructor takes."""
-        return _again, (type(self), self.args, vars(self))
+        return _restore_error, (type(self), self.args, vars(self))
 
 
-def _again(kind: type[SimkitError], args: tuple[Any, ...], state: dict[str, Any]) -> SimkitError:
+def _restore_error(kind: type[SimkitError], args: tuple[Any, ...], state: dict[str, Any]) -> SimkitError:
     error = kind.__new__(kind, *args)
     vars(error).update(state)
     return error

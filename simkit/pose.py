@@ -147,7 +147,7 @@ class Pose:
         px, py, pz = self.position.tolist()
         x, y, z = other.position.tolist()
         tx, ty, tz = 2 * (ay * z - az * y), 2 * (az * x - ax * z), 2 * (ax * y - ay * x)
-        return _posed(
+        return _make_pose(
             (
                 px + (x + aw * tx + ay * tz - az * ty),
                 py + (y + aw * ty + az * tx - ax * tz),
@@ -169,7 +169,7 @@ class Pose:
         vx, vy, vz = self.position.tolist()
         x, y, z = -x, -y, -z
         tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
-        return _posed(
+        return _make_pose(
             (
                 -(vx + w * tx + y * tz - z * ty),
                 -(vy + w * ty + z * tx - x * tz),
@@ -208,7 +208,7 @@ class Pose:
         return f"Pose(position={tuple(self.position.tolist())}, quaternion={tuple(self.quaternion.tolist())})"
 
 
-def _posed(position: tuple[float, float, float], quaternion: tuple[float, float, float, float]) -> Pose:
+def _make_pose(position: tuple[float, float, float], quaternion: tuple[float, float, float, float]) -> Pose:
     """The same as `Pose(position, quaternion)`."""
     p, q = np.array(position), np.array(quaternion)
     norm = math.sqrt(q.dot(q))

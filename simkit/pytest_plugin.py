@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
 
     from simkit.diagnostics import Diagnostic
-    from simkit.golden.in_tests import SensorRegression
     from simkit.runtime import Simulation
+    from simkit.testing.golden.pytest_fixture import SensorRegression
 
 _OPENED: Final = pytest.StashKey["list[_Opened]"]()
 _GOLDEN: Final = pytest.StashKey["list[str]"]()
@@ -122,14 +122,14 @@ def sensor_regression(request: pytest.FixtureRequest) -> Iterator[SensorRegressi
     `sensor_regression("w.sdf", duration=3.0)` runs a world or a scenario; of a simulation that the test steps by itself
     `with sensor_regression.of(sim): …` listens. A test without a golden run fails; `--simkit-update-golden` writes it.
     """
-    from simkit.golden.in_tests import Place, SensorRegression
+    from simkit.testing.golden.pytest_fixture import GoldenLocation, SensorRegression
 
     opened: list[_Opened] = request.node.stash.setdefault(_OPENED, [])
     options, file = request.config.option, request.path
     reason = (options.simkit_golden_reason or _REASON) if options.simkit_update_golden else None
     # the name with its parameters; a class keeps methods of one name apart
     name = request.node.name if request.cls is None else f"{request.cls.__qualname__}.{request.node.name}"
-    place = Place(
+    place = GoldenLocation(
         file.parent / "golden" / file.stem,
         name,
         file.parent,
@@ -190,10 +190,10 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
 
 
 def _label(source: str | os.PathLike[str]) -> str:
-    from simkit.diagnostics import shortened
+    from simkit.diagnostics import shorten
 
     text = " ".join(str(source).split())
-    return shortened(text, _LONGEST) if "<" in text else text
+    return shorten(text, _LONGEST) if "<" in text else text
 
 
 def _lines(found: Iterable[Diagnostic]) -> str:

@@ -22,19 +22,19 @@ _TEXT = re.compile(r"""#[^\n]*|"(?P<one>[^"\\\n]+)"|'(?P<two>[^'\\\n]+)'""")
 _OUTER = "\nclass ", "\ndef ", "\nasync def "
 
 
-_read: dict[tuple[tuple[str, int], ...], Any] = {}
+_entry_points_cache: dict[tuple[tuple[str, int], ...], Any] = {}
 
 
-def points_of(group: str) -> list[EntryPoint]:
+def entry_points_of(group: str) -> list[EntryPoint]:
     """The entry points of a group. To read them all takes 20 ms: they are kept until a folder of `sys.path` changes."""
-    state = tuple((folder, _changed(Path(folder))) for folder in sys.path)
-    if state not in _read:
-        _read.clear()
-        _read[state] = entry_points()
-    return list(_read[state].select(group=group))
+    state = tuple((folder, _folder_time(Path(folder))) for folder in sys.path)
+    if state not in _entry_points_cache:
+        _entry_points_cache.clear()
+        _entry_points_cache[state] = entry_points()
+    return list(_entry_points_cache[state].select(group=group))
 
 
-def _changed(folder: Path) -> int:
+def _folder_time(folder: Path) -> int:
     """When something was last put into a folder or taken out [ns]; 0 where there is none."""
     try:
         return folder.stat().st_mtime_ns
@@ -143,7 +143,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     def _modules(self) -> tuple[tuple[str, Path], ...]:
         """The names of all modules of the packages, and their files."""
         roots = [importlib.import_module(package) for package in self._packages]
-        return tuple(found for root in roots for found in _below(root.__path__, root.__name__))
+        return tuple(found for root in roots for found in _modules_below(root.__path__, root.__name__))
 
     @cached_property
     def _written(self) -> tuple[Mapping[str, tuple[str, Sequence[str]]], Sequence[str]]:
@@ -168,7 +168,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         except (OSError, ValueError):
             return None
         found: list[str] = []
-        for start in (at for name in self._attributes for at in _given(source, name)):
+        for start in (at for name in self._attributes for at in _assigned_name_pattern(source, name)):
             value = _TEXTS.match(source, start)
             if value is None:
                 return None
@@ -179,7 +179,7 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
     def _foreign(self) -> tuple[type[T], ...]:
         """The classes of the entry points."""
         found = []
-        for point in sorted(points_of(self._group), key=lambda p: (p.name, p.value)):
+        for point in sorted(entry_points_of(self._group), key=lambda p: (p.name, p.value)):
             try:
                 loaded = point.load()
             except Exception as error:  # noqa: BLE001 - one broken package must not keep the others from working
@@ -196,17 +196,17 @@ class Kinds(Mapping[str, type[T]], Generic[T]):
         return [cls for cls in own if issubclass(cls, self._base) and not inspect.isabstract(cls)]
 
 
-def _below(folders: Iterable[str], package: str) -> Iterator[tuple[str, Path]]:
+def _modules_below(folders: Iterable[str], package: str) -> Iterator[tuple[str, Path]]:
     """The modules in a package's folders and in those below, by full name, with their files; imports nothing."""
     for folder in folders:
         for info in pkgutil.iter_modules([folder]):
             name, place = f"{package}.{info.name}", Path(folder, info.name)
             yield name, place / "__init__.py" if info.ispkg else place.with_name(f"{info.name}.py")
             if info.ispkg:
-                yield from _below([str(place)], name)
+                yield from _modules_below([str(place)], name)
 
 
-def _given(source: str, name: str) -> Iterator[int]:
+def _assigned_name_pattern(source: str, name: str) -> Iterator[int]:
     """Where in a module's text, behind the equals sign, a class attribute of this name is given its value."""
     at = source.find(f"\n    {name}")
     while at >= 0:

@@ -11,17 +11,20 @@ from pathlib import Path
 
 import pytest
 
-from simkit.apart import Processes
+from simkit.child_process import ChildProcesses
 
 ROOT = Path(__file__).resolve().parents[1]
-HEAD = "import os, subprocess, sys, time\nfrom simkit.apart import end_at_once, end_with_parent\nend_with_parent()\n"
+HEAD = (
+    "import os, subprocess, sys, time\nfrom simkit.child_process import exit_immediately, exit_with_parent\n"
+    "exit_with_parent()\n"
+)
 SLEEPER = "print(subprocess.Popen(['sleep', '60']).pid, flush=True)\n"
 
 
 def ended(folder: Path, body: str, **how: float):
     (folder / "part.py").write_text(HEAD + body)
     path = os.pathsep.join([str(folder), str(ROOT)])
-    return Processes().run("part", [], environment={**os.environ, "PYTHONPATH": path}, **how)
+    return ChildProcesses().run("part", [], environment={**os.environ, "PYTHONPATH": path}, **how)
 
 
 def is_gone(pid: int) -> bool:
@@ -43,7 +46,7 @@ def test_of_megabytes_the_last_lines_are_kept_and_nobody_waits(tmp_path: Path) -
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are looked at in /proc")
-@pytest.mark.parametrize("body", ["time.sleep(60)", "end_at_once(0)"], ids=["at its limit", "at its end"])
+@pytest.mark.parametrize("body", ["time.sleep(60)", "exit_immediately(0)"], ids=["at its limit", "at its end"])
 def test_what_it_began_ends_with_it(body: str, tmp_path: Path) -> None:
     found = ended(tmp_path, SLEEPER + body, limit=1.0)
     assert found.is_late == ("60" in body)
@@ -59,7 +62,7 @@ def test_it_ends_with_whoever_began_it_however_that_goes(how: signal.Signals, tm
         f"os.rename({str(file) + '.part'!r}, {str(file)!r})\ntime.sleep(60)"
     )
     script = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
-    script += "from simkit.apart import Processes\nProcesses().run('part', [])"
+    script += "from simkit.child_process import ChildProcesses\nChildProcesses().run('part', [])"
     path = os.pathsep.join([str(tmp_path), str(ROOT)])
     parent = subprocess.Popen([sys.executable, "-c", script], env={**os.environ, "PYTHONPATH": path}, stderr=-3)
     while not file.exists():

@@ -6,7 +6,7 @@ import pytest
 
 from simkit.build import load
 from simkit.errors import InputError
-from simkit.overrides import check_used
+from simkit.scene.overrides import check_used
 
 WORLD = """
 <sdf version="1.9"><world name="w">

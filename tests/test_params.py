@@ -7,7 +7,7 @@ import math
 import pytest
 
 from simkit.diagnostics import Diagnostics
-from simkit.loaders.xml import parse_text
+from simkit.loaders.resources.xml_reader import parse_text
 from simkit.params import Params
 
 

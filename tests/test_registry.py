@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from simkit.control.manager import controller_kinds
 from simkit.loaders import loader_kinds
 from simkit.plugins import plugin_kinds
+from simkit.plugins.ros2_control.controller_manager import controller_kinds
 from simkit.registry import Kinds, discover
 from simkit.sensors import sensor_kinds
 
@@ -108,5 +108,12 @@ def test_a_load_imports_neither_the_kinds_that_it_does_not_use_nor_the_message_t
     done = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     imported = set(done.stdout.split())
     assert "simkit.plugins.world.clock" in imported
-    unwanted = {"simkit.plugins.gz.thermal", "simkit.sensors.lidar", "rosbags", "scipy", "trimesh", "urllib.request"}
+    unwanted = {
+        "simkit.plugins.gz.thermal",
+        "simkit.sensors.rays.lidar",
+        "rosbags",
+        "scipy",
+        "trimesh",
+        "urllib.request",
+    }
     assert not unwanted & imported

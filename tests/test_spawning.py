@@ -11,7 +11,7 @@ import simkit
 from simkit.cli import app
 from simkit.diagnostics import Diagnostics
 from simkit.errors import LoadError
-from simkit.spawning import Spawn, read_spawn
+from simkit.loaders.spawn_option import SpawnedModel, parse_spawn
 
 BOX = """<sdf version="1.9"><model name="box"><pose>0 0 0.25 0 0 1</pose><link name="link">
 <collision name="c"><geometry><box><size>0.5 0.5 0.5</size></box></geometry></collision></link></model></sdf>"""
@@ -20,25 +20,25 @@ BOX = """<sdf version="1.9"><model name="box"><pose>0 0 0.25 0 0 1</pose><link n
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("tiago:1,2,0.5", Spawn("tiago", (1, 2, 0.5))),
-        ("tiago:1,2,.5:left", Spawn("tiago", (1, 2, 0.5), "left")),
-        ("a/b.urdf: -1 , 2e0, 0", Spawn("a/b.urdf", (-1, 2, 0))),
-        ("model://box:1,2,0.3,0:b", Spawn("model://box", (1, 2, 0.3, 0), "b")),
-        ("box:1,2,3,0.1,0.2,0.3", Spawn("box", (1, 2, 3, 0.1, 0.2, 0.3))),
-        (r"C:\robots\arm.urdf:0,0,0", Spawn(r"C:\robots\arm.urdf", (0, 0, 0))),
-        ("tiago", Spawn("tiago")),
+        ("tiago:1,2,0.5", SpawnedModel("tiago", (1, 2, 0.5))),
+        ("tiago:1,2,.5:left", SpawnedModel("tiago", (1, 2, 0.5), "left")),
+        ("a/b.urdf: -1 , 2e0, 0", SpawnedModel("a/b.urdf", (-1, 2, 0))),
+        ("model://box:1,2,0.3,0:b", SpawnedModel("model://box", (1, 2, 0.3, 0), "b")),
+        ("box:1,2,3,0.1,0.2,0.3", SpawnedModel("box", (1, 2, 3, 0.1, 0.2, 0.3))),
+        (r"C:\robots\arm.urdf:0,0,0", SpawnedModel(r"C:\robots\arm.urdf", (0, 0, 0))),
+        ("tiago", SpawnedModel("tiago")),
     ],
 )
-def test_a_text_says_what_comes_and_where(text: str, expected: Spawn) -> None:
+def test_a_text_says_what_comes_and_where(text: str, expected: SpawnedModel) -> None:
     found = Diagnostics()
-    assert read_spawn(text, found) == expected
+    assert parse_spawn(text, found) == expected
     assert not list(found)
 
 
 @pytest.mark.parametrize("text", ["", " ", "tiago:1,2", "tiago:1,x,2", "tiago:1,2,3,4,5", "tiago:nan,0,0"])
 def test_a_text_that_is_none_is_refused_with_what_is_allowed(text: str) -> None:
     found = Diagnostics()
-    assert read_spawn(text, found) is None
+    assert parse_spawn(text, found) is None
     (problem,) = found
     assert problem.code == "SK-SPAWN-001"
     assert "x,y,yaw" in problem.message + problem.hint

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.deferred import Commands, defer
+from simkit.cli.lazy_command import Commands, defer
 
 app = typer.Typer(
     name="simkit",

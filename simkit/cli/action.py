@@ -7,12 +7,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.given import check_type, given, made, type_and_values
-from simkit.cli.talking.options import Ros2Command, Sim
-from simkit.cli.talking.printed import absolute, as_json, line, list_typed, quiet
-from simkit.cli.talking.sources import running, type_of
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal.message_arguments import check_type, make_message, parse_fields, split_type_and_values
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import (
+    absolute_name,
+    print_json,
+    print_line,
+    print_names_and_types,
+    report_errors_quietly,
+)
+from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
 
 if TYPE_CHECKING:
     from simkit.live import Client, LiveGoal
@@ -31,7 +37,7 @@ def _group() -> None:
 
 
 @action.command("list", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def list_(
     show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
     count: Annotated[bool, typer.Option("--count-actions", "-c", help="Says only how many.")] = False,
@@ -39,27 +45,27 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists the actions."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         found = dict(sorted(client.actions().items()))
-    list_typed(found, show_types=show_types, count=count, json_=json_)
+    print_names_and_types(found, show_types=show_types, count=count, json_=json_)
     return 0
 
 
 @action.command("type", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def type_(action: Name, sim: Sim = None, json_: Json = False) -> int:
     """Prints an action's type."""
-    with running(sim) as client:
-        found = type_of(client, "action", client.actions(), action)
+    with connect_to_simulation(sim) as client:
+        found = interface_type(client, "action", client.actions(), action)
     if json_:
-        as_json([found])
+        print_json([found])
     else:
-        line(found)
+        print_line(found)
     return 0
 
 
 @action.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def info(
     action: Name,
     show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
@@ -68,17 +74,17 @@ def info(
     json_: Json = False,
 ) -> int:
     """Says who serves an action."""
-    with running(sim) as client:
-        found = type_of(client, "action", client.actions(), action)
+    with connect_to_simulation(sim) as client:
+        found = interface_type(client, "action", client.actions(), action)
         nodes = client.ask("nodes")
-    name = absolute(action)
+    name = absolute_name(action)
     node = next((n for n, has in nodes.items() if name in has["actions"]), name.rpartition("/")[0] or name)
     if json_:
-        as_json({"name": name, "types": [found], "clients": [], "servers": [node]})
+        print_json({"name": name, "types": [found], "clients": [], "servers": [node]})
         return 0
-    line(f"Action: {name}\nAction clients: 0\nAction servers: 1")
+    print_line(f"Action: {name}\nAction clients: 0\nAction servers: 1")
     if not count:
-        line(f"    {node} [{found}]" if show_types else f"    {node}")
+        print_line(f"    {node} [{found}]" if show_types else f"    {node}")
     return 0
 
 
@@ -111,20 +117,20 @@ def send_goal(
     json_: Json = False,
 ) -> int:
     """Sends a goal and waits for its end; Ctrl-C calls it off."""
-    action_type, goal = type_and_values(action_type, goal)
-    fields = given(sys.stdin.read() if stdin else goal or "{}", "the goal")
-    with running(sim) as client:
-        found = type_of(client, "action", client.actions(), action)
-        check_type(action_type, [found], absolute(action))
-        _Sending(client, json_, feedback).send(absolute(action), made(f"{found}_Goal", fields), timeout)
+    action_type, goal = split_type_and_values(action_type, goal)
+    fields = parse_fields(sys.stdin.read() if stdin else goal or "{}", "the goal")
+    with connect_to_simulation(sim) as client:
+        found = interface_type(client, "action", client.actions(), action)
+        check_type(action_type, [found], absolute_name(action))
+        _GoalRun(client, json_, feedback).send(absolute_name(action), make_message(f"{found}_Goal", fields), timeout)
     return 0
 
 
-action.command("send_goal", cls=Ros2Command)(quiet(send_goal))
-action.command("send", cls=Ros2Command, help="The same as send_goal.")(quiet(send_goal))
+action.command("send_goal", cls=Ros2Command)(report_errors_quietly(send_goal))
+action.command("send", cls=Ros2Command, help="The same as send_goal.")(report_errors_quietly(send_goal))
 
 
-class _Sending:
+class _GoalRun:
     """One goal, from its sending to its end."""
 
     def __init__(self, client: Client, json_: bool, feedback: bool) -> None:
@@ -164,10 +170,10 @@ class _Sending:
         result = handle.result
         if self._json:
             found = None if result is None else plain(result)
-            as_json({"status": handle.status.name, "reason": handle.reason, "result": found})
+            print_json({"status": handle.status.name, "reason": handle.reason, "result": found})
         elif handle.is_done and handle.status.name != "REJECTED":
-            line(f"Result:\n    {_yaml(result)}")
-            line(f"Goal finished with status: {handle.status.name}")
+            print_line(f"Result:\n    {_yaml(result)}")
+            print_line(f"Goal finished with status: {handle.status.name}")
 
     def _on_feedback(self, message: Any) -> None:
         from simkit.msgs.text import plain
@@ -175,13 +181,13 @@ class _Sending:
         if self._early is not None:
             self._early.append(message)
         elif self._json:
-            as_json({"feedback": plain(message)})
+            print_json({"feedback": plain(message)})
         else:
-            line(f"Feedback:\n    {_yaml(message)}")
+            print_line(f"Feedback:\n    {_yaml(message)}")
 
     def _say(self, text: str) -> None:
         if not self._json:
-            line(text)
+            print_line(text)
 
 
 def _yaml(message: Any) -> str:

@@ -1,19 +1,202 @@
-"""`simkit bag`: what is in a recording; a new one of a running simulation; one played into it; a broken one mended."""
+"""The command `simkit bag`: describe, mend, plot, export, play and record recordings."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.console import guarded, out
-from simkit.cli.options import Force, Json
-from simkit.cli.talking.bag_export import export
-from simkit.cli.talking.bag_play import play
-from simkit.cli.talking.bag_plot import plot
-from simkit.cli.talking.bag_record import record
-from simkit.cli.talking.printed import as_json, aside, line, quiet
+from simkit.cli.bag_record import record
+from simkit.cli.plot import (
+    Against,
+    End,
+    Output,
+    PlotRequest,
+    Start,
+    Title,
+    is_bag,
+    split_sources_and_fields,
+)
+from simkit.cli.plot import (
+    draw_chart as draw,
+)
+from simkit.cli.terminal.live_options import Sim
+from simkit.cli.terminal.options import Force, Json
+from simkit.cli.terminal.output import (
+    absolute_name,
+    print_json,
+    print_line,
+    print_note,
+    report_errors,
+    report_errors_quietly,
+    stdout_console,
+)
+from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+
+
+@report_errors_quietly
+def plot(
+    words: Annotated[
+        list[str],
+        typer.Argument(
+            help="A bag, or several to compare; then fields: /odom.pose.pose.position.x, /scan.ranges[0].",
+            metavar="BAG... FIELD...",
+            show_default=False,
+        ),
+    ],
+    output: Output = Path("plot.svg"),
+    against: Against = None,
+    start: Start = None,
+    end: End = None,
+    title: Title = "",
+    json_: Json = False,
+) -> int:
+    """Draws fields of a recording over time; several recordings come into one chart."""
+    from simkit.recording.bags.reader import open_bag_to_read
+
+    sources, fields = split_sources_and_fields(words)
+    for name in sources:
+        if not is_bag(Path(name)):
+            open_bag_to_read(name).close()  # says why not
+    return draw(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
+
+
+@report_errors_quietly
+def export(
+    recording: Annotated[
+        Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="The folder; NAME_export beside the bag's name where not given."),
+    ] = None,
+    topic: Annotated[list[str], typer.Option(help="Only topics of this pattern; repeatable.", metavar="PATTERN")] = [],
+    skip: Annotated[
+        list[str], typer.Option(help="All but topics of this pattern; repeatable.", metavar="PATTERN")
+    ] = [],
+    format_: Annotated[
+        str, typer.Option("--format", help="Of tables; parquet is the extra of that name.", metavar="csv|npz|parquet")
+    ] = "csv",
+    images: Annotated[str, typer.Option(help="What becomes of pictures.", metavar="png|mp4|npz|none")] = "png",
+    clouds: Annotated[str, typer.Option(help="What becomes of point clouds.", metavar="npz|ply|none")] = "npz",
+    start: Annotated[float | None, typer.Option("--start", help="Leaves out what was before.", metavar="S")] = None,
+    end: Annotated[float | None, typer.Option("--end", help="Leaves out what was after.", metavar="S")] = None,
+    force: Force = False,
+    json_: Json = False,
+) -> int:
+    """Writes a recording as tables, a file a topic, with pictures and point clouds beside them."""
+    from dataclasses import asdict
+
+    from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions
+    from simkit.recording.export import export_bag as write
+
+    for option, word, allowed in (
+        ("--format", format_, FORMATS),
+        ("--images", images, IMAGES),
+        ("--clouds", clouds, CLOUDS),
+    ):
+        if word not in allowed:
+            hint = did_you_mean(word, allowed)
+            text = f"SK-CLI-018 {option}: found {word!r}, allowed is {', '.join(allowed)}"
+            raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
+    target = output or Path(f"{recording.resolve().stem}_export")
+    wish = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
+    found = write(recording, target, wish)
+    if json_:
+        print_json({"output": str(target), "topics": [asdict(one) for one in found]})
+        return 0
+    width = max(len(one.topic) for one in found)
+    for one in found:
+        beside = f" and {one.beside}" if one.beside else ""
+        print_line(f"{one.topic:<{width}}  {one.count:>8}  {one.file}{beside}")
+    for one in found:
+        for note in one.notes:
+            print_note(f"note: {one.topic}: {note}")
+    print_line(f"{target}: {sum(one.count for one in found)} messages of {len(found)} topics")
+    return 0
+
+
+@report_errors_quietly
+def play(
+    recording: Annotated[
+        Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
+    ],
+    topics: Annotated[
+        list[str], typer.Option("--topics", help="Only this one; repeatable. Else all that the world takes.")
+    ] = [],
+    rate: Annotated[
+        float, typer.Option("--rate", "-r", help="Times as fast, of simulated time.", metavar="N", min=1e-3)
+    ] = 1.0,
+    start: Annotated[
+        float, typer.Option("--start-offset", help="Begins so far into the bag.", metavar="S", min=0)
+    ] = 0.0,
+    remap: Annotated[
+        list[str], typer.Option("--remap", "-m", help="Plays OLD on NEW; repeatable.", metavar="OLD:=NEW")
+    ] = [],
+    loop: Annotated[bool, typer.Option("--loop", "-l", help="Again and again until Ctrl-C.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Plays the messages of a bag into a running simulation, by its clock."""
+    from simkit.recording.bags.reader import open_bag_to_read
+
+    names = _parse_remappings(remap)
+    with open_bag_to_read(recording) as reader, connect_to_simulation(sim) as client:
+        there = list(dict.fromkeys(t.name for t in reader.topics))
+        wanted = [absolute_name(t) for t in topics] or _input_topics(client, there, names)
+        if not wanted:
+            text = f"nothing of {recording} is taken here; --topics says what is to be played"
+            raise InputError(f"SK-CLI-030 {text}", "SK-CLI-030")
+        for unknown in [t for t in wanted if t not in there][:1]:
+            next(reader.messages([unknown]))
+        publishers = {
+            t.name: client.advertise(names.get(t.name, t.name), t.type_name) for t in reader.topics if t.name in wanted
+        }
+        if not json_:
+            print_note(f"[INFO] [rosbag2_player]: playing {', '.join(publishers)}")
+        count = _play_once(client, reader, publishers, rate, start)
+        while loop and count:  # a round of nothing takes no time
+            count += _play_once(client, reader, publishers, rate, start)
+        client.flush()
+    if json_:
+        print_json({"messages": count, "topics": list(publishers)})
+    return 0
+
+
+def _parse_remappings(pairs: list[str]) -> dict[str, str]:
+    found = {}
+    for text in pairs:
+        old, sign, new = text.partition(":=")
+        if not sign or not old or not new:
+            raise InputError(f"SK-CLI-018 --remap: found {text!r}, allowed is OLD:=NEW", "SK-CLI-018")
+        found[absolute_name(old)] = absolute_name(new)
+    return found
+
+
+def _input_topics(client: Any, topics: list[str], names: dict[str, str]) -> list[str]:
+    """Those that the world's plugins take; its own readings are not said to it again."""
+    inputs = {row["name"] for row in client.topics() if any(s.get("kind") != "client" for s in row["subscribers"])}
+    return [t for t in topics if names.get(t, t) in inputs]
+
+
+def _play_once(client: Any, reader: Any, publishers: dict[str, Any], rate: float, start: float) -> int:
+    """Plays the bag once; how many messages that was."""
+    clock = SimClock(client)
+    first_ns = reader.start + round(start * 1e9)
+    begun_ns = clock.now_ns()
+    count = 0
+    for message in reader.messages(list(publishers), first_ns):
+        due_ns = begun_ns + round((message.time_ns - first_ns) / rate)
+        if not clock.wait_until(due_ns, begun_ns):
+            print_note("note: the simulation was reset; what is left is not played")
+            break
+        publishers[message.topic].publish(message.data)
+        count += 1
+    return count
+
 
 bag = typer.Typer(help="Recordings: what is in them, new ones, and broken ones mended.", no_args_is_help=True)
 
@@ -24,7 +207,7 @@ def _group() -> None:
 
 
 @bag.command()
-@quiet
+@report_errors_quietly
 def info(
     recording: Annotated[
         Path, typer.Argument(help="An .mcap or .db3 file, or a folder of rosbag2.", metavar="BAG", show_default=False)
@@ -35,19 +218,19 @@ def info(
     json_: Json = False,
 ) -> int:
     """Says what is in a recording."""
-    from simkit.sinks.bag_reader import open_bag_to_read
-    from simkit.sinks.bag_text import bag_summary, bag_text
+    from simkit.recording.bags.reader import open_bag_to_read
+    from simkit.recording.bags.summary import bag_summary, bag_text
 
     with open_bag_to_read(recording) as reader:
         if reader.broken:
-            aside(f"note: {recording}: {reader.broken}")
+            print_note(f"note: {recording}: {reader.broken}")
         if json_:
-            as_json(bag_summary(reader))
+            print_json(bag_summary(reader))
         elif topic_name:
             for name in dict.fromkeys(topic.name for topic in reader.topics):
-                line(name)
+                print_line(name)
         else:
-            line(bag_text(reader))
+            print_line(bag_text(reader))
     return 0
 
 
@@ -58,7 +241,7 @@ bag.command()(export)
 
 
 @bag.command()
-@guarded
+@report_errors
 def recover(
     broken: Annotated[
         Path,
@@ -71,11 +254,11 @@ def recover(
     force: Force = False,
 ) -> int:
     """Copies what is readable of a recording into a whole one; the broken one stays as it is."""
-    from simkit.sinks.recover import recover as mend
+    from simkit.recording.bags.recovery import recover_bag as mend
 
     target = output or mended or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
     found = mend(broken, target, overwrite=force)
     span = (found.end - found.start) * 1e-9
     state = "it was whole" if found.complete else "it was cut off"
-    out().print(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({state})")
+    stdout_console().print(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({state})")
     return 0

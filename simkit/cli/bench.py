@@ -6,13 +6,21 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.console import guarded, out
-from simkit.cli.options import Base, PackagePaths, PluginPaths, ResourcePaths, World, XacroArgs, source
+from simkit.cli.terminal.options import (
+    Base,
+    PackagePaths,
+    PluginPaths,
+    ResourcePaths,
+    World,
+    XacroArgs,
+    source_arguments,
+)
+from simkit.cli.terminal.output import report_errors, stdout_console
 
 _HOUR = 3600.0
 
 
-@guarded
+@report_errors
 def bench(
     world: World,
     rounds: Annotated[int, typer.Option(help="Timings of each side.", metavar="N", min=1)] = 9,
@@ -24,21 +32,26 @@ def bench(
     base: Base = "auto",
 ) -> int:
     """Times a world and, in the same run, bare MuJoCo on the same compiled model."""
-    from simkit.engine import import_engine
+    from simkit.mujoco_import import import_mujoco
 
-    import_engine()
-    from simkit.bench import import_time, measure, memory_growth
+    import_mujoco()
     from simkit.build import load
+    from simkit.cli.bench_figures import import_time, measure, memory_growth
 
-    out().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'aim':>8}")
-    how: dict[str, Any] = {**source(resource_path, package_path, xacro_arg, base), "plugin_paths": plugin_path}
+    stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'aim':>8}")
+    how: dict[str, Any] = {
+        **source_arguments(resource_path, package_path, xacro_arg, base),
+        "plugin_paths": plugin_path,
+    }
     for figure in measure(world, rounds=rounds, how=how):
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
         aim = f"{figure.most * 1e6:.0f} µs" if figure.most else "" if figure.aim is None else f"{figure.aim:.2f}"
-        out().print(f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}{aim:>8}  a {figure.unit}")
-    out().print(f"{'import simkit':<52}{import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
+        stdout_console().print(
+            f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}{aim:>8}  a {figure.unit}"
+        )
+    stdout_console().print(f"{'import simkit':<52}{import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
     with load(world, **how) as sim:
         growth = memory_growth(sim, _HOUR if full else 60.0)
-    out().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
+    stdout_console().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
     return 0

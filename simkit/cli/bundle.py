@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out, print_diagnostics, say
-from simkit.cli.options import (
+from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.terminal.options import (
     Base,
     CmdVel,
     Force,
@@ -19,14 +19,14 @@ from simkit.cli.options import (
     ResourcePaths,
     Script,
     Seed,
-    Spawned,
+    Spawns,
     XacroArgs,
-    source,
+    source_arguments,
 )
-from simkit.cli.running.asked import Asked
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 
 
-@guarded
+@report_errors
 def bundle(
     world: Annotated[
         str, typer.Argument(help="A world, a model, or the file of a scenario.", show_default=False, metavar="WORLD")
@@ -39,7 +39,7 @@ def bundle(
     cmd_vel: CmdVel = None,
     script: Script = None,
     set_: Overrides = [],
-    spawn: Spawned = [],
+    spawn: Spawns = [],
     params_file: ParamsFiles = [],
     last: Annotated[float, typer.Option(help="Keeps the messages of so many last seconds.", metavar="S", min=0)] = 10.0,
     topic: Annotated[
@@ -59,37 +59,37 @@ def bundle(
     In it are the world and everything it names, the code of plugins, the seed, the versions, every command that came in
     with its tick, the messages of the last seconds, and the hashes at the end. `simkit replay` repeats the run.
     """
-    from simkit.bundle import Keeper, write_bundle
-    from simkit.bundle.keeping import failure_of, failure_of_checks
     from simkit.errors import InputError, SimkitError
-    from simkit.scenario.run import open_scenario, run_scenario
-    from simkit.writers.staging import check_file
+    from simkit.testing.bundles import BundleRecorder, write_bundle
+    from simkit.testing.bundles.bundle_recorder import failure_from_checks, failure_from_error
+    from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+    from simkit.writers.atomic_output import check_file
 
     check_file(output, overwrite=force)
-    asked = Asked(
+    asked = ScenarioOptions(
         world, duration, seed, overrides=tuple(set_), spawn=tuple(spawn), params_files=tuple(params_file),
         cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
-        source=source(resource_path, package_path, xacro_arg, base),
+        source=source_arguments(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
     scenario = asked.scenario()
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
-        keeper = Keeper(sim, last, topic)
+        keeper = BundleRecorder(sim, last, topic)
         scenario = asked.commanded(scenario, sim.topics())
         failure = None
         try:
             ended = run_scenario(scenario, sim)
-            failure = failure_of_checks(ended.results, was_given_up=ended.reason == "wall_timeout")
+            failure = failure_from_checks(ended.results, was_given_up=ended.reason == "wall_timeout")
             if failure is not None:
-                say(f"what did not hold, which is in the bundle: {failure.text}")
+                print_status(f"what did not hold, which is in the bundle: {failure.text}")
         except InputError:
             raise
         except SimkitError as error:
-            failure = failure_of(error)
-            say(f"the run failed, which is in the bundle: {error}")
+            failure = failure_from_error(error)
+            print_status(f"the run failed, which is in the bundle: {error}")
         name = scenario.name or ("" if scenario.file is None else scenario.file.stem)
         write_bundle(keeper, output, failure, name=name, overwrite=force, with_code=not no_code)
-        out().print(f"state {keeper.end().state}")
+        stdout_console().print(f"state {keeper.end().state}")
         size = output.stat().st_size
-        out().print(f"{output}: {sim.time:g} s, {keeper.journal.count} commands, {size / 1000:.0f} kB")
+        stdout_console().print(f"{output}: {sim.time:g} s, {keeper.journal.count} commands, {size / 1000:.0f} kB")
     return 0

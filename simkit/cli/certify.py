@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out, say
-from simkit.cli.options import (
+from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.terminal.options import (
     Base,
     CmdVel,
     Json,
@@ -20,11 +20,11 @@ from simkit.cli.options import (
     ResourcePaths,
     Script,
     Seed,
-    Spawned,
+    Spawns,
     XacroArgs,
-    source,
+    source_arguments,
 )
-from simkit.cli.running.asked import Asked
+from simkit.cli.terminal.output import print_status, report_errors, stdout_console
 
 if TYPE_CHECKING:
     pass
@@ -33,7 +33,7 @@ _DIFFERENT = 5
 _SECONDS = 5.0  # of a world that no scenario gives a length
 
 
-@guarded
+@report_errors
 def certify(
     world: Annotated[
         str, typer.Argument(help="A world, or a scenario (.yaml, .py).", metavar="WORLD|SCENARIO", show_default=False)
@@ -60,7 +60,7 @@ def certify(
     cmd_vel: CmdVel = None,
     script: Script = None,
     set_: Overrides = [],
-    spawn: Spawned = [],
+    spawn: Spawns = [],
     params_file: ParamsFiles = [],
     resource_path: ResourcePaths = [],
     package_path: PackagePaths = [],
@@ -73,37 +73,37 @@ def certify(
     ] = None,
 ) -> int:
     """Runs a world in fresh processes with other surroundings, and shows that the bits are the same."""
-    from simkit.certify import certify as certify_scenario
-    from simkit.certify import text
-    from simkit.cli.talking.printed import as_json
-    from simkit.scenario.run import open_scenario
-    from simkit.sinks.whole_file import check_whole, write_whole
+    from simkit.cli.terminal.output import print_json
+    from simkit.recording.atomic_output import check_writable, write_atomically
+    from simkit.testing.certify import certificate
+    from simkit.testing.certify import certify as certify_scenario
+    from simkit.testing.scenarios.scenario_run import open_scenario
 
-    check_whole(output)
-    asked = Asked(
+    check_writable(output)
+    asked = ScenarioOptions(
         world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file),
         cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
-        source=source(resource_path, package_path, xacro_arg, base), usual_duration=_SECONDS,
+        source=source_arguments(resource_path, package_path, xacro_arg, base), usual_duration=_SECONDS,
     )  # fmt: skip
     scenario = asked.scenario()
     if cmd_vel is not None or script is not None:
         with open_scenario(scenario) as sim:
             scenario = asked.commanded(scenario, sim.topics())
     if not json_:
-        out().print(text.header())
+        stdout_console().print(certificate.table_header())
     made = certify_scenario(
         scenario,
         runs=runs,
         jobs=jobs,
         wall_timeout=scenario.wall_timeout if wall_timeout is None else wall_timeout,
-        told=None if json_ else lambda row: out().print(text.line(row)),
+        told=None if json_ else lambda row: stdout_console().print(certificate.table_row(row)),
     )
     if json_:
-        as_json(made.to_dict())
+        print_json(made.to_dict())
     else:
-        for line in text.conclusion(made):
-            out().print(line)
+        for line in certificate.conclusion_text(made):
+            stdout_console().print(line)
     if output is not None:
-        write_whole(output, (json.dumps(made.to_dict(), indent=1) + "\n").encode())
-        say(f"wrote {output}")
+        write_atomically(output, (json.dumps(made.to_dict(), indent=1) + "\n").encode())
+        print_status(f"wrote {output}")
     return 0 if made.passed else _DIFFERENT

@@ -10,8 +10,7 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out, print_diagnostics
-from simkit.cli.options import (
+from simkit.cli.terminal.options import (
     Base,
     File,
     Force,
@@ -21,13 +20,14 @@ from simkit.cli.options import (
     ResourcePaths,
     Strict,
     XacroArgs,
-    source,
+    source_arguments,
 )
+from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError
 
 
-@guarded
+@report_errors
 def check(
     file: File,
     json_: Json = False,
@@ -53,12 +53,14 @@ def check(
         return _fix_inertia(file, output, force, resource_path, json_)
     if output is not None:
         raise InputError("SK-CLI-018 check writes a file only with --fix-inertia", "SK-CLI-018")
-    found = list(check_file(file, plugin_paths=plugin_path, **source(resource_path, package_path, xacro_arg, base)))
+    found = list(
+        check_file(file, plugin_paths=plugin_path, **source_arguments(resource_path, package_path, xacro_arg, base))
+    )
     if json_:
-        out().file.write(json.dumps([d.as_dict() for d in found], indent=2) + "\n")
+        stdout_console().file.write(json.dumps([d.as_dict() for d in found], indent=2) + "\n")
     else:
-        print_diagnostics(found, verbose=True, console=out(), every=every)
-        out().print(_counts(found))
+        print_diagnostics(found, verbose=True, console=stdout_console(), every=every)
+        stdout_console().print(_counts(found))
     bad = {"error", "warning"} if strict else {"error"}
     return 2 if any(d.severity in bad for d in found) else 0
 
@@ -69,10 +71,10 @@ def _counts(found: Sequence[Diagnostic]) -> str:
 
 
 def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: list[Path], json_: bool) -> int:
-    from simkit.fix_inertia import find_fixes
-    from simkit.writers.staging import check_file
+    from simkit.writers.atomic_output import check_file
+    from simkit.writers.inertia_repair import find_inertia_fixes
 
-    found = find_fixes(Path(file), resource_paths)
+    found = find_inertia_fixes(Path(file), resource_paths)
     if output is not None:
         check_file(output, overwrite=force)
     if json_:
@@ -81,16 +83,16 @@ def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: li
              "moments_old": f.old, "moments_new": f.new, "why": f.why}
             for f in found.fixes
         ]  # fmt: skip
-        out().file.write(json.dumps(fixes, indent=2) + "\n")
+        stdout_console().file.write(json.dumps(fixes, indent=2) + "\n")
     else:
         for fix in found.fixes:
-            out().print(str(fix))
+            stdout_console().print(str(fix))
         for problem in found.problems:
-            out().print(problem)
-        out().print(f"{len(found.fixes)} inertias that no solid has")
+            stdout_console().print(problem)
+        stdout_console().print(f"{len(found.fixes)} inertias that no solid has")
     if output is not None:
         count = found.write(output)
         rest = f"; {len(found.elsewhere)} stand in other files" if found.elsewhere else ""
         if not json_:
-            out().print(f"{output}: {count} links changed{rest}")
+            stdout_console().print(f"{output}: {count} links changed{rest}")
     return 0

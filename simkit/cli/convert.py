@@ -7,24 +7,24 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out, print_diagnostics, say
-from simkit.cli.options import (
+from simkit.cli.terminal.options import (
     Base,
     File,
     Force,
     PackagePaths,
     ResourcePaths,
-    Source,
+    SourceArguments,
     Strict,
     Verbose,
     XacroArgs,
-    source,
+    source_arguments,
 )
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 
 
-@guarded
+@report_errors
 def convert(
     file: File,
     output: Annotated[
@@ -49,7 +49,7 @@ def convert(
     verbose: Verbose = False,
 ) -> int:
     """Writes a world or model as MJCF, to be opened by MuJoCo alone, or as SDF in one file."""
-    options = source(resource_path, package_path, xacro_arg, base)
+    options = source_arguments(resource_path, package_path, xacro_arg, base)
     if output.suffix.lower() in (".sdf", ".world"):
         return _to_sdf(file, output, options, keep_uris=keep_uris, strict=strict, force=force, verbose=verbose)
     if output.suffix.lower() not in (".xml", ".mjcf"):
@@ -60,34 +60,38 @@ def convert(
     return _to_mjcf(file, output, options, strict=strict, force=force, verbose=verbose)
 
 
-def _to_mjcf(file: str, output: Path, options: Source, *, strict: bool, force: bool, verbose: bool) -> int:
+def _to_mjcf(file: str, output: Path, options: SourceArguments, *, strict: bool, force: bool, verbose: bool) -> int:
     from simkit.build import load
-    from simkit.sinks.mjcf import write_mjcf
-    from simkit.writers.staging import check_target
+    from simkit.writers.atomic_output import check_target
+    from simkit.writers.mjcf import write_mjcf
 
     check_target(output, f"{output.stem}_assets", overwrite=force)
     with load(file, strict=strict, **options) as sim:
         print_diagnostics(sim.diagnostics, verbose=verbose)
         written = write_mjcf(sim, output, overwrite=force)
     if written.balanced:
-        say(
+        print_status(
             f"MuJoCo's compiler refuses the inertia of {', '.join(written.balanced[:6])}"
             f"{' and others' if len(written.balanced) > 6 else ''}; the file has the nearest that it takes"
         )
-    out().print(f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else ""))
+    stdout_console().print(
+        f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else "")
+    )
     return 0
 
 
 def _to_sdf(
-    file: str, output: Path, options: Source, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
+    file: str, output: Path, options: SourceArguments, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
 ) -> int:
     from simkit.build import read_scene
-    from simkit.writers.convert import write_sdf
+    from simkit.writers.asset_folder import write_sdf
 
     scene, found = read_scene(file, missing_meshes=keep_uris, **options)
     lost = Diagnostics(found)
     lost.raise_if_errors(strict)
     written = write_sdf(scene, output, lost, keep_uris=keep_uris, overwrite=force)
     print_diagnostics(lost, verbose=verbose)
-    out().print(f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else ""))
+    stdout_console().print(
+        f"{output}" + (f" and {written.files} files in {output.stem}_assets" if written.files else "")
+    )
     return 0

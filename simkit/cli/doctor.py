@@ -9,7 +9,7 @@ import sys
 from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 
-from simkit.cli.console import guarded, out
+from simkit.cli.terminal.output import report_errors, stdout_console
 
 _PACKAGES = (
     "numpy",
@@ -38,10 +38,10 @@ _RENDERER_TIMEOUT = 60.0  # [s]
 # Drivers crash in their own ways; in a process of its own such a crash is a finding.
 _DRAW = """
 import simkit
-from simkit.engine import import_engine
+from simkit.mujoco_import import import_engine
 import_engine()
-from simkit.sensors.rendering.gl import describe_renderer
-from simkit.sensors.rendering.overview import render_view
+from simkit.sensors.cameras.rendering.gl_context import describe_renderer
+from simkit.sensors.cameras.rendering.overview_image import render_view
 world = ("<sdf version='1.12'><world name='w'><model name='m'><static>true</static><link name='l'><visual name='v'>"
          "<geometry><sphere><radius>1</radius></sphere></geometry></visual></link></model></world></sdf>")
 with simkit.load(world) as sim:
@@ -50,20 +50,20 @@ print("OK", describe_renderer() or "renderer", "black" if picture.max() == pictu
 """
 
 
-@guarded
+@report_errors
 def doctor() -> int:
     """Prints what simkit found on this machine, and what helps where something is missing."""
     broken = _versions() + _engine()
     wanting = _renderer()
     _folders()
     for problem in (*broken, *wanting):
-        out().print(problem, style="yellow")
-    out().print("all is well" if not (broken or wanting) else "see the lines above")
+        stdout_console().print(problem, style="yellow")
+    stdout_console().print("all is well" if not (broken or wanting) else "see the lines above")
     return 1 if broken else 0
 
 
 def _line(name: str, value: str) -> None:
-    out().print(f"{name:<24}{value}")
+    stdout_console().print(f"{name:<24}{value}")
 
 
 def _versions() -> list[str]:

@@ -8,13 +8,13 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out
-from simkit.cli.options import Json
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import report_errors, stdout_console
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 
-@guarded
+@report_errors
 def explain(
     code: Annotated[
         str, typer.Argument(help="A code such as SK-SDF-004, or the beginning of several.", show_default=False)
@@ -32,12 +32,12 @@ def explain(
         hint = did_you_mean(wanted, catalogue()) or "`simkit explain SK-` lists them all"
         raise InputError(f"SK-CLI-017 there is no code {code!r}; {hint}", "SK-CLI-017")
     if json_:
-        out().file.write(json.dumps([asdict(c) for c in found], indent=2, default=_text) + "\n")
+        stdout_console().file.write(json.dumps([asdict(c) for c in found], indent=2, default=_text) + "\n")
     elif len(found) == 1:
-        out().print(plain_text(found[0]))
+        stdout_console().print(plain_text(found[0]))
     else:
         for entry in found:
-            out().print(f"{entry.code}  {entry.severity:<14}  {entry.meaning}")
+            stdout_console().print(f"{entry.code}  {entry.severity:<14}  {entry.meaning}")
     return 0
 
 

@@ -1,16 +1,19 @@
-"""`simkit golden`: what a scenario gave once, kept and compared with what it gives now."""
+"""The command `simkit golden`: record golden runs and check them."""
 
 from __future__ import annotations
 
+import json
+import math
 import sys
-from contextlib import nullcontext, redirect_stdout
+from collections.abc import Sequence
+from contextlib import chdir, nullcontext, redirect_stdout
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.console import guarded, out, print_diagnostics, say
-from simkit.cli.options import (
+from simkit.cli.terminal.options import (
     Base,
     CmdVel,
     Force,
@@ -22,10 +25,181 @@ from simkit.cli.options import (
     ResourcePaths,
     Script,
     Seed,
-    Spawned,
+    Spawns,
     XacroArgs,
-    source,
+    source_arguments,
 )
+from simkit.cli.terminal.output import print_diagnostics, print_error, print_status, report_errors, stdout_console
+from simkit.errors import InputError, RegressionError
+from simkit.testing.golden.parallel_check import CheckResult
+
+if TYPE_CHECKING:
+    from simkit.cli.run_options import ScenarioOptions
+    from simkit.testing.golden.compare.difference import Verdict
+    from simkit.testing.run_record.record import RunRecord
+
+
+def record_golden(asked: ScenarioOptions, folder: Path, *, force: bool = False) -> RunRecord:
+    """Runs what is asked for and makes it golden.
+
+    Returns:
+        The record; its simulation is still open.
+
+    Raises:
+        SimkitError: what went wrong; then nothing is written.
+    """
+    from simkit.scene.overrides import check_used
+    from simkit.testing.golden.store import MAIN_FILE, write_golden
+    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.scenarios.scenario_run import open_scenario
+
+    if (folder / MAIN_FILE).exists() and not force:
+        raise InputError(
+            f"SK-GOLDEN-005 {folder} is a golden run already and is not overwritten\n"
+            "    help: simkit golden check --bless 'REASON' changes it and keeps why; --force begins anew",
+            "SK-GOLDEN-005",
+        )
+    scenario = asked.scenario()
+    if asked.changes_scenario:  # what differs from the file is kept in the golden run itself
+        scenario = replace(scenario, file=None)
+    with chdir("."):  # a plugin that goes elsewhere as it is loaded
+        sim = open_scenario(scenario)
+    try:
+        check_used(sim.diagnostics)
+        scenario = asked.commanded(scenario, sim.topics())
+        record = run_record(scenario, sim=sim)
+        if record.error is not None:
+            raise record.error
+        write_golden(folder, record)
+    except BaseException:
+        sim.close()
+        raise
+    return record
+
+
+def report_results(
+    results: Sequence[CheckResult],
+    *,
+    blessed: bool = False,
+    html: Path | None = None,
+    junit: Path | None = None,
+    as_json: bool = False,
+    quiet: bool = False,
+) -> int:
+    """Prints results, the worst first, and writes what else is asked for.
+
+    Args:
+        results: of the checks.
+        blessed: whether what differed has become golden.
+        html, junit: where reports go.
+        as_json: whether one JSON value is printed instead of text.
+        quiet: whether nothing is said of what passed.
+
+    Returns:
+        The exit code: of what could not be checked, else 5 where something differs.
+    """
+    verdicts = [result.verdict for result in results if result.verdict is not None]
+    if html is not None:
+        from simkit.testing.golden.report import write_html
+
+        write_html(html, verdicts)
+    if junit is not None:
+        _write_junit(junit, results, verdicts)
+    if as_json:
+        stdout_console().print(
+            json.dumps([result_dict(result) for result in results], indent=2, ensure_ascii=False, allow_nan=False)
+        )
+    else:
+        _print_results(results, blessed=blessed, quiet=quiet)
+    for result in results:
+        if result.error is not None:
+            return int(result.error.exit_code)
+    failed = [v for v in verdicts if not (_was_blessed(v, blessed) or v.passed)]
+    return RegressionError.exit_code if failed else 0
+
+
+def _print_results(results: Sequence[CheckResult], *, blessed: bool, quiet: bool) -> None:
+    from simkit.testing.golden.report import text_report
+
+    width = max(60, min(stdout_console().width, 160)) if stdout_console().is_terminal else 120
+    for result in results:
+        verdict = result.verdict
+        if result.error is not None:
+            print_error(result.error)
+        elif verdict is not None and _was_blessed(verdict, blessed):
+            count = len(verdict.comparison.differences)
+            stdout_console().print(f"{verdict.name}: golden now, with {count} difference{'s' if count > 1 else ''}:")
+            for one in verdict.comparison.differences[:5]:
+                stdout_console().print(f"  {one.words}")
+        elif verdict is not None and not (verdict.passed and quiet):
+            for line in text_report(verdict, width):
+                stdout_console().print(line)
+    if len(results) > 1:
+        passed = sum(r.verdict is not None and r.verdict.passed for r in results)
+        stdout_console().print(f"{passed} of {len(results)} golden runs passed")
+
+
+def _was_blessed(verdict: Verdict, blessed: bool) -> bool:
+    return blessed and not verdict.comparison.passed and all(check.passed for check in verdict.checks)
+
+
+def _write_junit(path: Path, results: Sequence[CheckResult], verdicts: list[Verdict]) -> None:
+    from simkit.testing.golden.report import junit_cases
+    from simkit.testing.junit import JunitCase, write_junit
+
+    cases = [
+        JunitCase(
+            "run", f"golden.{result.folder.name}", error=(str(result.error).partition("\n")[0], str(result.error))
+        )
+        for result in results
+        if result.error is not None
+    ]
+    write_junit(path, "simkit golden", [*cases, *junit_cases(verdicts)])
+
+
+def result_dict(result: CheckResult) -> dict[str, Any]:
+    """A result for programs."""
+    if result.verdict is None:
+        code = getattr(result.error, "code", "")
+        return {"folder": str(result.folder), "passed": False, "error": {"code": code, "message": str(result.error)}}
+    verdict = result.verdict
+    comparison, explanation = verdict.comparison, verdict.explanation
+    found: dict[str, Any] = {
+        "folder": str(result.folder),
+        "name": verdict.name,
+        "passed": verdict.passed,
+        "tier": comparison.tier,
+        "elapsed": round(verdict.elapsed, 3),
+        "end": verdict.run.end,
+        "differences": [_json_number(vars(one) if hasattr(one, "__dict__") else one) for one in comparison.differences],
+        "notes": list(comparison.notes),
+        "machine": {name: {"golden": a, "run": b} for name, (a, b) in comparison.machine.items()},
+        "checks": [
+            {"title": one.check.title, "passed": one.passed, "message": one.message, "time": _json_number(one.time)}
+            for one in verdict.checks
+        ],
+    }
+    if explanation is not None:
+        found["explanation"] = {
+            "lines": list(explanation.lines),
+            "tick": _json_number(explanation.tick),
+            "time": _json_number(explanation.time),
+            "quantity": explanation.quantity,
+            "causes": [_json_number(vars(cause)) for cause in explanation.causes],
+        }
+    return found
+
+
+def _json_number(value: Any) -> Any:
+    """As JSON has it: what is no number is null."""
+    if isinstance(value, dict):
+        return {str(key): _json_number(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
+        return _json_number(value.tolist()) if hasattr(value, "tolist") else [_json_number(one) for one in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value if isinstance(value, (bool, int, str)) or value is None else str(value)
+
 
 golden = typer.Typer(help="Golden runs: sensor outputs kept, and compared with today's.", no_args_is_help=True)
 
@@ -36,7 +210,7 @@ def _group() -> None:
 
 
 @golden.command()
-@guarded
+@report_errors
 def record(
     world: Annotated[
         str, typer.Argument(help="A scenario (.yaml, .py), a world, or a bare name.", metavar="WORLD|SCENARIO")
@@ -53,7 +227,7 @@ def record(
         list[str], typer.Option(help="Keeps all but topics of this pattern; repeatable.", metavar="PATTERN")
     ] = [],
     set_: Overrides = [],
-    spawn: Spawned = [],
+    spawn: Spawns = [],
     params_file: ParamsFiles = [],
     cmd_vel: CmdVel = None,
     script: Script = None,
@@ -65,29 +239,28 @@ def record(
     force: Force = False,
 ) -> int:
     """Runs a scenario and keeps what it gives as a golden run."""
-    from simkit.cli.goldens.recording import keep
-    from simkit.cli.running.asked import Asked
+    from simkit.cli.run_options import ScenarioOptions
 
-    asked = Asked(
+    asked = ScenarioOptions(
         world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file),
         cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
-        source=source(resource_path, package_path, xacro_arg, base),
+        source=source_arguments(resource_path, package_path, xacro_arg, base),
     )  # fmt: skip
-    found = keep(asked, out_, force=force)
+    found = record_golden(asked, out_, force=force)
     if found.simulation is not None:
         print_diagnostics(found.simulation.diagnostics, verbose=False)
         found.simulation.close()
     messages = sum(len(stream.times_ns) for stream in found.streams.values())
     size = sum(path.stat().st_size for path in out_.iterdir())
-    out().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
+    stdout_console().print(f"{out_}: {len(found.streams)} topics, {messages} messages, {size / 1000:.1f} kB")
     for result in found.checks:
         if not result.passed:
-            say(f"warning: the scenario's own check does not hold: {result.check.title}: {result.message}")
+            print_status(f"warning: the scenario's own check does not hold: {result.check.title}: {result.message}")
     return 0
 
 
 @golden.command()
-@guarded
+@report_errors
 def check(
     folders: Annotated[
         list[Path], typer.Argument(help="Golden runs, or folders that hold some.", metavar="DIR...", show_default=False)
@@ -112,13 +285,12 @@ def check(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Says nothing of what passes.")] = False,
 ) -> int:
     """Runs golden runs again and compares; says what differs first, and why. Exit code 5 where something does."""
-    from simkit.cli.goldens.checking import Wanted, check_all
-    from simkit.cli.goldens.telling import tell
-    from simkit.sinks.whole_file import check_whole
+    from simkit.recording.atomic_output import check_writable
+    from simkit.testing.golden.parallel_check import CheckOptions, check_goldens
 
-    check_whole(html)
-    check_whole(junit)
-    wanted = Wanted(bless, bless_other_renderer, causes, budget)
+    check_writable(html)
+    check_writable(junit)
+    wanted = CheckOptions(bless, bless_other_renderer, causes, budget)
     with redirect_stdout(sys.stderr) if json_ else nullcontext():  # what a plugin prints is no JSON
-        results = check_all(folders, wanted, jobs)
-    return tell(results, blessed=bless is not None, html=html, junit=junit, as_json=json_, quiet=quiet)
+        results = check_goldens(folders, wanted, jobs)
+    return report_results(results, blessed=bless is not None, html=html, junit=junit, as_json=json_, quiet=quiet)

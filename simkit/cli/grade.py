@@ -7,14 +7,14 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out
-from simkit.cli.options import Json
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import report_errors, stdout_console
 from simkit.errors import InputError
 
 _FAILED = 5
 
 
-@guarded
+@report_errors
 def grade(
     exercise: Annotated[
         Path, typer.Argument(help="The exercise's YAML file.", metavar="EXERCISE.yaml", show_default=False)
@@ -31,12 +31,13 @@ def grade(
     json_: Json = False,
 ) -> int:
     """Runs an exercise with plugins that were handed in, and says what each got and why."""
-    from simkit.cli.talking.printed import as_json
-    from simkit.exercise import grade_all, read_exercise
-    from simkit.exercise.text import graded_json, graded_text, junit_cases
-    from simkit.sinks.whole_file import check_whole
+    from simkit.cli.terminal.output import print_json
+    from simkit.recording.atomic_output import check_writable
+    from simkit.testing.scenarios.exercise import read_exercise
+    from simkit.testing.scenarios.grading import grade_all
+    from simkit.testing.scenarios.grading_report import grade_json, grade_text, junit_cases
 
-    check_whole(junit)
+    check_writable(junit)
     asked = read_exercise(exercise)
     files = _files(hand_ins, exercise.parent / asked.hand_in if asked.hand_in else None)
     if pictures is not None:
@@ -45,18 +46,18 @@ def grade(
     for one in grade_all(asked, files, pictures, jobs):
         graded.append(one)
         if not json_:
-            for line in graded_text(one):
-                out().print(line)
+            for line in grade_text(one):
+                stdout_console().print(line)
     if json_:
-        as_json([graded_json(one) for one in graded])
+        print_json([grade_json(one) for one in graded])
     if junit is not None:
-        from simkit.sinks.junit import write_junit
+        from simkit.testing.junit import write_junit
 
         write_junit(junit, asked.title, [case for one in graded for case in junit_cases(one)])
     if len(graded) > 1 and not json_:
-        out().print("")
+        stdout_console().print("")
         for one in graded:
-            out().print(
+            stdout_console().print(
                 f"{one.points:>6g} of {one.worth:g}  {'passed' if one.passed else 'not passed':<11}{one.hand_in}"
             )
     return 0 if all(one.passed for one in graded) else _FAILED

@@ -6,11 +6,11 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from simkit.cli.console import guarded, out
-from simkit.cli.options import Base, File, Json, PackagePaths, ResourcePaths, XacroArgs, source
+from simkit.cli.terminal.options import Base, File, Json, PackagePaths, ResourcePaths, XacroArgs, source_arguments
+from simkit.cli.terminal.output import report_errors, stdout_console
 
 
-@guarded
+@report_errors
 def inspect(
     file: File,
     json_: Json = False,
@@ -22,12 +22,12 @@ def inspect(
     """Shows what a file means once it is resolved."""
     from simkit.build import describe
 
-    found = describe(file, **source(resource_path, package_path, xacro_arg, base))
+    found = describe(file, **source_arguments(resource_path, package_path, xacro_arg, base))
     if json_:
-        out().file.write(json.dumps(found, indent=2) + "\n")
+        stdout_console().file.write(json.dumps(found, indent=2) + "\n")
     else:
         for line in _tree(found):
-            out().print(line)
+            stdout_console().print(line)
     return 2 if any(d["severity"] == "error" for d in found["diagnostics"]) else 0
 
 

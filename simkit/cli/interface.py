@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.options import Bag
-from simkit.cli.talking.printed import as_json, line, none_of, quiet
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Bag
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
 from simkit.errors import InputError, MessageError
 
 _KINDS = (("msg", "Messages"), ("srv", "Services"), ("action", "Actions"))
@@ -32,7 +32,7 @@ def _group() -> None:
 
 
 @interface.command("list")
-@quiet
+@report_errors_quietly
 def list_(
     only_msgs: Annotated[bool, typer.Option("--only-msgs", "-m", help="Message types only.")] = False,
     only_srvs: Annotated[bool, typer.Option("--only-srvs", "-s", help="Service types only.")] = False,
@@ -45,32 +45,32 @@ def list_(
     wanted = {"msg": only_msgs, "srv": only_srvs, "action": only_actions}
     kinds = [(kind, title) for kind, title in _KINDS if wanted[kind] or not any(wanted.values())]
     if json_:
-        as_json({kind: names(kind) for kind, _ in kinds})
+        print_json({kind: names(kind) for kind, _ in kinds})
         return 0
     for kind, title in kinds:
-        line(f"{title}:")
+        print_line(f"{title}:")
         for name in names(kind):
-            line(f"    {name}")
+            print_line(f"    {name}")
     return 0
 
 
 @interface.command()
-@quiet
+@report_errors_quietly
 def packages(json_: Json = False) -> int:
     """Lists the packages that the types are of."""
     from simkit.msgs.written import names
 
     found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in names(kind)})
     if json_:
-        as_json(found)
+        print_json(found)
     else:
         for name in found:
-            line(name)
+            print_line(name)
     return 0
 
 
 @interface.command()
-@quiet
+@report_errors_quietly
 def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=False)], json_: Json = False) -> int:
     """Lists the types of a package."""
     from simkit.msgs.written import names
@@ -78,17 +78,17 @@ def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=
     known = [n for kind, _ in _KINDS for n in names(kind)]
     found = [n for n in known if n.split("/")[0] == name]
     if not found:
-        raise none_of("package", name, sorted({n.split("/")[0] for n in known}), "SK-CLI-032", "simkit")
+        raise not_found_error("package", name, sorted({n.split("/")[0] for n in known}), "SK-CLI-032", "simkit")
     if json_:
-        as_json(found)
+        print_json(found)
     else:
         for one in found:
-            line(one)
+            print_line(one)
     return 0
 
 
 @interface.command()
-@quiet
+@report_errors_quietly
 def show(
     type_: TypeName,
     all_comments: Annotated[bool, typer.Option("--all-comments", help="With comments, those of parts too.")] = False,
@@ -108,16 +108,16 @@ def show(
     except MessageError as error:
         raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
     if json_:
-        as_json({"type": name, "definition": text})
+        print_json({"type": name, "definition": text})
     else:
-        line(text)
+        print_line(text)
     return 0
 
 
 def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> str:
     """The definition as a bag has it."""
     from simkit.msgs.written import show as text_of
-    from simkit.sinks.bag_reader import open_bag_to_read
+    from simkit.recording.bags.reader import open_bag_to_read
 
     with open_bag_to_read(str(bag)) as reader:
         package_name, _, short = name.partition("/")
@@ -126,7 +126,7 @@ def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> st
 
 
 @interface.command()
-@quiet
+@report_errors_quietly
 def proto(
     type_: TypeName,
     no_quotes: Annotated[bool, typer.Option("--no-quotes", help="Without quotes around it.")] = False,
@@ -141,10 +141,10 @@ def proto(
     except MessageError as error:
         raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
     if json_:
-        as_json(found)
+        print_json(found)
     else:
         text = dump(found)
-        line(text if no_quotes else f'"{text}"')
+        print_line(text if no_quotes else f'"{text}"')
     return 0
 
 

@@ -6,11 +6,11 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.options import Sim
-from simkit.cli.talking.printed import as_json, line, none_of, quiet
-from simkit.cli.talking.sources import running, where_of
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Sim
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 
 model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
 Model = Annotated[
@@ -30,26 +30,26 @@ def _group() -> None:
 
 
 @model.command("list")
-@quiet
+@report_errors_quietly
 def list_(
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="With poses, links and joints.")] = False,
     sim: Sim = None,
     json_: Json = False,
 ) -> int:
     """Lists the models."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         names: list[str] = client.models()
         found = {name: client.model(name) for name in names} if verbose else {}
     if json_:
-        as_json(list(found.values()) if verbose else names)
+        print_json(list(found.values()) if verbose else names)
         return 0
     for name in names:
         if not verbose:
-            line(name)
+            print_line(name)
             continue
         one = found[name]
         counts = f"{_counted(one['links'], 'link')}, {_counted(one['joints'], 'joint')}"
-        line(f"{name}: {_pose_text(one['pose'])} ({'static, ' if one.get('static') else ''}{counts})")
+        print_line(f"{name}: {_pose_text(one['pose'])} ({'static, ' if one.get('static') else ''}{counts})")
     return 0
 
 
@@ -58,7 +58,7 @@ def _counted(found: Any, what: str) -> str:
 
 
 @model.command()
-@quiet
+@report_errors_quietly
 def pose(
     model: Model,
     link: Annotated[
@@ -70,22 +70,22 @@ def pose(
     json_: Json = False,
 ) -> int:
     """Prints a pose in the world: x y z [m], roll pitch yaw [rad]."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         found = _model(client, model)
     if link is not None:
         if link not in found["links"]:
-            raise none_of("link", link, found["links"], "SK-CLI-038", f"model {model!r}")
+            raise not_found_error("link", link, found["links"], "SK-CLI-038", f"model {model!r}")
         rows = {f"{model}::{link}": found["links"][link]["pose"]}
     else:
         rows = {model: found["pose"]}
         if links:
             rows |= {f"{model}::{n}": one["pose"] for n, one in found["links"].items()}
     if json_:
-        as_json(rows if links else next(iter(rows.values())))
+        print_json(rows if links else next(iter(rows.values())))
         return 0
     width = max(map(len, rows))
     for name, at in rows.items():
-        line(f"{name:<{width}}  {_pose_text(at)}" if links else _pose_text(at))
+        print_line(f"{name:<{width}}  {_pose_text(at)}" if links else _pose_text(at))
     return 0
 
 
@@ -96,7 +96,7 @@ def _pose_text(pose: Any) -> str:
 
 
 @model.command()
-@quiet
+@report_errors_quietly
 def joint(
     model: Model,
     joint: Annotated[
@@ -112,21 +112,21 @@ def joint(
     json_: Json = False,
 ) -> int:
     """Prints the state of joints: position, velocity, effort [rad, rad/s, N·m or m, m/s, N]."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         found = _model(client, model)["joints"]
     if joint is not None and joint not in found:
-        raise none_of("joint", joint, found, "SK-CLI-038", f"model {model!r}")
+        raise not_found_error("joint", joint, found, "SK-CLI-038", f"model {model!r}")
     rows = found if joint is None else {joint: found[joint]}
     if json_:
-        as_json(rows if joint is None else rows[joint])
+        print_json(rows if joint is None else rows[joint])
         return 0
     if not rows:
-        line(f"{model} has no joints")
+        print_line(f"{model} has no joints")
         return 0
     width, kinds = max(map(len, rows)), max(len(str(r["type"])) for r in rows.values())
     for name, one in rows.items():
         state = "  ".join(f"{key} {_numbers(one[key])}" for key in ("position", "velocity", "effort"))
-        line(f"{name:<{width}}  {one['type']:<{kinds}}  {state}")
+        print_line(f"{name:<{width}}  {one['type']:<{kinds}}  {state}")
     return 0
 
 
@@ -150,5 +150,5 @@ def _model(client: Any, name: str) -> dict[str, Any]:
         raise
     except LiveError:
         names = client.models()
-        raise none_of("model", name, names, "SK-CLI-038", where_of(client)) from None
+        raise not_found_error("model", name, names, "SK-CLI-038", connection_name(client)) from None
     return found

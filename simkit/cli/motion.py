@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.console import guarded, out, print_diagnostics, say
-from simkit.cli.options import (
+from simkit.cli.terminal.options import (
     Force,
     Json,
     PackagePaths,
@@ -20,12 +19,13 @@ from simkit.cli.options import (
     ResourcePaths,
     Verbose,
     XacroArgs,
-    source,
+    source_arguments,
 )
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.motion.motions import Motion
+    from simkit.plugins.play_motion.motion import Motion
 
 motion = typer.Typer(help="Lists the motions that a robot knows by name, and plays them.", no_args_is_help=True)
 
@@ -43,7 +43,7 @@ def _group() -> None:
 
 
 @motion.command("list")
-@guarded
+@report_errors
 def list_motions(
     file: Annotated[
         str, typer.Argument(help="A robot, a world with one, or a file of motions.", metavar="[FILE]")
@@ -60,14 +60,14 @@ def list_motions(
     if Path(file).suffix.lower() in (".yaml", ".yml"):
         found = _read([Path(file), *motions])
     else:
-        from simkit.motion.session import chosen, players
+        from simkit.plugins.play_motion.motion_session import choose_player, motion_players
 
-        options: Any = source(resource_path, package_path, xacro_arg)
+        options: Any = source_arguments(resource_path, package_path, xacro_arg)
         with _opened(file, None, motions, 0, plugin_path, options, verbose=False) as sim:
-            found = list(chosen(players(sim), model).motions.values())
+            found = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
         shown = [{**one.as_message(), "duration": one.duration, "file": one.where.file} for one in found]
-        out().file.write(json.dumps(shown, indent=2) + "\n")
+        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
         return 0
     rows = [
         (one.key, f"{one.duration:g} s", f"{len(one.times)} point{'s' * (len(one.times) > 1)}", _joints(one.joints))
@@ -76,12 +76,12 @@ def list_motions(
     widths = [max((len(row[k]) for row in rows), default=0) for k in range(4)]
     for one, row in zip(found, rows, strict=True):
         columns = "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True))
-        out().print(f"{columns}  {one.description}".rstrip())
+        stdout_console().print(f"{columns}  {one.description}".rstrip())
     return 0
 
 
 @motion.command("play")
-@guarded
+@report_errors
 def play(
     names: Annotated[
         list[str], typer.Argument(help="Motions, played one after another.", metavar="MOTION...", show_default=False)
@@ -115,30 +115,30 @@ def play(
     """Plays motions: the way to the first point no faster than is safe, then as the file has it."""
     from contextlib import ExitStack
 
-    from simkit.motion.session import chosen, play_all, players
-    from simkit.sinks import picture as pictures
-    from simkit.sinks import recorder
+    from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
+    from simkit.recording import run_picture as pictures
+    from simkit.recording.bags import recorder
 
     if picture is not None:
         pictures.check_target(picture)
     if record is not None:
         recorder.check_target(record, overwrite=force)
-    options: Any = {**source(resource_path, package_path, xacro_arg), "params_files": params_file}
+    options: Any = {**source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
     shown = []
     with ExitStack() as stack:
         sim = stack.enter_context(_opened(world, robot, motions, seed, plugin_path, options, verbose=verbose))
         if record is not None:
             stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
-        for played in play_all(sim, chosen(players(sim), model), names, skip_planning=skip_planning):
+        for played in play_motions(sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning):
             joint, off = played.furthest
             key = played.motion.key
             shown.append({"motion": key, "duration": round(played.duration, 6), "joint": joint, "off": off})
             if not json_:
-                out().print(f"{key}: done in {played.duration:.2f} s; {joint} is {abs(off):.2g} off")
+                stdout_console().print(f"{key}: done in {played.duration:.2f} s; {joint} is {abs(off):.2g} off")
         if picture is not None:
             _draw(sim, picture)
     if json_:
-        out().file.write(json.dumps(shown, indent=2) + "\n")
+        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
     return 0
 
 
@@ -154,8 +154,8 @@ def _opened(
 ) -> Any:
     """The world with its robot, ready to play; further motions are known by then."""
     from simkit.build import load
-    from simkit.motion.play import PlayMotion
-    from simkit.motion.session import controlled, empty_world_with, players
+    from simkit.plugins.play_motion.motion_session import controlled_models, empty_world_with, motion_players
+    from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
 
     _check_files(motions)
     text = world
@@ -164,12 +164,12 @@ def _opened(
         options = {**options, "resource_paths": [*options["resource_paths"], *folders]}
     sim = load(text, seed=seed, plugin_paths=plugin_paths, **options)
     spawned = _spawned(sim, robot) if world is not None and robot is not None else None
-    there = players(sim)
+    there = motion_players(sim)
     for player in there.values():
         for path in motions:
             player.read(path)
     if motions and not there:
-        hosts = controlled(sim)
+        hosts = controlled_models(sim)
         sim.close()
         if len(hosts) != 1 or spawned is not None:
             what = f"here are {len(hosts)} of them" if spawned is None else "put the robot into the world's file"
@@ -184,7 +184,7 @@ def _opened(
 def _read(paths: Sequence[Path]) -> list[Motion]:
     """The motions of files, without a robot."""
     from simkit.diagnostics import Diagnostics
-    from simkit.motion.reading import read_motions
+    from simkit.plugins.play_motion.motion_files import read_motions
 
     _check_files(paths)
     problems = Diagnostics()
@@ -199,7 +199,7 @@ def _read(paths: Sequence[Path]) -> list[Motion]:
 def _check_files(paths: Sequence[Path]) -> None:
     """Raises where a file of motions is not there, or broken: what it says is not to be missed."""
     from simkit.diagnostics import Diagnostics
-    from simkit.motion.reading import read_motions
+    from simkit.plugins.play_motion.motion_files import read_motions
 
     broken = Diagnostics()
     for path in paths:
@@ -211,9 +211,9 @@ def _check_files(paths: Sequence[Path]) -> None:
 
 def _spawned(sim: Any, robot: str) -> Any:
     """The robot, put into a world that may have it already."""
-    from simkit.motion.session import players
+    from simkit.plugins.play_motion.motion_session import motion_players
 
-    there = [scoped for scoped in players(sim) if scoped == Path(robot).stem]
+    there = [scoped for scoped in motion_players(sim) if scoped == Path(robot).stem]
     if there:
         message = f"SK-MOTION-010 the world has a robot {there[0]!r} already; leave --robot out"
         raise InputError(message, "SK-MOTION-010")
@@ -243,11 +243,11 @@ def _joints(names: Sequence[str]) -> str:
 def _draw(sim: Any, path: Path) -> None:
     from simkit.build import render_view
     from simkit.errors import RenderError
-    from simkit.sinks.picture import save_picture
+    from simkit.recording.run_picture import save_picture
 
     try:
         save_picture(sim, path, render_view)
     except RenderError as error:
-        say(f"warning: no picture: {error}")
+        print_status(f"warning: no picture: {error}")
     else:
-        out().print(f"picture {path}")
+        stdout_console().print(f"picture {path}")

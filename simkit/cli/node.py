@@ -6,11 +6,19 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.options import Ros2Command, Sim
-from simkit.cli.talking.printed import absolute, as_json, is_hidden, line, list_names, none_of, quiet
-from simkit.cli.talking.sources import running, where_of
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import (
+    absolute_name,
+    is_hidden,
+    not_found_error,
+    print_json,
+    print_line,
+    print_names,
+    report_errors_quietly,
+)
+from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 
 node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)
 Hidden = Annotated[bool, typer.Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
@@ -22,7 +30,7 @@ def _group() -> None:
 
 
 @node.command("list", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def list_(
     hidden: Hidden = False,
     count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Says only how many.")] = False,
@@ -30,14 +38,14 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists the nodes."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         found = node_names(client, hidden=hidden)
-    list_names(found, count=count, json_=json_)
+    print_names(found, count=count, json_=json_)
     return 0
 
 
 @node.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def info(
     node: Annotated[
         str,
@@ -48,16 +56,18 @@ def info(
     json_: Json = False,
 ) -> int:
     """Says what a node publishes, takes and offers."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         nodes: dict[str, dict[str, Any]] = client.ask("nodes")
-    wanted = absolute(node)
+    wanted = absolute_name(node)
     if wanted not in nodes:
-        raise none_of("node", wanted, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", where_of(client))
+        raise not_found_error(
+            "node", wanted, [n for n in nodes if not is_hidden(n)], "SK-CLI-034", connection_name(client)
+        )
     found = nodes[wanted]
     if json_:
-        as_json({"name": wanted, **found})
+        print_json({"name": wanted, **found})
         return 0
-    line(wanted)
+    print_line(wanted)
     for title, key in (
         ("Subscribers", "subscribers"),
         ("Publishers", "publishers"),
@@ -66,12 +76,12 @@ def info(
         ("Action Servers", "actions"),
         ("Action Clients", ""),
     ):
-        line(f"  {title}:")
+        print_line(f"  {title}:")
         rows = [(n, t) for n, t in sorted(found.get(key, {}).items()) if hidden or not is_hidden(n)]
         for name, types in rows:
-            line(f"    {name}: {', '.join(types)}")
+            print_line(f"    {name}: {', '.join(types)}")
         if not rows:
-            line()
+            print_line()
     return 0
 
 

@@ -7,13 +7,20 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.given import pattern
-from simkit.cli.talking.options import Ros2Command, Sim
-from simkit.cli.talking.param_values import KINDS, parameters_of_file, typed, value_of
-from simkit.cli.talking.printed import absolute, as_json, aside, line, none_of, quiet
-from simkit.cli.talking.sources import running, where_of
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal.message_arguments import compile_pattern
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import (
+    absolute_name,
+    not_found_error,
+    print_json,
+    print_line,
+    print_note,
+    report_errors_quietly,
+)
+from simkit.cli.terminal.parameter_values import KINDS, parse_parameter_value, plain_value, read_parameter_file
+from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
 from simkit.errors import InputError
 
 _LIST = "/list_parameters"
@@ -41,7 +48,7 @@ def _group() -> None:
 
 
 @param.command("list", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def list_(
     node: Annotated[
         str | None,
@@ -58,27 +65,27 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists nodes with parameters and these."""
-    wanted = pattern(filter_, "--filter")
+    wanted = compile_pattern(filter_, "--filter")
     found: dict[str, dict[str, str]] = {}
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         for name in parameter_nodes(client) if node is None else [_node(client, node)]:
             names = sorted(client.call(name + _LIST, {"prefixes": prefix}).result.names)
             names = [n for n in names if wanted is None or wanted.search(n)]
             types = client.call(f"{name}/get_parameter_types", {"names": names}).types if names else []
             found[name] = {n: KINDS[int(t)] for n, t in zip(names, types, strict=True)}
     if json_:
-        as_json(found)
+        print_json(found)
         return 0
     for name, parameters in found.items():
         if node is None:
-            line(f"{name}:")
+            print_line(f"{name}:")
         for parameter, kind in parameters.items():
-            line(f"  {parameter} (type: {kind})" if param_type else f"  {parameter}")
+            print_line(f"  {parameter} (type: {kind})" if param_type else f"  {parameter}")
     return 0
 
 
 @param.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def get(
     node: Node,
     name: Name,
@@ -87,18 +94,18 @@ def get(
     json_: Json = False,
 ) -> int:
     """Prints the value of a parameter."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         full = _node(client, node)
         found = _known(client, full, [name])[0]
-    value = value_of(found)
+    value = plain_value(found)
     if json_:
-        as_json(value)
+        print_json(value)
     elif hide_type:
-        line(str(value))
+        print_line(str(value))
     else:
         kind = KINDS[int(found.type)]
         label = kind.removesuffix(" array").capitalize()
-        line(f"{label} {'values are' if kind.endswith('array') else 'value is'}: {_shown(value, kind)}")
+        print_line(f"{label} {'values are' if kind.endswith('array') else 'value is'}: {_shown(value, kind)}")
     return 0
 
 
@@ -108,7 +115,7 @@ def _shown(value: Any, kind: str) -> str:
 
 
 @param.command("set", cls=Ros2Command, context_settings={"ignore_unknown_options": True})
-@quiet
+@report_errors_quietly
 def set_(
     node: Node,
     pairs: Annotated[
@@ -128,8 +135,8 @@ def set_(
     if len(pairs) % 2:
         text = f"found {len(pairs)} words, allowed are pairs: name value [name value ...]"
         raise InputError(f"SK-CLI-031 the parameters: {text}", "SK-CLI-031")
-    values = list(zip(pairs[::2], [typed(text) for text in pairs[1::2]], strict=True))
-    with running(sim) as client:
+    values = list(zip(pairs[::2], [parse_parameter_value(text) for text in pairs[1::2]], strict=True))
+    with connect_to_simulation(sim) as client:
         return _set(client, _node(client, node), values, atomic, json_)
 
 
@@ -140,7 +147,7 @@ def _set(client: Any, node: str, values: list[tuple[str, Any]], atomic: bool, js
     else:
         results = client.call(f"{node}/set_parameters", request).results
     if json_:
-        as_json([{"successful": bool(r.successful), "reason": r.reason} for r in results])
+        print_json([{"successful": bool(r.successful), "reason": r.reason} for r in results])
     for (name, _), result in zip(values, results, strict=not atomic):
         if json_:
             break
@@ -148,61 +155,61 @@ def _set(client: Any, node: str, values: list[tuple[str, Any]], atomic: bool, js
         what = "parameters atomically" if atomic else "parameter"
         good, bad = f"{head}Set {what} successful", f"{head}Setting {what} failed"
         reason = f": {result.reason}" if result.reason else ""
-        (line if result.successful else aside)((good if result.successful else bad) + reason)
+        (print_line if result.successful else print_note)((good if result.successful else bad) + reason)
     return 0 if all(r.successful for r in results) else 2
 
 
 @param.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def delete(node: Node, name: Name, sim: Sim = None, json_: Json = False) -> int:
     """Deletes a parameter, which no node here allows."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         full = _node(client, node)
         _known(client, full, [name])
     text = f"Deleting parameter failed: {name} is declared by {full}, which needs it"
     if json_:
-        as_json({"successful": False, "reason": text.partition(": ")[2]})
+        print_json({"successful": False, "reason": text.partition(": ")[2]})
     else:
-        aside(text)
+        print_note(text)
     return 2
 
 
 @param.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> int:
     """Says what parameters are, and what they take."""
     from simkit.msgs.text import plain
 
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         full = _node(client, node)
         _known(client, full, names)
         found = client.call(f"{full}/describe_parameters", {"names": names}).descriptors
     if json_:
-        as_json([plain(d) | {"type": KINDS[int(d.type)]} for d in found])
+        print_json([plain(d) | {"type": KINDS[int(d.type)]} for d in found])
         return 0
     for one in found:
-        line(f"Parameter name: {one.name}\n  Type: {KINDS[int(one.type)]}")
+        print_line(f"Parameter name: {one.name}\n  Type: {KINDS[int(one.type)]}")
         if one.description:
-            line(f"  Description: {one.description}")
-        line("  Constraints:")
+            print_line(f"  Description: {one.description}")
+        print_line("  Constraints:")
         if one.read_only:
-            line("    Read only: true")
+            print_line("    Read only: true")
         for bounds in [*one.floating_point_range, *one.integer_range][:1]:
-            line(f"    Min value: {bounds.from_value}\n    Max value: {bounds.to_value}")
+            print_line(f"    Min value: {bounds.from_value}\n    Max value: {bounds.to_value}")
             if bounds.step:
-                line(f"    Step: {bounds.step}")
+                print_line(f"    Step: {bounds.step}")
         if one.additional_constraints:
-            line(f"    Additional constraints: {one.additional_constraints}")
+            print_line(f"    Additional constraints: {one.additional_constraints}")
     return 0
 
 
 @param.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
     """Prints all parameters of a node as a parameter file."""
     from simkit.msgs.text import dump as as_yaml
 
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         full = _node(client, node)
         names = sorted(client.call(full + _LIST, {}).result.names)
         values = client.call(f"{full}/get_parameters", {"names": names}).values
@@ -212,17 +219,17 @@ def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
         place = tree
         for part in above:
             place = place.setdefault(part, {})
-        place[last] = value_of(value)
+        place[last] = plain_value(value)
     found = {full: {"ros__parameters": tree}}
     if json_:
-        as_json(found)
+        print_json(found)
     else:
-        line(as_yaml(found))
+        print_line(as_yaml(found))
     return 0
 
 
 @param.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def load(
     node: Node,
     file: Annotated[Path, typer.Argument(help="A parameter file.", metavar="FILE.yaml", show_default=False)],
@@ -233,17 +240,17 @@ def load(
     json_: Json = False,
 ) -> int:
     """Takes the values of a parameter file for a node; exit code 2 where one is refused."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         full = _node(client, node)
-        values = parameters_of_file(file, full, wildcard=not no_wildcard)
+        values = read_parameter_file(file, full, wildcard=not no_wildcard)
         request = {"parameters": [{"name": n, "value": v} for n, v in values]}
         results = client.call(f"{full}/set_parameters", request).results
     rows = [(n, bool(r.successful), str(r.reason)) for (n, _), r in zip(values, results, strict=True)]
     if json_:
-        as_json([{"name": n, "successful": good, "reason": reason} for n, good, reason in rows])
+        print_json([{"name": n, "successful": good, "reason": reason} for n, good, reason in rows])
     for name, good, reason in () if json_ else rows:
         text = f"Set parameter {name} {'successful' if good else 'failed'}{': ' + reason if reason else ''}"
-        (line if good else aside)(text)
+        (print_line if good else print_note)(text)
     return 0 if all(good for _, good, _ in rows) else 2
 
 
@@ -254,9 +261,9 @@ def parameter_nodes(client: Any) -> list[str]:
 
 def _node(client: Any, name: str) -> str:
     nodes = parameter_nodes(client)
-    wanted = absolute(name)
+    wanted = absolute_name(name)
     if wanted not in nodes:
-        raise none_of("node with parameters", wanted, nodes, "SK-CLI-034", where_of(client))
+        raise not_found_error("node with parameters", wanted, nodes, "SK-CLI-034", connection_name(client))
     return wanted
 
 
@@ -266,5 +273,5 @@ def _known(client: Any, node: str, names: list[str]) -> list[Any]:
     for name, value in zip(names, values, strict=True):
         if not int(value.type):
             there = client.call(node + _LIST, {}).result.names
-            raise none_of("parameter", name, sorted(there), "SK-CLI-034", f"node {node}")
+            raise not_found_error("parameter", name, sorted(there), "SK-CLI-034", f"node {node}")
     return values

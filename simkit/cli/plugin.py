@@ -9,13 +9,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.console import guarded, out, print_diagnostics, say
-from simkit.cli.options import Force, Json, PackagePaths, PluginPaths, ResourcePaths, XacroArgs, source
+from simkit.cli.terminal.options import (
+    Force,
+    Json,
+    PackagePaths,
+    PluginPaths,
+    ResourcePaths,
+    XacroArgs,
+    source_arguments,
+)
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.authoring.catalogue import Entry
-    from simkit.authoring.facts import Facts, Parameter, Service, Topic
+    from simkit.plugins.authoring.catalogue import Entry
+    from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic
 
 plugin = typer.Typer(
     help="Lists plugins, says what one reads and publishes, and begins new ones.", no_args_is_help=True
@@ -28,7 +36,7 @@ def _group() -> None:
 
 
 @plugin.command("list")
-@guarded
+@report_errors
 def list_plugins(
     words: Annotated[
         list[str] | None, typer.Argument(help="Only names that contain one of these.", show_default=False)
@@ -37,8 +45,8 @@ def list_plugins(
     json_: Json = False,
 ) -> int:
     """Lists every name that a world may give a plugin, with what it hangs on."""
-    from simkit.authoring.catalogue import known_plugins
     from simkit.diagnostics import Diagnostics
+    from simkit.plugins.authoring.catalogue import known_plugins
 
     wanted = [word.casefold() for word in words or ()]
     problems = Diagnostics()
@@ -46,18 +54,20 @@ def list_plugins(
     print_diagnostics(problems, verbose=True)
     if json_:
         shown = [_as_dict(e) for e in entries if _matching(e, wanted) or not wanted]
-        out().file.write(json.dumps(shown, indent=2) + "\n")
+        stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
         return 0
     rows = [
         (name, " or ".join(e.parents), e) for e in entries for name in (_matching(e, wanted) if wanted else e.names)
     ]
     if not rows:
-        say(f"no name contains {' or '.join(words or ())}; simkit plugin list names them all")
+        print_status(f"no name contains {' or '.join(words or ())}; simkit plugin list names them all")
         return 0
     width = max(len(name) for name, _, _ in rows)
     places = max(len(parents) for _, parents, _ in rows)
     for name, parents, entry in rows:
-        out().print(f"{name:<{width}}  {parents:<{places}}  {entry.cls.__name__}: {_first_sentence(entry.summary)}")
+        stdout_console().print(
+            f"{name:<{width}}  {parents:<{places}}  {entry.cls.__name__}: {_first_sentence(entry.summary)}"
+        )
     return 0
 
 
@@ -68,7 +78,7 @@ def _matching(entry: Entry, wanted: list[str]) -> list[str]:
 
 
 @plugin.command("info")
-@guarded
+@report_errors
 def show_info(
     name: Annotated[
         str, typer.Argument(help="A name in any spelling, a class, MODULE:CLASS or FILE.py.", show_default=False)
@@ -77,21 +87,23 @@ def show_info(
     json_: Json = False,
 ) -> int:
     """Says which parameters a plugin reads, and which topics and services it opens."""
-    from simkit.authoring.catalogue import common_facts, facts_of, find_entry
+    from simkit.plugins.authoring.catalogue import common_facts, facts_of, find_entry
 
     entry = find_entry(name, plugin_path)
     facts = facts_of(entry.cls)
     if json_:
         found = {**_as_dict(entry), **_facts_as_dict(facts), "common": _facts_as_dict(common_facts())["parameters"]}
-        out().file.write(json.dumps(found, indent=2) + "\n")
+        stdout_console().file.write(json.dumps(found, indent=2) + "\n")
         return 0
     first, *others = entry.names or (entry.cls.__name__,)
-    out().print(f"{first}: {entry.cls.__name__}, on a {' or a '.join(entry.parents)}".replace("on a any", "anywhere"))
+    stdout_console().print(
+        f"{first}: {entry.cls.__name__}, on a {' or a '.join(entry.parents)}".replace("on a any", "anywhere")
+    )
     if entry.summary:
-        out().print(f"  {entry.summary}")
-    out().print(f"  from {entry.source or entry.origin}")
+        stdout_console().print(f"  {entry.summary}")
+    stdout_console().print(f"  from {entry.source or entry.origin}")
     if others:
-        out().print(f"  also written {', '.join(others)}")
+        stdout_console().print(f"  also written {', '.join(others)}")
     _print_table("parameters", [_parameter_row(p) for p in facts.parameters])
     _print_table("publishes", [_topic_row(t) for t in facts.topics if t.published])
     _print_table("listens to", [_topic_row(t) for t in facts.topics if not t.published])
@@ -101,7 +113,7 @@ def show_info(
 
 
 @plugin.command("new")
-@guarded
+@report_errors
 def new_plugin(
     name: Annotated[
         str | None, typer.Argument(help="wheel_brake, WheelBrake or libwheel_brake.so.", show_default=False)
@@ -119,26 +131,26 @@ def new_plugin(
     xacro_arg: XacroArgs = [],
 ) -> int:
     """Writes a plugin with typed parameters, and a test that passes."""
-    from simkit.authoring.files import write
-    from simkit.authoring.new import from_scene, named
+    from simkit.plugins.authoring.new_plugins import plugin_named, plugins_missing_in
+    from simkit.plugins.authoring.plugin_test_skeleton import write_plugins
 
     if (name is None) == (from_ is None):
         raise InputError("SK-PLUGIN-072 give either a NAME or --from WORLD", "SK-PLUGIN-072")
     if from_ is None:
         assert name is not None
-        wanted = [named(name, on)]
+        wanted = [plugin_named(name, on)]
     else:
         from simkit.build import read_scene
 
-        options: Any = source(resource_path, package_path, xacro_arg)
+        options: Any = source_arguments(resource_path, package_path, xacro_arg)
         scene, _ = read_scene(from_, missing_meshes=True, **options)
-        wanted = from_scene(scene, plugin_path)
+        wanted = plugins_missing_in(scene, plugin_path)
         if not wanted:
-            say("every plugin of this file is known; nothing to write")
+            print_status("every plugin of this file is known; nothing to write")
             return 0
-    for path in write(wanted, folder, overwrite=force):
-        out().print(str(path))
-    say(f"run the tests: python -m pytest {folder}; a world finds the plugins with --plugin-path {folder}")
+    for path in write_plugins(wanted, folder, overwrite=force):
+        stdout_console().print(str(path))
+    print_status(f"run the tests: python -m pytest {folder}; a world finds the plugins with --plugin-path {folder}")
     return 0
 
 
@@ -154,9 +166,11 @@ def _print_table(title: str, rows: list[tuple[str, ...]]) -> None:
     if not rows:
         return
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    out().print(f"\n{title}")
+    stdout_console().print(f"\n{title}")
     for row in rows:
-        out().print("  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+        stdout_console().print(
+            "  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()
+        )
 
 
 def _parameter_row(p: Parameter) -> tuple[str, ...]:

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.console import guarded, out
-from simkit.cli.options import Json
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import report_errors, stdout_console
 
 if TYPE_CHECKING:
-    from simkit.bundle import Bundle, Replayed
+    from simkit.testing.bundles import Bundle, ReplayResult
 
 _MOST = 40  # commands that are listed
 _DIFFERENT = 5
 
 
-@guarded
+@report_errors
 def replay(
     bundle: Annotated[Path, typer.Argument(help="A bundle.", show_default=False)],
     allow_code: Annotated[
@@ -38,8 +38,8 @@ def replay(
 
     A run that failed has come out the same when it fails again in the same way.
     """
-    from simkit.bundle import open_bundle
-    from simkit.bundle import replay as play
+    from simkit.testing.bundles import open_bundle
+    from simkit.testing.bundles import replay as play
 
     if list_ or extract is not None:
         with open_bundle(bundle) as opened:
@@ -57,11 +57,11 @@ def replay(
     return 0 if found.is_same else _DIFFERENT
 
 
-def _tell(found: Replayed, seconds: float) -> None:
-    from simkit.bundle.manifest import CHECK
+def _tell(found: ReplayResult, seconds: float) -> None:
+    from simkit.testing.bundles.manifest import CHECK
 
     said = found.manifest
-    print_ = out().print
+    print_ = stdout_console().print
     print_(shown(f"{said.name}: replayed {found.time:g} s with {said.commands} commands in {seconds:.1f} s"))
     for text in said.missing:
         print_(shown(f"note: {text}"), style="yellow")
@@ -85,7 +85,7 @@ def _tell(found: Replayed, seconds: float) -> None:
         print_(f"not the same: {len(found.differences)} differences", style="bold red")
 
 
-def _words(found: Replayed) -> dict[str, Any]:
+def _words(found: ReplayResult) -> dict[str, Any]:
     return {
         "same": found.is_same,
         "differences": list(found.differences),
@@ -110,7 +110,7 @@ def _extract(bundle: Bundle, folder: Path) -> None:
         bundle.extract(folder, with_code=True)
     except OSError as error:
         raise InputError(f"SK-CLI-016 cannot write {folder}: {error.strerror or error}", "SK-CLI-016") from None
-    out().print(f"{folder / bundle.manifest.world} and {len(bundle.manifest.files) - 1} other files")
+    stdout_console().print(f"{folder / bundle.manifest.world} and {len(bundle.manifest.files) - 1} other files")
 
 
 def _list(bundle: Bundle, *, as_json: bool) -> None:
@@ -118,7 +118,7 @@ def _list(bundle: Bundle, *, as_json: bool) -> None:
     if as_json:
         typer.echo(said.text())
         return
-    print_ = out().print
+    print_ = stdout_console().print
     end = said.end
     print_(shown(f"{said.name}: {end.time_ns / 1e9:g} s, seed {said.seed}, {said.commands} commands"))
     print_(shown(f"world {said.world}" + "".join(f" --set {one}" for one in said.overrides)))

@@ -10,9 +10,10 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
-from simkit.cli.console import guarded, print_diagnostics, say
-from simkit.cli.driving.teleop import KEY_TIMEOUT
-from simkit.cli.options import (
+from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
+from simkit.cli.run_options import OnError, RunOptions
+from simkit.cli.terminal.blocked_plugins import BlockedPlugins
+from simkit.cli.terminal.options import (
     Base,
     CmdVel,
     Force,
@@ -22,16 +23,15 @@ from simkit.cli.options import (
     PluginPaths,
     ResourcePaths,
     Script,
-    Spawned,
+    Spawns,
     Strict,
     Verbose,
     World,
     XacroArgs,
-    source,
+    source_arguments,
 )
-from simkit.cli.running.bundling import FOLDER as BUNDLES
-from simkit.cli.running.request import OnError, Request
-from simkit.sinks.blocked import BlockedPlugins
+from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
+from simkit.cli.terminal.teleop import KEY_TIMEOUT
 
 _TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
 _UNITS = {"": 1.0, "s": 1.0, "ms": 1e-3, "min": 60.0}
@@ -77,7 +77,7 @@ def _seconds(text: str) -> float:
     return float(match[1]) * _UNITS[match[2]]
 
 
-@guarded
+@report_errors
 def run(
     world: World,
     duration: Annotated[
@@ -112,7 +112,7 @@ def run(
         typer.Option(help="What other terminals call this run; else the world's or file's name.", metavar="NAME"),
     ] = None,
     set_: Overrides = [],
-    spawn: Spawned = [],
+    spawn: Spawns = [],
     params_file: ParamsFiles = [],
     strict: Strict = False,
     view: Annotated[bool, typer.Option("--view", help="Opens a viewer.")] = False,
@@ -171,12 +171,12 @@ def run(
     ] = None,
 ) -> int:
     """Runs a world headless, as fast as it goes."""
-    request = Request(
+    request = RunOptions(
         world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict,
         view, picture, cmd_vel, script, tuple(plugin_path), _on_error(on_plugin_error), verbose, quiet, watch,
         tuple(spawn), tuple(params_file), name, teleop, _timeout(key_timeout), paused, step,
         _expression(until), _until_when(timeout, until), wall_timeout, tuple(assert_), junit,
-        source(resource_path, package_path, xacro_arg, base), play=play, play_topics=tuple(play_topic),
+        source_arguments(resource_path, package_path, xacro_arg, base), play=play, play_topics=tuple(play_topic),
         bundles=bundle_on_failure,
     )  # fmt: skip
     return execute(request)
@@ -216,23 +216,25 @@ def _finite(number: float | None) -> float | None:
     return number if number is None or math.isfinite(number) else None
 
 
-def execute(request: Request) -> int:
+def execute(request: RunOptions) -> int:
     """Does what is asked for; returns the exit code.
 
     Raises:
         SimkitError: what went wrong; the recording up to there is complete by then.
     """
+    from simkit.bridges import viewer
     from simkit.build import load
-    from simkit.cli.running.bundling import Bundling
-    from simkit.cli.running.session import Session, check_keyboard
-    from simkit.cli.running.verdict import Verdict
-    from simkit.overrides import check_used
-    from simkit.sinks import picture, recorder, viewer
+    from simkit.cli.failure_bundle import FailureBundle
+    from simkit.cli.run_session import Session, check_keyboard
+    from simkit.cli.run_verdict import RunVerdict
+    from simkit.recording import run_picture
+    from simkit.recording.bags import recorder
+    from simkit.scene.overrides import check_used
 
     if request.record is not None:
         recorder.check_target(request.record, overwrite=request.force)
     if request.picture is not None:
-        picture.check_target(request.picture)
+        run_picture.check_target(request.picture)
     if request.view:
         viewer.check_possible()
     check_keyboard(request)
@@ -247,9 +249,9 @@ def execute(request: Request) -> int:
         **request.source,
     }
     with (
-        Verdict(request) as verdict,
-        BlockedPlugins(say) as blocked,
-        Bundling(request.bundles, verdict, given) as bundling,
+        RunVerdict(request) as verdict,
+        BlockedPlugins(print_status) as blocked,
+        FailureBundle(request.bundles, verdict, given) as bundling,
     ):
         sim = load(strict=request.strict, **given)
         with sim:

@@ -8,12 +8,26 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.given import check_type, given, is_type, made, type_and_values
-from simkit.cli.talking.options import Ros2Command, Sim
-from simkit.cli.talking.printed import absolute, as_json, is_hidden, line, list_names, list_typed, quiet
-from simkit.cli.talking.sources import running, type_of
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Ros2Command, Sim
+from simkit.cli.terminal.message_arguments import (
+    check_type,
+    is_same_type,
+    make_message,
+    parse_fields,
+    split_type_and_values,
+)
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import (
+    absolute_name,
+    is_hidden,
+    print_json,
+    print_line,
+    print_names,
+    print_names_and_types,
+    report_errors_quietly,
+)
+from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
 
 service = typer.Typer(help="Services of a running simulation.", no_args_is_help=True)
 Name = Annotated[
@@ -30,7 +44,7 @@ def _group() -> None:
 
 
 @service.command("list", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def list_(
     show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
     count: Annotated[bool, typer.Option("--count-services", "--count", "-c", help="Says only how many.")] = False,
@@ -41,40 +55,40 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists the services."""
-    with running(sim) as client:
+    with connect_to_simulation(sim) as client:
         found = {n: t for n, t in sorted(client.services().items()) if hidden or not is_hidden(n)}
-    list_typed(found, show_types=show_types, count=count, json_=json_)
+    print_names_and_types(found, show_types=show_types, count=count, json_=json_)
     return 0
 
 
 @service.command("type", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def type_(service: Name, sim: Sim = None, json_: Json = False) -> int:
     """Prints a service's type."""
-    with running(sim) as client:
-        found = type_of(client, "service", client.services(), service)
+    with connect_to_simulation(sim) as client:
+        found = interface_type(client, "service", client.services(), service)
     if json_:
-        as_json([found])
+        print_json([found])
     else:
-        line(found)
+        print_line(found)
     return 0
 
 
 @service.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def info(service: Name, sim: Sim = None, json_: Json = False) -> int:
     """Says of what type a service is."""
-    with running(sim) as client:
-        found = type_of(client, "service", client.services(), service)
+    with connect_to_simulation(sim) as client:
+        found = interface_type(client, "service", client.services(), service)
     if json_:
-        as_json({"name": absolute(service), "types": [found], "clients": 0, "services": 1})
+        print_json({"name": absolute_name(service), "types": [found], "clients": 0, "services": 1})
     else:
-        line(f"Type: {found}\nClients count: 0\nServices count: 1")
+        print_line(f"Type: {found}\nClients count: 0\nServices count: 1")
     return 0
 
 
 @service.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def find(
     service_type: Annotated[
         str,
@@ -90,14 +104,14 @@ def find(
     json_: Json = False,
 ) -> int:
     """Lists the services of a type."""
-    with running(sim) as client:
-        found = [name for name, full in sorted(client.services().items()) if is_type(service_type, full)]
-    list_names(found, count=count, json_=json_)
+    with connect_to_simulation(sim) as client:
+        found = [name for name, full in sorted(client.services().items()) if is_same_type(service_type, full)]
+    print_names(found, count=count, json_=json_)
     return 0
 
 
 @service.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def call(
     service: Name,
     service_type: Annotated[
@@ -127,13 +141,13 @@ def call(
     json_: Json = False,
 ) -> int:
     """Calls a service and prints the response."""
-    service_type, values = type_and_values(service_type, values)
-    fields = given(sys.stdin.read() if stdin else values or "{}", "the request")
-    with running(sim) as client:
-        name = absolute(service)
-        found = type_of(client, "service", client.services(), service)
+    service_type, values = split_type_and_values(service_type, values)
+    fields = parse_fields(sys.stdin.read() if stdin else values or "{}", "the request")
+    with connect_to_simulation(sim) as client:
+        name = absolute_name(service)
+        found = interface_type(client, "service", client.services(), service)
         check_type(service_type, [found], name)
-        request = made(f"{found}_Request", fields)
+        request = make_message(f"{found}_Request", fields)
         while True:
             begun = time.monotonic()
             _one_call(client, name, request, json_)
@@ -146,9 +160,9 @@ def _one_call(client: Any, name: str, request: Any, json_: bool) -> None:
     from simkit.msgs.text import plain, python_of
 
     if not json_:
-        line(f"requester: making request: {python_of(request)}\n")
+        print_line(f"requester: making request: {python_of(request)}\n")
     response = client.call(name, request)
     if json_:
-        as_json(plain(response))
+        print_json(plain(response))
     else:
-        line(f"response:\n{python_of(response)}\n")
+        print_line(f"response:\n{python_of(response)}\n")

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.options import Bag, Sim
-from simkit.cli.talking.printed import as_json, line, none_of, quiet
-from simkit.cli.talking.sources import Received, Source, opened
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Bag, Sim
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.topic_sources import ReceivedMessage, Source, open_source
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -111,13 +111,15 @@ class Frames:
         return None
 
 
-def listen(source: Source, frames: Frames, topics: list[str] | None = None, *, lasting: float) -> Iterator[Received]:
+def listen(
+    source: Source, frames: Frames, topics: list[str] | None = None, *, lasting: float
+) -> Iterator[ReceivedMessage]:
     """Takes transforms into `frames` for so long [s, wall time, from when it is heard]; of a bag, all there are."""
     there = source.topics()
     wanted = topics or [t for t in there if t.rpartition("/")[2] in ("tf", "tf_static") and _TYPE in there[t].types]
     wanted = [t for t in wanted if t in there] or [t for t in _TOPICS if t in there]
     if not wanted:
-        raise none_of("topic", "/tf", list(there), "SK-CLI-030", source.where)
+        raise not_found_error("topic", "/tf", list(there), "SK-CLI-030", source.where)
     static = {t for t in wanted if any(end.latched for end in there[t].publishers) or t.endswith("tf_static")}
     from simkit import msgs
 
@@ -140,7 +142,7 @@ def listen(source: Source, frames: Frames, topics: list[str] | None = None, *, l
 
 
 @tf.command()
-@quiet
+@report_errors_quietly
 def tree(
     topic: Topics = [],
     listened: Annotated[
@@ -152,22 +154,22 @@ def tree(
 ) -> int:
     """Prints which frame hangs on which."""
     frames = Frames()
-    with opened(sim, bag) as source:
+    with open_source(sim, bag) as source:
         for _ in listen(source, frames, topic or None, lasting=listened):
             pass
     if json_:
         rows = {c: {"parent": e.parent, "static": e.static, "time": e.time_ns * 1e-9} for c, e in frames.edges.items()}
-        as_json(rows)
+        print_json(rows)
     elif frames.edges:
         for text in frames.lines():
-            line(text)
+            print_line(text)
     else:
-        line("no transforms came")
+        print_line("no transforms came")
     return 0
 
 
 @tf.command()
-@quiet
+@report_errors_quietly
 def echo(
     source_frame: Annotated[
         str, typer.Argument(metavar="SOURCE", show_default=False, autocompletion=completion.frames)
@@ -185,7 +187,7 @@ def echo(
 ) -> int:
     """Prints where TARGET is, as seen from SOURCE; of a bag, at its end."""
     frames = Frames()
-    with opened(sim, bag) as source:
+    with open_source(sim, bag) as source:
         begun = time.monotonic()
         while True:
             for _ in listen(source, frames, topic or None, lasting=1.0 / rate):
@@ -204,7 +206,7 @@ def echo(
 def _not_connected(frames: Frames, source: str, target: str, where: str) -> InputError:
     for name in (source, target):
         if name not in frames.names():
-            return none_of("frame", name, frames.names(), "SK-CLI-038", where)
+            return not_found_error("frame", name, frames.names(), "SK-CLI-038", where)
     text = f"SK-CLI-038 {source!r} and {target!r} do not hang together: they are of separate trees in {where}"
     return InputError(text, "SK-CLI-038")
 
@@ -213,18 +215,18 @@ def _print(pose: Pose, time_ns: int, precision: int, json_: bool) -> None:
     xyz, (w, x, y, z), rpy = list(pose.position), pose.quaternion, list(pose.rpy)
     if json_:
         rotation = [float(q) for q in (x, y, z, w)]
-        as_json({"time": time_ns * 1e-9, "translation": [float(v) for v in xyz], "rotation": rotation})
+        print_json({"time": time_ns * 1e-9, "translation": [float(v) for v in xyz], "rotation": rotation})
         return
 
     def listed(numbers: Any) -> str:
         return "[" + ", ".join(f"{float(n) + 0.0:.{precision}f}" for n in numbers) + "]"
 
-    line(f"At time {time_ns // 10**9}.{time_ns % 10**9:09d}")
-    line(f"- Translation: {listed(xyz)}")
-    line(f"- Rotation: in Quaternion (xyzw) {listed((x, y, z, w))}")
-    line(f"- Rotation: in RPY (radian) {listed(rpy)}")
-    line(f"- Rotation: in RPY (degree) {listed(math.degrees(a) for a in rpy)}")
-    line("- Matrix:")
+    print_line(f"At time {time_ns // 10**9}.{time_ns % 10**9:09d}")
+    print_line(f"- Translation: {listed(xyz)}")
+    print_line(f"- Rotation: in Quaternion (xyzw) {listed((x, y, z, w))}")
+    print_line(f"- Rotation: in RPY (radian) {listed(rpy)}")
+    print_line(f"- Rotation: in RPY (degree) {listed(math.degrees(a) for a in rpy)}")
+    print_line("- Matrix:")
     for row, at in zip(pose.matrix, xyz, strict=True):
-        line("".join(f"{float(n) + 0.0:{precision + 4}.{precision}f}" for n in (*row, at)))
-    line("".join(f"{n:{precision + 4}.{precision}f}" for n in (0.0, 0.0, 0.0, 1.0)))
+        print_line("".join(f"{float(n) + 0.0:{precision + 4}.{precision}f}" for n in (*row, at)))
+    print_line("".join(f"{n:{precision + 4}.{precision}f}" for n in (0.0, 0.0, 0.0, 1.0)))

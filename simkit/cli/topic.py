@@ -7,15 +7,15 @@ from typing import Annotated, Any
 
 import typer
 
-from simkit.cli.options import Json
-from simkit.cli.talking import completion
-from simkit.cli.talking.given import is_type
-from simkit.cli.talking.options import Bag, Ros2Command, Sim, Topic
-from simkit.cli.talking.printed import as_json, is_hidden, line, list_names, quiet
-from simkit.cli.talking.sources import End, TopicEntry, opened, topic_of
-from simkit.cli.talking.topic_echo import echo
-from simkit.cli.talking.topic_pub import pub
-from simkit.cli.talking.topic_rates import bw, delay, hz
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Bag, Ros2Command, Sim, Topic
+from simkit.cli.terminal.message_arguments import is_same_type
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import is_hidden, print_json, print_line, print_names, report_errors_quietly
+from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
+from simkit.cli.topic_echo import echo
+from simkit.cli.topic_pub import pub
+from simkit.cli.topic_rates import bw, delay, hz
 from simkit.errors import MessageError
 
 topic = typer.Typer(help="Topics of a running simulation, or of a bag.", no_args_is_help=True)
@@ -32,7 +32,7 @@ Hidden = Annotated[
 
 
 @topic.command("list", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def list_(
     show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Shows the types too.")] = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Says who publishes and who takes.")] = False,
@@ -43,24 +43,24 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists the topics."""
-    with opened(sim, bag) as source:
+    with open_source(sim, bag) as source:
         found = [t for t in source.topics().values() if hidden or not is_hidden(t.name)]
     if json_:
-        as_json(len(found) if count else [_row(t, show_ends=verbose) for t in found])
+        print_json(len(found) if count else [_row(t, show_ends=verbose) for t in found])
     elif count:
-        line(str(len(found)))
+        print_line(str(len(found)))
     elif verbose:
         for word, end in (("Published", "publisher"), ("Subscribed", "subscriber")):
-            line(f"{word} topics:")
+            print_line(f"{word} topics:")
             for entry in found:
                 number = len(entry.publishers if end == "publisher" else entry.subscribers)
                 if number:
                     types = ", ".join(entry.types)
-                    line(f" * {entry.name} [{types}] {number} {end}{'s' if number > 1 else ''}")
-            line()
+                    print_line(f" * {entry.name} [{types}] {number} {end}{'s' if number > 1 else ''}")
+            print_line()
     else:
         for entry in found:
-            line(f"{entry.name} [{', '.join(entry.types)}]" if show_types else entry.name)
+            print_line(f"{entry.name} [{', '.join(entry.types)}]" if show_types else entry.name)
     return 0
 
 
@@ -71,12 +71,12 @@ def _row(entry: TopicEntry, *, show_ends: bool) -> dict[str, Any]:
     return row
 
 
-def _end(end: End) -> dict[str, Any]:
+def _end(end: TopicEndpoint) -> dict[str, Any]:
     return {"node": end.node, "types": list(end.types), "latched": end.latched}
 
 
 @topic.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def info(
     topic: Topic,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Says who they are, with their quality.")] = False,
@@ -85,26 +85,26 @@ def info(
     json_: Json = False,
 ) -> int:
     """Says of what type a topic is, and how many publish it and take it."""
-    with opened(sim, bag) as source:
-        entry = topic_of(source, topic)
+    with open_source(sim, bag) as source:
+        entry = find_topic(source, topic)
     if json_:
-        as_json(_row(entry, show_ends=True))
+        print_json(_row(entry, show_ends=True))
         return 0
     gap = "\n" if verbose else ""
-    line(f"Type: {entry.types[0] if len(entry.types) == 1 else list(entry.types)}{gap}")
+    print_line(f"Type: {entry.types[0] if len(entry.types) == 1 else list(entry.types)}{gap}")
     for word, ends, kind in (
         ("Publisher", entry.publishers, "PUBLISHER"),
         ("Subscription", entry.subscribers, "SUBSCRIPTION"),
     ):
-        line(f"{word} count: {len(ends)}{gap}")
+        print_line(f"{word} count: {len(ends)}{gap}")
         if verbose:
             for number, end in enumerate(ends):
                 for type_name in end.types:
-                    line(_endpoint(entry.name, end, type_name, kind, number) + gap)
+                    print_line(_endpoint(entry.name, end, type_name, kind, number) + gap)
     return 0
 
 
-def _endpoint(topic_name: str, end: End, type_name: str, kind: str, number: int) -> str:
+def _endpoint(topic_name: str, end: TopicEndpoint, type_name: str, kind: str, number: int) -> str:
     """Everything about one end, as rclpy writes it."""
     from simkit import msgs
 
@@ -136,21 +136,21 @@ def _endpoint(topic_name: str, end: End, type_name: str, kind: str, number: int)
 
 
 @topic.command("type", cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def type_(topic: Topic, sim: Sim = None, bag: Bag = None, json_: Json = False) -> int:
     """Prints a topic's type."""
-    with opened(sim, bag) as source:
-        entry = topic_of(source, topic)
+    with open_source(sim, bag) as source:
+        entry = find_topic(source, topic)
     if json_:
-        as_json(list(entry.types))
+        print_json(list(entry.types))
     else:
         for name in entry.types:
-            line(name)
+            print_line(name)
     return 0
 
 
 @topic.command(cls=Ros2Command)
-@quiet
+@report_errors_quietly
 def find(
     topic_type: Annotated[
         str,
@@ -168,10 +168,12 @@ def find(
     json_: Json = False,
 ) -> int:
     """Lists the topics of a type."""
-    with opened(sim, bag) as source:
-        found = [t.name for t in source.topics().values() if any(is_type(topic_type, one) for one in _all_types(t))]
+    with open_source(sim, bag) as source:
+        found = [
+            t.name for t in source.topics().values() if any(is_same_type(topic_type, one) for one in _all_types(t))
+        ]
     found = [name for name in found if hidden or not is_hidden(name)]
-    list_names(found, count=count, json_=json_)
+    print_names(found, count=count, json_=json_)
     return 0
 
 

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.console import guarded, out
-from simkit.cli.options import Base, File, PackagePaths, ResourcePaths, XacroArgs, source
+from simkit.cli.terminal.options import Base, File, PackagePaths, ResourcePaths, XacroArgs, source_arguments
+from simkit.cli.terminal.output import report_errors, stdout_console
 
 
-@guarded
+@report_errors
 def vendor(
     file: File,
     folder: Annotated[Path, typer.Argument(help="A folder that does not exist yet, or is empty.", show_default=False)],
@@ -22,8 +22,8 @@ def vendor(
 ) -> int:
     """Writes a folder that holds a world and everything it names, and that opens anywhere."""
     from simkit.build import describe
-    from simkit.vendor import vendor as write
+    from simkit.writers.vendor import vendor as write
 
-    main, count = write(file, folder, describe, **source(resource_path, package_path, xacro_arg, base))
-    out().print(f"{folder / main} and {count - 1} files that it needs")
+    main, count = write(file, folder, describe, **source_arguments(resource_path, package_path, xacro_arg, base))
+    stdout_console().print(f"{folder / main} and {count - 1} files that it needs")
     return 0

@@ -1,10 +1,10 @@
 """Scenes into MuJoCo models: the one place where the physics engine's model is built."""
 
-import simkit.engine.loaded  # noqa: F401  (before any module imports MuJoCo by itself)
-from simkit.compiler import groups
-from simkit.compiler.builder import Compiled, SpecBuilder
+import simkit.mujoco_loaded  # noqa: F401  (before any module imports MuJoCo by itself)
+from simkit.compiler import geom_groups
 from simkit.compiler.lights import drawn_position
-from simkit.compiler.names import ActuatorRef, Follower, GeomOwner, JointBinding, LightBinding, LinkBinding, NameMap
+from simkit.compiler.name_map import ActuatorRef, Follower, GeomOwner, JointBinding, LightBinding, LinkBinding, NameMap
+from simkit.compiler.spec_builder import Compiled, SpecBuilder
 
 __all__ = [
     "ActuatorRef",
@@ -17,5 +17,5 @@ __all__ = [
     "NameMap",
     "SpecBuilder",
     "drawn_position",
-    "groups",
+    "geom_groups",
 ]

@@ -11,8 +11,8 @@ from weakref import WeakKeyDictionary
 import mujoco
 import numpy as np
 
-from simkit.compiler.meshes.files import Pixels, pixels_of
-from simkit.compiler.meshes.part import Floats, Ints, MeshPart
+from simkit.compiler.meshes.companion_files import Pixels, read_pixels
+from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshPart
 
 AssetKey = tuple[str, str]
 """(kind, MuJoCo's name)."""
@@ -67,7 +67,7 @@ class Assets:
     def picture(self, file: Path) -> Pixels:
         """A texture file, read once. Raises MeshFileError."""
         if file not in self._pictures:
-            self._pictures[file] = pixels_of(file)
+            self._pictures[file] = read_pixels(file)
         return self._pictures[file]
 
     def texture(self, pixels: Pixels) -> str:

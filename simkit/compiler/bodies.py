@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.inertia import LEAST_MASS, Written
+from simkit.compiler.inertia_repair import LEAST_MASS, BodyInertia
 from simkit.pose import Pose
 from simkit.scene import Inertial, SceneLink
 
@@ -16,16 +16,16 @@ LEAST_INERTIA: Final = 1e-12
 KINEMATIC_ARMATURE: Final = 1e9
 """[kg and kg·m²] added to the inertia, not to the weight, of a free kinematic link."""
 
-TWIN_SHARE: Final = 0.1
+SPLIT_MASS_SHARE: Final = 0.1
 """Part of a link's mass that the twin of a loop joint takes over. A lighter twin makes the loop softer: under a load
 the weld gives way in proportion to 1 / mass."""
 
 
-def add_body(parent: Any, link: SceneLink, pose: Pose, written: Written | None, *, needs_mass: bool = True) -> Any:
+def add_body(parent: Any, link: SceneLink, pose: Pose, written: BodyInertia | None, *, needs_mass: bool = True) -> Any:
     """A body whose frame is the link frame, `pose` in the parent body's frame; returns MuJoCo's handle.
 
     Args:
-        written: its mass and inertia (`simkit.compiler.inertia.plan_inertials`); None for a link without mass.
+        written: its mass and inertia (`simkit.compiler.inertia_repair.plan_inertials`); None for a link without mass.
         needs_mass: whether it moves by itself; a link without mass that does not is a frame and weighs nothing.
     """
     body = parent.add_body(name=link.scoped, pos=pose.position, quat=pose.quaternion)
@@ -51,7 +51,7 @@ def is_massless(inertial: Inertial) -> bool:
     return inertial.mass == 0.0 and not any(inertial.inertia)
 
 
-def add_twin(spec: Any, name: str, body: str, under: str, pose: Pose, has_motion: bool) -> Any:
+def add_split_body(spec: Any, name: str, body: str, under: str, pose: Pose, has_motion: bool) -> Any:
     """A second body for a link, hung `under` another body; it takes over a part of the link's mass.
 
     Args:
@@ -69,17 +69,17 @@ def add_twin(spec: Any, name: str, body: str, under: str, pose: Pose, has_motion
         return twin
     twin.ipos = source.ipos
     is_full = bool(np.isfinite(source.fullinertia[0]))
-    twin.mass = max(LEAST_MASS, TWIN_SHARE * source.mass)
+    twin.mass = max(LEAST_MASS, SPLIT_MASS_SHARE * source.mass)
     if is_full:
-        twin.fullinertia = TWIN_SHARE * np.array(source.fullinertia)
+        twin.fullinertia = SPLIT_MASS_SHARE * np.array(source.fullinertia)
     else:
         twin.iquat = source.iquat
-        twin.inertia = np.maximum(LEAST_INERTIA, TWIN_SHARE * np.array(source.inertia))
-    _scale(source, 1.0 - TWIN_SHARE)
+        twin.inertia = np.maximum(LEAST_INERTIA, SPLIT_MASS_SHARE * np.array(source.inertia))
+    _scale(source, 1.0 - SPLIT_MASS_SHARE)
     return twin
 
 
-def drop_twin(spec: Any, name: str, body: str) -> None:
+def remove_split_body(spec: Any, name: str, body: str) -> None:
     """Takes a twin out again, and gives the link its mass back where that is still there."""
     twin = spec.body(name)
     has_motion = twin is not None and len(twin.joints) > 0
@@ -87,7 +87,7 @@ def drop_twin(spec: Any, name: str, body: str) -> None:
         spec.delete(twin)
     source = spec.body(body)
     if source is not None and has_motion:
-        _scale(source, 1.0 / (1.0 - TWIN_SHARE))
+        _scale(source, 1.0 / (1.0 - SPLIT_MASS_SHARE))
 
 
 def _scale(body: Any, factor: float) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
-from simkit.compiler.names import Follower, JointBinding, ModelRecord
+from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.scene import Mimic, SceneJoint
 

@@ -1,17 +1,17 @@
-"""What is known only of the compiled model: decay of velocities, joints that move nothing, where followers begin."""
+"""Adjust and check the compiled model in its first state: damping, idle joints, followers, overlaps, numeric range."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Final
 
 import mujoco
 import numpy as np
 
-from simkit.compiler.names import JointBinding, ModelRecord
-from simkit.diagnostics import Diagnostics
+from simkit.compiler.name_map import JointBinding, ModelRecord, NameMap
+from simkit.diagnostics import Diagnostics, Where
 
-_NOTHING: Final = 1e-9
+_NO_INERTIA: Final = 1e-9
 """Inertia [kg·m² or kg] that a joint feels below which it moves nothing; ten times less is what a frame is given."""
 
 IDLE_ROTARY: Final = 1e-4
@@ -21,7 +21,7 @@ IDLE_LINEAR: Final = 1e-2
 """[kg] that a slider is given which moves nothing with mass."""
 
 
-def damp(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
+def apply_velocity_decay(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
     """Damping of free joints for `velocity_decay`: mass, or moment about each axis of the link, times the rate."""
     for record in records:
         for name, (linear, angular) in record.damped.items():
@@ -35,7 +35,7 @@ def damp(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
             model.dof_damping[dof + 3 : dof + 6] = angular * moments
 
 
-def steady_idle(
+def add_idle_armature(
     spec: mujoco.MjSpec, model: mujoco.MjModel, records: Iterable[ModelRecord], diagnostics: Diagnostics
 ) -> None:
     """Gives each joint that moves nothing but links without mass an armature, in the model and in the spec.
@@ -57,7 +57,7 @@ def steady_idle(
         body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, binding.body_name)
         first = int(model.body_dofadr[body])
         dofs = range(first, first + int(model.body_dofnum[body]))
-        if link not in record.unladen and all(_felt(model, data, dof) >= _NOTHING for dof in dofs):
+        if link not in record.unladen and all(_joint_inertia(model, data, dof) >= _NO_INERTIA for dof in dofs):
             continue
         if not joint:
             diagnostics.error(
@@ -98,7 +98,7 @@ def _give_armature(spec: mujoco.MjSpec, model: mujoco.MjModel, body: int) -> str
     return given
 
 
-def _felt(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> float:
+def _joint_inertia(model: mujoco.MjModel, data: mujoco.MjData, dof: int) -> float:
     unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
     unit[0, dof] = 1.0
     mujoco.mj_solveM(model, data, solved, unit)
@@ -112,3 +112,62 @@ def place_followers(data: mujoco.MjData, joints: Iterable[JointBinding]) -> None
         for follower in joint.followers:
             if follower.offset and follower.qpos >= 0:
                 data.qpos[follower.qpos] = follower.offset
+
+
+REPORTED_DEPTH: Final = 0.005
+"""Overlaps up to this depth [m] at the start are ordinary and push things apart gently."""
+
+_REPORTED_MOST: Final = 20
+
+
+def report_overlaps(model: mujoco.MjModel, names: NameMap, diagnostics: Diagnostics, where: Where) -> None:
+    """Warns of each pair of collisions that overlap deeply in the first state; the deepest contact of a pair counts."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_collision(model, data)
+    deepest: dict[tuple[str, str], float] = {}
+    for i in (data.contact.dist < -REPORTED_DEPTH).nonzero()[0] if data.ncon else ():
+        first, second = (names.geom_owner(g)[1] for g in data.contact.geom[i])
+        if not (first and second):  # a cloth or the like, of a file of the engine's own
+            continue
+        pair = (first, second)
+        deepest[pair] = max(deepest.get(pair, 0.0), -float(data.contact.dist[i]))
+    for (first, second), depth in sorted(deepest.items(), key=lambda item: -item[1])[:_REPORTED_MOST]:
+        diagnostics.warning(
+            "SK-PHYS-024",
+            f"{second} starts {depth * 1e3:.0f} mm inside {first}: contact moves them apart, slowly",
+            names.link(names.geom_owner_link(second)).scene.where if names.geom_owner_link(second) else where,
+            "move one of them in the file",
+        )
+
+
+_DERIVED: Final[tuple[tuple[str, Callable[[mujoco.MjModel, int], str]], ...]] = (
+    ("body_mass", lambda m, i: f"body {m.body(i).name}"),
+    ("body_inertia", lambda m, i: f"body {m.body(i).name}"),
+    ("body_invweight0", lambda m, i: f"body {m.body(i).name}"),
+    ("dof_invweight0", lambda m, i: f"joint {m.jnt(int(m.dof_jntid[i])).name}"),
+    ("dof_M0", lambda m, i: f"joint {m.jnt(int(m.dof_jntid[i])).name}"),
+    ("geom_rbound", lambda m, i: f"a shape of body {m.body(int(m.geom_bodyid[i])).name}"),
+    ("qpos0", lambda _model, _at: "the first positions"),
+)
+
+
+def check_derived_numbers(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where) -> None:
+    """Raises LoadError (SK-PHYS-028) where masses, inertias or distances are so far apart that sums leave the numbers.
+
+    Each number of the file is sound by itself by now; but a mass matrix of 1e-9 kg on a lever of 1e8 m has no inverse
+    in double precision, and everything that the engine computes with it would be NaN.
+    """
+    for name, owner in _DERIVED:
+        values = np.asarray(getattr(model, name), float)
+        rows = values.reshape(max(1, len(values)), -1)
+        bad = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+        if bad.size:
+            diagnostics.error(
+                "SK-PHYS-028",
+                f"{owner(model, int(bad[0]))}: its masses, inertias and distances are too far apart to compute with",
+                where,
+                "check the units: metres, kilograms and kg·m²",
+            )
+            diagnostics.raise_if_errors()

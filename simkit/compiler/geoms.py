@@ -11,17 +11,23 @@ import mujoco
 import numpy as np
 
 from simkit.compiler.assets import Assets
-from simkit.compiler.friction import Contact, contact_of
-from simkit.compiler.groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
-from simkit.compiler.heightmap import heights
-from simkit.compiler.looks import look_of
-from simkit.compiler.meshes.collision import bodies_of, hull_of
-from simkit.compiler.meshes.mesh import load_mesh, once
-from simkit.compiler.meshes.part import Colour, Floats, Ints, MeshFileError, MeshPart, has_area, joined
-from simkit.compiler.names import GeomOwner, ModelRecord
-from simkit.compiler.shapes import cone, polyline, polyline_pieces, primitive_of, sizes_of
-from simkit.compiler.shapes_textured import textured
-from simkit.compiler.wheel_meshes import RoundMesh, TurningAxis, round_mesh
+from simkit.compiler.contact_friction import ContactProperties, contact_properties
+from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION, VISUAL
+from simkit.compiler.material_colours import geom_colours
+from simkit.compiler.meshes.collision_bodies import convex_bodies, convex_hull
+from simkit.compiler.meshes.mesh_part import Colour, Floats, Ints, MeshFileError, MeshPart, has_area, join_parts
+from simkit.compiler.meshes.mesh_reader import load_mesh, report_once
+from simkit.compiler.name_map import GeomOwner, ModelRecord
+from simkit.compiler.shapes import (
+    cone_triangles,
+    heightmap_rows,
+    polyline_pieces,
+    polyline_triangles,
+    primitive_of,
+    shape_sizes,
+    textured_triangles,
+)
+from simkit.compiler.wheel_cylinders import RoundMesh, TurningAxis, round_mesh
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Cone, Empty, Geometry, Heightmap, Material, Mesh, Plane, Polyline, SceneCollision, SceneVisual
@@ -34,7 +40,7 @@ LEAST_AREA: Final = 1e-12
 
 
 @dataclass(slots=True)
-class Place:
+class GeomParent:
     """Body and frame that the geoms of one link are added to.
 
     Attributes:
@@ -67,7 +73,7 @@ class GeomWriter:
         self._ambient = ambient
         self._count: Counter[str] = Counter()
 
-    def _add(self, place: Place, owner: GeomOwner, pose: Pose, **settings: Any) -> Any:
+    def _add(self, place: GeomParent, owner: GeomOwner, pose: Pose, **settings: Any) -> Any:
         base = owner.scoped + ("#v" if owner.is_visual else "#")
         name = f"{base}{self._count[base]}"
         self._count[base] += 1
@@ -77,12 +83,12 @@ class GeomWriter:
 
     # ------------------------------------------------------------------ collisions
 
-    def collision(self, place: Place, collision: SceneCollision) -> None:
+    def collision(self, place: GeomParent, collision: SceneCollision) -> None:
         """Adds what collides for one `<collision>`."""
         shape = collision.geometry
         if isinstance(shape, Empty) or not self._has_size(shape, collision.where):
             return
-        contact = contact_of(collision.surface, self.timestep, place.mass, self.diagnostics)
+        contact = contact_properties(collision.surface, self.timestep, place.mass, self.diagnostics)
         owner = GeomOwner(place.link, collision.scoped, False)
         primitive = primitive_of(shape, False)
         if isinstance(shape, Plane) and not place.fixed and primitive is not None:
@@ -106,7 +112,12 @@ class GeomWriter:
                 self._mesh_collision(place, owner, collision, parts, contact)
 
     def _outlines(
-        self, place: Place, owner: GeomOwner, collision: SceneCollision, shape: Polyline, contact: Contact
+        self,
+        place: GeomParent,
+        owner: GeomOwner,
+        collision: SceneCollision,
+        shape: Polyline,
+        contact: ContactProperties,
     ) -> None:
         """Extruded outlines, which fall into convex pieces exactly."""
         try:
@@ -115,25 +126,30 @@ class GeomWriter:
             self.diagnostics.error("SK-MESH-009", f"polyline: {problem}", collision.where)
             return
         for points in pieces:
-            body = hull_of(points)
+            body = convex_hull(points)
             if body is not None:
                 name, settings = self.assets.surface(*body), _colliding(contact, COLLISION)
                 self._add(place, owner, collision.pose_link, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, **settings)
 
     def _mesh_collision(
-        self, place: Place, owner: GeomOwner, collision: SceneCollision, parts: list[MeshPart], contact: Contact
+        self,
+        place: GeomParent,
+        owner: GeomOwner,
+        collision: SceneCollision,
+        parts: list[MeshPart],
+        contact: ContactProperties,
     ) -> None:
         shape = collision.geometry
-        vertices, faces = joined(parts)
+        vertices, faces = join_parts(parts)
         optimization, most = (shape.optimization, shape.max_hulls) if isinstance(shape, Mesh) else ("", 16)
-        bodies = bodies_of(vertices, faces, fixed=place.fixed, optimization=optimization, most=most)
+        bodies = convex_bodies(vertices, faces, fixed=place.fixed, optimization=optimization, most=most)
         if isinstance(shape, Mesh) and place.axis is not None:
             wheel = round_mesh(bodies.shapes, collision.pose_link, place.axis)
             if wheel is not None:
                 self._wheel(place, owner, collision, wheel, contact)
                 return
         for severity, code, text, hint in bodies.findings:
-            once(self.diagnostics, severity, code, f"{_title(shape)} {text}", collision.where, hint)
+            report_once(self.diagnostics, severity, code, f"{_collision_title(shape)} {text}", collision.where, hint)
         settings = _colliding(contact, COLLISION if bodies.is_exact else COLLISION_CONTACT)
         for corners, triangles in bodies.shapes:
             name = self.assets.surface(corners, triangles)
@@ -142,25 +158,30 @@ class GeomWriter:
             self._ray_copy(place, owner, collision.pose_link, vertices, faces)
 
     def _wheel(
-        self, place: Place, owner: GeomOwner, collision: SceneCollision, wheel: RoundMesh, contact: Contact
+        self,
+        place: GeomParent,
+        owner: GeomOwner,
+        collision: SceneCollision,
+        wheel: RoundMesh,
+        contact: ContactProperties,
     ) -> None:
         size = (wheel.radius, wheel.length / 2, 0.0)
         cylinder = f"a cylinder of radius {wheel.radius:.4g} m and length {wheel.length:.4g} m"
-        text = f"{_title(collision.geometry)} is round about the axis of its joint: it collides as {cylinder}"
-        once(self.diagnostics, "note", "SK-MESH-016", text, collision.where)
+        text = f"{_collision_title(collision.geometry)} is round about the axis of its joint: it collides as {cylinder}"
+        report_once(self.diagnostics, "note", "SK-MESH-016", text, collision.where)
         kind = mujoco.mjtGeom.mjGEOM_CYLINDER
         self._add(
             place, owner, collision.pose_link @ wheel.pose, type=kind, size=size, **_colliding(contact, COLLISION)
         )
 
-    def _ray_copy(self, place: Place, owner: GeomOwner, pose: Pose, vertices: Floats, faces: Ints) -> None:
+    def _ray_copy(self, place: GeomParent, owner: GeomOwner, pose: Pose, vertices: Floats, faces: Ints) -> None:
         name = self.assets.surface(vertices, faces)
         mesh = mujoco.mjtGeom.mjGEOM_MESH
         self._add(place, owner, pose, type=mesh, meshname=name, contype=0, conaffinity=0, group=COLLISION_RAY)
 
     # ------------------------------------------------------------------ visuals
 
-    def visual(self, place: Place, visual: SceneVisual) -> None:
+    def visual(self, place: GeomParent, visual: SceneVisual) -> None:
         """Adds what is drawn for one `<visual>`."""
         shape = visual.geometry
         if isinstance(shape, Empty) or not self._has_size(shape, visual.where):
@@ -169,7 +190,7 @@ class GeomWriter:
         pixels = self._pixels(visual.material, visual.where)
         # the engine's own shapes, planes apart, have no inner side
         is_lined = visual.material is not None and visual.material.double_sided and not isinstance(shape, Plane)
-        worn = textured(shape) if pixels is not None or is_lined else None
+        worn = textured_triangles(shape) if pixels is not None or is_lined else None
         primitive = primitive_of(shape, True) if worn is None else None
         pose = visual.pose_link
         if isinstance(shape, Heightmap):
@@ -187,12 +208,12 @@ class GeomWriter:
             if kind == mujoco.mjtGeom.mjGEOM_PLANE and visual.material is not None and visual.material.double_sided:
                 self._add(place, owner, pose @ primitive.pose @ _OVER, type=kind, size=size, **drawn)
 
-    def _part(self, place: Place, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any) -> None:
+    def _part(self, place: GeomParent, owner: GeomOwner, visual: SceneVisual, part: MeshPart, pixels: Any) -> None:
         """Triangles of one material: the file's material wins over the mesh's own."""
         if not has_area(part, LEAST_AREA):
             name = f" ({part.name})" if part.name else ""
-            text = f"{_title(visual.geometry)}: a part{name} whose triangles have no area is not drawn"
-            once(self.diagnostics, "note", "SK-MESH-013", text, visual.where)
+            text = f"{_collision_title(visual.geometry)}: a part{name} whose triangles have no area is not drawn"
+            report_once(self.diagnostics, "note", "SK-MESH-013", text, visual.where)
             return
         look = self._drawn(visual, part, pixels if part.uv is not None else None)
         mesh = self._surface(visual, part, self.assets.has_texture(look["material"]))
@@ -212,7 +233,7 @@ class GeomWriter:
 
     def _drawn(self, visual: SceneVisual, part: MeshPart | None, pixels: Any) -> dict[str, Any]:
         """Settings of a drawn geom; `pixels` is the file's texture where it can be worn."""
-        look = look_of(visual, part)
+        look = geom_colours(visual, part)
         if visual.material is None and part is not None:
             pixels = part.texture
         texture = self.assets.texture(pixels) if pixels is not None else ""
@@ -236,13 +257,13 @@ class GeomWriter:
         try:
             return self.assets.picture(material.texture)
         except MeshFileError as problem:
-            once(self.diagnostics, "warning", "SK-MESH-008", f"texture {material.texture} {problem}", where)
+            report_once(self.diagnostics, "warning", "SK-MESH-008", f"texture {material.texture} {problem}", where)
             return None
 
     # ------------------------------------------------------------------ shared
 
     def _has_size(self, shape: Geometry, where: Where) -> bool:
-        if all(0.0 < s < math.inf for s in sizes_of(shape)):
+        if all(0.0 < s < math.inf for s in shape_sizes(shape)):
             return True
         self.diagnostics.warning(
             "SK-PHYS-017", f"a {type(shape).__name__.lower()} without size is left out: {shape}", where
@@ -253,24 +274,26 @@ class GeomWriter:
         if isinstance(shape, Mesh):
             return [] if shape.missing else load_mesh(shape, self.diagnostics, where)
         if isinstance(shape, Cone):
-            return [MeshPart("cone", *cone(shape))]
+            return [MeshPart("cone", *cone_triangles(shape))]
         if isinstance(shape, Polyline):
             try:
-                return [MeshPart("polyline", *polyline(shape))]
+                return [MeshPart("polyline", *polyline_triangles(shape))]
             except (ValueError, MeshFileError) as problem:
                 self.diagnostics.error("SK-MESH-009", f"polyline: {problem}", where)
         return []
 
     def _heightmap(
-        self, place: Place, owner: GeomOwner, pose: Pose, shape: Heightmap, where: Where, settings: dict[str, Any]
+        self, place: GeomParent, owner: GeomOwner, pose: Pose, shape: Heightmap, where: Where, settings: dict[str, Any]
     ) -> None:
         if not place.fixed:
             self.diagnostics.error("SK-MESH-010", "a heightmap can only belong to a static model", where)
             return
         try:
-            rows = heights(shape)
+            rows = heightmap_rows(shape)
         except MeshFileError as problem:
-            once(self.diagnostics, "error", "SK-MESH-011", f"heightmap {shape.uri} {problem}", where, _HEIGHTS_HINT)
+            report_once(
+                self.diagnostics, "error", "SK-MESH-011", f"heightmap {shape.uri} {problem}", where, _HEIGHTS_HINT
+            )
             return
         low, high = float(rows.min()), float(rows.max())
         z_size = shape.size[2]
@@ -280,7 +303,7 @@ class GeomWriter:
         self._add(place, owner, at, type=mujoco.mjtGeom.mjGEOM_HFIELD, hfieldname=name, **settings)
 
 
-def _colliding(contact: Contact, group: int) -> dict[str, Any]:
+def _colliding(contact: ContactProperties, group: int) -> dict[str, Any]:
     return {
         "group": group,
         "contype": contact.contype,
@@ -294,5 +317,5 @@ def _colliding(contact: Contact, group: int) -> dict[str, Any]:
     }
 
 
-def _title(shape: Geometry) -> str:
+def _collision_title(shape: Geometry) -> str:
     return shape.uri if isinstance(shape, Mesh) else type(shape).__name__.lower()

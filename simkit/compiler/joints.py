@@ -10,15 +10,77 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
-from simkit.compiler.bodies import add_twin
+from simkit.compiler.bodies import add_split_body
 from simkit.compiler.couplings import LOOP_DAMPING, Couplings
-from simkit.compiler.joint_checks import is_sound
-from simkit.compiler.names import Follower, JointBinding, ModelRecord
-from simkit.compiler.options import SOFT_SOLIMP, contact_time_constant
-from simkit.compiler.tree import WORLD, Edge
+from simkit.compiler.engine_options import SOFT_SOLIMP, contact_time_constant
+from simkit.compiler.kinematic_tree import WORLD, TreeEdge
+from simkit.compiler.name_map import Follower, JointBinding, ModelRecord
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Axis, SceneJoint, SceneLink
+
+_UNIT: Final = 1e-6
+_RIGID: Final = 1e8
+
+
+def is_valid_axis(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> bool:
+    """Whether an axis can be simulated; reports what is wrong or has an effect that few expect."""
+    numbers = (axis.damping, axis.friction, axis.stiffness, axis.spring_ref)
+    limits = (axis.lower, axis.upper, axis.effort, axis.velocity)
+    if not all(map(math.isfinite, (*axis.xyz_world, *numbers))) or any(map(math.isnan, limits)):
+        diagnostics.error(
+            "SK-JOINT-003", f"joint {joint.scoped}: a number of its axis, limits or dynamics is not finite", joint.where
+        )
+        return False
+    if abs(math.hypot(*axis.xyz_world) - 1.0) > _UNIT:
+        diagnostics.error(
+            "SK-JOINT-002",
+            f"joint {joint.scoped}: its axis {axis.xyz_world} has a length of {math.hypot(*axis.xyz_world):g}",
+            joint.where,
+            "an axis points somewhere: 0 0 1, for example",
+        )
+        return False
+    _report_odd_values(joint, axis, diagnostics)
+    return True
+
+
+def _report_odd_values(joint: SceneJoint, axis: Axis, diagnostics: Diagnostics) -> None:
+    if axis.lower > axis.upper:
+        diagnostics.warning(
+            "SK-JOINT-006",
+            f"joint {joint.scoped}: its lower limit {axis.lower:g} is above its upper limit {axis.upper:g}; "
+            "it is taken as unlimited",
+            joint.where,
+        )
+    elif axis.lower > 0.0 or axis.upper < 0.0:
+        diagnostics.warning(
+            "SK-JOINT-007",
+            f"joint {joint.scoped} begins at 0, outside its limits [{axis.lower:g}, {axis.upper:g}]: "
+            "it is pushed inside in the first steps",
+            joint.where,
+            "limits count from the pose in the file",
+        )
+    if axis.limit_stiffness is not None and axis.limit_stiffness < _RIGID and math.isfinite(axis.upper - axis.lower):
+        diagnostics.note(
+            "SK-JOINT-014",
+            f"joint {joint.scoped}: the stops at its limits are rigid; stiffness {axis.limit_stiffness:g} is not used",
+            joint.where,
+        )
+    if axis.velocity == 0.0:
+        diagnostics.warning(
+            "SK-JOINT-008",
+            f"joint {joint.scoped} has a velocity limit of 0: it stands still",
+            joint.where,
+            "leave the limit out for a joint without one",
+        )
+    if axis.damping < 0.0 or axis.friction < 0.0 or axis.stiffness < 0.0:
+        diagnostics.warning(
+            "SK-JOINT-009",
+            f"joint {joint.scoped}: damping {axis.damping:g}, friction {axis.friction:g}, spring stiffness "
+            f"{axis.stiffness:g}: the negative ones are taken as 0",
+            joint.where,
+        )
+
 
 UNBOUNDED: Final = 1e10
 _LOCKED: Final = 1e-6
@@ -37,7 +99,7 @@ _KINDS: Final = {
 
 
 @dataclass(frozen=True, slots=True)
-class _Motion:
+class _JointMotion:
     """One MuJoCo joint to be: its axis in the moved body's frame, and the file's axis whose dynamics it has."""
 
     name: str
@@ -62,7 +124,7 @@ class JointWriter:
 
     # ------------------------------------------------------------------ in the tree
 
-    def hang(self, body: Any, link: SceneLink, edge: Edge) -> None:
+    def hang(self, body: Any, link: SceneLink, edge: TreeEdge) -> None:
         """Adds the joint by which `link` hangs in the tree to its body."""
         joint = edge.joint
         names, followers = self._move(body, joint, link.pose_world, edge.is_reversed)
@@ -123,7 +185,7 @@ class JointWriter:
             followers = (self._thread(body, joint, frame, motions[0].direction),)
         return tuple(m.name for m in motions), followers
 
-    def _motions(self, joint: SceneJoint, at: Pose, is_reversed: bool) -> list[_Motion]:
+    def _motions(self, joint: SceneJoint, at: Pose, is_reversed: bool) -> list[_JointMotion]:
         if joint.type not in _KINDS:
             self.diagnostics.warning(
                 "SK-PHYS-013", f"joint {joint.scoped}: type {joint.type} is taken as fixed", joint.where
@@ -136,7 +198,7 @@ class JointWriter:
             directions = [np.array((0.0, 0.0, 1.0))]
             axes = [*axes, None]
         elif joint.type == "planar" and len(axes) < 3:
-            directions = _plane(joint, at)
+            directions = _plane_axes(joint, at)
             axes = [*axes, None, None, None] if len(axes) != 1 else [*axes, *axes, *axes]
         elif len(axes) < len(kinds):
             self.diagnostics.error(
@@ -145,11 +207,11 @@ class JointWriter:
             return []
         else:
             directions = [at.inverse().rotate(a.xyz_world) for a in joint.axes]
-        if not all(is_sound(joint, a, self.diagnostics) for a in joint.axes):
+        if not all(is_valid_axis(joint, a, self.diagnostics) for a in joint.axes):
             return []
         names = [joint.scoped if i == 0 else f"{joint.scoped}#{i}" for i in range(len(kinds))]
         return [
-            _Motion(name, kind, sign * direction, axis)
+            _JointMotion(name, kind, sign * direction, axis)
             for name, kind, direction, axis in zip(names, kinds, directions, axes, strict=False)
         ]
 
@@ -204,7 +266,7 @@ class JointWriter:
         at, twin = self._body_pose(carrier), f"{joint.scoped}#twin"
         has_motion = bool(_KINDS.get(joint.type))
         pose = self._body_pose(under).inverse() @ at
-        body = add_twin(self.spec, twin, self._body(carrier), self._body(under), pose, has_motion)
+        body = add_split_body(self.spec, twin, self._body(carrier), self._body(under), pose, has_motion)
         if self._body(under) == WORLD:
             self.record.root_bodies.append(twin)
         names, followers = self._move(body, joint, at, is_reversed)
@@ -264,7 +326,7 @@ class JointWriter:
         self.record.joints[binding.scoped] = binding
 
 
-def _plane(joint: SceneJoint, at: Pose) -> list[Any]:
+def _plane_axes(joint: SceneJoint, at: Pose) -> list[Any]:
     """x, y and normal of a plane of which the file names the normal alone: the joint frame's axes as near as can be."""
     back = at.inverse()
     normal = np.asarray(joint.axes[0].xyz_world if joint.axes else joint.pose_world.rotate((0.0, 0.0, 1.0)))

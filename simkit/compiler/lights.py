@@ -61,7 +61,7 @@ def add_light(body: Any, light: SceneLight, pose: Pose, shadows: bool) -> None:
         made.attenuation = (constant, linear, quadratic) if constant + linear + quadratic > 0.0 else (1.0, 0.0, 0.0)
         made.cutoff = _EVERYWHERE
     if light.type == "spot":
-        made.cutoff, made.exponent = spot_of(light)
+        made.cutoff, made.exponent = spot_parameters(light)
 
 
 def report_light(light: SceneLight, world: SceneWorld, diagnostics: Diagnostics) -> None:
@@ -92,7 +92,7 @@ def report_lights(model: mujoco.MjModel, diagnostics: Diagnostics, where: Where)
         diagnostics.note("SK-RENDER-012", message, where)
 
 
-def spot_of(light: SceneLight) -> tuple[float, float]:
+def spot_parameters(light: SceneLight) -> tuple[float, float]:
     """Cutoff [degrees, half of the cone] and exponent of a spot.
 
     Gazebo's light falls from full at half the inner angle to none at half the outer one, as a straight line to the

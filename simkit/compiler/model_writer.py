@@ -10,14 +10,14 @@ import mujoco
 
 from simkit.compiler.assets import Assets
 from simkit.compiler.bodies import KINEMATIC_ARMATURE, add_body, is_massless
-from simkit.compiler.geoms import GeomWriter, Place
-from simkit.compiler.inertia import Written, plan_inertials
+from simkit.compiler.geoms import GeomParent, GeomWriter
+from simkit.compiler.inertia_repair import BodyInertia, plan_inertials
 from simkit.compiler.joints import JointWriter
+from simkit.compiler.kinematic_tree import WORLD, KinematicTree, plan_tree
 from simkit.compiler.lights import add_light, report_light
-from simkit.compiler.masks import keep_apart
-from simkit.compiler.names import LightBinding, LinkBinding, ModelRecord
-from simkit.compiler.tree import WORLD, Tree, plan_tree
-from simkit.compiler.wheel_meshes import turning_axis
+from simkit.compiler.name_map import LightBinding, LinkBinding, ModelRecord
+from simkit.compiler.self_collision import exclude_self_collisions
+from simkit.compiler.wheel_cylinders import turning_axis
 from simkit.diagnostics import Diagnostics
 from simkit.pose import IDENTITY
 from simkit.scene import SceneJoint, SceneLink, SceneModel, SceneWorld
@@ -62,7 +62,7 @@ class ModelWriter:
         for joint in tree.constraints:
             self.joints.gear(joint)
         self.joints.couplings.mimics(joints)
-        keep_apart(self.spec, self.record, moving, joints)
+        exclude_self_collisions(self.spec, self.record, moving, joints)
 
     def join(self, joints: list[SceneJoint], links: Mapping[str, LinkBinding]) -> None:
         """Adds joints between models as constraints."""
@@ -116,9 +116,9 @@ class ModelWriter:
             binding = replace(binding, body_name=link.scoped, offset=IDENTITY)
             self.record.root_bodies.append(link.scoped)
         self.record.links[link.scoped] = binding
-        self._fill(Place(body, binding.offset, True, 0.0, link.scoped), link)
+        self._fill(GeomParent(body, binding.offset, True, 0.0, link.scoped), link)
 
-    def _bodies(self, tree: Tree) -> None:
+    def _bodies(self, tree: KinematicTree) -> None:
         model = self.record.scene
         bodies: dict[str, Any] = {}
         base = tree.root_of(model.canonical_link) if tree.roots.get(model.canonical_link) else ""
@@ -147,7 +147,7 @@ class ModelWriter:
                 self._only_when_free(link)
             self.record.links[link.scoped] = binding
             mass = tree.masses[tree.root_of(link.scoped)]
-            self._fill(Place(body, IDENTITY, False, mass, link.scoped, turning_axis(link, tree)), link)
+            self._fill(GeomParent(body, IDENTITY, False, mass, link.scoped, turning_axis(link, tree)), link)
         for link in tree.order:
             edge = tree.edges.get(link.scoped)
             if edge is not None:
@@ -155,7 +155,7 @@ class ModelWriter:
         for joint in tree.floating:
             self.joints.floating(joint)
 
-    def _inertials(self, tree: Tree, free: set[str]) -> dict[str, Written]:
+    def _inertials(self, tree: KinematicTree, free: set[str]) -> dict[str, BodyInertia]:
         """Mass and inertia of every link that has any, as the compiler takes them; exact ones go to the record."""
         rigid: dict[str, str] = {}
         still = set()
@@ -208,7 +208,7 @@ class ModelWriter:
                 "<dynamics><damping> of the joint slows it down",
             )
 
-    def _too_deep(self, tree: Tree) -> None:
+    def _too_deep(self, tree: KinematicTree) -> None:
         """An error instead of a model; its links and joints are noted, for whoever looks for them meanwhile."""
         last = self.joints.links[tree.deepest]
         self.diagnostics.error(
@@ -223,7 +223,7 @@ class ModelWriter:
         for joint in (*(e.joint for e in tree.edges.values()), *tree.loops, *tree.constraints, *tree.floating):
             self.joints.unmoving(joint)
 
-    def _needs_mass(self, link: SceneLink, tree: Tree, is_free: bool) -> bool:
+    def _needs_mass(self, link: SceneLink, tree: KinematicTree, is_free: bool) -> bool:
         """Whether a link has to weigh something: it moves by itself, and no link that is one with it has mass.
 
         Without mass anywhere below there is nothing that an effort could move: an error where the link moves freely;
@@ -250,7 +250,7 @@ class ModelWriter:
             return True
         return False
 
-    def _has_rigid_mass(self, link: str, tree: Tree) -> bool:
+    def _has_rigid_mass(self, link: str, tree: KinematicTree) -> bool:
         """Whether a link below by fixed joints alone has mass; that is all that the engine asks for."""
         stack = list(tree.children.get(link, ()))
         while stack:
@@ -261,7 +261,7 @@ class ModelWriter:
                 stack += tree.children.get(name, ())
         return False
 
-    def _fill(self, place: Place, link: SceneLink) -> None:
+    def _fill(self, place: GeomParent, link: SceneLink) -> None:
         for collision in link.collisions:
             self.geoms.collision(place, collision)
         for visual in link.visuals:

@@ -1,14 +1,17 @@
-"""Shapes of the file as MuJoCo's primitives, or as points and triangles."""
+"""Shapes of the file as MuJoCo's primitives, as points and triangles, with texture coordinates, or as a field
+of heights.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any, Final
 
 import mujoco
 import numpy as np
 
-from simkit.compiler.meshes.part import Floats, Ints
+from simkit.compiler.meshes.mesh_part import Floats, Ints, MeshFileError, MeshPart
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Heightmap, Plane, Polyline, Sphere
 
@@ -45,7 +48,7 @@ def primitive_of(shape: Geometry, is_visual: bool) -> Primitive | None:
             return None
 
 
-def sizes_of(shape: Geometry) -> tuple[float, ...]:
+def shape_sizes(shape: Geometry) -> tuple[float, ...]:
     """The numbers that must be positive for the shape to exist."""
     match shape:
         case Box(size=size):
@@ -78,7 +81,7 @@ def turn_z_to(normal: tuple[float, float, float]) -> tuple[float, float, float, 
     return w, -y / (2.0 * w), x / (2.0 * w), 0.0
 
 
-def cone(shape: Cone) -> tuple[Floats, Ints]:
+def cone_triangles(shape: Cone) -> tuple[Floats, Ints]:
     """Triangles of a cone with 48 sides."""
     angle = np.linspace(0.0, 2.0 * np.pi, _SIDES, endpoint=False)
     ring = np.column_stack(
@@ -92,11 +95,11 @@ def cone(shape: Cone) -> tuple[Floats, Ints]:
     return vertices, np.vstack([sides, base]).astype(np.int32)
 
 
-def polyline(shape: Polyline) -> tuple[Floats, Ints]:
+def polyline_triangles(shape: Polyline) -> tuple[Floats, Ints]:
     """Triangles of extruded outlines; an outline inside another is a hole. Raises ValueError."""
     import trimesh
 
-    meshes = [trimesh.creation.extrude_triangulation(*flat, shape.height) for flat in _areas(shape)]
+    meshes = [trimesh.creation.extrude_triangulation(*flat, shape.height) for flat in _outline_areas(shape)]
     whole = trimesh.util.concatenate(meshes)
     return np.asarray(whole.vertices, float), np.asarray(whole.faces, np.int32)
 
@@ -104,14 +107,14 @@ def polyline(shape: Polyline) -> tuple[Floats, Ints]:
 def polyline_pieces(shape: Polyline) -> list[Floats]:
     """Convex bodies that together are the extruded outlines, exactly: corners of each. Raises ValueError."""
     pieces = []
-    for points, faces in _areas(shape):
+    for points, faces in _outline_areas(shape):
         for polygon in _convex_polygons(points, faces):
             flat = points[polygon]
             pieces.append(np.vstack([np.column_stack([flat, np.full(len(flat), z)]) for z in (0.0, shape.height)]))
     return pieces
 
 
-def _areas(shape: Polyline) -> list[tuple[Floats, Ints]]:
+def _outline_areas(shape: Polyline) -> list[tuple[Floats, Ints]]:
     """Triangles in the plane of each outline that is no hole, without its holes."""
     rings = [np.asarray(outline, float) for outline in shape.outlines]
     rings = [r[:-1] if len(r) > 1 and np.array_equal(r[0], r[-1]) else r for r in rings]
@@ -121,7 +124,7 @@ def _areas(shape: Polyline) -> list[tuple[Floats, Ints]]:
     for i, outer in enumerate(rings):
         if len(around[i]) % 2 == 0:
             holes = [rings[k] for k in range(len(rings)) if i in around[k] and len(around[k]) == len(around[i]) + 1]
-            areas.append(_filled([outer, *holes]))
+            areas.append(_triangulate([outer, *holes]))
     if not areas:
         raise ValueError("the outlines enclose no area")
     return areas
@@ -131,7 +134,7 @@ def _convex_polygons(points: Floats, faces: Ints) -> list[list[int]]:
     """Triangles joined across their common edges as long as what comes of it is convex (Hertel and Mehlhorn)."""
     polygons: dict[int, list[int]] = dict(enumerate(faces.tolist()))
     for i, (a, b, c) in polygons.items():
-        if _turn(points[a], points[b], points[c]) < 0.0:
+        if _turn_direction(points[a], points[b], points[c]) < 0.0:
             polygons[i] = [a, c, b]
     of_edge = {(p[k], p[(k + 1) % 3]): i for i, p in polygons.items() for k in range(3)}
     for (a, b), first in list(of_edge.items()):
@@ -149,7 +152,7 @@ def _convex_polygons(points: Floats, faces: Ints) -> list[list[int]]:
     return list(polygons.values())
 
 
-def _turn(a: Floats, b: Floats, c: Floats) -> float:
+def _turn_direction(a: Floats, b: Floats, c: Floats) -> float:
     return float((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]))
 
 
@@ -160,7 +163,7 @@ def _is_convex(ring: Floats) -> bool:
     return bool((turns >= -1e-12 * float(np.abs(ring).max()) ** 2).all())
 
 
-def _filled(rings: list[Floats]) -> tuple[Floats, Ints]:
+def _triangulate(rings: list[Floats]) -> tuple[Floats, Ints]:
     """Triangles of an outline (first) with holes (the others)."""
     import mapbox_earcut
 
@@ -184,3 +187,148 @@ def _encloses(ring: Floats, point: Floats) -> bool:
     rise = np.where(b[:, 1] == a[:, 1], 1.0, b[:, 1] - a[:, 1])
     at = a[:, 0] + (point[1] - a[:, 1]) / rise * (b[:, 0] - a[:, 0])
     return bool(np.count_nonzero(crosses & (at > point[0])) % 2)
+
+
+_SEGMENTS_AROUND: Final = 96
+"""Sides of what is round: a cylinder's surface is 0.05 % of its radius inside the true one."""
+
+_SEGMENTS_UP: Final = 48
+
+
+def textured_triangles(shape: Geometry) -> MeshPart | None:
+    """The shape as triangles with texture coordinates; None for shapes that are drawn as they are."""
+    match shape:
+        case Box(size=size):
+            return MeshPart("box", *_textured_box(np.asarray(size, float) / 2))
+        case Sphere(radius=r):
+            return MeshPart("sphere", *_textured_ellipsoid(np.array((r, r, r)), 0.0))
+        case Ellipsoid(radii=radii):
+            return MeshPart("ellipsoid", *_textured_ellipsoid(np.asarray(radii, float), 0.0))
+        case Capsule(radius=r, length=h):
+            return MeshPart("capsule", *_textured_ellipsoid(np.array((r, r, r)), h))
+        case Cylinder(radius=r, length=h):
+            return MeshPart("cylinder", *_textured_cylinder(r, h / 2))
+        case _:
+            return None
+
+
+def _textured_box(half: Floats) -> tuple[Floats, Ints, Floats]:
+    """Six sides, the whole picture on each; seen from outside, with z up (on top and below: y up)."""
+    sides = [
+        # outward normal, the picture's right, its up
+        ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+        ((-1, 0, 0), (0, -1, 0), (0, 0, 1)),
+        ((0, 1, 0), (-1, 0, 0), (0, 0, 1)),
+        ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
+        ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+        ((0, 0, -1), (-1, 0, 0), (0, 1, 0)),
+    ]
+    corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    vertices = [
+        [(np.array(n) + u * np.array(right) + v * np.array(up)) * half for u, v in corners] for n, right, up in sides
+    ]
+    faces = [(4 * i + a, 4 * i + b, 4 * i + c) for i in range(6) for a, b, c in ((0, 1, 2), (0, 2, 3))]
+    uv = np.tile(np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float), (6, 1))
+    return np.array(vertices, float).reshape(-1, 3), np.array(faces, np.int32), uv
+
+
+def _unit_circle() -> tuple[Floats, Floats]:
+    """Angles once around, and the points there; the last point is the first."""
+    turn = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS_AROUND + 1)
+    points = np.column_stack([np.cos(turn), np.sin(turn)])
+    points[-1] = points[0]
+    return turn, points
+
+
+def _grid_triangles(rows: Any, columns: int) -> Ints:
+    """Triangles between rows of `columns` + 1 points, each row above the one before, counter-clockwise outside."""
+    i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns), indexing="ij")
+    a = (i * (columns + 1) + j).reshape(-1)
+    b, c, d = a + 1, a + columns + 2, a + columns + 1
+    return np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])]).astype(np.int32)
+
+
+def _textured_ellipsoid(radii: Floats, length: float) -> tuple[Floats, Ints, Floats]:
+    """A ball, stretched, its halves `length` apart; the picture goes once around and from pole to pole."""
+    turn, circle = _unit_circle()
+    rise = np.linspace(-np.pi / 2, np.pi / 2, _SEGMENTS_UP + 1)
+    height = radii[2] * np.sin(rise) + np.sign(rise) * length / 2
+    ring = np.cos(rise)
+    ring[[0, -1]] = 0.0
+    if length > 0.0:  # the equator twice
+        middle = _SEGMENTS_UP // 2
+        ring = np.insert(ring, middle, ring[middle])
+        height = np.insert(height, middle, -length / 2)
+        height[middle + 1] = length / 2
+    x, y = radii[0] * np.outer(ring, circle[:, 0]), radii[1] * np.outer(ring, circle[:, 1])
+    z = np.repeat(height[:, None], len(turn), axis=1)
+    u, v = np.meshgrid(turn / (2.0 * np.pi), (height - height[0]) / (height[-1] - height[0]))
+    vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    faces = _grid_triangles(len(ring), _SEGMENTS_AROUND)
+    lowest, highest = faces < _SEGMENTS_AROUND + 1, faces >= len(vertices) - (_SEGMENTS_AROUND + 1)
+    faces = faces[(lowest.sum(axis=1) < 2) & (highest.sum(axis=1) < 2)]  # without those that end at a pole as a line
+    return vertices, faces, np.stack([u, v], axis=-1).reshape(-1, 2)
+
+
+def _textured_cylinder(radius: float, half: float) -> tuple[Floats, Ints, Floats]:
+    """The picture once around the side, and once on each end."""
+    turn, ring = _unit_circle()
+    sides = [np.column_stack([radius * ring, np.full(len(turn), z)]) for z in (-half, half)]
+    side_uv = [np.column_stack([turn / (2.0 * np.pi), np.full(len(turn), v)]) for v in (0.0, 1.0)]
+    vertices, uv, faces = [*sides], [*side_uv], [_grid_triangles(2, _SEGMENTS_AROUND)]
+    count = 2 * len(turn)
+    for z, mirror in ((half, 1.0), (-half, -1.0)):
+        vertices.append(np.vstack([np.column_stack([radius * ring, np.full(len(turn), z)]), (0.0, 0.0, z)]))
+        uv.append(np.vstack([0.5 + 0.5 * ring * (mirror, 1.0), (0.5, 0.5)]))
+        i = count + np.arange(_SEGMENTS_AROUND)
+        middle = np.full(_SEGMENTS_AROUND, count + len(turn))
+        faces.append(np.column_stack([i, i + 1, middle] if mirror > 0.0 else [i + 1, i, middle]).astype(np.int32))
+        count += len(turn) + 1
+    return np.vstack(vertices), np.vstack(faces).astype(np.int32), np.vstack(uv)
+
+
+LARGEST: Final = 4097
+_LARGEST_FILE: Final = 256 << 20
+_FORMATS: Final = ("PNG", "JPEG", "TIFF", "BMP", "TGA", "GIF", "PPM", "WEBP")
+
+
+def heightmap_rows(shape: Heightmap) -> Floats:
+    """Rows from -y to +y, scaled so that the highest value is 1, as Gazebo does.
+
+    8-bit and 16-bit images, and TIFF with floating point numbers; colours count by their brightness.
+
+    Raises:
+        MeshFileError: the file is no such image, or too large; its size is known before anything is unpacked.
+    """
+    import warnings
+
+    from PIL import Image
+
+    try:
+        if shape.file.stat().st_size > _LARGEST_FILE:
+            raise MeshFileError(f"is larger than {_LARGEST_FILE >> 20} MiB")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with Image.open(shape.file, formats=_FORMATS) as image:
+                if image.width > LARGEST or image.height > LARGEST:
+                    raise MeshFileError(f"is {image.width}×{image.height}; at most {LARGEST}×{LARGEST} is taken")
+                grey = _grey_values(image)
+    except MeshFileError:
+        raise
+    except OSError as problem:
+        text = problem.strerror or "it is no PNG, JPEG or TIFF image"
+        raise MeshFileError(f"cannot be read: {text}") from None
+    except Exception as problem:  # noqa: BLE001 -- a decoder of broken data raises whatever it likes
+        raise MeshFileError(f"cannot be read: {' '.join(str(problem).split())[:200]}") from None
+    if grey.ndim != 2 or min(grey.shape) < 2:
+        raise MeshFileError("is smaller than 2×2")
+    if not np.isfinite(grey).all():
+        raise MeshFileError("has heights that are not finite")
+    most = float(np.abs(grey).max()) if float(grey.max()) <= 0.0 else float(grey.max())
+    return np.ascontiguousarray(grey[::-1]) / (most if most > 0.0 else 1.0)
+
+
+def _grey_values(image: Any) -> Floats:
+    if image.mode in ("L", "F") or image.mode.startswith("I"):
+        return np.asarray(image, float)
+    return np.asarray(image.convert("L"), float)

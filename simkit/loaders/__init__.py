@@ -8,13 +8,12 @@ from functools import lru_cache
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.loaders.base import Loader, LoadRequest, MeshReader
-from simkit.loaders.foreign import ALLOWED, said_of_root
-from simkit.loaders.resolver import Resolver
-from simkit.loaders.turtlebot3 import chosen_name
-from simkit.loaders.uris import obstacle, siblings
+from simkit.loaders.resources.bundled_models import turtlebot3_name
+from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader
+from simkit.loaders.resources.paths import access_problem, sibling_names
+from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, foreign_root_hint, parse_file, parse_text
 from simkit.loaders.xacro import expand, needs_expansion
-from simkit.loaders.xml import Document, parse_file, parse_text
 from simkit.pose import Pose
 from simkit.registry import discover
 from simkit.scene import Scene
@@ -63,7 +62,7 @@ def load_scene(
     kinds = loader_kinds()
     if root.name not in kinds:
         known = ", ".join(f"<{kind}>" for kind in kinds)
-        hint = said_of_root(root.name) or did_you_mean(root.name, kinds) or ALLOWED
+        hint = foreign_root_hint(root.name) or did_you_mean(root.name, kinds) or ALLOWED_FORMATS
         diagnostics.error("SK-LOAD-003", f"the root element is <{root.name}>, known are {known}", root.where, hint)
         return Scene()
     request = LoadRequest(resolver, diagnostics, dict(xacro_args or {}), base, name, pose, as_model, mesh_reader)
@@ -91,7 +90,7 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
     if not str(source):
         diagnostics.error("SK-LOAD-002", "the source is empty; it is a path or XML text")
         return None
-    if problem := obstacle(path):
+    if problem := access_problem(path):
         shown = str(path) if len(str(path)) < 200 else f"{str(path)[:200]}..."
         diagnostics.error("SK-LOAD-002", f"cannot read the file: {problem}", Where(shown))
         return None
@@ -103,12 +102,12 @@ def _document(source: str | os.PathLike[str], resolver: Resolver, diagnostics: D
         diagnostics.extend(found)
         return None if model is None else parse_file(model, diagnostics)
     if not path.exists():
-        name = chosen_name(str(source), diagnostics)
+        name = turtlebot3_name(str(source), diagnostics)
         if name is None:
             return None
         bundled = resolver.find_world(name) or resolver.find_model(name)
         if bundled is None:
-            near = siblings(path)
+            near = sibling_names(path)
             near += resolver.bundled_names()
             diagnostics.error("SK-LOAD-002", "no such file", Where(str(path)), did_you_mean(path.name, near))
             return None

@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
-from simkit.loaders.files import read_bounded
-from simkit.loaders.xml import MAX_BYTES
+from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.loaders.resources.xml_reader import MAX_BYTES
 
-KEYS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+MOMENT_NAMES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _SDF_DEFAULTS = {"ixx": 1.0, "iyy": 1.0, "izz": 1.0, "ixy": 0.0, "ixz": 0.0, "iyz": 0.0}
 
 
 @dataclass
-class InertiaText:
+class WrittenInertia:
     """The inertia of one link as it is written.
 
     Attributes:
@@ -39,20 +39,20 @@ class InertiaText:
 
     @property
     def six(self) -> tuple[float, float, float, float, float, float]:
-        a, b, c, d, e, f = (self.values[k] for k in KEYS)
+        a, b, c, d, e, f = (self.values[k] for k in MOMENT_NAMES)
         return a, b, c, d, e, f
 
 
-class _Finder:
+class _InertiaFinder:
     """Follows expat's events and notes byte offsets."""
 
     def __init__(self, data: bytes) -> None:
         self.data, self.stack = data, list[str]()
         self.links: list[str] = []
-        self.found: list[InertiaText] = []
+        self.found: list[WrittenInertia] = []
         self.mass: float | None = None
         self.is_urdf = False
-        self.open: InertiaText | None = None
+        self.open: WrittenInertia | None = None
         self.number_from = -1
         self.parser = expat.ParserCreate()
         self.parser.StartElementHandler = self.start
@@ -90,17 +90,17 @@ class _Finder:
             if "value" in attributes:
                 self.mass = _number(attributes["value"])
         elif name == "inertia" and where[-2:-1] == ["inertial"] and self.links:
-            self.open = InertiaText(self.links[-1], self.parser.CurrentLineNumber, self.is_urdf)
-            self.open.values = dict(_SDF_DEFAULTS) if not self.is_urdf else dict.fromkeys(KEYS, 0.0)
+            self.open = WrittenInertia(self.links[-1], self.parser.CurrentLineNumber, self.is_urdf)
+            self.open.values = dict(_SDF_DEFAULTS) if not self.is_urdf else dict.fromkeys(MOMENT_NAMES, 0.0)
             if self.is_urdf:
                 self.attributes(self.open)
-        elif name in KEYS and self.open is not None:
+        elif name in MOMENT_NAMES and self.open is not None:
             self.number_from = self.tag_end()
 
-    def attributes(self, inertia: InertiaText) -> None:
+    def attributes(self, inertia: WrittenInertia) -> None:
         begin, finish = self.parser.CurrentByteIndex, self.tag_end()
         tag = self.data[begin:finish]
-        for key in KEYS:
+        for key in MOMENT_NAMES:
             match = re.search(rb"\s" + key.encode() + rb"\s*=\s*([\"'])(.*?)\1", tag, re.DOTALL)
             if match:
                 inertia.values[key] = _number(match[2].decode())
@@ -110,7 +110,7 @@ class _Finder:
     def end(self, name: str) -> None:
         position = self.parser.CurrentByteIndex
         self.stack.pop()
-        if name in KEYS and self.open is not None and self.stack[-1:] == ["inertia"]:
+        if name in MOMENT_NAMES and self.open is not None and self.stack[-1:] == ["inertia"]:
             self.open.spans[name] = (self.number_from, position)
             self.open.values[name] = _number(self.data[self.number_from : position].decode())
         elif name == "mass" and self.stack[-1:] == ["inertial"] and not self.is_urdf:
@@ -127,7 +127,7 @@ class _Finder:
             self.links.pop()
 
 
-def find_inertias(path: Path) -> tuple[bytes, list[InertiaText]]:
+def find_inertias(path: Path) -> tuple[bytes, list[WrittenInertia]]:
     """A file and every inertia in it, in document order.
 
     Raises:
@@ -138,7 +138,7 @@ def find_inertias(path: Path) -> tuple[bytes, list[InertiaText]]:
     if len(data) > MAX_BYTES:
         raise ValueError(f"is larger than {MAX_BYTES} bytes")
     data.decode("utf-8")
-    finder = _Finder(data)
+    finder = _InertiaFinder(data)
     try:
         finder.parser.Parse(data, True)
     except expat.ExpatError as error:
@@ -146,7 +146,7 @@ def find_inertias(path: Path) -> tuple[bytes, list[InertiaText]]:
     return data, finder.found
 
 
-def with_numbers(data: bytes, changes: Sequence[tuple[InertiaText, Mapping[str, str]]]) -> bytes:
+def replace_numbers(data: bytes, changes: Sequence[tuple[WrittenInertia, Mapping[str, str]]]) -> bytes:
     """The file with the numbers of some inertias replaced (by key, as text) and every other byte as it was."""
     edits: list[tuple[int, int, bytes]] = []
     for inertia, texts in changes:

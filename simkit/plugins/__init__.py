@@ -47,7 +47,7 @@ def plugin_kinds() -> Kinds[Plugin]:
     def names(cls: type[Plugin]) -> list[str]:
         return [normalise(name) for name in (*cls.filenames, *cls.names)]
 
-    packages = ("simkit.plugins", "simkit.control.hosts", "simkit.motion")
+    packages = ("simkit.plugins",)
     return discover(packages, GROUP, Plugin, names, ("filenames", "names"), normalise)  # type: ignore[type-abstract]
 
 
@@ -73,7 +73,7 @@ def find_plugin(
     kinds = plugin_kinds()
     cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
     if cls is None:
-        from simkit.plugins.user_code import find_user_plugin
+        from simkit.plugins.discovery.user_plugins import find_user_plugin
 
         said = len(found)
         cls = find_user_plugin(plugin, plugin_paths, found)
@@ -108,12 +108,11 @@ def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostic
 
 
 def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
-    from simkit.plugins.gazebo_names import KNOWN
-    from simkit.plugins.left_out import LEFT_OUT
+    from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS, UNSUPPORTED_REASONS
 
     names = aliases(plugin)
-    reason = next((LEFT_OUT[name] for name in names if name in LEFT_OUT), None)
-    if reason is not None or KNOWN.intersection(names):
+    reason = next((UNSUPPORTED_REASONS[name] for name in names if name in UNSUPPORTED_REASONS), None)
+    if reason is not None or GAZEBO_PLUGINS.intersection(names):
         named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
         why = f": {reason}" if reason else ""
         message = f"{named} is a Gazebo plugin that simkit does not have; it is left out{why}"

@@ -25,9 +25,9 @@ from simkit.plugins.ros_names import RosNames
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.runtime import Simulation
-    from simkit.runtime.actions import GoalHandle
-    from simkit.runtime.faults import OnError
-    from simkit.runtime.parameters import Parameter
+    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.engine.plugin_faults import PluginErrorPolicy
     from simkit.scene import ScenePlugin
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
@@ -70,7 +70,7 @@ class Plugin(abc.ABC):
 
     before_step_rate: float | None = None
     after_step_rate: float | None = None
-    on_error: OnError | None = None
+    on_error: PluginErrorPolicy | None = None
 
     _failed: tuple[str, Exception] | None = None  # what it raised before there was a simulation, and where
     _actuators: tuple[Any, ...] = ()  # servos and motors that its `prepare` added
@@ -212,7 +212,7 @@ class Plugin(abc.ABC):
         Returns:
             The parameter, whose `value` is always the present one.
         """
-        from simkit.plugins.live import declare
+        from simkit.plugins.live_parameters import declare
 
         return declare(
             self,
@@ -269,14 +269,14 @@ class Plugin(abc.ABC):
         self.name, self.scoped, self.params, self.where = name, scoped, params, where
         self.ros = RosNames.from_params(self.params, self.name)
         if self.params.has("on_error"):
-            from simkit.runtime.faults import ON_ERROR
+            from simkit.runtime.engine.plugin_faults import PLUGIN_ERROR_POLICIES
 
-            self.on_error = "disable" if self.params.choice("on_error", ON_ERROR) == "disable" else "stop"
+            self.on_error = "disable" if self.params.choice("on_error", PLUGIN_ERROR_POLICIES) == "disable" else "stop"
         self.log = logging.getLogger(f"simkit.plugins.{self.name}")
 
     def report_unread(self) -> None:
         """Warns about what the file says and the plugin did not read; done after `load`."""
-        from simkit.plugins.reads import report_unread
+        from simkit.plugins.unread_parameters import report_unread
 
         report_unread(self)
 

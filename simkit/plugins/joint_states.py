@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 JOINT_STATE = "sensor_msgs/msg/JointState"
 
 
-def readings(joints: list[Any]) -> list[tuple[str, Any, Any, Any]]:
+def joint_readings(joints: list[Any]) -> list[tuple[str, Any, Any, Any]]:
     """Name, position, velocity and applied effort of each joint, now."""
     return [(joint.name, joint.position, joint.velocity, joint.effort) for joint in joints]
 
 
-def joint_state(time_ns: int, joints: list[tuple[str, Any, Any, Any]]) -> Any:
-    """A `sensor_msgs/msg/JointState` of `readings`, in their order; efforts are those applied [N·m or N].
+def joint_state_message(time_ns: int, joints: list[tuple[str, Any, Any, Any]]) -> Any:
+    """A `sensor_msgs/msg/JointState` of `joint_readings`, in their order; efforts are those applied [N·m or N].
 
     A joint of several degrees of freedom gives `name[0]`, `name[1]`, …; one of none gives one zero.
     """
@@ -53,7 +53,7 @@ class _JointStates(ModelPlugin):
 
     def after_step(self) -> None:
         if self._states.wanted:
-            self._states.publish_later(partial(joint_state, self.sim.time_ns, readings(self._handles)))
+            self._states.publish_later(partial(joint_state_message, self.sim.time_ns, joint_readings(self._handles)))
 
 
 class GazeboRosJointStatePublisher(_JointStates):

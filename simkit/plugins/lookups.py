@@ -22,22 +22,22 @@ if TYPE_CHECKING:
 def find_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint | None:
     """A joint of the model by its name (scoped from the world or the model down, or plain), or None after an error."""
     joints = scene.all_joints()
-    found = _below(scene.scoped, name, {j.scoped: j for j in joints})
+    found = _find_by_suffix(scene.scoped, name, {j.scoped: j for j in joints})
     if found is None:
-        _unknown("joint", name, scene, (j.name for j in joints), params)
+        _report_unknown("joint", name, scene, (j.name for j in joints), params)
     return found
 
 
 def find_link(scene: SceneModel, name: str, params: Params) -> SceneLink | None:
     """A link of the model by its name (scoped from the world or the model down, or plain), or None after an error."""
     links = scene.all_links()
-    found = _below(scene.scoped, name, {link.scoped: link for link in links})
+    found = _find_by_suffix(scene.scoped, name, {link.scoped: link for link in links})
     if found is None:
-        _unknown("link", name, scene, (link.name for link in links), params)
+        _report_unknown("link", name, scene, (link.name for link in links), params)
     return found
 
 
-def named_link(scene: SceneModel, element: str, params: Params) -> str:
+def find_named_link(scene: SceneModel, element: str, params: Params) -> str:
     """Scoped name of the link that an element names; empty after an error, also where there is no such element."""
     params.text(element, required=True)
     named = params.child(element)
@@ -45,7 +45,7 @@ def named_link(scene: SceneModel, element: str, params: Params) -> str:
     return "" if link is None else link.scoped
 
 
-def needed_name(params: Params, element: str) -> str:
+def read_required_name(params: Params, element: str) -> str:
     """A name that has to be given; empty after an error, for an element with nothing in it too."""
     name = params.text(element, required=True)
     named = params.child(element)
@@ -54,7 +54,7 @@ def needed_name(params: Params, element: str) -> str:
     return name
 
 
-def given_topic(params: Params, element: str, default: str) -> str:
+def read_topic(params: Params, element: str, default: str) -> str:
     """The topic that an element names, as gz-transport makes it; the default where it is empty or not there."""
     written = params.text(element, "")
     topic = valid_topic(written or default)
@@ -75,14 +75,14 @@ def find_light(sim: Simulation, name: str, params: Params) -> Light | None:
     return None
 
 
-def _below(scope: str, name: str, table: dict[str, T]) -> T | None:
+def _find_by_suffix(scope: str, name: str, table: dict[str, T]) -> T | None:
     if f"{scope}::{name}" in table:
         return table[f"{scope}::{name}"]
     nested = [value for scoped, value in table.items() if scoped.endswith("::" + name)]
     return nested[0] if nested else table.get(name)
 
 
-def _unknown(what: str, name: str, scene: SceneModel, names: Iterable[str], params: Params) -> None:
+def _report_unknown(what: str, name: str, scene: SceneModel, names: Iterable[str], params: Params) -> None:
     listed = sorted(set(names))
     shown = ", ".join(repr(n) for n in listed[:12]) + (", …" if len(listed) > 12 else "")
     message = f"model {scene.scoped!r} has no {what} {name!r}; it has: {shown or 'none'}"
@@ -99,7 +99,7 @@ def find_axis_joint(scene: SceneModel, name: str, params: Params) -> SceneJoint 
     return joint
 
 
-def find_file_of(plugin: Plugin, uri: str, builder: SpecBuilder, places: Sequence[str] = ()) -> Path | None:
+def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Sequence[str] = ()) -> Path | None:
     """A file that a plugin names, by its URI, else one of that name beside the file that the plugin is in.
 
     Args:
@@ -124,6 +124,6 @@ def find_file_of(plugin: Plugin, uri: str, builder: SpecBuilder, places: Sequenc
         return None
 
 
-def numbers(params: Params, name: str, minimum: float | None = None) -> list[float]:
+def read_numbers(params: Params, name: str, minimum: float | None = None) -> list[float]:
     """The numbers of all elements of that name, in document order."""
     return [one.number(name, minimum=minimum) for one in params.each(name)]

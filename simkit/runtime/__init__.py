@@ -1,26 +1,26 @@
 """The running simulation: clock, loop, topics, random streams, snapshots, handles."""
 
-import simkit.engine.loaded  # noqa: F401  (before any module imports MuJoCo by itself)
-from simkit.runtime.joint import Joint
-from simkit.runtime.light import Light
-from simkit.runtime.link import Link
-from simkit.runtime.model import Model
-from simkit.runtime.parts import Parts, Structure
+import simkit.mujoco_loaded  # noqa: F401  (before any module imports MuJoCo by itself)
+from simkit.runtime.communication.topic_bus import Publisher, Subscription
+from simkit.runtime.engine.snapshot import Snapshot
+from simkit.runtime.engine.world_structure import SensorsAndPlugins, WorldStructure
+from simkit.runtime.handles.joint import Joint
+from simkit.runtime.handles.light import Light
+from simkit.runtime.handles.link import Link
+from simkit.runtime.handles.model import Model
+from simkit.runtime.handles.visual import Visual
 from simkit.runtime.simulation import Simulation
-from simkit.runtime.snapshot import Snapshot
-from simkit.runtime.topics import Publisher, Subscription
-from simkit.runtime.visual import Visual
 
 __all__ = [
     "Joint",
     "Light",
     "Link",
     "Model",
-    "Parts",
     "Publisher",
+    "SensorsAndPlugins",
     "Simulation",
     "Snapshot",
-    "Structure",
     "Subscription",
     "Visual",
+    "WorldStructure",
 ]

@@ -8,35 +8,32 @@ from typing import Any
 
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError, SimulationDiverged
-from simkit.runtime.clock import Clock
-from simkit.runtime.contents import Contents
-from simkit.runtime.directed_friction import DirectedFriction
-from simkit.runtime.divergence import name_drivers
-from simkit.runtime.doors import door
-from simkit.runtime.engine_access import EngineAccess
-from simkit.runtime.entities import Entities
-from simkit.runtime.fast_body_reports import FastBodyReports
-from simkit.runtime.faults import Faults, OnError
-from simkit.runtime.interfaces import Interfaces
-from simkit.runtime.joint import Joint
-from simkit.runtime.labels import Labels
-from simkit.runtime.loop import Loop, guarded
-from simkit.runtime.parts import Structure
-from simkit.runtime.physics import Physics
-from simkit.runtime.population import ModelLoader, PartsMaker, Population
-from simkit.runtime.random import RandomStreams
-from simkit.runtime.schedule import fill
-from simkit.runtime.scheduler import Scheduler
-from simkit.runtime.snapshot import Snapshot, bring_back, promise, take
-from simkit.runtime.temperatures import Temperatures
-from simkit.runtime.velocity_servos import VelocityServos
-from simkit.runtime.wind import Wind
+from simkit.runtime.communication.communication import Communication
+from simkit.runtime.communication.journal import journaled
+from simkit.runtime.contact.anisotropic_friction import AnisotropicFriction
+from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
+from simkit.runtime.engine.clock import Clock
+from simkit.runtime.engine.engine_access import EngineAccess
+from simkit.runtime.engine.external_forces import PersistentWrenches, Wind
+from simkit.runtime.engine.physics import Physics
+from simkit.runtime.engine.plugin_faults import PluginErrorPolicy, PluginFaults, add_driver_hints
+from simkit.runtime.engine.random_streams import RandomStreams
+from simkit.runtime.engine.scheduler import Scheduler
+from simkit.runtime.engine.snapshot import Snapshot, promise_snapshot, restore_snapshot, take_snapshot
+from simkit.runtime.engine.step_loop import StepLoop, guarded_hook
+from simkit.runtime.engine.step_tasks import fill_schedule
+from simkit.runtime.engine.velocity_servos import VelocityServos
+from simkit.runtime.engine.world_structure import WorldStructure
+from simkit.runtime.handles.entity_handles import EntityHandles
+from simkit.runtime.handles.joint import Joint
+from simkit.runtime.handles.visual_properties import Labels, Temperatures
+from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker, Spawner
+from simkit.runtime.world_contents import WorldContents
 from simkit.runtime.world_control import WorldControl
-from simkit.runtime.wrenches import StandingWrenches
 from simkit.scene import SceneWorld
 
 
-class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
+class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
     """A loaded world. Made by `simkit.load`; also a context manager.
 
     Everything read shows the state at `time`.
@@ -58,36 +55,36 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
     def __init__(
         self,
         world: SceneWorld,
-        structure: Structure,
+        structure: WorldStructure,
         diagnostics: Diagnostics,
         seed: int,
         load_model: ModelLoader,
-        make_parts: PartsMaker,
-        on_error: OnError | None = None,
+        make_parts: SensorsAndPluginsMaker,
+        on_error: PluginErrorPolicy | None = None,
     ) -> None:
         self.world = world
         self.log = logging.getLogger("simkit")
         self.clock = Clock(world.physics.max_step_size)
         self._diagnostics = diagnostics
         self.open_interfaces(self)
-        self.faults = Faults(self, on_error)
+        self.faults = PluginFaults(self, on_error)
         self.streams = RandomStreams(seed)
         self.seed = seed
         self.originals: dict[str, Any] = {}
         self._exact_limits: list[Joint] = []
-        self._standing = StandingWrenches(self)
+        self._standing = PersistentWrenches(self)
         self.wind = Wind(world)
         self._closed = False
         self.open_world(self)
         self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
-        self._loop = Loop(self.physics, self.bus, self._fill)
+        self._loop = StepLoop(self.physics, self.bus, self._fill)
         self.velocity_servos = VelocityServos(self)
-        self.entities = Entities(self, world)
+        self.entities = EntityHandles(self, world)
         self.labels = Labels(self)
         self.temperatures = Temperatures(self)
-        self.friction = DirectedFriction(self)
-        self.fast_body_reports = FastBodyReports(self)
-        self._population = Population(self, load_model, make_parts)
+        self.friction = AnisotropicFriction(self)
+        self.fast_body_reports = FastBodyWarnings(self)
+        self._population = Spawner(self, load_model, make_parts)
         self._population.adopt(structure)
         self._population.start(list(structure.parts.values()), diagnostics)
         self.reschedule()
@@ -167,7 +164,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         try:
             self._loop.advance(target, is_served=is_served)
         except SimulationDiverged as error:
-            name_drivers(self, error)
+            add_driver_hints(self, error)
             raise
         finally:
             if journal is not None:
@@ -175,7 +172,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
 
     # ------------------------------------------------------------------ state
 
-    @door
+    @journaled
     def reset(self, seed: int | None = None) -> None:
         """Back to t = 0 and to what was loaded: physics, plugins, sensors, random streams (optionally re-seeded)."""
         self._check_loaded()
@@ -184,16 +181,16 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self._loop.break_promises()
         self.bus.settle()
         self.streams.reseed(self.seed)
-        bring_back(self, self._loaded)
+        restore_snapshot(self, self._loaded)
         self.halt()  # a run that is served looks anew at how far it is to go
         self.reschedule()
         self.forget_gone()
         for sensor in self.structure.all_sensors():
             sensor.reset()
         for plugin in self.structure.all_plugins():
-            guarded(self, plugin, "reset")()
+            guarded_hook(self, plugin, "reset")()
 
-    @door
+    @journaled
     def snapshot(self) -> Snapshot:
         """The whole state; a run restored to it repeats bit for bit.
 
@@ -201,12 +198,12 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         """
         self._check_open()
         if not self.is_stepping:
-            return take(self)
-        snapshot, keep = promise(self)
+            return take_snapshot(self)
+        snapshot, keep = promise_snapshot(self)
         self._loop.promise(keep)
         return snapshot
 
-    @door
+    @journaled
     def restore(self, snapshot: Snapshot) -> None:
         """Back (or forward) to a snapshot of this simulation; what was spawned or removed since is undone.
 
@@ -223,7 +220,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
             self.bus.settle()
             self.seed = snapshot.seed
             self.streams.reseed(self.seed)
-        bring_back(self, snapshot)
+        restore_snapshot(self, snapshot)
         self.halt()
         self.reschedule()
         self.forget_gone()
@@ -252,7 +249,7 @@ class Simulation(Interfaces, WorldControl, Contents, EngineAccess):
         self._loop.reschedule()
 
     def _fill(self, scheduler: Scheduler) -> None:
-        fill(self, scheduler, self._exact_limits)
+        fill_schedule(self, scheduler, self._exact_limits)
 
     def limit_velocity(self, joint: Joint) -> None:
         """Holds a joint's velocity limit at every step from now on."""

@@ -1,4 +1,4 @@
-"""What is done to a world as a whole, beside running it: pausing, copying models, putting them back."""
+"""Control of a world as a whole: pause, gravity, collisions, geographic origin, copies of models, reset of models."""
 
 from __future__ import annotations
 
@@ -11,19 +11,67 @@ import numpy as np
 from simkit.errors import InputError
 from simkit.pose import Pose, Vector
 from simkit.runtime.aspect import Aspect
-from simkit.runtime.collisions import enable_collisions
-from simkit.runtime.doors import door
-from simkit.runtime.loop import guarded
-from simkit.runtime.on_demand import OnDemand
-from simkit.runtime.pausing import Pausing
-from simkit.runtime.renaming import check_name, renamed, world_now
-from simkit.runtime.resets import reset_models
-from simkit.runtime.site import Site
+from simkit.runtime.communication.journal import journaled
+from simkit.runtime.communication.on_demand_tasks import OnDemandTasks
+from simkit.runtime.engine.model_reset import reset_models
+from simkit.runtime.engine.pause_control import PauseControl
+from simkit.runtime.engine.physics import STALE
+from simkit.runtime.engine.step_loop import guarded_hook
+from simkit.runtime.model_copy import check_model_name, copy_model, present_world
 
 if TYPE_CHECKING:
-    from simkit.runtime.model import Model
+    from simkit.runtime.handles.model import Model
     from simkit.runtime.simulation import Simulation
-    from simkit.scene import SceneWorld
+    from simkit.scene import SceneWorld, SphericalCoordinates
+
+
+_MASK_FIELDS = ("geom_contype", "geom_conaffinity")
+
+
+def enable_collisions(sim: Simulation, links: Iterable[str], enabled: bool, only: str = "") -> None:
+    """Lets the collisions of links make contacts, or not; rays see them all the same.
+
+    Args:
+        sim: the simulation.
+        links: scoped names.
+        enabled: whether they do.
+        only: scoped name of the one collision that is meant; all of the links' where it is empty.
+    """
+    names = sim.names
+    geoms = [g for link in links for g in names.link(link).geoms if not only or names.geom_owner(g)[1] == only]
+    for field in _MASK_FIELDS:
+        values = sim.touch(field)
+        values[geoms] = sim.original(field)[geoms] if enabled else 0
+    sim.physics.changed(STALE)
+
+
+class GeographicOrigin:
+    """The place of the world's origin; sensors that depend on it (`navsat`, `magnetometer`) are told."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+
+    @property
+    def place(self) -> SphericalCoordinates | None:
+        """The world's `<spherical_coordinates>`; None where there are none."""
+        return self._sim.world.spherical_coordinates
+
+    def move(self, place: SphericalCoordinates | None) -> None:
+        """Puts the world's origin somewhere else."""
+        sim = self._sim
+        sensors = [s for s in sim.structure.all_sensors() if hasattr(s, "relocate")]
+        for sensor in sensors:
+            sensor.take_held()
+        sim.world = replace(sim.world, spherical_coordinates=place)
+        for sensor in sensors:
+            sensor.relocate()
+
+    def get_state(self) -> SphericalCoordinates | None:
+        return self.place
+
+    def set_state(self, state: SphericalCoordinates | None) -> None:
+        if state is not self.place:
+            self.move(state)
 
 
 class WorldControl(Aspect):
@@ -40,7 +88,7 @@ class WorldControl(Aspect):
 
     def open_world(self, sim: Simulation) -> None:
         """Makes the parts, for a world that runs on."""
-        self.pausing, self.on_demand, self.site = Pausing(sim), OnDemand(sim), Site(sim)
+        self.pausing, self.on_demand, self.site = PauseControl(sim), OnDemandTasks(sim), GeographicOrigin(sim)
 
     # ------------------------------------------------------------------ running
 
@@ -71,7 +119,7 @@ class WorldControl(Aspect):
         """Ends the present stretch of a world that is kept running with the step under way; `step` and `run` go on."""
         self._whole._loop.halt()
 
-    @door
+    @journaled
     def reseed(self, seed: int) -> None:
         """Draws everything random from another seed from now on."""
         sim = self._whole
@@ -100,7 +148,7 @@ class WorldControl(Aspect):
 
     # ------------------------------------------------------------------ models
 
-    @door
+    @journaled
     def clone(self, name: str, new_name: str, pose: Pose | None = None) -> Model:
         """Adds a copy of a top-level model as its file has it, where the model is now or at a pose in the world.
 
@@ -111,10 +159,10 @@ class WorldControl(Aspect):
         """
         sim = self._whole
         scene = sim.model(name).scene
-        check_name(new_name)
+        check_model_name(new_name)
         if new_name in sim.models:
             raise InputError(f"SK-LOAD-011 there is a model {new_name!r} already", "SK-LOAD-011")
-        return sim.spawn(renamed(scene, new_name, sim.model(name).pose if pose is None else pose))
+        return sim.spawn(copy_model(scene, new_name, sim.model(name).pose if pose is None else pose))
 
     def name_in_file(self, source: Any) -> str:
         """The name that a model to be spawned has in its own file. Raises LoadError."""
@@ -138,13 +186,13 @@ class WorldControl(Aspect):
         models = [(handle.scene, handle.pose) for handle in sim.models.values()]
         lights = [(light.scene, light.pose) for light in sim.lights.values() if not light.scene.link]
         x, y, z = sim.gravity.tolist()
-        return self.write_sdf(replace(world_now(sim.world, models, lights), gravity=(x, y, z)))
+        return self.write_sdf(replace(present_world(sim.world, models, lights), gravity=(x, y, z)))
 
     def enable_collisions(self, links: Iterable[str], enabled: bool, only: str = "") -> None:
         """Lets the collisions of links (scoped names) make contacts, or not; of one collision where `only` names it."""
         enable_collisions(self._whole, links, enabled, only)
 
-    @door
+    @journaled
     def reset_models(self) -> None:
         """Puts the models that are there back to where and how they started; time goes on.
 
@@ -155,4 +203,4 @@ class WorldControl(Aspect):
         reset_models(sim, sim._loaded)
         sim.reschedule()
         for plugin in sim.structure.all_plugins():
-            guarded(sim, plugin, "reset")()
+            guarded_hook(sim, plugin, "reset")()

@@ -11,7 +11,7 @@ from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene.actuation import Calibration, Safety, Transmission
 from simkit.scene.geometry import Geometry, Vec3
-from simkit.scene.mjcf import MjcfSource
+from simkit.scene.mjcf_source import MjcfSource
 
 Colour = tuple[float, float, float, float]
 

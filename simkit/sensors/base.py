@@ -5,28 +5,31 @@ from __future__ import annotations
 import abc
 import math
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from simkit.diagnostics import Diagnostics
+from simkit.diagnostics import Diagnostics, Where
 from simkit.msgs.topics import valid_topic
 from simkit.pose import Pose, Vector
-from simkit.sensors.names import check_topic, entity_topic, given_frame
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise
-from simkit.sensors.sample import Product, Remembered, Sample
-from simkit.sensors.sampling import Sampler
-from simkit.sensors.timing import Flight, SampleTimes, read_timing
+from simkit.sensors.sample import NoiseProcess, Product, Sample
+from simkit.sensors.sampler import Sampler
+from simkit.sensors.timing import DelayedReadings, SampleTimes, read_timing
+from simkit.sensors.topics_and_frames import check_topic, entity_topic, read_frame_id
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.diagnostics import Severity
     from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
 __all__ = ["Product", "Sample", "Sensor"]
 
-_READ_BY_ALL = ("visualize", "pose", "update_rate", "topic")
-_RATE = "std_msgs/msg/Float64"
 
-AnyRemembered = TypeVar("AnyRemembered", bound=Remembered)
+_COMMON_ELEMENTS = ("visualize", "pose", "update_rate", "topic")
+_RATE_TYPE = "std_msgs/msg/Float64"
+
+AnyNoiseProcess = TypeVar("AnyNoiseProcess", bound=NoiseProcess)
 
 
 class Sensor(Sampler):
@@ -62,8 +65,8 @@ class Sensor(Sampler):
         self.scene, self.diagnostics = scene, diagnostics
         self.name, self.scoped, self.kind = scene.name, scene.scoped, scene.kind
         self.update_rate = scene.rate
-        self.frame_id = given_frame(scene.params) or scene.scoped
-        for element in _READ_BY_ALL:
+        self.frame_id = read_frame_id(scene.params) or scene.scoped
+        for element in _COMMON_ELEMENTS:
             scene.params.child(element)
         self._read_common(scene)
 
@@ -186,10 +189,10 @@ class Sensor(Sampler):
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.clock, sim.streams, self.scoped, in_milliseconds=quirks)
         if options.latency > 0:
-            self._flight = Flight(options, sim.clock, sim.streams, self.scoped)
+            self._flight = DelayedReadings(options, sim.clock, sim.streams, self.scoped)
         self._report_timing(sim)
         if options.set_rate_topic:
-            sim.bus.listen(valid_topic(options.set_rate_topic), (_RATE,), self._on_rate)
+            sim.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
         self.prepare()
         if self.noise is not None:
             self._add_noise(self.noise)  # of a kind that made its own
@@ -252,7 +255,7 @@ class Sensor(Sampler):
     def _noise_of(self, model: NoiseModel) -> NoiseModel:
         return model.as_gazebo(self.has_dynamic_bias) if self.sim.world.gazebo_quirks else model
 
-    def _add_noise(self, noise: AnyRemembered) -> AnyRemembered:
+    def _add_noise(self, noise: AnyNoiseProcess) -> AnyNoiseProcess:
         if noise not in self._noises:
             self._noises.append(noise)
         if noise.wanders:
@@ -291,3 +294,10 @@ class Sensor(Sampler):
         """The link that the sensor is on; for a joint's sensor the joint's child link."""
         parent = self.scene.parent
         return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent
+
+
+def report_once(sensor: Sensor, severity: Severity, code: str, message: str, where: Where, hint: str = "") -> None:
+    """Adds a diagnostic unless the same was said of that place already."""
+    known = chain(sensor.diagnostics, sensor.sim.reports)
+    if not any(d.code == code and (d.file, d.line) == (where.file, where.line) for d in known):
+        sensor.diagnostics.add(severity, code, message, where, hint)

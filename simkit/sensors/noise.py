@@ -17,16 +17,22 @@ import numpy as np
 
 from simkit.params import LARGEST, Params
 from simkit.pose import Vector
-from simkit.sensors.wander import Drift, Interval, Wanderer, gauss_markov, instability
+from simkit.sensors.bias_drift import (
+    BiasDriftGenerator,
+    NoiseInterval,
+    NoiseState,
+    gauss_markov_drift,
+    instability_drift,
+)
 
 if TYPE_CHECKING:
-    from simkit.runtime.random import RandomStreams, Stream
+    from simkit.runtime.engine.random_streams import RandomStream, RandomStreams
 
 _TYPES = ("none", "gaussian", "gaussian_quantized")
-_DATA_SHEET = ("noise_density", "random_walk", "bias_instability", "correlation_time")
-_DYNAMIC = ("dynamic_bias_stddev", "dynamic_bias_correlation_time")
-_LEAST_PRECISION = 1e-6  # Gazebo takes a smaller one for none
-_MOST_INTERVALS = 64  # kept; a jittered sensor has ever new ones
+_DATA_SHEET_ELEMENTS = ("noise_density", "random_walk", "bias_instability", "correlation_time")
+_DYNAMIC_BIAS_ELEMENTS = ("dynamic_bias_stddev", "dynamic_bias_correlation_time")
+_MIN_PRECISION = 1e-6  # Gazebo takes a smaller one for none
+_MAX_INTERVALS = 64  # kept; a jittered sensor has ever new ones
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +79,7 @@ class NoiseModel:
     def as_gazebo(self, has_dynamic_bias: bool) -> NoiseModel:
         """What Gazebo makes of it, but for the sign of the bias; what is our own stays."""
         dynamic = self.dynamic_bias_stddev if has_dynamic_bias else 0.0
-        precision = self.precision if self.precision > _LEAST_PRECISION else 0.0
+        precision = self.precision if self.precision > _MIN_PRECISION else 0.0
         return replace(self, dynamic_bias_stddev=dynamic, precision=precision)
 
 
@@ -92,13 +98,13 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
     params = owner.child("noise")
     if params is None:
         return NO_NOISE
-    in_our_words = any(params.has(name) for name in _DATA_SHEET)
+    in_our_words = any(params.has(name) for name in _DATA_SHEET_ELEMENTS)
     given = params.attribute("type") or params.text("type", "")
     kind = given or ("gaussian" if in_our_words else default)
     if kind not in _TYPES:
         params.error("SK-PARAM-002", f"found noise of type {kind!r}, allowed is {', '.join(_TYPES)}")
     if kind == "none":
-        if not given and any(_says_something(child.value) for child in params.children):
+        if not given and any(_is_nonzero_or_text(child.value) for child in params.children):
             hint = 'write <noise type="gaussian">'
             params.diagnostics.warning("SK-SENSOR-020", "<noise> without a type is none", params.where, hint)
         params.mark_all_read()
@@ -117,7 +123,7 @@ def read_noise(owner: Params, default: str = "none") -> NoiseModel:
         correlation_time=params.number("correlation_time", 0.0, minimum=0),
         is_quantized=kind == "gaussian_quantized",
     )
-    return _said_once(model, params) if in_our_words else model
+    return _prefer_data_sheet(model, params) if in_our_words else model
 
 
 def read_axes(block: Params, otherwise: NoiseModel = NO_NOISE) -> ThreeAxes:
@@ -126,21 +132,21 @@ def read_axes(block: Params, otherwise: NoiseModel = NO_NOISE) -> ThreeAxes:
     return x, y, z
 
 
-def _says_something(text: str) -> bool:
+def _is_nonzero_or_text(text: str) -> bool:
     try:
         return float(text) != 0
     except ValueError:
         return bool(text)
 
 
-def _said_once(model: NoiseModel, params: Params) -> NoiseModel:
+def _prefer_data_sheet(model: NoiseModel, params: Params) -> NoiseModel:
     """A data sheet's form in place of Gazebo's where both say the same, which is reported."""
     if model.noise_density > 0 and model.stddev > 0:
-        _report_twice(params, "<stddev>", "<noise_density>")
+        _report_duplicate(params, "<stddev>", "<noise_density>")
         model = replace(model, stddev=0.0)
     wandering = next((name for name in ("random_walk", "bias_instability") if getattr(model, name) > 0), "")
     if wandering and model.dynamic_bias_stddev > 0:
-        _report_twice(params, f"<{_DYNAMIC[0]}>", f"<{wandering}>")
+        _report_duplicate(params, f"<{_DYNAMIC_BIAS_ELEMENTS[0]}>", f"<{wandering}>")
         model = replace(model, dynamic_bias_stddev=0.0)
     if model.correlation_time > 0 and not wandering:
         message = "<correlation_time> is of a <random_walk> or a <bias_instability>, there is none"
@@ -148,7 +154,7 @@ def _said_once(model: NoiseModel, params: Params) -> NoiseModel:
     return model
 
 
-def _report_twice(params: Params, gazebos: str, ours: str) -> None:
+def _report_duplicate(params: Params, gazebos: str, ours: str) -> None:
     message = f"{gazebos} is not used: {ours} says the same, as a data sheet does"
     params.diagnostics.warning("SK-SENSOR-021", message, params.where, "leave one of the two out of this <noise>")
 
@@ -170,7 +176,7 @@ class Noise:
         state: what of it depends on the sample; samples that wait to be finished keep theirs.
     """
 
-    state: Drift
+    state: NoiseState
 
     def __init__(
         self,
@@ -198,14 +204,16 @@ class Noise:
         self._is_dynamic = dynamic > 0
         # a correlation time is of the instability where there is one
         unstable, bound = column("bias_instability"), column("correlation_time")
-        walks = gauss_markov(column("random_walk").tolist(), np.where(unstable > 0, 0.0, bound).tolist(), "random_walk")
-        parts = (gauss_markov(dynamic.tolist(), times.tolist(), "walk"), walks)
-        self._wanderer = Wanderer(
-            (*parts, instability(unstable.tolist(), bound.tolist(), "instability")), streams, scoped, group
+        walks = gauss_markov_drift(
+            column("random_walk").tolist(), np.where(unstable > 0, 0.0, bound).tolist(), "random_walk"
+        )
+        parts = (gauss_markov_drift(dynamic.tolist(), times.tolist(), "walk"), walks)
+        self._wanderer = BiasDriftGenerator(
+            (*parts, instability_drift(unstable.tolist(), bound.tolist(), "instability")), streams, scoped, group
         )
         self._has_density = any(m.noise_density > 0 for m in models)
         self.wanders = bool(self._wanderer.wanders) or self._has_density
-        self._intervals: dict[float, Interval] = {}
+        self._intervals: dict[float, NoiseInterval] = {}
         self._nominal = interval
         self.restart()
         # what shows in no digit is left out
@@ -213,7 +221,7 @@ class Noise:
             self._white or self._wanderer.wanders or self._is_quantised or bool(self.state.constant.any())
         )
 
-    def _open_white(self, streams: RandomStreams, scoped: str, group: str) -> Stream | None:
+    def _open_white(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
         is_white = any(m.stddev > 0 or m.noise_density > 0 for m in self.models)
         return streams.stream(scoped, group, self.width) if is_white else None
 
@@ -241,21 +249,21 @@ class Noise:
         if dt > 0 and before.parts:
             self._replace(interval, self._wanderer.step(before.parts, interval.factors, index))
         elif interval is not before.interval:
-            self.state = Drift(interval, before.parts, before.constant)
+            self.state = NoiseState(interval, before.parts, before.constant)
 
-    def _replace(self, interval: Interval, parts: tuple[Vector, ...]) -> None:
+    def _replace(self, interval: NoiseInterval, parts: tuple[Vector, ...]) -> None:
         constant = self._fixed
         for moved in self._wanderer.sums(parts):
             constant = constant + moved
-        self.state = Drift(interval, parts, constant)
+        self.state = NoiseState(interval, parts, constant)
 
-    def _of(self, dt: float) -> Interval:
+    def _of(self, dt: float) -> NoiseInterval:
         known = self._intervals.get(dt)
         if known is None:
-            if len(self._intervals) >= _MOST_INTERVALS:
+            if len(self._intervals) >= _MAX_INTERVALS:
                 self._intervals.clear()
             stddev = np.array([m.white(dt) for m in self.models])
-            known = self._intervals[dt] = Interval(stddev, self._wanderer.factors(dt))
+            known = self._intervals[dt] = NoiseInterval(stddev, self._wanderer.factors(dt))
         return known
 
     def apply(self, values: Vector, index: int) -> Vector:
@@ -328,7 +336,7 @@ class UniformNoise(Noise):
         super().__init__([model], streams, scoped, group + "/shared", interval=interval, random_sign=random_sign)
         self.width = width
 
-    def _open_white(self, streams: RandomStreams, scoped: str, group: str) -> Stream | None:
+    def _open_white(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
         is_white = self.model.stddev > 0 or self.model.noise_density > 0
         return streams.stream(scoped, self._rays_group, self._rays) if is_white else None
 

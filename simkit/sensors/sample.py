@@ -53,7 +53,7 @@ class Sample:
         self.messages: dict[str, Any] = {}
 
 
-class Remembered(Protocol):
+class NoiseProcess(Protocol):
     """What goes on from sample to sample beside the physics: noise, and whatever else a kind remembers.
 
     Attributes:

@@ -9,14 +9,14 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
-from simkit.runtime.clock import Clock, Timing, exact, exact_rate
+from simkit.runtime.engine.clock import Clock, SampleTiming, exact_fraction, exact_rate
 
 if TYPE_CHECKING:
-    from simkit.runtime.random import RandomStreams
-    from simkit.runtime.scheduler import Timetable
-    from simkit.sensors.sampling import Sampler
+    from simkit.runtime.engine.random_streams import RandomStreams
+    from simkit.runtime.engine.scheduler import Timetable
+    from simkit.sensors.sampler import Sampler
 
-LONGEST_LATENCY = 3600.0  # [s]; all readings on their way are kept
+MAX_LATENCY = 3600.0  # [s]; all readings on their way are kept
 _MILLISECOND = Fraction(1, 1000)
 
 
@@ -42,13 +42,13 @@ class TimingOptions:
 def read_timing(params: Params, rate: float) -> TimingOptions:
     """The elements of a `<sensor>` at `rate` [Hz] that say when it samples and when its readings arrive."""
     jitter = params.number("jitter", 0.0, minimum=0)
-    latency = params.number("latency", 0.0, minimum=0, maximum=LONGEST_LATENCY)
+    latency = params.number("latency", 0.0, minimum=0, maximum=MAX_LATENCY)
     latency_jitter = params.number("latency_jitter", 0.0, minimum=0)
     if jitter > 0 and rate <= 0:
         message = "<jitter> has no effect on a sensor that samples at every step"
         params.diagnostics.warning("SK-SENSOR-023", message, params.block("jitter").where, "give it an <update_rate>")
         jitter = 0.0
-    elif jitter > 0 and 2 * exact(jitter) * exact_rate(rate) >= 1:
+    elif jitter > 0 and 2 * exact_fraction(jitter) * exact_rate(rate) >= 1:
         message = f"<jitter>{jitter:g}</jitter>: allowed is less than half a period, {0.5 / rate:g} s at {rate:g} Hz"
         params.block("jitter").error("SK-SENSOR-022", message)
         jitter = 0.0
@@ -76,7 +76,7 @@ class SampleTimes:
         self, options: TimingOptions, clock: Clock, streams: RandomStreams, scoped: str, in_milliseconds: bool
     ) -> None:
         self._clock, self._in_milliseconds = clock, in_milliseconds
-        self._phase, self._spread = exact(options.phase), exact(options.jitter)
+        self._phase, self._spread = exact_fraction(options.phase), exact_fraction(options.jitter)
         self._jitter = None
         if options.jitter > 0:
             stream = streams.stream(scoped, "jitter")
@@ -89,7 +89,7 @@ class SampleTimes:
 
     def is_too_fast(self, rate: float) -> bool:
         """Whether there are fewer steps than samples asked for."""
-        return rate > 0 and exact_rate(rate) * exact(self._clock.timestep) > 1
+        return rate > 0 and exact_rate(rate) * exact_fraction(self._clock.timestep) > 1
 
     def nominal_interval(self, rate: float) -> float:
         """Mean time [s] between two samples."""
@@ -97,10 +97,10 @@ class SampleTimes:
 
     def grid(self, rate: float) -> Timetable | None:
         """The ticks of a rate [Hz]; None for every step."""
-        return self._clock.samples(Timing(self.period(rate), self._phase, self._spread, self._jitter))
+        return self._clock.samples(SampleTiming(self.period(rate), self._phase, self._spread, self._jitter))
 
 
-class Flight:
+class DelayedReadings:
     """Readings on their way: measured, and not delivered yet, in the order of their arrival.
 
     Args:
@@ -108,7 +108,7 @@ class Flight:
     """
 
     def __init__(self, options: TimingOptions, clock: Clock, streams: RandomStreams, scoped: str) -> None:
-        self._clock, self._latency = clock, exact(options.latency)
+        self._clock, self._latency = clock, exact_fraction(options.latency)
         self._spread = options.latency_jitter
         self._stream = streams.stream(scoped, "latency") if options.latency_jitter > 0 else None
         self._steps = clock.ticks_to_cover(self._latency)
@@ -130,7 +130,7 @@ class Flight:
         return found
 
 
-class Departures:
+class LatencyTimetable:
     """When a sensor with latency has something to do: a sample is due, or one arrives.
 
     Args:
@@ -138,7 +138,7 @@ class Departures:
         sensor: whose readings are on their way; what is measured next is its sample `_index` + 1.
     """
 
-    def __init__(self, grid: Timetable, flight: Flight, sensor: Sampler) -> None:
+    def __init__(self, grid: Timetable, flight: DelayedReadings, sensor: Sampler) -> None:
         self._grid, self._flight, self._sensor = grid, flight, sensor
 
     def is_sample(self, tick: int) -> bool:

@@ -5,21 +5,21 @@ from __future__ import annotations
 from pathlib import Path
 
 import simkit
-from simkit.authoring.catalogue_page import page
 from simkit.plugins import plugin_kinds
-from simkit.plugins.left_out import LEFT_OUT
+from simkit.plugins.authoring.catalogue_page import page
+from simkit.plugins.discovery.unsupported_plugins import UNSUPPORTED_REASONS
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "catalogue.md"
 
 
 def test_the_page_is_written_from_the_classes() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), (
-        "write it anew: python -m simkit.authoring.catalogue_page > docs/catalogue.md"
+        "write it anew: python -m simkit.plugins.authoring.catalogue_page > docs/catalogue.md"
     )
 
 
 def test_nothing_is_both_there_and_left_out() -> None:
-    assert sorted(set(LEFT_OUT) & set(plugin_kinds())) == []
+    assert sorted(set(UNSUPPORTED_REASONS) & set(plugin_kinds())) == []
 
 
 def test_a_plugin_that_is_left_out_is_reported_with_the_reason() -> None:
@@ -30,5 +30,5 @@ def test_a_plugin_that_is_left_out_is_reported_with_the_reason() -> None:
     with simkit.load(text) as sim:
         found = [d for d in sim.diagnostics if d.code == "SK-PLUGIN-002"]
     assert [d.line for d in found] == [2, 3]
-    assert LEFT_OUT["gz-sim-thruster-system"] in found[0].message
+    assert UNSUPPORTED_REASONS["gz-sim-thruster-system"] in found[0].message
     assert "renderer" in found[1].message

@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.bundle import keep, open_bundle, replay, write_bundle
-from simkit.bundle.archive import name_fault
 from simkit.errors import InputError
+from simkit.testing.bundles import keep, open_bundle, replay, write_bundle
+from simkit.testing.bundles.archive import name_fault
 
 WORLD = '<sdf version="1.9"><world name="w"><model name="m"><link name="l"/></model></world></sdf>'
 Files = dict[str, bytes]

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.bundle import keep, open_bundle, replay, write_bundle
 from simkit.errors import InputError, PluginError, SimulationDiverged
+from simkit.testing.bundles import keep, open_bundle, replay, write_bundle
 
 WORLD = """<sdf version="1.9"><world name="yard">
 <model name="cart"><pose>0 0 0.5 0 0 0</pose>
@@ -47,7 +47,7 @@ def test_a_run_with_commands_comes_out_the_same(tmp_path: Path) -> None:
         sim.run(0.3)
         found = replay(packed(sim, tmp_path))
         assert found.is_same
-        assert found.state == simkit.bundle.keeping.state_hash(sim)
+        assert found.state == simkit.testing.bundles.keeping.state_hash(sim)
         assert found.messages >= 100, "a second of a 100 Hz IMU is among them"
         assert not found.refused
 

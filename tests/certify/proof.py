@@ -11,9 +11,9 @@ import numpy as np
 
 import simkit
 from simkit import msgs
-from simkit.certify.digests import of_attributes, short
-from simkit.certify.watching import remembered, written
-from simkit.runtime.state_hash import state_hash
+from simkit.runtime.engine.snapshot import state_hash
+from simkit.testing.certify.plugin_calls import plugin_attributes, writable_state_hash
+from simkit.testing.certify.value_hash import attribute_hashes, short_hash
 
 _BOX = (
     '<sdf version="1.9"><model name="newcomer"><pose>0 0 60 0 0 0</pose><link name="l"><inertial><mass>1</mass>'
@@ -58,7 +58,7 @@ class Runner:
         if topic not in self.sim.bus.aside and topic not in self._heard:
             self._heard.add(topic)
             self.sim.subscribe(
-                topic, lambda m: self._messages.append((self.sim.tick, topic, short(msgs.serialize(m)))), 1
+                topic, lambda m: self._messages.append((self.sim.tick, topic, short_hash(msgs.serialize(m)))), 1
             )
 
     def run(self, seed: int) -> Seen:
@@ -71,7 +71,7 @@ class Runner:
             if part == 1:
                 self._set_parameters(random)
             sim.step(self._steps // 6)
-            physics.append(written(sim))
+            physics.append(writable_state_hash(sim))
         return Seen(
             physics, list(self._messages), self._readings(), memory_of(sim), self._parameters(), state_hash(sim)
         )
@@ -103,7 +103,7 @@ class Runner:
 
 def memory_of(sim: simkit.Simulation) -> dict[str, dict[str, int]]:
     """Hashes of what every plugin remembers."""
-    return {f"{p.scoped}::{p.name}": of_attributes(remembered(p)) for p in sim.structure.all_plugins()}
+    return {f"{p.scoped}::{p.name}": attribute_hashes(plugin_attributes(p)) for p in sim.structure.all_plugins()}
 
 
 def proven(
@@ -162,7 +162,7 @@ def differences(one: Seen, other: Seen) -> list[str]:
 
 
 def _digest(message: Any) -> int:
-    return 0 if message is None else short(msgs.serialize(message))
+    return 0 if message is None else short_hash(msgs.serialize(message))
 
 
 def _fill(message: Any, random: np.random.Generator) -> Any:

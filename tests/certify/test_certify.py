@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from simkit.apart import Ended
-from simkit.certify import Certificate, Difference, certify
-from simkit.certify.certificate import streams_hash
-from simkit.certify.outcome import Outcome
-from simkit.certify.runner import _stopped
-from simkit.certify.runs import _held_up
-from simkit.certify.variations import VARIATIONS, chosen
+from simkit.child_process import ProcessResult
 from simkit.cli import app
 from simkit.errors import InputError
-from simkit.scenario import Scenario
+from simkit.testing.certify import Certificate, Difference, certify
+from simkit.testing.certify.certificate import streams_hash
+from simkit.testing.certify.certification import _code_at_timeout
+from simkit.testing.certify.outcome import RunOutcome
+from simkit.testing.certify.process_runner import _outcome_of_stopped_process
+from simkit.testing.certify.variations import VARIATIONS, choose_variations
+from simkit.testing.scenarios import Scenario
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="m"><link name="l">
 <inertial><mass>1</mass></inertial><sensor name="imu" type="imu"><update_rate>100</update_rate><imu>
@@ -50,7 +50,7 @@ PUSH = "        self.link.apply_wrench((0.1, 0, 0))\n"
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of the command line have no processes of their own."""
-    monkeypatch.setattr("simkit.certify.certify", functools.partial(certify, apart=False))
+    monkeypatch.setattr("simkit.testing.certify.certify", functools.partial(certify, apart=False))
 
 
 def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool = False) -> Certificate:
@@ -185,16 +185,16 @@ def test_a_run_that_hangs_is_blamed_on_the_code_it_stood_in(tmp_path: Path) -> N
         'Timeout (0:00:02)!\nThread 0x2 (most recent call first):\n  File "other.py", line 3 in watch\n'
         '\nThread 0x1 (most recent call first):\n  File "a.py", line 7 in inner\n  File "b.py", line 9 in outer\n'
     )
-    found = _stopped(Ended(1, ""), 2.0, tmp_path / "stack")
+    found = _outcome_of_stopped_process(ProcessResult(1, ""), 2.0, tmp_path / "stack")
     assert found.stopped.startswith("it was still running after 2 s of wall time")
     assert [str(place) for place in found.stack] == ["a.py:7", "b.py:9"]
-    first = Outcome(sources={"plugin 'p'": ("b.py", 5, 12)})
-    made = _held_up(Difference(VARIATIONS[1], "it hangs"), found, first)
+    first = RunOutcome(sources={"plugin 'p'": ("b.py", 5, 12)})
+    made = _code_at_timeout(Difference(VARIATIONS[1], "it hangs"), found, first)
     assert made.owner == "plugin 'p'" and made.how == "it stood in outer at b.py:9"
 
 
 def test_more_runs_are_the_same_again_with_other_hash_seeds() -> None:
-    many = chosen(12)
+    many = choose_variations(12)
     assert len({(v.name, v.hash_seed) for v in many}) == 12
     assert many[6].name == "elsewhere 2" and many[6].hash_seed != many[1].hash_seed
 
@@ -202,12 +202,12 @@ def test_more_runs_are_the_same_again_with_other_hash_seeds() -> None:
 def test_a_hash_of_streams_depends_on_every_message() -> None:
     import numpy as np
 
-    from simkit.certify.outcome import Heard
+    from simkit.testing.certify.outcome import TopicOutcome
 
-    one = Heard("T", np.zeros(1, np.uint64), np.zeros(1, np.int64), "aa")
-    other = Heard("T", np.zeros(1, np.uint64), np.zeros(1, np.int64), "ab")
-    assert streams_hash(Outcome(heard={"/a": one})) != streams_hash(Outcome(heard={"/a": other}))
-    assert streams_hash(Outcome()) == ""
+    one = TopicOutcome("T", np.zeros(1, np.uint64), np.zeros(1, np.int64), "aa")
+    other = TopicOutcome("T", np.zeros(1, np.uint64), np.zeros(1, np.int64), "ab")
+    assert streams_hash(RunOutcome(heard={"/a": one})) != streams_hash(RunOutcome(heard={"/a": other}))
+    assert streams_hash(RunOutcome()) == ""
 
 
 def test_one_run_is_none() -> None:

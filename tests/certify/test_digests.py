@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from simkit.certify.digests import digest, shown
+from simkit.testing.certify.value_hash import short_value_text, value_hash
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -33,21 +33,20 @@ def test_equal_values_have_equal_hashes_and_others_have_not() -> None:
         *(np.array([1.0, 2.0]), np.array([[1.0, 2.0]]), np.array([1.0, 2.0], np.float32), np.float64(3.0)),
         *(Thing(1), Thing(2), Thing([1]), Slotted(1), Slotted(2), np.random.default_rng(1), np.random.default_rng(2)),
     ]
-    hashes = [digest(value) for value in values]
+    hashes = [value_hash(value) for value in values]
     assert len(set(hashes)) == len(values)
-    assert digest(Thing([1, {"a": np.arange(3)}])) == digest(Thing([1, {"a": np.arange(3)}]))
+    assert value_hash(Thing([1, {"a": np.arange(3)}])) == value_hash(Thing([1, {"a": np.arange(3)}]))
 
 
 def test_a_thing_that_holds_itself_has_a_hash() -> None:
     thing = Thing(None)
     thing.value = [thing]
-    assert digest(thing) == digest(thing)
+    assert value_hash(thing) == value_hash(thing)
 
 
 def test_the_order_of_sets_and_dicts_and_the_hash_seed_do_not_show() -> None:
-    script = (
-        "from simkit.certify.digests import digest; print(digest({'x': {'alpha', 'beta', 'gamma'}, 'y': object()}))"
-    )
+    script = "from simkit.testing.certify.value_hash import value_hash as digest\n"
+    script += "print(digest({'x': {'alpha', 'beta', 'gamma'}, 'y': object()}))"
     answers = {
         subprocess.run(
             [sys.executable, "-c", script],
@@ -58,9 +57,17 @@ def test_the_order_of_sets_and_dicts_and_the_hash_seed_do_not_show() -> None:
         for seed in ("0", "1")
     }
     assert len(answers) == 1
-    assert digest({"a": 1, "b": 2}) == digest({"b": 2, "a": 1})
+    assert value_hash({"a": 1, "b": 2}) == value_hash({"b": 2, "a": 1})
 
 
 def test_short_values_can_be_shown_and_long_ones_are_not() -> None:
-    assert shown(0.25) == "0.25" and shown((1, 2.5)) == "(1, 2.5)" and shown(np.arange(3)) == "(0, 1, 2)"
-    assert shown(np.arange(100)) == "" and shown(object()) == "" and len(shown("x" * 100)) == 60
+    assert (
+        short_value_text(0.25) == "0.25"
+        and short_value_text((1, 2.5)) == "(1, 2.5)"
+        and short_value_text(np.arange(3)) == "(0, 1, 2)"
+    )
+    assert (
+        short_value_text(np.arange(100)) == ""
+        and short_value_text(object()) == ""
+        and len(short_value_text("x" * 100)) == 60
+    )

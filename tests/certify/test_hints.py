@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from simkit.certify.hints import hints_in
+from simkit.testing.certify.code_hints import hints_in
 
 
 def hints(folder: Path, body: str) -> list[str]:

@@ -10,9 +10,9 @@ import proof_worlds
 import pytest
 from renderer import RENDERS
 
-from simkit.certify.listening import called
-from simkit.certify.watching import Witness, watched
 from simkit.plugins import Plugin, plugin_kinds
+from simkit.testing.certify.plugin_calls import PluginCallRecorder, record_plugin_calls
+from simkit.testing.certify.topic_hashes import plugin_title
 
 pytestmark = pytest.mark.slow  # processes and whole runs
 
@@ -58,8 +58,8 @@ def has_done_something(sim, plugin: Plugin, at_first, before: proof.Seen, after:
 
 def pushes_something(cls: type[Plugin], folder: Path) -> bool:
     """Whether one of its hooks changes forces, controls or the state itself."""
-    witness = Witness()
-    with watched(witness), proof_worlds.open_world(cls.__name__, folder) as sim:
+    witness = PluginCallRecorder()
+    with record_plugin_calls(witness), proof_worlds.open_world(cls.__name__, folder) as sim:
         sim.step(20)
-        names = {called(p) for p in sim.structure.all_plugins() if type(p) is cls}
+        names = {plugin_title(p) for p in sim.structure.all_plugins() if type(p) is cls}
     return any(event.before != event.after for event in witness.events if event.owner in names)

@@ -129,7 +129,7 @@ class Live:
 @contextmanager
 def placed(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A short folder for sockets that nobody else uses."""
-    from simkit.live.place import is_possible
+    from simkit.bridges.live.socket_files import is_possible
 
     if not is_possible():
         pytest.skip("this system's Python has no local sockets")

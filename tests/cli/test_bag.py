@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.sinks.recorder import Recorder
+from simkit.recording.bags.recorder import Recorder
 
 
 @pytest.fixture(scope="module")

@@ -17,8 +17,8 @@ from xml.etree import ElementTree
 import pytest
 
 from simkit import msgs
-from simkit.sinks.bag_reader import open_bag_to_read
-from simkit.sinks.mcap_bag import McapBag
+from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording.bags.writer import McapBag
 
 STATE = re.compile(r"^state ([0-9a-f]{64})$", re.MULTILINE)
 SCRIPT = """

@@ -199,7 +199,7 @@ def test_a_disk_that_is_full_leaves_nothing(folder: Path) -> None:
 KILLED = """
 import os, signal, sys
 import simkit
-from simkit.bundle import keep, open_bundle, write_bundle
+from simkit.testing.bundles import keep, open_bundle, write_bundle
 
 with simkit.load("sled.sdf") as sim:
     keep(sim)

@@ -16,7 +16,7 @@ from typer.testing import CliRunner, Result
 import simkit
 from simkit import msgs
 from simkit.cli import app
-from simkit.scene.own_elements import OWN_ELEMENTS
+from simkit.scene.simkit_elements import OWN_ELEMENTS
 
 ROOT = Path(__file__).resolve().parents[2]
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"

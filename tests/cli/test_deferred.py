@@ -67,7 +67,7 @@ def test_completion_reads_only_the_command_that_is_written(line: str, read: str)
 
 
 def test_a_client_that_lists_topics_imports_nothing_heavy(tmp_path: Any) -> None:
-    code = "import sys, simkit.live, simkit.cli.talking.sources, simkit.cli.topic\n"
+    code = "import sys, simkit.live, simkit.cli.terminal.topic_sources, simkit.cli.topic\n"
     code += f"sys.stderr.write(' '.join(name for name in {HEAVY} if name in sys.modules))"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert found.stderr == ""

@@ -38,9 +38,7 @@ PATHS = (
 
 def codes_in_source() -> set[str]:
     """Return the codes in the text of every module."""
-    return {
-        code for path in (ROOT / "simkit").rglob("*.py") for code in CODE.findall(path.read_text(encoding="utf-8"))
-    }
+    return {code for path in (ROOT / "simkit").rglob("*.py") for code in CODE.findall(path.read_text(encoding="utf-8"))}
 
 
 def area_of(code: str) -> str:

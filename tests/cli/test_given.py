@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from simkit.cli.talking.given import check_type, is_type, type_and_values
+from simkit.cli.terminal.message_arguments import check_type, is_same_type, split_type_and_values
 from simkit.errors import InputError
 
 
 @pytest.mark.parametrize("said", ["std_srvs/srv/Empty", "std_srvs/Empty"])
 def test_a_type_is_said_in_full_or_short(said: str) -> None:
-    assert is_type(said, "std_srvs/srv/Empty")
+    assert is_same_type(said, "std_srvs/srv/Empty")
     check_type(said, ["std_msgs/msg/Bool", "std_srvs/srv/Empty"], "/thing")
 
 
@@ -21,6 +21,6 @@ def test_what_is_another_type_is_refused(said: str) -> None:
 
 
 def test_values_alone_stand_in_the_place_of_the_type() -> None:
-    assert type_and_values("{data: true}", None) == (None, "{data: true}")
-    assert type_and_values("std_srvs/SetBool", None) == ("std_srvs/SetBool", None)
-    assert type_and_values("std_srvs/SetBool", "{}") == ("std_srvs/SetBool", "{}")
+    assert split_type_and_values("{data: true}", None) == (None, "{data: true}")
+    assert split_type_and_values("std_srvs/SetBool", None) == ("std_srvs/SetBool", None)
+    assert split_type_and_values("std_srvs/SetBool", "{}") == ("std_srvs/SetBool", "{}")

@@ -9,7 +9,7 @@ from contextlib import suppress
 
 import pytest
 
-from simkit.cli.driving.keys import KeyDecoder, windows_keys
+from simkit.cli.terminal.keyboard import KeyDecoder, windows_keys
 
 
 def keys(*pieces: bytes) -> list[str]:
@@ -71,7 +71,7 @@ def terminal() -> Iterator[tuple[int, int]]:
 def test_keys_come_one_by_one_unseen_and_the_terminal_is_left_as_it_was(terminal: tuple[int, int]) -> None:
     import termios
 
-    from simkit.cli.driving.keyboard import Keyboard
+    from simkit.cli.terminal.keyboard import Keyboard
 
     far, near = terminal
     before = termios.tcgetattr(near)
@@ -93,7 +93,7 @@ def test_keys_come_one_by_one_unseen_and_the_terminal_is_left_as_it_was(terminal
 def test_the_terminal_is_left_as_it_was_by_what_is_raised(terminal: tuple[int, int]) -> None:
     import termios
 
-    from simkit.cli.driving.keyboard import Keyboard
+    from simkit.cli.terminal.keyboard import Keyboard
 
     before = termios.tcgetattr(terminal[1])
     with pytest.raises(ValueError, match="wheel"), Keyboard(terminal[1]):
@@ -103,7 +103,7 @@ def test_the_terminal_is_left_as_it_was_by_what_is_raised(terminal: tuple[int, i
 
 @needs_terminals
 def test_a_terminal_that_goes_away_is_lost_and_no_fault(terminal: tuple[int, int]) -> None:
-    from simkit.cli.driving.keyboard import Keyboard
+    from simkit.cli.terminal.keyboard import Keyboard
 
     with Keyboard(terminal[1]) as keyboard:
         assert not keyboard.is_lost
@@ -114,11 +114,11 @@ def test_a_terminal_that_goes_away_is_lost_and_no_fault(terminal: tuple[int, int
 
 
 def test_what_is_no_terminal_has_no_keys() -> None:
-    from simkit.cli.driving.keyboard import keyboard_of
+    from simkit.cli.terminal.keyboard import open_keyboard
 
     reading, writing = os.pipe()
     with os.fdopen(reading) as stream:
-        assert keyboard_of(stream) is None
+        assert open_keyboard(stream) is None
     os.close(writing)
-    assert keyboard_of(stream) is None  # closed
-    assert keyboard_of(None) is None
+    assert open_keyboard(stream) is None  # closed
+    assert open_keyboard(None) is None

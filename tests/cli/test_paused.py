@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.cli.running.loop import Loop
-from simkit.sinks.commands import Commands
+from simkit.cli.run_loop import RunLoop
+from simkit.recording.commands import Commands
 
 BALL = '<sdf version="1.9"><world name="w"><model name="ball"><link name="l"/></model></world></sdf>'
 
@@ -35,7 +35,7 @@ def test_it_waits_for_a_service_and_then_comes_to_its_end(capfd: pytest.CaptureF
                 control(sim, pause=False)
 
         sim.paused = True
-        assert Loop(sim, Commands(sim, []), Quiet(), [watch]).run(0.05)  # type: ignore[arg-type]
+        assert RunLoop(sim, Commands(sim, []), Quiet(), [watch]).run(0.05)  # type: ignore[arg-type]
         assert ticks[:3] == [0, 0, 0]
         assert ticks[3:5] == [5, 5]
         assert ticks[-1] == sim.tick == 50
@@ -46,9 +46,9 @@ def test_it_waits_for_a_service_and_then_comes_to_its_end(capfd: pytest.CaptureF
 def test_the_newest_pace_counts_and_the_users_is_newer_than_what_the_world_asked_for_while_it_was_loaded() -> None:
     with simkit.load(BALL) as sim:
         sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})  # of 1 ms: ten times real time
-        Loop(sim, Commands(sim, []), Quiet(), [])  # type: ignore[arg-type]
+        RunLoop(sim, Commands(sim, []), Quiet(), [])  # type: ignore[arg-type]
         assert sim.pausing.pace == 10.0
-        Loop(sim, Commands(sim, []), Quiet(), [], rtf=2.0)  # type: ignore[arg-type]
+        RunLoop(sim, Commands(sim, []), Quiet(), [], rtf=2.0)  # type: ignore[arg-type]
         assert sim.pausing.pace == 2.0
         sim.call("/world/w/set_physics", {"max_update_rate": 10_000.0})
         assert sim.pausing.pace == 10.0

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from simkit.authoring.catalogue import known_plugins
 from simkit.cli import app
 from simkit.params import Params
 from simkit.plugins import find_plugin
+from simkit.plugins.authoring.catalogue import known_plugins
 from simkit.scene import ScenePlugin
 
 BRAKE = """

@@ -14,8 +14,8 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import simkit
-from simkit.authoring.reload import Reloader
 from simkit.cli import app
+from simkit.plugins.authoring.plugin_reload import PluginReloader
 
 WORLD = """<sdf version="1.9"><world name="w"><model name="arm">
   <link name="base"/><link name="lever"><pose>0 0 1 0 0 0</pose></link>
@@ -77,7 +77,7 @@ class Edited:
         (folder / "world.sdf").write_text(WORLD)
         self.sim = simkit.load(folder / "world.sdf", plugin_paths=[folder])
         self.said: list[str] = []
-        self.reloader = Reloader(self.sim, [folder], self.said.append)
+        self.reloader = PluginReloader(self.sim, [folder], self.said.append)
         self.told = self.sim.subscribe("count")
 
     def edit(self, *changes: tuple[str, str]) -> bool:
@@ -243,7 +243,7 @@ def test_systems_of_gz_are_reloaded_as_well(tmp_path: Path, text: str, old: str,
     world = '<sdf version="1.9"><world name="w"><plugin name="t" filename="ticker.py"/></world></sdf>'
     with simkit.load(world, plugin_paths=[tmp_path]) as sim:
         said: list[str] = []
-        reloader = Reloader(sim, [tmp_path], said.append)
+        reloader = PluginReloader(sim, [tmp_path], said.append)
         assert [path.name for path in reloader.files] == ["ticker.py"]
         sim.step(10)
         (tmp_path / "ticker.py").write_text(text.replace(old, new))

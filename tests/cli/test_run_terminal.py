@@ -20,8 +20,8 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from simkit.cli import app
-from simkit.cli.console import guarded
-from simkit.cli.running.request import Request
+from simkit.cli.run_options import RunOptions
+from simkit.cli.terminal.output import report_errors
 
 if sys.platform == "win32":
     pytest.skip("its terminals are others", allow_module_level=True)
@@ -163,10 +163,10 @@ def test_the_topic_of_teleop_may_be_left_out_wherever_it_stands(words: list[str]
 
 
 def test_who_drives_or_looks_on_has_real_time_unless_they_say_otherwise() -> None:
-    assert Request("w").pace is None
-    assert Request("w", teleop="").pace == Request("w", view=True).pace == 1.0
-    assert Request("w", teleop="", rtf=3.0).pace == 3.0
-    assert Request("w", teleop="", rtf=math.inf).pace is None
+    assert RunOptions("w").pace is None
+    assert RunOptions("w", teleop="").pace == RunOptions("w", view=True).pace == 1.0
+    assert RunOptions("w", teleop="", rtf=3.0).pace == 3.0
+    assert RunOptions("w", teleop="", rtf=math.inf).pace is None
 
 
 # ---------------------------------------------------------------------- a shell
@@ -278,7 +278,7 @@ def test_a_terminal_that_is_seen_to_be_gone_before_its_signal_comes_ends_as_by_t
                 patch.setattr(sys, "stdout", sys.stdout)
                 patch.setattr(sys, "stderr", sys.stderr)
                 with pytest.raises(typer.Exit) as ended:
-                    guarded(write)()
+                    report_errors(write)()
         finally:
             signal.signal(signal.SIGHUP, before)
         assert ended.value.exit_code == code

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.cli.driving.line import DriverLine
-from simkit.cli.driving.target import find_target
-from simkit.cli.driving.teleop import Teleop
-from simkit.cli.running.keys import RunKeys
+from simkit.cli.run_keys import RunKeys
+from simkit.cli.terminal.teleop import Teleop, find_target
+from simkit.cli.terminal.teleop_display import DriverLine
 from simkit.errors import InputError
 
 WORLD = """

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from simkit.compiler import SpecBuilder, groups
+from simkit.compiler import SpecBuilder, geom_groups
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import Box, Inertial, SceneJoint, SceneVisual, Sphere
@@ -105,7 +105,7 @@ def test_visuals_are_drawn_and_do_not_collide(make, compiled):
     visual = SceneVisual("v", "m::a::v", Pose(), Box((1, 1, 1)))
     c = compiled(make.model("m", make.link("m::a", visuals=(visual,))))
     (geom,) = c.names.link("m::a").visuals
-    assert c.model.geom_group[geom] == groups.VISUAL
+    assert c.model.geom_group[geom] == geom_groups.VISUAL
     assert c.model.geom_contype[geom] == c.model.geom_conaffinity[geom] == 0
     assert c.model.body_mass[1] == 1.0
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from simkit.compiler import SpecBuilder
-from simkit.compiler.friction import MU_MOST, contact_of, priority_of
+from simkit.compiler.contact_friction import MU_MOST, contact_properties, friction_priority
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
-from simkit.runtime.clock import Clock
-from simkit.runtime.physics import Physics
+from simkit.runtime.engine.clock import Clock
+from simkit.runtime.engine.physics import Physics
 from simkit.scene import Box, Sphere, Surface
 
 G = 9.8
@@ -59,7 +59,7 @@ def test_without_friction_a_box_slides_freely(make, compiled):
 
 def test_priority_rises_strictly_as_the_coefficient_falls():
     coefficients = [MU_MOST, 1.5, 1.0, 0.999, 0.5, 0.1, 1e-4, 0.0]
-    ranks = [priority_of(mu) for mu in coefficients]
+    ranks = [friction_priority(mu) for mu in coefficients]
     assert ranks[0] == 0
     assert all(a < b for a, b in pairwise(ranks))
     assert ranks[-1] < 2**31
@@ -67,7 +67,7 @@ def test_priority_rises_strictly_as_the_coefficient_falls():
 
 def test_a_huge_coefficient_is_capped_and_reported():
     found = Diagnostics()
-    contact = contact_of(Surface(mu=1e5, mu2=1e5), 0.001, 1.0, found)
+    contact = contact_properties(Surface(mu=1e5, mu2=1e5), 0.001, 1.0, found)
     assert contact.friction[0] == MU_MOST
     assert [d.code for d in found] == ["SK-PHYS-002"]
 

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from simkit.compiler.drive import add_rotor, drive_gains, felt_inertias
+from simkit.compiler.servos import add_drive_armature, drive_gains, felt_inertias
 from simkit.diagnostics import NOWHERE, Diagnostics
 
 TWO_LINKS = """
@@ -58,8 +58,8 @@ def test_a_rotor_takes_ten_milliseconds_to_its_top_speed(
 ) -> None:
     spec, diagnostics = mujoco.MjSpec(), Diagnostics()
     joint = spec.worldbody.add_body().add_joint(type=kind)
-    add_rotor(joint, effort, velocity, "arm::j", diagnostics, NOWHERE)
+    add_drive_armature(joint, effort, velocity, "arm::j", diagnostics, NOWHERE)
     assert joint.armature == pytest.approx(expected)
     assert [d.code for d in diagnostics] == ["SK-PHYS-010"]
-    add_rotor(joint, effort, velocity, "arm::j", diagnostics, NOWHERE)
+    add_drive_armature(joint, effort, velocity, "arm::j", diagnostics, NOWHERE)
     assert len(list(diagnostics)) == 1

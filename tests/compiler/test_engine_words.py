@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 BROKEN = """
-from simkit.engine import import_engine
+from simkit.mujoco_import import import_engine
 import_engine()
 import mujoco
 model = mujoco.MjModel.from_xml_string(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from simkit.compiler.inertia import matrix_of, plan_inertials, repair, sum_of
+from simkit.compiler.inertia_repair import inertia_matrix, plan_inertials, repair_inertia, rigid_sum
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import Pose
 from simkit.scene import Inertial, SceneLink
@@ -29,7 +29,7 @@ TURNED = Pose.from_rpy(0, 0, 0, 0.3, -0.7, 1.1)
 @pytest.mark.parametrize("moments", [(1, 1, 1), (0.1, 0.2, 0.25), (1e-9, 1e-9, 1e-9)])
 def test_what_a_body_can_have_stays_the_same_object(moments: tuple[float, float, float]) -> None:
     given = inertial(*moments, turn=TURNED)
-    found = repair(given)
+    found = repair_inertia(given)
     assert found.inertial is given
     assert found.verdict == "sound"
     assert found.why == ""
@@ -37,31 +37,31 @@ def test_what_a_body_can_have_stays_the_same_object(moments: tuple[float, float,
 
 def test_a_plate_on_the_edge_of_the_inequality_is_moved_by_rounding_only() -> None:
     given = inertial(1, 1, 2, turn=TURNED)
-    found = repair(given)
+    found = repair_inertia(given)
     assert found.verdict == "sound"
     assert np.allclose(found.inertial.inertia, given.inertia, rtol=0, atol=1e-11)
     assert found.new[0] + found.new[1] >= found.new[2]
 
 
 def test_the_nearest_tensor_moves_each_moment_by_a_third_of_what_is_missing() -> None:
-    found = repair(inertial(1.0, 2.0, 3.3, turn=TURNED))
+    found = repair_inertia(inertial(1.0, 2.0, 3.3, turn=TURNED))
     assert found.verdict == "unbalanced"
     assert found.new == pytest.approx((1.1, 2.1, 3.2), abs=1e-9)
     assert found.lack == pytest.approx(0.3 / 3.3)
     assert "9.09 % of C" in found.why
-    assert np.linalg.eigvalsh(matrix_of(found.inertial.inertia)) == pytest.approx((1.1, 2.1, 3.2), abs=1e-9)
+    assert np.linalg.eigvalsh(inertia_matrix(found.inertial.inertia)) == pytest.approx((1.1, 2.1, 3.2), abs=1e-9)
 
 
 def test_zero_moments_become_those_of_a_small_body_and_the_largest_stays() -> None:
-    found = repair(inertial(0, 0, 0.1, mass=10))
+    found = repair_inertia(inertial(0, 0, 0.1, mass=10))
     assert found.verdict == "mended"
     assert found.new == pytest.approx((0.05, 0.05, 0.1))
-    assert repair(inertial(0, 0, 0, mass=2)).new == pytest.approx((2e-8, 2e-8, 2e-8))
+    assert repair_inertia(inertial(0, 0, 0, mass=2)).new == pytest.approx((2e-8, 2e-8, 2e-8))
 
 
 @pytest.mark.parametrize(("smallest", "verdict"), [(-0.0009, "mended"), (-0.0011, "beyond"), (-1.0, "beyond")])
 def test_a_negative_moment_is_mended_up_to_one_percent_of_the_largest(smallest: float, verdict: str) -> None:
-    assert repair(inertial(smallest, 0.1, 0.1)).verdict == verdict
+    assert repair_inertia(inertial(smallest, 0.1, 0.1)).verdict == verdict
 
 
 def test_a_link_that_is_fixed_to_another_hands_over_what_it_cannot_have() -> None:
@@ -78,7 +78,7 @@ def test_a_link_that_is_fixed_to_another_hands_over_what_it_cannot_have() -> Non
         link("base", Inertial(28, base.inertial.com, written["m::base"].inertia)),
         link("antenna", Inertial(1e-6, antenna.inertial.com, (0,) * 6), antenna.pose_world),
     ]
-    assert sum_of(changed)[1] == pytest.approx(sum_of([base, antenna])[1], abs=1e-15)
+    assert rigid_sum(changed)[1] == pytest.approx(rigid_sum([base, antenna])[1], abs=1e-15)
 
 
 def test_a_moving_link_that_breaks_the_inequality_is_simulated_as_written_and_said() -> None:
@@ -86,7 +86,7 @@ def test_a_moving_link_that_breaks_the_inequality_is_simulated_as_written_and_sa
     diagnostics = Diagnostics()
     written = plan_inertials([finger], {}, frozenset(), diagnostics)["m::finger"]
     assert written.exact == finger.inertial.inertia
-    assert min(np.linalg.eigvalsh(matrix_of(written.inertia))) > 0
+    assert min(np.linalg.eigvalsh(inertia_matrix(written.inertia))) > 0
     (said,) = diagnostics
     assert (said.code, said.severity, said.file, said.line) == ("SK-INERTIA-001", "warning", "m.sdf", 7)
     for part in ("m::finger", "1.817e-05", "0.0002226", "0.0002443", "1.44 % of C"):
@@ -113,7 +113,7 @@ def test_nothing_is_said_of_what_never_moves() -> None:
     diagnostics = Diagnostics()
     written = plan_inertials([link("base", inertial(-1, 1, 1))], {}, frozenset({"m::base"}), diagnostics)
     assert not list(diagnostics)
-    assert repair(Inertial(1.0, (0, 0, 0), written["m::base"].inertia)).verdict == "sound"
+    assert repair_inertia(Inertial(1.0, (0, 0, 0), written["m::base"].inertia)).verdict == "sound"
 
 
 def test_a_number_that_is_none_is_an_error() -> None:

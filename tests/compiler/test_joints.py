@@ -10,7 +10,7 @@ import pytest
 
 import simkit
 from simkit.compiler import SpecBuilder
-from simkit.compiler.tree import plan_tree
+from simkit.compiler.kinematic_tree import plan_tree
 from simkit.diagnostics import Diagnostics, Where
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Axis, Inertial, Mimic, SceneJoint, Sphere

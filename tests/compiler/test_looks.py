@@ -10,9 +10,9 @@ import pytest
 from mesh_makers import QUAD, picture
 
 import simkit
-from simkit.compiler.lights import spot_of
-from simkit.compiler.looks import look_of
-from simkit.compiler.meshes.part import MeshPart
+from simkit.compiler.lights import spot_parameters
+from simkit.compiler.material_colours import geom_colours
+from simkit.compiler.meshes.mesh_part import MeshPart
 from simkit.errors import SimkitError
 from simkit.pose import Pose
 from simkit.scene import Box, Material, SceneLight, SceneVisual
@@ -28,37 +28,37 @@ def test_the_files_material_wins_over_the_meshs_own():
     part = MeshPart(
         "p", np.zeros((3, 3)), np.zeros((1, 3), np.int32), colour=(0, 0, 1, 0.5), specular=0.4, emission=0.2
     )
-    own = look_of(visual(), part)
+    own = geom_colours(visual(), part)
     assert (own.rgba, own.specular, own.emission) == ((0, 0, 1, 0.5), 0.4, 0.2)
-    given = look_of(visual(Material(diffuse=RED, specular=(0.1, 0.3, 0.2, 1.0))), part)
+    given = geom_colours(visual(Material(diffuse=RED, specular=(0.1, 0.3, 0.2, 1.0))), part)
     assert (given.rgba, given.specular, given.emission) == (RED, 0.3, 0.0)
 
 
 def test_transparency_takes_from_the_colours_own_opacity():
-    assert look_of(visual(Material(diffuse=(1, 1, 1, 0.5)), transparency=0.5), None).rgba[3] == pytest.approx(0.25)
+    assert geom_colours(visual(Material(diffuse=(1, 1, 1, 0.5)), transparency=0.5), None).rgba[3] == pytest.approx(0.25)
 
 
 def test_what_glows_keeps_the_colour_that_it_glows_in():
-    dark = look_of(visual(Material(diffuse=(0, 0, 0, 1), emissive=(0, 0.5, 0, 1))), None)
+    dark = geom_colours(visual(Material(diffuse=(0, 0, 0, 1), emissive=(0, 0.5, 0, 1))), None)
     assert dark.rgba == (0, 1, 0, 1) and dark.emission == pytest.approx(0.5)
-    half = look_of(visual(Material(diffuse=(1, 1, 1, 1), emissive=(0.25, 0.25, 0.25, 1))), None)
+    half = geom_colours(visual(Material(diffuse=(1, 1, 1, 1), emissive=(0.25, 0.25, 0.25, 1))), None)
     assert half.rgba == (1, 1, 1, 1) and half.emission == pytest.approx(0.25)
 
 
 def test_roughness_widens_the_gloss():
-    smooth, rough = (look_of(visual(Material(roughness=r)), None).shininess for r in (0.1, 0.9))
+    smooth, rough = (geom_colours(visual(Material(roughness=r)), None).shininess for r in (0.1, 0.9))
     assert smooth == pytest.approx(0.9) and rough == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize(("inner", "outer", "falloff"), [(0.2, 1.0, 1.0), (0.4, 0.8, 2.0), (0.0, 2.0, 0.5)])
 def test_a_spot_is_as_bright_half_way_between_its_angles_as_the_file_says(inner, outer, falloff):
-    cutoff, exponent = spot_of(SceneLight("s", "s", "spot", spot=(inner, outer, falloff)))
+    cutoff, exponent = spot_parameters(SceneLight("s", "s", "spot", spot=(inner, outer, falloff)))
     assert cutoff == pytest.approx(math.degrees(outer / 2))
     assert math.cos((inner + outer) / 4) ** exponent == pytest.approx(0.5**falloff)
 
 
 def test_a_spot_without_angles_has_the_renderers_own(make, compiled):
-    cutoff, exponent = spot_of(SceneLight("s", "s", "spot"))
+    cutoff, exponent = spot_parameters(SceneLight("s", "s", "spot"))
     assert (cutoff, exponent) == (pytest.approx(20.0), 0.0)
 
 

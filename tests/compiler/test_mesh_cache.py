@@ -13,12 +13,11 @@ import pytest
 from mesh_makers import L_SHAPE, QUAD, binary_stl, picture
 
 import simkit
-from simkit.compiler.meshes import cache as mesh_cache
-from simkit.compiler.meshes import collision as mesh_collision
-from simkit.compiler.meshes import mesh
-from simkit.compiler.meshes.collision import bodies_of
-from simkit.compiler.meshes.mesh import convert_file, load_file
-from simkit.compiler.shapes import polyline
+from simkit.compiler.meshes import collision_bodies as mesh_collision
+from simkit.compiler.meshes import mesh_cache, mesh_reader
+from simkit.compiler.meshes.collision_bodies import convex_bodies
+from simkit.compiler.meshes.mesh_reader import convert_file, load_file
+from simkit.compiler.shapes import polyline_triangles
 from simkit.scene import Polyline
 
 TRIANGLES = [[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 0, 0), (0, 1, 0), (0, 0, 1)]]
@@ -31,7 +30,7 @@ def forgotten():
 
 
 def forget():
-    mesh._converted.cache_clear()
+    mesh_reader._converted.cache_clear()
     mesh_collision._memory.clear()
 
 
@@ -56,7 +55,7 @@ def never(*_):
 def test_what_comes_back_is_what_was_converted(textured, own_mesh_cache, monkeypatch):
     first = convert_file(textured)
     forget()
-    monkeypatch.setattr(mesh, "_convert", never)
+    monkeypatch.setattr(mesh_reader, "_convert", never)
     second = convert_file(textured)
     for a, b in zip(first.parts, second.parts, strict=True):
         assert (a.name, a.colour, a.specular, a.emission, a.aliases) == (
@@ -91,7 +90,7 @@ def test_equal_files_are_converted_once_wherever_they_lie(tmp_path, own_mesh_cac
         (tmp_path / name).mkdir()
         (tmp_path / name / "t.stl").write_bytes(binary_stl(TRIANGLES))
     load_file(tmp_path / "a" / "t.stl")
-    monkeypatch.setattr(mesh, "_convert", never)
+    monkeypatch.setattr(mesh_reader, "_convert", never)
     load_file(tmp_path / "b" / "t.stl")
     assert len(entries(own_mesh_cache)) == 1
 
@@ -128,12 +127,12 @@ def test_a_spoilt_entry_is_made_again(tmp_path, own_mesh_cache, spoil):
 
 
 def test_collision_bodies_are_kept_as_well(own_mesh_cache, monkeypatch):
-    vertices, faces = polyline(Polyline((L_SHAPE,), 0.4))
-    first = bodies_of(vertices, faces, fixed=True)
+    vertices, faces = polyline_triangles(Polyline((L_SHAPE,), 0.4))
+    first = convex_bodies(vertices, faces, fixed=True)
     assert len(entries(own_mesh_cache, "collisions")) == 1
     forget()
-    monkeypatch.setattr(mesh_collision, "_worked_out", never)
-    second = bodies_of(vertices, faces, fixed=True)
+    monkeypatch.setattr(mesh_collision, "_compute_bodies", never)
+    second = convex_bodies(vertices, faces, fixed=True)
     assert (first.is_exact, first.findings) == (second.is_exact, second.findings)
     assert len(first.shapes) == len(second.shapes) > 4
     for (v, f), (w, g) in zip(first.shapes, second.shapes, strict=True):

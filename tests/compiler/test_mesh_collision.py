@@ -11,11 +11,11 @@ import pytest
 import trimesh
 from mesh_makers import L_SHAPE, TETRAHEDRON, TETRAHEDRON_FACES
 
-from simkit.compiler.meshes import collision as mesh_collision
-from simkit.compiler.meshes import decompose as mesh_decompose
-from simkit.compiler.meshes.collision import bodies_of
-from simkit.compiler.meshes.volume import filled_ratio, volume_of
-from simkit.compiler.shapes import polyline
+from simkit.compiler.meshes import collision_bodies as mesh_collision
+from simkit.compiler.meshes import convex_decomposition as mesh_decompose
+from simkit.compiler.meshes.collision_bodies import convex_bodies
+from simkit.compiler.meshes.convex_pieces import filled_ratio, mesh_volume
+from simkit.compiler.shapes import polyline_triangles
 from simkit.pose import Pose
 from simkit.scene import Mesh, Polyline, Sphere
 
@@ -29,7 +29,7 @@ NEEDS_COACD = pytest.mark.skipif(
 def corner(tmp_path):
     """An L of 1 m × 1 m with a notch of 0.7 m, 0.4 m thick."""
     file = tmp_path / "corner.obj"
-    trimesh.Trimesh(*polyline(Polyline((L_SHAPE,), THICK)), process=False).export(file)
+    trimesh.Trimesh(*polyline_triangles(Polyline((L_SHAPE,), THICK)), process=False).export(file)
     return file
 
 
@@ -106,19 +106,19 @@ def test_a_decomposition_has_the_same_bits_every_time(monkeypatch):
     runs = []
     for _ in range(2):
         mesh_collision._memory.clear()
-        runs.append(bodies_of(vertices, faces, fixed=False, optimization="convex_decomposition", most=12))
+        runs.append(convex_bodies(vertices, faces, fixed=False, optimization="convex_decomposition", most=12))
     assert 2 < len(runs[0].shapes) <= 12
     for (v, f), (w, g) in zip(runs[0].shapes, runs[1].shapes, strict=True):
         np.testing.assert_array_equal(v, w)
         np.testing.assert_array_equal(f, g)
     total = sum(trimesh.Trimesh(v, f, process=False).volume for v, f in runs[0].shapes)
-    assert total == pytest.approx(volume_of(vertices, faces), rel=0.15)
+    assert total == pytest.approx(mesh_volume(vertices, faces), rel=0.15)
 
 
 @NEEDS_COACD
 def test_pieces_are_not_more_than_asked_for():
-    vertices, faces = polyline(Polyline((L_SHAPE,), THICK))
-    assert len(bodies_of(vertices, faces, fixed=False, optimization="convex_decomposition", most=1).shapes) == 1
+    vertices, faces = polyline_triangles(Polyline((L_SHAPE,), THICK))
+    assert len(convex_bodies(vertices, faces, fixed=False, optimization="convex_decomposition", most=1).shapes) == 1
 
 
 def test_without_the_extra_the_hull_collides_and_the_extra_is_named(make, compiled, corner, monkeypatch):
@@ -196,11 +196,11 @@ def test_a_sliver_among_good_triangles_changes_nothing(make, compiled, tmp_path)
 
 @pytest.mark.parametrize("scale", [(-1.0, 1.0, 1.0), (-1.0, -2.0, 1.0), (-1.0, -1.0, -1.0), (0.5, 3.0, -2.0)])
 def test_a_mirrored_mesh_keeps_its_outside_and_its_volume(tmp_path, scale):
-    from simkit.compiler.meshes.mesh import load_mesh
-    from simkit.compiler.meshes.part import joined
+    from simkit.compiler.meshes.mesh_part import join_parts
+    from simkit.compiler.meshes.mesh_reader import load_mesh
     from simkit.diagnostics import NOWHERE, Diagnostics
 
     trimesh.Trimesh(TETRAHEDRON, TETRAHEDRON_FACES, process=False).export(tmp_path / "t.stl")
-    vertices, faces = joined(load_mesh(Mesh(tmp_path / "t.stl", "t.stl", scale), Diagnostics(), NOWHERE))
+    vertices, faces = join_parts(load_mesh(Mesh(tmp_path / "t.stl", "t.stl", scale), Diagnostics(), NOWHERE))
     assert trimesh.Trimesh(vertices, faces, process=False).volume == pytest.approx(abs(np.prod(scale)))
     assert np.sign(vertices.sum(axis=0)).tolist() == np.sign(scale).tolist()

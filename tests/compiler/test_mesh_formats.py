@@ -20,8 +20,8 @@ from mesh_makers import (
     write_gltf,
 )
 
-from simkit.compiler.meshes.mesh import convert_file, load_file, load_mesh
-from simkit.compiler.meshes.part import MeshFileError, joined
+from simkit.compiler.meshes.mesh_part import MeshFileError, join_parts
+from simkit.compiler.meshes.mesh_reader import convert_file, load_file, load_mesh
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.scene import Mesh
 
@@ -31,11 +31,11 @@ RED = (1.0, 0.0, 0.0, 1.0)
 
 
 def extent(parts):
-    return np.ptp(joined(parts)[0], axis=0)
+    return np.ptp(join_parts(parts)[0], axis=0)
 
 
 def volume(parts):
-    return trimesh.Trimesh(*joined(parts), process=False).volume
+    return trimesh.Trimesh(*join_parts(parts), process=False).volume
 
 
 def written(tmp_path, name, text):

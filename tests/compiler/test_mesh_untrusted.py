@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from mesh_makers import PLACED, QUAD, TETRAHEDRON, TETRAHEDRON_FACES, binary_stl, collada, gltf, picture, write_gltf
 
-from simkit.compiler.meshes.files import pixels_of
-from simkit.compiler.meshes.mesh import convert_file, load_file, load_mesh
-from simkit.compiler.meshes.part import MeshFileError
+from simkit.compiler.meshes.companion_files import read_pixels
+from simkit.compiler.meshes.mesh_part import MeshFileError
+from simkit.compiler.meshes.mesh_reader import convert_file, load_file, load_mesh
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.scene import Mesh
 
@@ -97,7 +97,7 @@ def test_a_gltf_buffer_outside_of_the_model_is_not_read(model):
 @pytest.mark.parametrize("size", [(100_000, 100_000), (2**31 - 1, 2**31 - 1), (0, 5)])
 def test_a_picture_that_would_unpack_to_gigabytes_is_refused_by_its_header(tmp_path, size):
     with pytest.raises(MeshFileError, match=r"too large|not a readable picture"):
-        pixels_of(png_header(*size, zlib.compress(b"\0" * 1000)))
+        read_pixels(png_header(*size, zlib.compress(b"\0" * 1000)))
     file = tmp_path / "bomb.png"
     file.write_bytes(png_header(*size))
     converted = convert_file(textured_obj(tmp_path, "bomb.png"))
@@ -111,7 +111,7 @@ def test_text_in_a_picture_that_unpacks_to_gigabytes_does_no_harm():
     content = png_header(4, 4)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with pytest.raises(MeshFileError):
-        pixels_of(content[:33] + chunk + content[33:])
+        read_pixels(content[:33] + chunk + content[33:])
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000  # kB
 
 

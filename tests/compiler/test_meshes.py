@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from simkit.compiler import SpecBuilder, groups
-from simkit.compiler.meshes.mesh import load_file, load_mesh
-from simkit.compiler.meshes.part import joined
-from simkit.compiler.shapes import polyline
-from simkit.compiler.static import thinned
+from simkit.compiler import SpecBuilder, geom_groups
+from simkit.compiler.meshes.convex_pieces import thin_mesh
+from simkit.compiler.meshes.mesh_part import join_parts
+from simkit.compiler.meshes.mesh_reader import load_file, load_mesh
+from simkit.compiler.shapes import polyline_triangles
 from simkit.diagnostics import NOWHERE, Diagnostics
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Box, Material, Mesh, Polyline, SceneVisual, Sphere
@@ -73,7 +73,7 @@ def test_collada_units_count_and_its_up_axis_does_not(dae):
 
 def test_scale_mirrors_without_turning_the_mesh_inside_out(dae):
     parts = load_mesh(Mesh(dae, "t.dae", (-1.0, 2.0, 1.0)), Diagnostics(), NOWHERE)
-    vertices, faces = joined(parts)
+    vertices, faces = join_parts(parts)
     assert trimesh.Trimesh(vertices, faces).volume == pytest.approx(2.0 * 0.0254**3, rel=1e-6)
 
 
@@ -96,17 +96,17 @@ def test_a_broken_file_is_an_error_and_not_a_traceback(tmp_path):
 
 
 def test_the_cache_gives_the_same_and_does_without(dae, own_mesh_cache, monkeypatch):
-    from simkit.compiler.meshes import mesh
+    from simkit.compiler.meshes import mesh_reader
 
     first = load_file(dae)[0]
     assert len(list((own_mesh_cache / "meshes").glob("*.bin"))) == 1
-    mesh._converted.cache_clear()
-    monkeypatch.setattr(mesh, "_convert", lambda *_: pytest.fail("converted again"))
+    mesh_reader._converted.cache_clear()
+    monkeypatch.setattr(mesh_reader, "_convert", lambda *_: pytest.fail("converted again"))
     second = load_file(dae)[0]
     np.testing.assert_array_equal(first.vertices, second.vertices)
     assert first.colour == second.colour
     monkeypatch.undo()
-    mesh._converted.cache_clear()
+    mesh_reader._converted.cache_clear()
     monkeypatch.setenv("SIMKIT_CACHE_DIR", os.devnull)
     assert len(load_file(dae)[0].faces) == 4
 
@@ -155,12 +155,12 @@ def test_a_thrown_ball_does_not_pass_a_thin_wall(make, compiled, tmp_path, headi
 def test_rays_see_the_exact_mesh_and_contacts_the_pieces(make, compiled, tmp_path):
     c = compiled(static_mesh(make, ring(tmp_path)))
     binding = c.names.link("arena::link")
-    assert {int(c.model.geom_group[g]) for g in binding.geoms} == {groups.COLLISION_CONTACT}
+    assert {int(c.model.geom_group[g]) for g in binding.geoms} == {geom_groups.COLLISION_CONTACT}
     (copy,) = binding.ray_geoms
-    assert c.model.geom_group[copy] == groups.COLLISION_RAY
+    assert c.model.geom_group[copy] == geom_groups.COLLISION_RAY
     assert c.model.geom_contype[copy] == 0
     mask = np.zeros(6, np.uint8)
-    mask[[groups.COLLISION, groups.COLLISION_RAY]] = 1
+    mask[[geom_groups.COLLISION, geom_groups.COLLISION_RAY]] = 1
     mujoco.mj_forward(c.model, c.data)
     hit = np.array([-1], np.int32)
     heading, half = 0.1, math.pi / 16
@@ -217,7 +217,7 @@ def test_a_polyline_is_extruded(make, compiled):
 def test_an_outline_inside_another_is_a_hole():
     square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
     hole = ((0.5, 0.5), (1.5, 0.5), (1.5, 1.5), (0.5, 1.5), (0.5, 0.5))
-    vertices, faces = polyline(Polyline((hole, square), 0.5))
+    vertices, faces = polyline_triangles(Polyline((hole, square), 0.5))
     mesh = trimesh.Trimesh(vertices, faces)
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx((4.0 - 1.0) * 0.5)
@@ -225,7 +225,7 @@ def test_an_outline_inside_another_is_a_hole():
 
 def test_a_huge_static_mesh_is_thinned_out_but_keeps_its_place():
     ball = trimesh.creation.icosphere(subdivisions=6, radius=2.0)
-    vertices, faces = thinned(np.asarray(ball.vertices), np.asarray(ball.faces, np.int32), 10_000)
+    vertices, faces = thin_mesh(np.asarray(ball.vertices), np.asarray(ball.faces, np.int32), 10_000)
     assert 2_000 < len(faces) <= 10_000
     np.testing.assert_allclose(np.linalg.norm(vertices, axis=1), 2.0, atol=0.02)
 

@@ -11,11 +11,9 @@ import trimesh
 from mesh_makers import L_SHAPE, picture
 from PIL import Image
 
-from simkit.compiler import SpecBuilder, groups
-from simkit.compiler.heightmap import heights
-from simkit.compiler.meshes.part import MeshFileError
-from simkit.compiler.shapes import polyline, polyline_pieces
-from simkit.compiler.shapes_textured import textured
+from simkit.compiler import SpecBuilder, geom_groups
+from simkit.compiler.meshes.mesh_part import MeshFileError
+from simkit.compiler.shapes import heightmap_rows, polyline_pieces, polyline_triangles, textured_triangles
 from simkit.diagnostics import Diagnostics
 from simkit.pose import Pose
 from simkit.scene import (
@@ -61,7 +59,7 @@ def hill(make, shape):
 def height_below(c, x, y):
     mujoco.mj_forward(c.model, c.data)
     mask = np.zeros(6, np.uint8)
-    mask[groups.COLLISION] = 1
+    mask[geom_groups.COLLISION] = 1
     hit = np.array([-1], np.int32)
     return 9.0 - mujoco.mj_ray(c.model, c.data, np.array((x, y, 9.0)), np.array((0, 0, -1.0)), mask, 1, -1, hit, None)
 
@@ -95,7 +93,7 @@ def test_a_ball_slides_down_a_slope_as_the_formula_says(make, compiled, tmp_path
 
 def test_heights_below_zero_keep_their_share(tmp_path):
     Image.fromarray(np.array([[-5.0, 0.0], [5.0, 10.0]], np.float32)).save(tmp_path / "deep.tif")
-    rows = heights(Heightmap(tmp_path / "deep.tif", "deep.tif"))
+    rows = heightmap_rows(Heightmap(tmp_path / "deep.tif", "deep.tif"))
     np.testing.assert_allclose(rows, [[0.5, 1.0], [-0.5, 0.0]])
 
 
@@ -109,7 +107,7 @@ def test_a_heightmap_on_what_moves_is_an_error(make, tmp_path):
 def test_a_picture_that_is_none_is_an_error(tmp_path, content):
     (tmp_path / "h.png").write_bytes(content)
     with pytest.raises(MeshFileError, match="cannot be read|smaller"):
-        heights(Heightmap(tmp_path / "h.png", "h.png"))
+        heightmap_rows(Heightmap(tmp_path / "h.png", "h.png"))
 
 
 def test_a_picture_that_is_too_large_is_refused_by_its_header(tmp_path):
@@ -120,7 +118,7 @@ def test_a_picture_that_is_too_large_is_refused_by_its_header(tmp_path):
     content = b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + header + struct.pack(">I", zlib.crc32(header))
     (tmp_path / "h.png").write_bytes(content + struct.pack(">I", 0) + b"IDAT" + struct.pack(">I", zlib.crc32(b"IDAT")))
     with pytest.raises(MeshFileError, match="4097|cannot be read"):
-        heights(Heightmap(tmp_path / "h.png", "h.png"))
+        heightmap_rows(Heightmap(tmp_path / "h.png", "h.png"))
 
 
 # ---------------------------------------------------------------------- outlines
@@ -144,7 +142,7 @@ RING = (
 )
 def test_an_outline_falls_into_convex_pieces_that_are_all_of_it(outlines, area):
     shape = Polyline(outlines, 2.0)
-    vertices, faces = polyline(shape)
+    vertices, faces = polyline_triangles(shape)
     assert trimesh.Trimesh(vertices, faces).volume == pytest.approx(2 * area)
     pieces = polyline_pieces(shape)
     assert sum(trimesh.convex.convex_hull(p).volume for p in pieces) == pytest.approx(2 * area)
@@ -179,7 +177,7 @@ def test_outlines_that_enclose_nothing_are_an_error(make):
     ],
 )
 def test_what_wears_a_picture_has_the_shape_it_had(shape, volume, tolerance):
-    part = textured(shape)
+    part = textured_triangles(shape)
     mesh = trimesh.Trimesh(part.vertices, part.faces, process=True)
     mesh.merge_vertices(merge_tex=True, merge_norm=True)
     assert mesh.is_watertight
@@ -188,7 +186,7 @@ def test_what_wears_a_picture_has_the_shape_it_had(shape, volume, tolerance):
 
 
 def test_a_picture_stands_upright_on_every_side_of_a_box():
-    part = textured(Box((2.0, 2.0, 2.0)))
+    part = textured_triangles(Box((2.0, 2.0, 2.0)))
     for side in range(4):
         z, v = part.vertices[4 * side : 4 * side + 4, 2], part.uv[4 * side : 4 * side + 4, 1]
         np.testing.assert_allclose(z, 2 * v - 1)

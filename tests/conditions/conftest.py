@@ -45,10 +45,10 @@ def yard() -> Callable[..., Any]:
 @pytest.fixture(scope="session")
 def still() -> Iterator[Any]:
     """What reads a yard at t = 1 s, with a second of messages on its topics."""
-    from simkit.conditions.view import View
+    from simkit.testing.conditions.world_view import WorldView
 
     with simkit.load(YARD % "") as sim:
-        view = View(sim)
+        view = WorldView(sim)
         view.open()
         for topic in ("/imu", "/scan"):
             view.feed(topic)

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from simkit.conditions import parse
-from simkit.conditions.binding import bind
 from simkit.errors import InputError
+from simkit.testing.conditions import parse
+from simkit.testing.conditions.binder import bind
 
 
 def value(text: str, view: Any) -> Any:
@@ -106,13 +106,13 @@ def test_numbers_of_a_scan_are_those_of_the_rays_that_met_something(still: Any) 
 
 
 def test_speed_ahead_is_that_along_its_own_axes(yard: Any) -> None:
-    from simkit.conditions.view import View
+    from simkit.testing.conditions.world_view import WorldView
 
     with yard() as sim:
         sim.model("ball").set_velocity((0.0, 1.0, 0.0), (0.0, 0.0, 0.0))
         pose = sim.model("ball").pose
         sim.model("ball").set_pose(type(pose).from_rpy(0, 0, 0.25, 0, 0, math.pi / 2))
-        view = View(sim)
+        view = WorldView(sim)
         assert value("velocity('ball').y", view) == pytest.approx(1.0)
         assert value("velocity('ball', 'ball').x", view) == pytest.approx(1.0)
         assert value("twist('ball', 'base').linear.x + norm(twist('ball').angular)", view) == pytest.approx(1.0)
@@ -183,37 +183,37 @@ def test_a_mistake_is_shown_at_its_place_with_what_helps(
 
 
 def test_a_short_circuit_decides_over_what_is_not_known(yard: Any) -> None:
-    from simkit.conditions.faults import Undecided
-    from simkit.conditions.view import View
+    from simkit.testing.conditions.syntax_tree import UndecidedValue
+    from simkit.testing.conditions.world_view import WorldView
 
     with yard() as sim:
-        view = View(sim)
+        view = WorldView(sim)
         assert value("time < 1 or min(scan('/scan')) > 0.2", view) is True
         assert value("min(scan('/scan')) > 0.2 or time < 1", view) is True
         assert value("min(scan('/scan')) > 0.2 and time > 1", view) is False
         for text in ("min(scan('/scan')) > 0.2", "not min(scan('/scan')) > 0.2", "rate('/imu') > 1", "age('/imu') > 1"):
-            with pytest.raises(Undecided, match=r"no message has come|fewer than two"):
+            with pytest.raises(UndecidedValue, match=r"no message has come|fewer than two"):
                 value(text, view)
 
 
 def test_a_removed_model_is_not_known_any_more(yard: Any) -> None:
-    from simkit.conditions.faults import Undecided
-    from simkit.conditions.view import View
+    from simkit.testing.conditions.syntax_tree import UndecidedValue
+    from simkit.testing.conditions.world_view import WorldView
 
     with yard() as sim:
-        view = View(sim)
+        view = WorldView(sim)
         part, there = bind(parse("pose('ball').x < 1"), view), bind(parse("exists('ball')"), view)
         assert part.get() and there.get()
         sim.remove("ball")
         assert not there.get()
-        with pytest.raises(Undecided, match="ball was removed"):
+        with pytest.raises(UndecidedValue, match="ball was removed"):
             part.get()
 
 
 def test_nonsense_of_any_kind_is_an_input_error_and_nothing_else(still: Any) -> None:
     import random
 
-    from simkit.conditions.faults import Undecided
+    from simkit.testing.conditions.syntax_tree import UndecidedValue
 
     words = [
         "pose",
@@ -244,6 +244,6 @@ def test_nonsense_of_any_kind_is_an_input_error_and_nothing_else(still: Any) -> 
             bind(parse(text), still).get()
         except InputError as error:
             codes.add(error.code)
-        except Undecided:
+        except UndecidedValue:
             continue
     assert len(codes) > 3 and all(code.startswith("SK-COND-") for code in codes)

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from simkit.cli import app
-from simkit.conditions.functions import FUNCTIONS
+from simkit.testing.conditions.binder import FUNCTIONS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "conditions.md").read_text(encoding="utf-8")
 

@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.conditions import Watch
 from simkit.errors import InputError
-from simkit.runtime.state_hash import state_hash
-from simkit.scenario.run import open_scenario, run_scenario
-from simkit.scenario.scenario import Check, Scenario
+from simkit.run_spec import Check, Scenario
+from simkit.runtime.engine.snapshot import state_hash
+from simkit.testing.conditions import Watch
+from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 
 def results(sim: Any, seconds: float, *checks: Check, reason: str = "duration", **options: Any) -> list[Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from simkit.control.controllers import joint_trajectory
+from simkit.plugins.ros2_control.controllers import joint_trajectory
 from tests.control.perfect_joints import PerfectJoints, host, trajectory
 
 FOLLOW = "/arm_controller/follow_joint_trajectory"

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 import simkit
-from simkit.control.controller import Controller
-from simkit.control.hardware import Hardware, HardwareJoint
-from simkit.control.interfaces import InterfaceTable
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.plugins.ros2_control.controller import Controller
+from simkit.plugins.ros2_control.hardware import Hardware, HardwareJoint
+from simkit.plugins.ros2_control.interfaces import InterfaceTable
 
 PERIOD = 0.01  # [s]
 PHYSICS = f"<physics type='ode'><max_step_size>{PERIOD}</max_step_size></physics>"

@@ -10,9 +10,9 @@ import pytest
 from control_robots import opened, told
 
 import simkit
-from simkit.control.controller import Controller
 from simkit.errors import ParameterError
 from simkit.params import Params
+from simkit.plugins.ros2_control.controller import Controller
 
 
 class Tuned(Controller):

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from control_robots import ALL, arm, interfaces, opened, told
 
-from simkit.control.controllers import gripper_action
-from simkit.runtime.actions import GoalStatus
+from simkit.plugins.ros2_control.controllers import gripper_action
+from simkit.runtime.communication.action_server import GoalStatus
 from tests.control.perfect_joints import PerfectJoints, host
 
 ACTION = "/arm_controller/gripper_cmd"

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from simkit.control.diff_drive_options import read_drive_options
-from simkit.control.parameter_files import ParameterFiles, read_parameter_file
-from simkit.control.trajectory_options import read_timeout
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.plugins.ros2_control.diff_drive_options import read_drive_options
+from simkit.plugins.ros2_control.parameter_files import ParameterFiles, read_parameter_file
+from simkit.plugins.ros2_control.trajectory_options import read_timeout
 
 
 def node(folder: Path, text: str) -> tuple[Params, Diagnostics]:

@@ -7,9 +7,9 @@ from textwrap import dedent
 
 import pytest
 
-from simkit.control.parameter_files import ParameterFile, ParameterFiles, matches, read_parameter_file
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.plugins.ros2_control.parameter_files import ParameterFile, ParameterFiles, node_matches, read_parameter_file
 
 
 def read(folder: Path, text: str) -> tuple[ParameterFile | None, Diagnostics]:
@@ -68,7 +68,7 @@ def test_ros_2_layout_gives_each_node_its_parameters_with_their_lines(tmp_path: 
     ],
 )
 def test_patterns_of_node_names(pattern: str, name: str, fits: bool) -> None:
-    assert matches(pattern, name) is fits
+    assert node_matches(pattern, name) is fits
 
 
 @pytest.mark.parametrize(

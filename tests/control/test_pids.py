@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simkit.control.pids import Pids
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
+from simkit.plugins.ros2_control.joint_pids import JointPids
 
 
-def pid(**gains: Any) -> Pids:
-    return Pids.read(Params.from_dict({"a": gains}, "gains", Diagnostics()), ("a",))
+def pid(**gains: Any) -> JointPids:
+    return JointPids.read(Params.from_dict({"a": gains}, "gains", Diagnostics()), ("a",))
 
 
-def run(pids: Pids, errors: list[float], step: float = 0.1) -> list[float]:
+def run(pids: JointPids, errors: list[float], step: float = 0.1) -> list[float]:
     return [float(pids.update(np.array([e]), np.zeros(1), step)[0]) for e in errors]
 
 

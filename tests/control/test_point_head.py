@@ -11,10 +11,10 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.control.pointing import Neck, pixel_goal, pixel_ray
 from simkit.errors import InputError
+from simkit.plugins.ros2_control.head_pointing import HeadJoints, pixel_goal, pixel_ray
 from simkit.pose import Pose
-from simkit.runtime.actions import GoalStatus
+from simkit.runtime.communication.action_server import GoalStatus
 
 ACTION = "/head_controller/point_head_action"
 YAML = """
@@ -179,7 +179,7 @@ def test_what_cannot_be_looked_at_is_rejected_with_the_reason(sim: Any, goal: di
 
 
 def test_the_aim_of_two_crossing_axes_is_that_of_the_formula() -> None:
-    neck = Neck(
+    neck = HeadJoints(
         np.zeros((2, 3)),
         np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]),
         np.zeros(2),

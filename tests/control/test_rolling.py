@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simkit.control.rolling import lead
+from simkit.plugins.ros2_control.velocity_references import advance_references
 
 SLACK = 0.05  # [rad]
 
@@ -17,7 +17,7 @@ def led(
 ) -> Any:
     """Lags of the references and their speeds; joints are at 1 rad."""
     count = len(lags)
-    references, found = lead(
+    references, found = advance_references(
         [1.0 + lag for lag in lags],
         speeds,
         places=[1.0] * count,
@@ -70,7 +70,7 @@ def test_what_wheels_differ_by_from_the_motion_is_made_good_when_they_stop() -> 
 
 
 def test_an_effort_without_limit_leads_without_limit() -> None:
-    references, speeds = lead(
+    references, speeds = advance_references(
         [50.0],
         [1.0],
         places=[0.0],

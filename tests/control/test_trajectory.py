@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from simkit.control.trajectory import (
+from simkit.plugins.ros2_control.trajectory import (
     SECOND,
     Setpoint,
     Spline,
     TrajectoryPoint,
-    integrated,
-    shortest,
-    whole_turns,
+    integrate_points,
+    shortest_differences,
+    whole_turn_offset,
 )
 
 
@@ -89,9 +89,9 @@ def test_efforts_are_drawn_out_between_their_points() -> None:
 
 
 def test_velocities_are_summed_up_to_positions_where_none_are_given() -> None:
-    points = integrated(START, [point(1.0, None, [1.0, -1.0]), point(3.0, None, [1.0, -1.0])])
+    points = integrate_points(START, [point(1.0, None, [1.0, -1.0]), point(3.0, None, [1.0, -1.0])])
     assert [p.positions.tolist() for p in points if p.positions is not None] == [[0.5, 0.5], [2.5, -1.5]]
-    (only,) = integrated(START, [point(2.0, None, None, [1.0, 0.0])])
+    (only,) = integrate_points(START, [point(2.0, None, None, [1.0, 0.0])])
     assert only.velocities is not None and only.velocities.tolist() == [1.0, 0.0]
 
 
@@ -105,9 +105,9 @@ def test_each_joint_comes_to_rest_at_its_own_deceleration() -> None:
 
 def test_joints_that_turn_without_end_take_the_short_way() -> None:
     turning = np.array([True, False])
-    turns = whole_turns(np.array([6.0, 6.0]), np.array([0.1, 0.1]), turning)
+    turns = whole_turn_offset(np.array([6.0, 6.0]), np.array([0.1, 0.1]), turning)
     np.testing.assert_allclose(turns, [2 * np.pi, 0.0])
-    np.testing.assert_allclose(shortest(np.array([6.0, 6.0]), turning), [6.0 - 2 * np.pi, 6.0])
+    np.testing.assert_allclose(shortest_differences(np.array([6.0, 6.0]), turning), [6.0 - 2 * np.pi, 6.0])
 
 
 def test_a_time_has_the_same_bits_alone_and_among_those_that_are_worked_out_ahead() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.runtime.actions import GoalStatus
+from simkit.runtime.communication.action_server import GoalStatus
 from tests.control.perfect_joints import trajectory
 
 FOLLOW = "/arm_controller/follow_joint_trajectory"

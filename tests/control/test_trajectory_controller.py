@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from simkit.runtime.actions import GoalStatus
+from simkit.runtime.communication.action_server import GoalStatus
 from tests.control.followers import FOLLOW, TOPIC, arm, codes, send
 from tests.control.perfect_joints import trajectory
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from simkit.control.controllers import joint_trajectory_ros1
-from simkit.runtime.actions import GoalStatus
+from simkit.plugins.ros2_control.controllers import joint_trajectory_ros1
+from simkit.runtime.communication.action_server import GoalStatus
 from tests.control.followers import arm, codes, send
 from tests.control.perfect_joints import trajectory
 

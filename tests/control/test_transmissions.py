@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from control_robots import POSITIONS, arm, command, interfaces, opened, told
 
-from simkit.control.interfaces import EFFORT, POSITION, VELOCITY
-from simkit.control.transmissions import laws
 from simkit.diagnostics import Diagnostics
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.transmissions import transmission_laws
 from simkit.scene.actuation import Transmission, TransmissionEnd
 
 BOTH = "".join(f'<joint name="{j}">{interfaces(("position",))}</joint>' for j in ("j1", "j2"))
@@ -20,7 +20,7 @@ BOTH = "".join(f'<joint name="{j}">{interfaces(("position",))}</joint>' for j in
 def law(kind: str, actuators: tuple[float, ...], joints: tuple[float, ...], offsets: tuple[float, ...]) -> Any:
     ends = tuple(TransmissionEnd(f"j{i}", n, o) for i, (n, o) in enumerate(zip(joints, offsets, strict=True)))
     motors = tuple(TransmissionEnd(f"m{i}", n) for i, n in enumerate(actuators))
-    found = laws([Transmission("t", kind, kind, ends, motors)], ["j0", "j1"], Diagnostics())
+    found = transmission_laws([Transmission("t", kind, kind, ends, motors)], ["j0", "j1"], Diagnostics())
     return found[0]
 
 

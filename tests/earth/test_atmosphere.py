@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from simkit.earth.atmosphere import AirColumn, air_column
 from simkit.scene import Atmosphere
+from simkit.sensors.environment.atmosphere import AirColumn, air_column
 
 # Geometric height [m], temperature [K], pressure [Pa], density [kg/m3]: table I of the standard (NOAA-S/T 76-1562).
 TABLE = [

@@ -8,9 +8,9 @@ from datetime import date
 import numpy as np
 import pytest
 
-from simkit.earth.field import EarthField, MagneticModel, decimal_year, earth_model
-from simkit.earth.geodesy import Ellipsoid, PlaceOnPlanet, east_north_up
 from simkit.scene import SphericalCoordinates
+from simkit.sensors.environment.geodesy import Ellipsoid, WorldOnPlanet, east_north_up
+from simkit.sensors.environment.magnetic_field import EarthField, MagneticModel, decimal_year, magnetic_model
 
 WGS84 = Ellipsoid(6378137.0, 6356752.314245)
 
@@ -39,7 +39,7 @@ PUBLISHED = [
 def north_east_down(year: float, height: float, latitude: float, longitude: float) -> np.ndarray:
     """[nT], of degrees and metres."""
     at = math.radians(latitude), math.radians(longitude)
-    east, north, up = earth_model(year).at(*WGS84.cartesian(*at, height).tolist()) @ east_north_up(*at) * 1e9
+    east, north, up = magnetic_model(year).at(*WGS84.cartesian(*at, height).tolist()) @ east_north_up(*at) * 1e9
     return np.array((north, east, -up))
 
 
@@ -60,7 +60,7 @@ def test_at_the_poles_the_field_is_that_of_the_places_around_them(latitude: int)
 
 def test_the_field_has_no_sources_outside_the_core() -> None:
     """Divergence and curl vanish; a fault in any of the weights would show in one of them."""
-    model, step = earth_model(2027.3), 100.0
+    model, step = magnetic_model(2027.3), 100.0
     for at in np.random.default_rng(3).normal(size=(5, 3)):
         centre = at / np.linalg.norm(at) * 6.6e6
         slopes = np.array(
@@ -71,7 +71,7 @@ def test_the_field_has_no_sources_outside_the_core() -> None:
 
 
 def test_the_linear_pieces_are_the_field_to_a_hundredth_of_a_nanotesla() -> None:
-    field = EarthField(2025.0, PlaceOnPlanet(SphericalCoordinates(0.8, 0.1, 200.0, 0.7)))
+    field = EarthField(2025.0, WorldOnPlanet(SphericalCoordinates(0.8, 0.1, 200.0, 0.7)))
     for position in np.random.default_rng(1).uniform(-30e3, 30e3, (200, 3)):
         np.testing.assert_allclose(field.at(position), field.exactly_at(position), atol=1e-11)
     # where two pieces meet as well
@@ -81,7 +81,7 @@ def test_the_linear_pieces_are_the_field_to_a_hundredth_of_a_nanotesla() -> None
 
 @pytest.mark.parametrize("position", [(0.0, 0.0, 0.0), (1e-3, 0.0, 0.0), (0.0, 1e5, -2e6), (1e90, -1e90, 1e90)])
 def test_it_is_a_number_everywhere(position: tuple[float, float, float]) -> None:
-    assert np.isfinite(earth_model(2025.0).at(*position)).all()
+    assert np.isfinite(magnetic_model(2025.0).at(*position)).all()
 
 
 def test_dates_are_days_or_decimal_years() -> None:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from simkit.earth.geodesy import Ellipsoid, PlaceOnPlanet, east_north_up
 from simkit.scene import SphericalCoordinates
+from simkit.sensors.environment.geodesy import Ellipsoid, WorldOnPlanet, east_north_up
 
 WGS84 = Ellipsoid(6378137.0, 6356752.314245)
 MOON = Ellipsoid(1737400.0, 1737400.0)
@@ -56,7 +56,7 @@ def test_the_axes_of_a_place_are_a_right_handed_frame_with_up_along_the_normal()
 
 
 def test_the_heading_turns_x_from_east_towards_north() -> None:
-    place = PlaceOnPlanet(SphericalCoordinates(latitude=0.0, longitude=0.0, heading=math.pi / 2))
+    place = WorldOnPlanet(SphericalCoordinates(latitude=0.0, longitude=0.0, heading=math.pi / 2))
     latitude, longitude, _ = place.geodetic(np.array((1000.0, 0.0, 0.0)))
     assert latitude == pytest.approx(1000 / 6335439.327, rel=1e-6)  # the meridian's radius of curvature at the equator
     assert longitude == pytest.approx(0.0, abs=1e-15)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-import simkit.certify
+import simkit.testing.certify
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "certify.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
@@ -16,8 +16,10 @@ BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
 
 @pytest.mark.parametrize("text", BLOCKS)
 def test_a_block_runs(text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    in_this_process = functools.partial(simkit.certify.certify, apart=False)  # processes are shown in tests/certify
-    monkeypatch.setattr(simkit.certify, "certify", in_this_process)
+    in_this_process = functools.partial(
+        simkit.testing.certify.certify, apart=False
+    )  # processes are shown in tests/certify
+    monkeypatch.setattr(simkit.testing.certify, "certify", in_this_process)
     exec(compile(text, "certify.md", "exec"), {})
     assert len(capsys.readouterr().out.strip()) == 64  # the state hash, and no difference
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from simkit.cli import app
 from simkit.diagnostics import Diagnostics
-from simkit.loaders.xml import parse_text
+from simkit.loaders.resources.xml_reader import parse_text
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "writing_a_plugin.md"
 BLOCK = re.compile(

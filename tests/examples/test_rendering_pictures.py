@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from simkit.errors import RenderError
-from simkit.sensors.rendering import gl
+from simkit.sensors.cameras.rendering import gl_context
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "rendering"
 
@@ -18,7 +18,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "examples" / "rendering"
 @pytest.fixture
 def looks() -> ModuleType:
     try:
-        with gl.current():
+        with gl_context.current():
             pass
     except RenderError as error:
         pytest.skip(str(error))

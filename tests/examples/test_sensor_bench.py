@@ -18,8 +18,8 @@ import simkit
 from simkit import msgs
 from simkit.errors import RenderError
 from simkit.sensors import sensor_kinds
-from simkit.sensors.rendered import RenderedSensor
-from simkit.sensors.rendering import gl
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendering import gl_context
 
 ROOT = Path(__file__).resolve().parents[2]
 WORLD = ROOT / "worlds" / "sensor_bench.sdf"
@@ -28,14 +28,14 @@ DURATION = 1.0  # [s]
 
 def renders() -> bool:
     try:
-        with gl.current():
+        with gl_context.current():
             return True
     except RenderError:
         return False
 
 
 def is_heard(sensor: Any) -> bool:
-    return not isinstance(sensor, RenderedSensor) or renders()
+    return not isinstance(sensor, RenderedCamera) or renders()
 
 
 @pytest.fixture(scope="module")

@@ -10,11 +10,10 @@ from pathlib import Path
 import pytest
 
 import simkit
-from simkit.cli.driving.keys import DOWN, LEFT, RIGHT, UP
-from simkit.cli.driving.line import DriverLine
-from simkit.cli.driving.target import find_target
-from simkit.cli.driving.teleop import Teleop
-from simkit.cli.running.keys import RunKeys
+from simkit.cli.run_keys import RunKeys
+from simkit.cli.terminal.keyboard import DOWN, LEFT, RIGHT, UP
+from simkit.cli.terminal.teleop import Teleop, find_target
+from simkit.cli.terminal.teleop_display import DriverLine
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "teleop.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"^```sh\n(simkit run .*)\n```$", PAGE, re.MULTILINE)

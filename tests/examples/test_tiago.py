@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from simkit.errors import RenderError
-from simkit.sensors.rendering import gl
+from simkit.sensors.cameras.rendering import gl_context
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "tiago"
 
@@ -30,7 +30,7 @@ def script(name: str) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def renderer() -> None:
     try:
-        with gl.current():
+        with gl_context.current():
             pass
     except RenderError as error:
         pytest.skip(str(error))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from simkit.errors import RenderError
-from simkit.sensors.rendering import gl
+from simkit.sensors.cameras.rendering import gl_context
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "visual_servoing" / "servo.py"
 PYLON, RADIUS = np.array((1.7, 1.1)), 0.1
@@ -24,7 +24,7 @@ FOCAL = WIDTH / (2 * math.tan(FOV / 2))
 @pytest.fixture(scope="module")
 def servo() -> dict[str, Any]:
     try:
-        with gl.current():
+        with gl_context.current():
             pass
     except RenderError as error:
         pytest.skip(str(error))

@@ -10,9 +10,10 @@ from typer.testing import CliRunner
 
 from simkit import LoadError
 from simkit.cli import app
-from simkit.exercise import grade, grade_all, read_exercise
-from simkit.exercise.grade import labels
-from simkit.exercise.text import graded_json, graded_text, junit_cases
+from simkit.testing.scenarios import grading
+from simkit.testing.scenarios.exercise import read_exercise
+from simkit.testing.scenarios.grading import grade_all, short_labels
+from simkit.testing.scenarios.grading_report import grade_json, grade_text, junit_cases
 
 CART = """<sdf version="1.9"><world name="track"><model name="cart"><pose>0 0 0.05 0 0 0</pose><link name="body">
 <gravity>false</gravity><inertial><mass>1</mass></inertial></link></model></world></sdf>"""
@@ -62,22 +63,22 @@ def hand_in(folder: Path, body: str) -> Path:
 
 
 def test_each_run_and_check_gets_its_points_and_the_reason(folder):
-    graded = grade(read_exercise(folder / "push.yaml"), folder / "push.py")
+    graded = grading(read_exercise(folder / "push.yaml"), folder / "push.py")
     first, second = graded.outcomes
     assert [mark.points for mark in first.marks] == [2.0, 1.0]
     assert [mark.points for mark in second.marks] == [0.0, 1.0]
     assert (graded.points, graded.worth, graded.passed) == (4.0, 6.0, True)
     assert first.marks[0].time == pytest.approx(0.501, abs=0.002)
     assert (second.seed, second.printed) == (2, "here I am")
-    text = "\n".join(graded_text(graded))
+    text = "\n".join(grade_text(graded))
     assert "hint: push it" in text and "4 of 6 points (67%), 50% needed: passed" in text
     assert [case.failure is None for case in junit_cases(graded)] == [True, True, False, True]
-    assert json.loads(json.dumps(graded_json(graded)))["points"] == 4.0
+    assert json.loads(json.dumps(grade_json(graded)))["points"] == 4.0
 
 
 def test_a_plugin_that_raises_gets_the_line_that_did(folder):
     file = hand_in(folder, "self.cart.set_velocity((1 / 0, 0, 0))")
-    graded = grade(read_exercise(folder / "push.yaml"), file)
+    graded = grading(read_exercise(folder / "push.yaml"), file)
     assert not graded.passed and graded.points == 0.0
     assert "ZeroDivisionError" in graded.outcomes[0].error
     assert "push.py:10: self.cart.set_velocity((1 / 0, 0, 0))" in graded.outcomes[0].error
@@ -85,14 +86,14 @@ def test_a_plugin_that_raises_gets_the_line_that_did(folder):
 
 def test_a_plugin_that_ends_the_process_gets_nothing_and_harms_nobody(folder):
     file = hand_in(folder, "__import__('os')._exit(0)")
-    graded = grade(read_exercise(folder / "push.yaml"), file)
+    graded = grading(read_exercise(folder / "push.yaml"), file)
     assert graded.points == 0.0 and "its process ended with 0" in graded.outcomes[1].error
 
 
 def test_a_file_without_a_plugin_says_so(folder):
     file = folder / "push.py"
     file.write_text("x = 1\n")
-    graded = grade(read_exercise(folder / "push.yaml"), file)
+    graded = grading(read_exercise(folder / "push.yaml"), file)
     assert "SK-PLUGIN-008" in graded.outcomes[0].error and graded.points == 0.0
 
 
@@ -136,7 +137,7 @@ HOSTILE = {
     "raise simkit.InputError('mine', 'SK-X-001')": "push.py:",
     "self.advertise('/out', 'std_msgs/msg/String')": "a text is compared with a number",
     "import json; json.dumps = lambda found: '{}'": "its process ended with 0 in the middle of the run",
-    "import simkit.conditions.watch as w; w.Watch.results = lambda self, reason: ()": "its process ended with 0",
+    "import simkit.testing.conditions.watch as w; w.Watch.results = lambda self, reason: ()": "its process ended with 0",
 }
 
 
@@ -165,4 +166,4 @@ def test_a_hand_in_that_misbehaves_costs_its_own_points_and_nobody_elses(folder,
 
 def test_files_of_one_name_are_told_apart():
     files = [Path("a/x.py"), Path("b/x.py"), Path("c/a/x.py"), Path("y.py"), None]
-    assert labels(files) == ["a_x_1", "b_x", "a_x_2", "y", ""]
+    assert short_labels(files) == ["a_x_1", "b_x", "a_x_2", "y", ""]

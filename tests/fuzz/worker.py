@@ -117,7 +117,7 @@ def printed(found: list[Any]) -> None:
     """As `simkit check` prints it."""
     from rich.console import Console
 
-    from simkit.cli.console import print_diagnostics
+    from simkit.cli.terminal.output import print_diagnostics
 
     stream = io.TextIOWrapper(io.BytesIO(), "utf-8", errors="replace")
     print_diagnostics(found, verbose=True, console=Console(file=stream, highlight=False, markup=False, emoji=False))
@@ -127,7 +127,7 @@ def printed(found: list[Any]) -> None:
 
 def loaded(sim: Any) -> dict[str, str]:
     """Looks at what was compiled, says what the physics lint says, and steps."""
-    from simkit.lint import lint
+    from simkit.compiler.lint import lint
 
     bad = numbers_that_are_none(sim.mj_model)
     if bad:
@@ -142,10 +142,10 @@ def loaded(sim: Any) -> dict[str, str]:
 
 def unreadable(sim: Any) -> str:
     """A sensor, not a drawn one, whose reading has a number that is none; empty where all are fine."""
-    from simkit.sensors.rendered import RenderedSensor
+    from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
     for sensor in sim.sensors.values():
-        if isinstance(sensor, RenderedSensor):
+        if isinstance(sensor, RenderedCamera):
             continue
         for message in (sensor.latest, sensor.truth):
             if re.search(r"\bnan\b", str(message)):
@@ -166,7 +166,7 @@ def numbers_that_are_none(model: Any) -> str:
 def commanded(file: Path) -> dict[str, str]:
     """A script of commands, sent to a model that listens."""
     import simkit
-    from simkit.sinks.commands import Commands, read_script
+    from simkit.recording.commands import Commands, read_script
 
     try:
         with simkit.load(STAND) as sim:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from simkit.golden.record import Column, Pictures, Record, States, Stream
-from simkit.scenario import Scenario, Tolerance
+from simkit.testing.run_record.record import Column, Pictures, RunRecord, States, Stream
+from simkit.testing.scenarios import Scenario, Tolerance
 
 SCAN = "sensor_msgs/msg/LaserScan"
 IMU = "sensor_msgs/msg/Imu"
@@ -90,8 +90,8 @@ def states(
 
 def record(
     *streams: Stream, machine: Mapping[str, str] = MACHINE, tolerances: tuple[Tolerance, ...] = (), **more: Any
-) -> Record:
+) -> RunRecord:
     """A run that gave these streams."""
     options = {key: more.pop(key) for key in ("state", "model") if key in more}
     scenario = Scenario("world.sdf", 2.0, tolerances=tolerances, **options)
-    return Record(scenario, dict(machine), {s.topic: s for s in streams}, more.pop("states", states()), **more)
+    return RunRecord(scenario, dict(machine), {s.topic: s for s in streams}, more.pop("states", states()), **more)

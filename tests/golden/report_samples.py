@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from simkit.conditions import CheckResult
-from simkit.golden.difference import Cause, Comparison, Difference, Explanation, Verdict
-from simkit.golden.record import Column, Pictures, Record, States, Stream
-from simkit.golden.statistics import Statistics
-from simkit.scenario import Check, Scenario
+from simkit.testing.conditions import CheckResult
+from simkit.testing.golden.compare.difference import Cause, Comparison, Difference, Explanation, Verdict
+from simkit.testing.run_record.noise_statistics import NoiseStatistics
+from simkit.testing.run_record.record import Column, Pictures, RunRecord, States, Stream
+from simkit.testing.scenarios import Check, Scenario
 
 SCAN, ODOM, IMU, CAMERA, DEPTH = "/scan", "/odom", "/imu", "/camera/image", "/camera/depth"
 
 
-def record(shift: float = 0.0, *, seconds: float = 4.0, extra: int = 0) -> Record:
+def record(shift: float = 0.0, *, seconds: float = 4.0, extra: int = 0) -> RunRecord:
     """A run in which everything is off by `shift` from 2 s on."""
     streams = {
         s.topic: s for s in (_scan(shift, seconds), _odom(shift, seconds + extra), _imu(shift), *_cameras(shift))
@@ -36,7 +36,7 @@ def record(shift: float = 0.0, *, seconds: float = 4.0, extra: int = 0) -> Recor
     )
     scenario = Scenario("worlds/drive.sdf", 4.0, 3, overrides=("model::link.mass=2",))
     printed = {"simkit": "0.9", "mujoco": "4.0.0" if not shift else "4.0.1"}
-    return Record(scenario, printed, streams, states, diagnostics={"SK-SDF-001": 1 + (shift != 0)})
+    return RunRecord(scenario, printed, streams, states, diagnostics={"SK-SDF-001": 1 + (shift != 0)})
 
 
 def difference(topic: str, field: str, kind: Any, words: str, **more: Any) -> Difference:
@@ -99,7 +99,7 @@ def _imu(shift: float) -> Stream:
     deviation = 0.01 + shift / 6
     quantiles = np.tile(np.linspace(-3, 3, 65) * deviation, (3, 1))
     taus = np.array([0.01, 0.1, 1.0])
-    statistics = Statistics(
+    statistics = NoiseStatistics(
         800, np.zeros(3), np.full(3, deviation), quantiles, taus, np.tile(deviation / np.sqrt(taus), (3, 1))
     )
     return Stream(IMU, "sensor_msgs/msg/Imu", _times(200.0, 4.0), statistics={"linear_acceleration": statistics})

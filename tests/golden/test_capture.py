@@ -11,22 +11,22 @@ from falling import ball
 
 import simkit
 from simkit.errors import InputError
-from simkit.golden.capture import run_record
-from simkit.golden.record import Record
-from simkit.runtime.state_hash import state_hash
-from simkit.scenario import Scenario
-from simkit.scenario.run import open_scenario, run_scenario
+from simkit.runtime.engine.snapshot import state_hash
+from simkit.testing.run_record.record import RunRecord
+from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.scenarios import Scenario
+from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 
 @pytest.fixture(scope="module")
-def record(tmp_path_factory: pytest.TempPathFactory) -> Record:
+def record(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
     scenario = Scenario(str(ball(tmp_path_factory.mktemp("ball"))), duration=1.0)
     found = run_record(scenario)
     found.simulation.close()
     return found
 
 
-def test_every_topic_has_its_numbers_times_and_digest(record: Record) -> None:
+def test_every_topic_has_its_numbers_times_and_digest(record: RunRecord) -> None:
     imu = next(s for s in record.streams.values() if s.type_name == "sensor_msgs/msg/Imu")
     # at 100 Hz over one second, and the reading after the first step
     assert len(imu.times_ns) == 101
@@ -38,7 +38,7 @@ def test_every_topic_has_its_numbers_times_and_digest(record: Record) -> None:
     assert len(scan.digest) == 64 and len(scan.chunks) == 2
 
 
-def test_a_digest_is_that_of_the_messages_that_a_subscriber_gets(tmp_path: Path, record: Record) -> None:
+def test_a_digest_is_that_of_the_messages_that_a_subscriber_gets(tmp_path: Path, record: RunRecord) -> None:
     topic = next(s.topic for s in record.streams.values() if s.type_name == "sensor_msgs/msg/Imu")
     with simkit.load(str(ball(tmp_path))) as sim:
         heard = sim.subscribe(topic)
@@ -47,14 +47,14 @@ def test_a_digest_is_that_of_the_messages_that_a_subscriber_gets(tmp_path: Path,
     assert record.streams[topic].digest == whole
 
 
-def test_recording_changes_nothing_of_the_run(tmp_path: Path, record: Record) -> None:
+def test_recording_changes_nothing_of_the_run(tmp_path: Path, record: RunRecord) -> None:
     scenario = Scenario(str(ball(tmp_path)), duration=1.0)
     with open_scenario(scenario) as sim:
         run_scenario(scenario, sim)
         assert state_hash(sim) == record.states.digest
 
 
-def test_there_is_a_mark_for_every_tick_and_a_state_now_and_then(record: Record) -> None:
+def test_there_is_a_mark_for_every_tick_and_a_state_now_and_then(record: RunRecord) -> None:
     states = record.states
     assert states.marks.shape == states.inputs.shape == (1000,)
     # a ball that falls is elsewhere at each tick: equal bytes come by chance, about one of 256
@@ -91,7 +91,7 @@ class _Pusher(simkit.WorldPlugin):
             self.sim.model("ball").link("l").apply_wrench((1.0, 0.0, 0.0))
 
 
-def test_the_order_of_models_in_a_file_shows_nowhere(tmp_path: Path, record: Record) -> None:
+def test_the_order_of_models_in_a_file_shows_nowhere(tmp_path: Path, record: RunRecord) -> None:
     text = ball(tmp_path).read_text()
     start, stop = text.index('<model name="wall">'), text.index("</world>")
     wall = text[start:stop]

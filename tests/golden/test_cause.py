@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
-from simkit.golden.capture import run_record
-from simkit.golden.cause import explain
-from simkit.golden.compare import compare
-from simkit.golden.difference import Explanation
-from simkit.golden.record import Record
-from simkit.scenario import Scenario
+from simkit.testing.golden.cause import explain
+from simkit.testing.golden.compare.difference import Explanation
+from simkit.testing.golden.compare.runs import compare
+from simkit.testing.run_record.record import RunRecord
+from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.scenarios import Scenario
 
 WORLD = """<sdf version="1.12"><world name="w">
   <physics name="p" type="x"><max_step_size>0.002</max_step_size></physics>
@@ -58,7 +58,7 @@ def scenario(folder: Path, text: str, **more: Any) -> Scenario:
     return replace(Scenario("w.sdf", duration=0.5, folder=folder), **more)
 
 
-def recorded(what: Scenario) -> Record:
+def recorded(what: Scenario) -> RunRecord:
     record = run_record(what)
     record.simulation.close()
     record.simulation = None
@@ -66,7 +66,7 @@ def recorded(what: Scenario) -> Record:
 
 
 @pytest.fixture(scope="module")
-def golden(tmp_path_factory: pytest.TempPathFactory) -> Record:
+def golden(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
     return recorded(scenario(tmp_path_factory.mktemp("golden"), WORLD))
 
 
@@ -74,7 +74,7 @@ Explained = Callable[..., Explanation]
 
 
 @pytest.fixture
-def explained(golden: Record, tmp_path: Path) -> Explained:
+def explained(golden: RunRecord, tmp_path: Path) -> Explained:
     """What is said of the golden world with texts in it replaced."""
 
     def of(*replaced: tuple[str, str], count: int = 1, budget: float = 30.0) -> Explanation:
@@ -191,7 +191,7 @@ def test_the_first_tick_and_quantity_are_those_of_the_change(explained: Explaine
     assert "the same was put in" in found.lines[-1]
 
 
-def test_a_seed_is_named(golden: Record, tmp_path: Path) -> None:
+def test_a_seed_is_named(golden: RunRecord, tmp_path: Path) -> None:
     run = recorded(scenario(tmp_path, WORLD, seed=1))
     found = explain(golden, run, compare(golden, run))
     assert (found.causes[0].words, found.causes[0].proven) == ("scenario: seed 0 → 1", True)

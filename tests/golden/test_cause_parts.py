@@ -10,42 +10,42 @@ import pytest
 
 import simkit
 from simkit.build import read_scene
-from simkit.golden.cause.changes import changes_of
-from simkit.golden.cause.edits import model_edits
-from simkit.golden.cause.putback import ABSENT, CannotPutBack, files_in, put_back
-from simkit.golden.cause.search import effective
-from simkit.golden.cause.ticks import parting, shown
-from simkit.golden.leaves import leaves_of_world
-from simkit.golden.record import States
-from simkit.runtime.state_hash import state_hash
+from simkit.runtime.engine.snapshot import state_hash
 from simkit.scene import SceneWorld
+from simkit.testing.golden.cause.changes import find_changes
+from simkit.testing.golden.cause.explanation import find_effective_changes
+from simkit.testing.golden.cause.first_tick import distinct_digits, first_different_tick
+from simkit.testing.golden.cause.world_patch import ABSENT, CannotPatch, files_named_by, patch_world
+from simkit.testing.golden.compare.world_edits import model_edits
+from simkit.testing.run_record.record import States
+from simkit.testing.run_record.world_values import values_of_world
 
 
 @pytest.mark.parametrize("name", ["turtlebot3_world", "sensor_bench", "simple_office_with_people"])
 def test_a_world_can_be_made_of_its_leaves_alone(name: str) -> None:
     world = read_scene(name)[0].world
-    leaves, _ = leaves_of_world(world)
+    leaves, _ = values_of_world(world)
     nothing = SceneWorld()
-    empty, _ = leaves_of_world(nothing)
-    made = put_back(nothing, empty, {**dict.fromkeys(empty, ABSENT), **leaves}, files_in(world))
-    assert leaves_of_world(made)[0] == leaves
+    empty, _ = values_of_world(nothing)
+    made = patch_world(nothing, empty, {**dict.fromkeys(empty, ABSENT), **leaves}, files_named_by(world))
+    assert values_of_world(made)[0] == leaves
 
 
 def test_a_world_made_of_its_leaves_runs_to_the_same_bits() -> None:
     with simkit.load("turtlebot3_world") as sim:
-        leaves, _ = leaves_of_world(sim.world)
+        leaves, _ = values_of_world(sim.world)
         sim.run(0.2)
         wanted = state_hash(sim)
     radius = "models[turtlebot3].links[wheel_left_link].collisions[tread].geometry.radius"
     other = {radius: leaves[radius] * 1.01}
-    with simkit.load("turtlebot3_world", change_world=lambda world: put_back(world, leaves, other)) as sim:
-        changed, _ = leaves_of_world(sim.world)
+    with simkit.load("turtlebot3_world", change_world=lambda world: patch_world(world, leaves, other)) as sim:
+        changed, _ = values_of_world(sim.world)
         assert {path for path in leaves if leaves[path] != changed[path]} == {radius}
         sim.run(0.2)
         assert state_hash(sim) != wanted
 
     def there_and_back(world: SceneWorld) -> SceneWorld:
-        return put_back(put_back(world, leaves, other), changed, {radius: leaves[radius]})
+        return patch_world(patch_world(world, leaves, other), changed, {radius: leaves[radius]})
 
     with simkit.load("turtlebot3_world", change_world=there_and_back) as sim:
         sim.run(0.2)
@@ -54,10 +54,10 @@ def test_a_world_made_of_its_leaves_runs_to_the_same_bits() -> None:
 
 def test_what_was_in_a_file_that_is_not_there_any_more_cannot_be_put_back() -> None:
     world = read_scene("turtlebot3_world")[0].world
-    leaves, _ = leaves_of_world(world)
+    leaves, _ = values_of_world(world)
     path = next(path for path in leaves if path.endswith("geometry.file"))
-    with pytest.raises(CannotPutBack):
-        put_back(world, leaves, {path: "0123456789abcdef (10 bytes)"})
+    with pytest.raises(CannotPatch):
+        patch_world(world, leaves, {path: "0123456789abcdef (10 bytes)"})
 
 
 @pytest.mark.parametrize(
@@ -66,21 +66,21 @@ def test_what_was_in_a_file_that_is_not_there_any_more_cannot_be_put_back() -> N
 @pytest.mark.parametrize("value", [3.0, "down", [1.0], [], {"a": 1}, [["x"]]])
 def test_leaves_that_somebody_tampered_with_are_no_traceback(path: str, value: object) -> None:
     world = read_scene("turtlebot3_world")[0].world
-    leaves, _ = leaves_of_world(world)
-    with suppress(CannotPutBack):
-        put_back(world, leaves, {path: value})
+    leaves, _ = values_of_world(world)
+    with suppress(CannotPatch):
+        patch_world(world, leaves, {path: value})
     golden = {**leaves, path: value}
-    changes = changes_of(model_edits(golden, leaves, {}), golden, leaves)
+    changes = find_changes(model_edits(golden, leaves, {}), golden, leaves)
     assert [change.path for change in changes] == [path]
 
 
 def test_leaves_that_are_nothing_of_the_kind_are_no_traceback() -> None:
-    leaves, places = leaves_of_world(read_scene("turtlebot3_world")[0].world)
+    leaves, places = values_of_world(read_scene("turtlebot3_world")[0].world)
     odd = [None, "", [], "x", 3.0, [1.0, "a"], [[1.0]], True, {"a": [1]}, [0.0] * 7]
     for start in range(5):
         golden = {p: odd[n % len(odd)] if (n + start) % 5 == 0 else v for n, (p, v) in enumerate(leaves.items())}
         golden.update({"models[": 1.0, "]": 2.0, "models[a]": "x", "": 3.0, ".": 1.0, "links[[": [1.0]})
-        assert changes_of(model_edits(golden, leaves, places), golden, leaves)
+        assert find_changes(model_edits(golden, leaves, places), golden, leaves)
 
 
 @pytest.mark.parametrize("needed", [{0}, {3}, {1, 6}, {2, 3, 4}, {0, 7}])
@@ -91,14 +91,14 @@ def test_the_changes_that_matter_are_found_in_few_runs(needed: set[int]) -> None
         asked.add(back)
         return needed <= back
 
-    found = effective(range(8), same)
+    found = find_effective_changes(range(8), same)
     assert set(found.needed) == needed
     assert set(found.idle) == set(range(8)) - needed
     assert len(asked) <= 2 + 2 * len(needed) * 4
 
 
 def test_where_no_change_helps_nothing_is_blamed() -> None:
-    found = effective(range(3), lambda back: False)
+    found = find_effective_changes(range(3), lambda back: False)
     assert (found.needed, found.idle, found.all_back) == ([], [], False)
 
 
@@ -121,7 +121,7 @@ def states(marks: list[int], inputs: list[int], values: list[list[float]]) -> St
 def test_the_first_tick_is_that_of_the_first_mark_that_differs() -> None:
     a = states([1, 2, 3, 4], [0, 0, 0, 0], [[0.0, 1.0], [1.0, 1.0]])
     b = states([1, 2, 9, 9], [0, 0, 0, 0], [[0.0, 1.0], [1.0, 1.5]])
-    found = parting(a, b)
+    found = first_different_tick(a, b)
     assert found is not None
     assert (found.tick, found.is_put_in, found.quantity) == (3, False, "q1 1 → 1.5 at t = 0.04 s")
     assert "the same was put in" in found.words
@@ -130,7 +130,7 @@ def test_the_first_tick_is_that_of_the_first_mark_that_differs() -> None:
 def test_what_is_put_in_comes_before_what_follows_from_it() -> None:
     a = states([1, 2, 3, 4], [0, 0, 0, 0], [[0.0], [1.0]])
     b = states([1, 2, 9, 9], [0, 0, 7, 7], [[0.0], [2.0]])
-    found = parting(a, b)
+    found = first_different_tick(a, b)
     assert found is not None and found.is_put_in
     assert found.words.startswith("what plugins and commands put in is other first at tick 3 (t = 0.03 s)")
 
@@ -138,14 +138,14 @@ def test_what_is_put_in_comes_before_what_follows_from_it() -> None:
 def test_runs_that_start_elsewhere_are_said_to() -> None:
     a = states([1, 2], [0, 0], [[0.0], [1.0]])
     b = states([5, 6], [0, 0], [[0.5], [1.0]])
-    found = parting(a, b)
+    found = first_different_tick(a, b)
     assert found is not None and found.tick == 0
     assert found.words == "the run starts in another state: q0 0 → 0.5"
 
 
 def test_equal_runs_do_not_part() -> None:
     a = states([1, 2], [0, 0], [[0.0], [1.0]])
-    assert parting(a, replace(a)) is None
+    assert first_different_tick(a, replace(a)) is None
 
 
 @pytest.mark.parametrize(
@@ -159,4 +159,4 @@ def test_equal_runs_do_not_part() -> None:
     ],
 )
 def test_numbers_have_the_digits_that_tell_them_apart(a: float, b: float, words: str) -> None:
-    assert shown(a, b) == words
+    assert distinct_digits(a, b) == words

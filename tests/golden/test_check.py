@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 
 from simkit.cli import app
 from simkit.errors import InputError
-from simkit.golden.check import check_golden
-from simkit.golden.store import history_of, read_golden
+from simkit.testing.golden.check import check_golden
+from simkit.testing.golden.store import read_golden, read_history
 
 HEAVY = ("<radius>0.1</radius>", "<radius>0.101</radius>")
 
@@ -97,7 +97,7 @@ def test_a_blessing_needs_a_reason_and_keeps_it(golden: Path, tmp_path: Path) ->
         check_golden(golden, bless=" ")
     code, said = simkit("golden", "check", golden, "--bless", "the ball was measured")
     assert code == 0 and "golden now" in said
-    history = history_of(golden)
+    history = read_history(golden)
     assert [one["reason"] for one in history] == ["recorded", "the ball was measured"]
     assert history[1]["changed"] and history[1]["mujoco"]
     assert simkit("golden", "check", golden)[0] == 0

@@ -14,10 +14,10 @@ import pytest
 
 import simkit
 from simkit.errors import InputError
-from simkit.golden.in_tests import Place, SensorRegression, safe_name
-from simkit.golden.store import read_golden
 from simkit.runtime import Simulation
-from simkit.scenario import Scenario, Tolerance
+from simkit.testing.golden.pytest_fixture import GoldenLocation, SensorRegression, safe_name
+from simkit.testing.golden.store import read_golden
+from simkit.testing.scenarios import Scenario, Tolerance
 
 ROOT = Path(__file__).parents[2]
 PUCK = """<sdf version="1.9"><world name="slide">
@@ -31,7 +31,7 @@ PUCK = """<sdf version="1.9"><world name="slide">
 TESTS = """
 import pytest
 from simkit import WorldPlugin
-from simkit.scenario import Scenario
+from simkit.testing.scenarios import Scenario
 
 
 class Push(WorldPlugin):
@@ -192,7 +192,7 @@ def regression(tmp_path: Path) -> SensorRegression:
         sim.close()
 
     (tmp_path / "puck.sdf").write_text(PUCK)
-    place = Place(tmp_path / "golden" / "test_x", "test_y", tmp_path, "test_x.py::test_y", reason="new")
+    place = GoldenLocation(tmp_path / "golden" / "test_x", "test_y", tmp_path, "test_x.py::test_y", reason="new")
     return SensorRegression(place, keep)
 
 
@@ -216,7 +216,7 @@ def test_tolerances_are_given_in_one_argument(
 def test_a_tolerance_in_numbers_counts_on_the_same_machine_too(tmp_path: Path) -> None:
     def judged(mass: str, reason: str | None = None, **more: Any) -> None:
         (tmp_path / "puck.sdf").write_text(PUCK.replace("<mass>1</mass>", f"<mass>{mass}</mass>"))
-        place = Place(tmp_path / "golden" / "test_x", "test_y", tmp_path, "test_x.py::test_y", reason=reason)
+        place = GoldenLocation(tmp_path / "golden" / "test_x", "test_y", tmp_path, "test_x.py::test_y", reason=reason)
         regression = SensorRegression(place, lambda sim, label: sim.close())
         scenario = Scenario("puck.sdf", duration=0.05)
         with simkit.load(tmp_path / "puck.sdf", plugins=[_Push()]) as sim, regression.of(sim, **more):

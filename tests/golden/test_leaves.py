@@ -8,14 +8,14 @@ import pytest
 from falling import ball
 
 import simkit
-from simkit.golden.fields import fields_of_model
-from simkit.golden.leaves import leaves_of, split_path
-from simkit.golden.sources import sources_of
+from simkit.testing.run_record.model_fields import fields_of_model
+from simkit.testing.run_record.source_files import source_hashes
+from simkit.testing.run_record.world_values import split_path, values_of_simulation
 
 
 def leaves(path: Path) -> tuple[dict[str, object], dict[str, str]]:
     with simkit.load(str(path)) as sim:
-        return leaves_of(sim)
+        return values_of_simulation(sim)
 
 
 def test_a_value_is_found_by_names_with_its_place(tmp_path: Path) -> None:
@@ -96,5 +96,5 @@ def test_code_of_a_plugin_and_content_of_a_mesh_are_sources(tmp_path: Path) -> N
         ("</world>", '<plugin filename="breeze.py" name="Breeze"/></world>'),
     )
     with simkit.load(str(path), plugin_paths=[tmp_path]) as sim:
-        found = sources_of(sim)
+        found = source_hashes(sim)
     assert set(found) == {"tri.stl", "breeze.py"}

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from simkit import msgs
-from simkit.golden.order import in_order
+from simkit.testing.run_record.run_recorder import sort_message
 
 TF = "tf2_msgs/msg/TFMessage"
 
@@ -21,29 +21,29 @@ def frame(child: str, parent: str, x: float = 0.0) -> dict[str, Any]:
 def test_transforms_are_by_child_then_parent_and_equal_ones_keep_their_order() -> None:
     message = msgs.make(TF, transforms=[frame("b", "o"), frame("a", "z"), frame("a", "o", 2.0), frame("a", "o", 1.0)])
     before = msgs.serialize(message)
-    found = in_order(message, TF)
+    found = sort_message(message, TF)
     names = [(t.child_frame_id, t.header.frame_id, t.transform.translation.x) for t in found.transforms]
     assert names == [("a", "o", 2.0), ("a", "o", 1.0), ("a", "z", 0.0), ("b", "o", 0.0)]
     assert msgs.serialize(message) == before
-    assert in_order(found, TF) is found
+    assert sort_message(found, TF) is found
     other = msgs.make(TF, transforms=[frame("a", "o", 2.0), frame("b", "o"), frame("a", "o", 1.0), frame("a", "z")])
-    assert msgs.serialize(in_order(other, TF)) == msgs.serialize(found)
+    assert msgs.serialize(sort_message(other, TF)) == msgs.serialize(found)
 
 
 def test_joints_of_a_model_stay_in_their_order() -> None:
     kind = "sensor_msgs/msg/JointState"
     message = msgs.make(kind, name=["wheel", "arm"], position=[1.0, 2.0])
-    assert in_order(message, kind) is message
+    assert sort_message(message, kind) is message
 
 
 def test_states_of_all_models_are_by_name() -> None:
     kind = "gazebo_msgs/msg/ModelStates"
     poses = [{"position": {"x": float(i)}} for i in range(3)]
     message = msgs.make(kind, name=["c", "a", "b"], pose=poses, twist=[{}, {}, {}])
-    found = in_order(message, kind)
+    found = sort_message(message, kind)
     assert list(found.name) == ["a", "b", "c"] and [p.position.x for p in found.pose] == [1.0, 2.0, 0.0]
     odd = msgs.make(kind, name=["c", "a"], pose=poses, twist=[])
-    assert in_order(odd, kind) is odd
+    assert sort_message(odd, kind) is odd
     assert len(msgs.serialize(found)) == len(msgs.serialize(message))
 
 
@@ -51,7 +51,7 @@ def test_contacts_are_by_what_touches() -> None:
     kind = "ros_gz_interfaces/msg/Contacts"
     pairs = [("b", "a"), ("a", "c"), ("a", "b")]
     contacts = [{"collision1": {"name": a, "id": 4}, "collision2": {"name": b, "id": 10}} for a, b in pairs]
-    found = in_order(msgs.make(kind, contacts=contacts), kind)
+    found = sort_message(msgs.make(kind, contacts=contacts), kind)
     assert [(c.collision1.name, c.collision2.name) for c in found.contacts] == sorted(pairs)
     assert {c.collision1.id for c in found.contacts} == {0}, "an id counts the parts of the file"
 
@@ -72,7 +72,7 @@ def test_points_of_a_contact_are_in_one_order_whichever_the_engine_began_with(fi
         "depths": [0.001 * n for _, _, n in turned],
         "wrenches": [{"body_1_wrench": {"force": {"z": n}}} if is_gz else {"force": {"z": n}} for *_, n in turned],
     }  # fmt: skip
-    found = getattr(in_order(msgs.make(kind, **{part: [contact]}), kind), part)[0]
+    found = getattr(sort_message(msgs.make(kind, **{part: [contact]}), kind), part)[0]
     assert [(p.x, p.y) for p in getattr(found, f"{prefix}positions")] == [corners[i] for i in (2, 1, 3, 0)]
     assert [n.z for n in getattr(found, f"{prefix}normals")] == [3.0, 2.0, 4.0, 1.0]
     assert list(found.depths) == [0.002, 0.001, 0.003, 0.0]

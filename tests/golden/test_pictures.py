@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from made_up import IMAGE, OTHER_MACHINE, hashed, record, stream, times
 
-from simkit.golden.compare import compare
-from simkit.golden.difference import Verdict
-from simkit.golden.pictures import TILE, shrink, ssim, tile_hashes
-from simkit.golden.record import Pictures, Stream
-from simkit.golden.report.images import picture_figure
-from simkit.scenario import Tolerance
+from simkit.testing.golden.compare.difference import Verdict
+from simkit.testing.golden.compare.runs import compare
+from simkit.testing.golden.report.image_figure import picture_figure
+from simkit.testing.run_record.pictures import TILE, shrink, structural_similarity, tile_hashes
+from simkit.testing.run_record.record import Pictures, Stream
+from simkit.testing.scenarios import Tolerance
 
 
 def scene(shift: int = 0, brighter: int = 0, *, width: int = 160, height: int = 96) -> Any:
@@ -68,12 +68,12 @@ def test_a_pixel_changes_the_hash_of_its_tile_alone() -> None:
 
 def test_similarity_is_one_for_equal_pictures_and_less_the_more_is_other() -> None:
     image = scene()
-    assert ssim(image, image) == pytest.approx(1.0, abs=1e-12)
-    assert 1.0 > ssim(image, scene(2)) > ssim(image, scene(10)) > 0.0
+    assert structural_similarity(image, image) == pytest.approx(1.0, abs=1e-12)
+    assert 1.0 > structural_similarity(image, scene(2)) > structural_similarity(image, scene(10)) > 0.0
     flat = np.full((64, 64), 100, np.uint8)
     # two flat pictures: only the luminance term is left, (2 a b + c) / (a² + b² + c) with c = (0.01 * 255)²
     expected = (2 * 100 * 120 + 6.5025) / (100**2 + 120**2 + 6.5025)
-    assert ssim(flat, flat + 20) == pytest.approx(expected, abs=1e-9)
+    assert structural_similarity(flat, flat + 20) == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_part_that_moved_is_placed_and_dated() -> None:

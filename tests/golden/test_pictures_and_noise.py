@@ -9,11 +9,11 @@ import pytest
 from falling import ball
 
 from simkit import msgs
-from simkit.golden.capture import run_record
-from simkit.golden.record import Stream
-from simkit.golden.store import read_golden, write_golden
-from simkit.golden.taking import image_of, points_of, taker_of
-from simkit.scenario import Scenario, Tolerance
+from simkit.testing.golden.store import read_golden, write_golden
+from simkit.testing.run_record.message_recorder import message_recorder_for, pixels_of_image, points_of_cloud
+from simkit.testing.run_record.record import Stream
+from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.scenarios import Scenario, Tolerance
 
 
 def picture(number: int) -> object:
@@ -25,7 +25,7 @@ def picture(number: int) -> object:
 
 @pytest.mark.parametrize(("count", "every"), [(5, 1), (32, 1), (33, 2), (100, 4)])
 def test_of_many_pictures_every_second_or_fourth_is_kept(count: int, every: int) -> None:
-    taker = taker_of(Scenario("", picture=16), None, "/image", "sensor_msgs/msg/Image")  # type: ignore[arg-type]
+    taker = message_recorder_for(Scenario("", picture=16), None, "/image", "sensor_msgs/msg/Image")  # type: ignore[arg-type]
     for number in range(count):
         taker.take(picture(number))
     stream = Stream("/image", "sensor_msgs/msg/Image", np.arange(count))
@@ -45,9 +45,9 @@ def test_pixels_are_read_with_padding_and_either_order_of_bytes() -> None:
     image = msgs.make(
         "sensor_msgs/msg/Image", height=2, width=3, encoding="16UC1", step=10, is_bigendian=1, data=rows.reshape(-1)
     )
-    assert image_of(image)[0, :, 0].tolist() == [1, 0x0203, 0x0405]
-    assert image_of(msgs.make("sensor_msgs/msg/Image", height=9, width=9, encoding="rgb8", step=27)) is None
-    assert image_of(msgs.make("sensor_msgs/msg/Image", encoding="made_up")) is None
+    assert pixels_of_image(image)[0, :, 0].tolist() == [1, 0x0203, 0x0405]
+    assert pixels_of_image(msgs.make("sensor_msgs/msg/Image", height=9, width=9, encoding="rgb8", step=27)) is None
+    assert pixels_of_image(msgs.make("sensor_msgs/msg/Image", encoding="made_up")) is None
 
 
 def test_points_are_read_by_their_fields() -> None:
@@ -57,7 +57,7 @@ def test_points_are_read_by_their_fields() -> None:
         "sensor_msgs/msg/PointCloud2", height=1, width=2, fields=fields, point_step=16, row_step=32,
         data=np.frombuffer(data, np.uint8),
     )  # fmt: skip
-    assert points_of(cloud)["y"].tolist() == [1.0, 5.0]
+    assert points_of_cloud(cloud)["y"].tolist() == [1.0, 5.0]
 
 
 def test_statistics_stand_in_the_place_of_samples(tmp_path: Path) -> None:

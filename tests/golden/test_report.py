@@ -11,11 +11,11 @@ import pytest
 from lxml import etree
 from report_samples import CAMERA, SCAN, difference, failing, passing, record
 
-from simkit.golden.difference import Cause, Comparison, Explanation, Verdict
-from simkit.golden.record import Column
-from simkit.golden.report import junit_cases, text_report, write_html
-from simkit.golden.report.html import page
-from simkit.golden.report.svg import Line, chart, thinned
+from simkit.testing.golden.compare.difference import Cause, Comparison, Explanation, Verdict
+from simkit.testing.golden.report import junit_cases, text_report, write_html
+from simkit.testing.golden.report.html import page
+from simkit.testing.golden.report.svg_chart import Line, chart, thin_line
+from simkit.testing.run_record.record import Column
 
 NASTY = "</title><script>alert('\"&\x00\u202e')</script>"
 XHTML = "{http://www.w3.org/1999/xhtml}"
@@ -223,7 +223,7 @@ def test_a_thinned_line_keeps_the_highest_and_the_lowest_of_each_pixel() -> None
     rng = np.random.default_rng(1)
     x, y = np.sort(rng.uniform(0.0, 400.0, 100_000)), rng.normal(size=100_000)
     y[12_345] = 50.0
-    xs, ys = thinned(x, y)
+    xs, ys = thin_line(x, y)
     assert len(xs) <= 2 * 401
     assert np.all(np.diff(xs) >= 0.0)
     for column in (0, 17, 399):

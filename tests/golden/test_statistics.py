@@ -8,9 +8,14 @@ import numpy as np
 import pytest
 from made_up import IMU, record, stream, times
 
-from simkit.golden.compare import compare
-from simkit.golden.statistics import Statistics, detectable, deviances, summarise
-from simkit.scenario import Tolerance
+from simkit.testing.golden.compare.runs import compare
+from simkit.testing.run_record.noise_statistics import (
+    NoiseStatistics,
+    detectable_ratio,
+    noise_statistics,
+    statistic_differences,
+)
+from simkit.testing.scenarios import Tolerance
 
 PERIOD = 0.005
 
@@ -33,7 +38,7 @@ def sample(seed: int, count: int = 6000, kind: str = "normal") -> Any:
 
 
 def test_the_numbers_are_those_of_the_noise() -> None:
-    found = summarise(0.02 * sample(0) + 0.001, PERIOD)
+    found = noise_statistics(0.02 * sample(0) + 0.001, PERIOD)
     assert found.count == 6000
     assert found.mean[0] == pytest.approx(0.001, abs=4 * 0.02 / np.sqrt(6000))
     assert found.deviation[0] == pytest.approx(0.02, rel=4 / np.sqrt(2 * 6000))
@@ -47,70 +52,78 @@ def test_the_numbers_are_those_of_the_noise() -> None:
 
 @pytest.mark.parametrize("kind", ["normal", "uniform", "quantised", "heavy", "slow"])
 def test_other_draws_of_one_noise_are_not_told_apart(kind: str) -> None:
-    found = [summarise(sample(seed, 2000, kind), PERIOD) for seed in range(24)]
+    found = [noise_statistics(sample(seed, 2000, kind), PERIOD) for seed in range(24)]
     for a in found[::2]:
         for b in found[1::2]:
-            assert not deviances(a, b)
+            assert not statistic_differences(a, b)
 
 
 def test_a_fifth_more_noise_is_seen_in_the_samples_of_thirty_seconds_at_a_hundred_hertz() -> None:
     seen = [
-        deviances(summarise(sample(s, 3000), PERIOD), summarise(1.2 * sample(99 + s, 3000), PERIOD)) for s in range(20)
+        statistic_differences(
+            noise_statistics(sample(s, 3000), PERIOD), noise_statistics(1.2 * sample(99 + s, 3000), PERIOD)
+        )
+        for s in range(20)
     ]
     assert all(found and found[0].what == "deviation" for found in seen)
-    assert detectable(3000) < 1.2 < detectable(2000)
+    assert detectable_ratio(3000) < 1.2 < detectable_ratio(2000)
 
 
 def test_a_mean_is_seen_beyond_seven_of_its_errors_and_not_where_it_is_allowed() -> None:
-    golden, run = summarise(sample(0), PERIOD), summarise(sample(1) + 0.2, PERIOD)
-    assert [d.what for d in deviances(golden, run)] == ["mean"]
-    assert not deviances(golden, run, absolute=0.25)
-    assert not deviances(golden, summarise(sample(1) + 0.02, PERIOD))
+    golden, run = noise_statistics(sample(0), PERIOD), noise_statistics(sample(1) + 0.2, PERIOD)
+    assert [d.what for d in statistic_differences(golden, run)] == ["mean"]
+    assert not statistic_differences(golden, run, absolute=0.25)
+    assert not statistic_differences(golden, noise_statistics(sample(1) + 0.02, PERIOD))
 
 
 def test_another_shape_with_the_same_mean_and_deviation_is_seen() -> None:
-    found = deviances(summarise(sample(0), PERIOD), summarise(sample(1, kind="two places"), PERIOD))
+    found = statistic_differences(
+        noise_statistics(sample(0), PERIOD), noise_statistics(sample(1, kind="two places"), PERIOD)
+    )
     assert [d.what for d in found] == ["distribution"]
 
 
 def test_noise_that_hangs_together_is_seen_by_its_allan_deviation() -> None:
     slow = sample(1, kind="slow")
-    found = deviances(summarise(sample(0), PERIOD), summarise(slow / slow.std(), PERIOD))
+    found = statistic_differences(noise_statistics(sample(0), PERIOD), noise_statistics(slow / slow.std(), PERIOD))
     assert "allan" in [d.what for d in found]
 
 
 def test_noise_that_is_gone_or_new_is_seen() -> None:
-    nothing, some = summarise(np.zeros(100), PERIOD), summarise(sample(0, 100), PERIOD)
-    assert [d.what for d in deviances(some, nothing)] == ["deviation"]
-    assert [d.what for d in deviances(nothing, some)][:1] == ["deviation"]
-    assert not deviances(nothing, nothing)
+    nothing, some = noise_statistics(np.zeros(100), PERIOD), noise_statistics(sample(0, 100), PERIOD)
+    assert [d.what for d in statistic_differences(some, nothing)] == ["deviation"]
+    assert [d.what for d in statistic_differences(nothing, some)][:1] == ["deviation"]
+    assert not statistic_differences(nothing, nothing)
 
 
 def test_few_samples_say_little_and_never_a_wrong_thing() -> None:
     for count in (0, 1, 2, 7, 8, 20):
-        a, b = summarise(sample(0, count), PERIOD), summarise(sample(1, count), PERIOD)
-        assert isinstance(a, Statistics) and a.count == count and not deviances(a, b)
-    assert [d.what for d in deviances(summarise(sample(0, 2), PERIOD), summarise(sample(0, 500), PERIOD))] == ["count"]
+        a, b = noise_statistics(sample(0, count), PERIOD), noise_statistics(sample(1, count), PERIOD)
+        assert isinstance(a, NoiseStatistics) and a.count == count and not statistic_differences(a, b)
+    assert [
+        d.what
+        for d in statistic_differences(noise_statistics(sample(0, 2), PERIOD), noise_statistics(sample(0, 500), PERIOD))
+    ] == ["count"]
 
 
 def test_rays_are_one_noise_and_what_is_infinite_is_left_out() -> None:
     values = sample(0, 3600).reshape(10, 360)
     values[:, 7] = np.nan
     values[3, 9] = np.inf
-    found = summarise(values, 0.2)
+    found = noise_statistics(values, 0.2)
     assert found.mean.shape == (1,) and found.count == 3600 - 10 - 1 and found.allan.shape == (1, 0)
 
 
 def test_components_are_told_apart() -> None:
-    golden = summarise(np.stack([sample(0), sample(1)], axis=1), PERIOD)
-    run = summarise(np.stack([sample(2), 1.5 * sample(3)], axis=1), PERIOD)
-    assert [(d.what, d.component) for d in deviances(golden, run)] == [("deviation", 1)]
+    golden = noise_statistics(np.stack([sample(0), sample(1)], axis=1), PERIOD)
+    run = noise_statistics(np.stack([sample(2), 1.5 * sample(3)], axis=1), PERIOD)
+    assert [(d.what, d.component) for d in statistic_differences(golden, run)] == [("deviation", 1)]
 
 
 def noisy(seed: int, scale: float = 0.01) -> Any:
     found = stream("/imu", IMU, times(6000, 200.0), {"header.stamp": times(6000, 200.0)}, {"seed": [str(seed)] * 6000})
     found.words = {}
-    found.statistics = {"linear_acceleration.x": summarise(scale * sample(seed), PERIOD)}
+    found.statistics = {"linear_acceleration.x": noise_statistics(scale * sample(seed), PERIOD)}
     return found
 
 

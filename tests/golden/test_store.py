@@ -17,22 +17,22 @@ import pytest
 from falling import ball
 
 from simkit.errors import InputError
-from simkit.golden.capture import run_record
-from simkit.golden.packing import Packer, PackingError, Unpacker
-from simkit.golden.record import Record
-from simkit.golden.store import find_goldens, history_of, read_golden, write_golden
-from simkit.golden.written import plain_scenario, scenario_from
-from simkit.scenario import Check, Scenario, Tolerance
+from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
+from simkit.testing.golden.scenario_encoding import decode_scenario, encode_scenario
+from simkit.testing.golden.store import find_goldens, read_golden, read_history, write_golden
+from simkit.testing.run_record.record import RunRecord
+from simkit.testing.run_record.run_recorder import run_record
+from simkit.testing.scenarios import Check, Scenario, Tolerance
 
 
 @pytest.fixture(scope="module")
-def record(tmp_path_factory: pytest.TempPathFactory) -> Record:
+def record(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
     found = run_record(Scenario(str(ball(tmp_path_factory.mktemp("ball"))), duration=0.5))
     found.simulation.close()
     return found
 
 
-def test_what_is_read_is_what_was_written(tmp_path: Path, record: Record) -> None:
+def test_what_is_read_is_what_was_written(tmp_path: Path, record: RunRecord) -> None:
     write_golden(tmp_path / "g", record)
     golden = read_golden(tmp_path / "g")
     assert golden.leaves == record.leaves and golden.sources == record.sources
@@ -57,7 +57,7 @@ def test_what_is_read_is_what_was_written(tmp_path: Path, record: Record) -> Non
     assert all(np.array_equal(golden.fields[name], record.fields[name], equal_nan=True) for name in record.fields)
 
 
-def test_recording_twice_gives_the_same_bytes(tmp_path: Path, record: Record) -> None:
+def test_recording_twice_gives_the_same_bytes(tmp_path: Path, record: RunRecord) -> None:
     again = run_record(record.scenario)
     again.simulation.close()
     again.fingerprint = record.fingerprint
@@ -68,7 +68,7 @@ def test_recording_twice_gives_the_same_bytes(tmp_path: Path, record: Record) ->
     assert [p.read_bytes() for p in first] == [p.read_bytes() for p in second]
 
 
-def test_a_checkout_elsewhere_finds_its_world(tmp_path: Path, record: Record) -> None:
+def test_a_checkout_elsewhere_finds_its_world(tmp_path: Path, record: RunRecord) -> None:
     (tmp_path / "a" / "worlds").mkdir(parents=True)
     world = shutil.copy(record.scenario.world, tmp_path / "a" / "worlds")
     write_golden(tmp_path / "a" / "golden" / "ball", replace(record, scenario=Scenario(str(world))))
@@ -85,24 +85,24 @@ def test_a_scenario_comes_back_as_it_was(tmp_path: Path) -> None:
         tolerances=(Tolerance("/imu", absolute=0.1),), checks=(Check("apart", models=("a", "b")),),
         options={"plugin_paths": (tmp_path / "plugins",), "xacro_args": {"a": "1"}}, folder=tmp_path,
     )  # fmt: skip
-    plain = plain_scenario(scenario, tmp_path / "golden" / "g")
-    back = scenario_from(json.loads(json.dumps(plain)), tmp_path / "golden" / "g")
-    assert plain_scenario(back, tmp_path / "golden" / "g") == plain
+    plain = encode_scenario(scenario, tmp_path / "golden" / "g")
+    back = decode_scenario(json.loads(json.dumps(plain)), tmp_path / "golden" / "g")
+    assert encode_scenario(back, tmp_path / "golden" / "g") == plain
     assert plain["world"] == "../../ball.sdf"
     assert back.tolerances == scenario.tolerances and back.checks == scenario.checks
     assert Path(back.options["plugin_paths"][0]).resolve() == tmp_path / "plugins"
 
 
-def test_what_was_golden_before_is_gone_with_what_was_left_lying(tmp_path: Path, record: Record) -> None:
+def test_what_was_golden_before_is_gone_with_what_was_left_lying(tmp_path: Path, record: RunRecord) -> None:
     write_golden(tmp_path, record)
     (tmp_path / ".golden-1.tmp").write_bytes(b"half")
     changed = replace(record, leaves={**record.leaves, "gravity": [0, 0, 0]})
-    write_golden(tmp_path, changed, reason="on the way to Mars", changed=["gravity"], history=history_of(tmp_path))
+    write_golden(tmp_path, changed, reason="on the way to Mars", changed=["gravity"], history=read_history(tmp_path))
     assert len(list(tmp_path.iterdir())) == 2
-    assert [one["reason"] for one in history_of(tmp_path)] == ["recorded", "on the way to Mars"]
+    assert [one["reason"] for one in read_history(tmp_path)] == ["recorded", "on the way to Mars"]
 
 
-def _written_but_killed(folder: Path, golden: Record, at: int) -> int:
+def _written_but_killed(folder: Path, golden: RunRecord, at: int) -> int:
     """Has another process write, which kills itself as it opens, renames or removes something for the `at`-th time."""
     child = os.fork()
     if child:
@@ -126,7 +126,7 @@ def _written_but_killed(folder: Path, golden: Record, at: int) -> int:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be forked here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_killed_at_any_moment_it_leaves_the_old_or_the_new(tmp_path: Path, record: Record) -> None:
+def test_killed_at_any_moment_it_leaves_the_old_or_the_new(tmp_path: Path, record: RunRecord) -> None:
     write_golden(tmp_path, record)
     outcomes = []
     for at in range(1, 20):
@@ -155,7 +155,9 @@ def test_killed_at_any_moment_it_leaves_the_old_or_the_new(tmp_path: Path, recor
         (lambda said: said.update(diagnostics={"a": "x"}), "SK-GOLDEN-003"),
     ],
 )
-def test_what_is_wrong_with_it_is_said_with_a_code(tmp_path: Path, record: Record, change: object, code: str) -> None:
+def test_what_is_wrong_with_it_is_said_with_a_code(
+    tmp_path: Path, record: RunRecord, change: object, code: str
+) -> None:
     write_golden(tmp_path, record)
     said = json.loads((tmp_path / "golden.json").read_text())
     change(said)  # type: ignore[operator]
@@ -172,7 +174,7 @@ def test_what_is_no_golden_run_is_said(tmp_path: Path, text: str) -> None:
         read_golden(tmp_path)
 
 
-def test_bytes_that_were_changed_never_end_in_anything_but_an_error(record: Record, tmp_path: Path) -> None:
+def test_bytes_that_were_changed_never_end_in_anything_but_an_error(record: RunRecord, tmp_path: Path) -> None:
     """The data with another byte here and there, under a hash that fits: a stranger's file."""
     import hashlib
     import lzma
@@ -245,7 +247,7 @@ def test_rounded_numbers_are_within_half_a_step() -> None:
     assert np.array_equal(back[~finite], values[~finite], equal_nan=True)
 
 
-def test_goldens_are_found_in_folders(tmp_path: Path, record: Record) -> None:
+def test_goldens_are_found_in_folders(tmp_path: Path, record: RunRecord) -> None:
     for name in ("b", "a/c"):
         write_golden(tmp_path / name, record)
     assert find_goldens(tmp_path) == [tmp_path / "a" / "c", tmp_path / "b"] or find_goldens(tmp_path) == [
@@ -257,7 +259,7 @@ def test_goldens_are_found_in_folders(tmp_path: Path, record: Record) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt" or getattr(os, "geteuid", lambda: 1)() == 0, reason="everything may be written")
-def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path, record: Record) -> None:
+def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path, record: RunRecord) -> None:
     tmp_path.chmod(0o500)
     with pytest.raises(InputError, match="SK-GOLDEN-005"):
         write_golden(tmp_path / "g", record)
@@ -266,7 +268,7 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path, record: Record)
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="a process cannot be forked here")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_four_who_write_and_one_who_reads_at_the_same_time_see_whole_golden_runs(
-    tmp_path: Path, record: Record
+    tmp_path: Path, record: RunRecord
 ) -> None:
     record = replace(record, fields={}, streams={})  # quickly written
     other = replace(record, end="until")
@@ -288,7 +290,7 @@ def test_four_who_write_and_one_who_reads_at_the_same_time_see_whole_golden_runs
     assert len(list((tmp_path / "g").iterdir())) == 2
 
 
-def test_a_long_world_of_xml_is_kept_with_the_data(tmp_path: Path, record: Record) -> None:
+def test_a_long_world_of_xml_is_kept_with_the_data(tmp_path: Path, record: RunRecord) -> None:
     text = "<sdf>" + "<!-- Größe -->" * 500 + "</sdf>"
     write_golden(tmp_path / "g", replace(record, scenario=Scenario(text)))
     assert (tmp_path / "g" / "golden.json").stat().st_size < 3000

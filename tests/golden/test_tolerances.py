@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from simkit.golden.tolerances import Allowed, default_tolerance, storage_step, tolerance_of
-from simkit.golden.units import moment, period_of, quantity, things_of, unit_of
-from simkit.scenario import Scenario, Tolerance
+from simkit.testing.golden.compare.tolerances import Allowed, default_tolerance, storage_step, tolerance_of
+from simkit.testing.golden.compare.units import item_name, period_of, quantity_text, time_text, unit_of
+from simkit.testing.scenarios import Scenario, Tolerance
 
 FIELDS = [
     ("sensor_msgs/msg/LaserScan", "ranges", "m", "rays"),
@@ -41,7 +41,7 @@ FIELDS = [
 @pytest.mark.parametrize(("type_name", "field", "unit", "things"), FIELDS)
 def test_fields_have_their_units(type_name: str, field: str, unit: str, things: str) -> None:
     assert unit_of(type_name, field) == unit
-    assert things_of(type_name, field) == things
+    assert item_name(type_name, field) == things
 
 
 @pytest.mark.parametrize(("type_name", "field"), [row[:2] for row in FIELDS])
@@ -120,13 +120,13 @@ def test_tolerances_read_in_words() -> None:
     ],
 )
 def test_quantities_read_well(value: float, unit: str, words: str) -> None:
-    assert quantity(value, unit) == words
+    assert quantity_text(value, unit) == words
 
 
 def test_digits_that_rounding_has_made_are_left_out() -> None:
-    assert quantity(0.0019876, "m", error=1.5e-5) == "+2 mm"
-    assert quantity(0.0019876, "m") == "+1.99 mm"
-    assert quantity(1e-4, "rad/s", error=1.0) == "+1.00e-4 rad/s"
+    assert quantity_text(0.0019876, "m", error=1.5e-5) == "+2 mm"
+    assert quantity_text(0.0019876, "m") == "+1.99 mm"
+    assert quantity_text(1e-4, "rad/s", error=1.0) == "+1.00e-4 rad/s"
 
 
 def test_headings_come_round_and_joints_do_not() -> None:
@@ -135,4 +135,4 @@ def test_headings_come_round_and_joints_do_not() -> None:
 
 
 def test_moments_show_hundredths_or_what_there_is() -> None:
-    assert (moment(3.2), moment(0.001), moment(1.2345678)) == ("t = 3.20 s", "t = 0.001 s", "t = 1.234568 s")
+    assert (time_text(3.2), time_text(0.001), time_text(1.2345678)) == ("t = 3.20 s", "t = 0.001 s", "t = 1.234568 s")

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simkit.gzpython.math import Pose3d, Vector2d, Vector3d
-from simkit.gzpython.sim import EntityComponentManager, Joint, Link, Model, TestFixture, UpdateInfo, World
+from simkit.plugins.gz_python.math import Pose3d, Vector2d, Vector3d
+from simkit.plugins.gz_python.sim import EntityComponentManager, Joint, Link, Model, TestFixture, UpdateInfo, World
 
 STEP = 0.001
 INERTIAL = (

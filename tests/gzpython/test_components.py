@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.gzpython.math import Pose3d, Vector3d
-from simkit.gzpython.sim import EntityComponentManager, components
-from simkit.plugins.gz.system import GzSystem
+from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz_python.math import Pose3d, Vector3d
+from simkit.plugins.gz_python.sim import EntityComponentManager, components
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="body"><pose>1 2 3 0 0 0</pose>
   <link name="link"><pose>0 0 1 0 0 0</pose></link></model></world></sdf>"""

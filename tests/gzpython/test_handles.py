@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from simkit.gzpython import sdformat
-from simkit.gzpython.math import Angle, Color, Matrix3d, Pose3d, SphericalCoordinates, Vector3d
-from simkit.gzpython.sim import (
+from simkit.plugins.gz_python import sdformat
+from simkit.plugins.gz_python.math import Angle, Color, Matrix3d, Pose3d, SphericalCoordinates, Vector3d
+from simkit.plugins.gz_python.sim import (
     K_NULL_ENTITY,
     Actor,
     EntityComponentManager,

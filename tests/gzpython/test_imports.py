@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from simkit import gzpython
-from simkit.gzpython import imports
+from simkit.plugins import gz_python
+from simkit.plugins.gz_python import import_hook
 
 
 @pytest.mark.parametrize(
@@ -18,17 +18,17 @@ from simkit.gzpython import imports
     [
         ("gz", ""),
         ("ignition", ""),
-        ("gz.sim", "simkit.gzpython.sim"),
-        ("gz.sim10", "simkit.gzpython.sim"),
-        ("ignition.gazebo6", "simkit.gzpython.sim"),
-        ("gz.math7", "simkit.gzpython.math"),
-        ("ignition.math6", "simkit.gzpython.math"),
-        ("gz.common5", "simkit.gzpython.common"),
-        ("gz.transport13", "simkit.gzpython.transport"),
-        ("gz.msgs10.twist_pb2", "simkit.gzpython.msgs.twist_pb2"),
-        ("gz.sim8.components", "simkit.gzpython.sim.components"),
-        ("sdformat14", "simkit.gzpython.sdformat"),
-        ("sdformat", "simkit.gzpython.sdformat"),
+        ("gz.sim", "simkit.plugins.gz_python.sim"),
+        ("gz.sim10", "simkit.plugins.gz_python.sim"),
+        ("ignition.gazebo6", "simkit.plugins.gz_python.sim"),
+        ("gz.math7", "simkit.plugins.gz_python.math"),
+        ("ignition.math6", "simkit.plugins.gz_python.math"),
+        ("gz.common5", "simkit.plugins.gz_python.common"),
+        ("gz.transport13", "simkit.plugins.gz_python.transport"),
+        ("gz.msgs10.twist_pb2", "simkit.plugins.gz_python.msgs.twist_pb2"),
+        ("gz.sim8.components", "simkit.plugins.gz_python.sim.components"),
+        ("sdformat14", "simkit.plugins.gz_python.sdformat"),
+        ("sdformat", "simkit.plugins.gz_python.sdformat"),
         ("gz.rendering8", None),
         ("gzip", None),
         ("gz.math7.helpers", None),
@@ -36,11 +36,11 @@ from simkit.gzpython import imports
     ],
 )
 def test_every_version_is_one_module_of_ours(name: str, ours: str | None) -> None:
-    assert imports.target_of(name) == ours
+    assert import_hook.module_behind(name) == ours
 
 
 def test_the_names_are_there_within_and_gone_after() -> None:
-    with gzpython.importable():
+    with gz_python.importable():
         eight, ten = importlib.import_module("gz.sim8"), importlib.import_module("gz.sim10")
         assert eight.Link is ten.Link
         assert importlib.import_module("gz.sim8.components").Name == eight.components.Name
@@ -49,16 +49,16 @@ def test_the_names_are_there_within_and_gone_after() -> None:
 
 
 def test_installing_lasts_until_it_is_taken_back() -> None:
-    assert gzpython.install() == {}
+    assert gz_python.install() == {}
     try:
         assert importlib.import_module("gz.math7").Vector3d(1, 2, 3).length() > 3
     finally:
-        gzpython.uninstall()
+        gz_python.uninstall()
     assert "gz.math7" not in sys.modules
 
 
 def test_a_name_that_is_not_there_says_what_is() -> None:
-    with gzpython.importable():
+    with gz_python.importable():
         with pytest.raises(ImportError, match="no Gui; simkit has no user interface"):
             from gz.sim8 import Gui  # type: ignore[import-not-found]  # noqa: F401
         with pytest.raises(ImportError, match=r"no world_entty; did you mean 'world_entity'"):
@@ -82,19 +82,19 @@ def real_gz(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     yield tmp_path  # type: ignore[misc]
     for name in [n for n in sys.modules if n == "gz" or n.startswith("gz.")]:
         del sys.modules[name]
-    imports._kept.clear()
+    import_hook._shim_modules.clear()
 
 
 def test_what_is_really_installed_goes_first_and_is_told(real_gz: Path) -> None:
-    assert gzpython.installed() == {"gz.math7": str(real_gz / "gz" / "math7.py")}
-    with gzpython.importable():
+    assert gz_python.installed() == {"gz.math7": str(real_gz / "gz" / "math7.py")}
+    with gz_python.importable():
         assert importlib.import_module("gz.math7").NAME == "the real one"
-        assert imports.is_shim(importlib.import_module("gz.sim8"))  # the rest of the package is ours
+        assert import_hook.is_shim(importlib.import_module("gz.sim8"))  # the rest of the package is ours
 
 
 def test_asked_to_ours_goes_before_an_installed_one(real_gz: Path) -> None:
-    with gzpython.importable(shadow=True):
-        assert imports.is_shim(importlib.import_module("gz.math7"))
+    with gz_python.importable(shadow=True):
+        assert import_hook.is_shim(importlib.import_module("gz.math7"))
 
 
 def test_a_world_says_which_installed_module_its_system_got(real_gz: Path, tmp_path: Path) -> None:
@@ -139,9 +139,9 @@ def test_a_script_of_gz_sim_runs_after_one_line(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(
         """
-import simkit.gzpython
+import simkit.plugins.gz_python
 
-simkit.gzpython.install()
+simkit.plugins.gz_python.install()
 import time
 
 from gz.common import set_verbosity

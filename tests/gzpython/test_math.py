@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from simkit.gzpython import math as gz
-from simkit.gzpython.math import (
+from simkit.plugins.gz_python import math as gz
+from simkit.plugins.gz_python.math import (
     PID,
     Angle,
     AxisAlignedBox,

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import simkit
-from simkit import gzpython
+from simkit.plugins import gz_python
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "gazebo_python.md"
 TEXT = PAGE.read_text(encoding="utf-8")
@@ -43,7 +43,7 @@ def test_the_script_prints_time_and_gravity(folder: Path) -> None:
 def test_every_name_of_the_table_can_be_imported() -> None:
     rows = re.findall(r"^\| `(gz\.\w+|sdformat)` \| (.*) \|$", TEXT, re.MULTILINE)
     assert len(rows) == 6
-    with gzpython.importable():
+    with gz_python.importable():
         for module, names in rows:
             found = __import__(module, fromlist=["_"])
             for name in re.findall(r"`(\w+)`", names):

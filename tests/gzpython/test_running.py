@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.gzpython.msgs import message_class
-from simkit.gzpython.sim import Joint, Model, TestFixture, World, world_entity
-from simkit.gzpython.transport import Node
-from simkit.plugins.gz.system import GzSystem
+from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz_python.msgs import message_class
+from simkit.plugins.gz_python.sim import Joint, Model, TestFixture, World, world_entity
+from simkit.plugins.gz_python.transport import Node
 
 FILE = "gz-sim-joint-state-publisher-system"
 STATES = f'<plugin filename="{FILE}" name="gz::sim::systems::JointStatePublisher">{{}}</plugin>'

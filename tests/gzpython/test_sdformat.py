@@ -6,9 +6,9 @@ import copy
 
 import pytest
 
-from simkit.gzpython.math import Angle, Color, Pose3d, Vector2d, Vector3d
-from simkit.gzpython.sdformat import Element, JointAxis
 from simkit.params import Params
+from simkit.plugins.gz_python.math import Angle, Color, Pose3d, Vector2d, Vector3d
+from simkit.plugins.gz_python.sdformat import Element, JointAxis
 
 
 @pytest.fixture

@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from simkit.errors import MessageError
-from simkit.gzpython.msgs import message_class
-from simkit.gzpython.msgs.matching import Matcher
-from simkit.gzpython.msgs.text_form import parse, parse_value
+from simkit.plugins.gz_python.msgs import message_class
+from simkit.plugins.gz_python.msgs.message_matcher import MessageMatcher
+from simkit.plugins.gz_python.msgs.text_format import parse_message, parse_value
 
 
 def made(name: str, text: str) -> Any:
-    return parse(message_class(name), text)
+    return parse_message(message_class(name), text)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_a_long_nest_is_refused() -> None:
 
 
 def met(name: str, text: str, message: str, *args: Any, **named: Any) -> bool:
-    return Matcher(message_class(name), text, *args, **named).meets(made(name, message))
+    return MessageMatcher(message_class(name), text, *args, **named).meets(made(name, message))
 
 
 def test_a_whole_message_has_to_be_the_same() -> None:
@@ -110,4 +110,4 @@ def test_a_negative_match_is_met_by_all_else() -> None:
 )
 def test_a_path_that_leads_nowhere_is_said(name: str, field: str, said: str) -> None:
     with pytest.raises(MessageError, match=said):
-        Matcher(message_class(name), "1", field)
+        MessageMatcher(message_class(name), "1", field)

@@ -10,10 +10,10 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.gzpython.msgs import contents_of, message_class
-from simkit.gzpython.msgs.ros import _twins, from_ros, to_ros
-from simkit.gzpython.transport import AdvertiseMessageOptions, Node
-from simkit.plugins.gz.system import GzSystem
+from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz_python.msgs import contents_of, message_class
+from simkit.plugins.gz_python.msgs.ros_conversion import _all_twins, from_ros, to_ros
+from simkit.plugins.gz_python.transport import AdvertiseMessageOptions, Node
 
 WORLD = """<sdf version="1.9"><world name="w"><model name="body"><link name="link">
   <sensor name="imu" type="imu"><update_rate>100</update_rate></sensor></link></model></world></sdf>"""
@@ -55,7 +55,7 @@ def test_a_wrong_field_names_the_closest_and_a_wrong_value_its_kind() -> None:
         Pose().position = 3
 
 
-@pytest.mark.parametrize("kind", sorted(_twins()))
+@pytest.mark.parametrize("kind", sorted(_all_twins()))
 def test_every_message_goes_to_ros_and_back(kind: str) -> None:
     made = message_class(kind)()
     for number, (name, form) in enumerate(message_class(kind).FIELDS.items(), 1):
@@ -65,7 +65,7 @@ def test_every_message_goes_to_ros_and_back(kind: str) -> None:
             setattr(made, name, number)
         elif form == "Vector3d":
             getattr(made, name).y = number + 0.25
-    for twin in _twins()[kind]:
+    for twin in _all_twins()[kind]:
         there = to_ros(made, twin.ros)
         assert msgs.type_name(there) == twin.ros and msgs.serialize(there) is not None
         back = from_ros(message_class(kind), there)
@@ -182,18 +182,18 @@ def test_a_sensors_readings_are_heard_as_gz_knows_them() -> None:
 
 
 def test_a_node_without_a_simulation_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    from simkit.gzpython import context
+    from simkit.plugins.gz_python import simulation_context
 
-    monkeypatch.setattr(context, "_latest", None)
+    monkeypatch.setattr(simulation_context, "_latest", None)
     with pytest.raises(RuntimeError, match="no simulation is there yet"):
         Node().topic_list()
 
 
 def test_a_node_made_before_the_simulation_is_opened_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    from simkit.gzpython import context
-    from simkit.gzpython.sim import TestFixture
+    from simkit.plugins.gz_python import simulation_context
+    from simkit.plugins.gz_python.sim import TestFixture
 
-    monkeypatch.setattr(context, "_latest", None)
+    monkeypatch.setattr(simulation_context, "_latest", None)
     node, heard = Node(), []
     node.subscribe(Clock, "/clock", lambda message: heard.append(message.sim.nsec))
     node.subscribe(Twist, "/never", heard.append)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import simkit
-from simkit.lint.timing import pattern
+from simkit.compiler.lint.time_step import rate_pattern
 
 ROOT = Path(__file__).resolve().parents[2]
 INERTIAL = "<inertial><mass>{0}</mass><inertia><ixx>{1}</ixx><iyy>{1}</iyy><izz>{1}</izz></inertia></inertial>"
@@ -41,7 +41,7 @@ def arm(axis: str = "", plugin: str = "", inertia: float = 1e-4) -> str:
     ],
 )
 def test_a_rate_that_the_step_cannot_keep_is_told_with_its_pattern(rate: float, step: float, said: str) -> None:
-    assert pattern(rate, step) == said
+    assert rate_pattern(rate, step) == said
 
 
 def test_a_damping_gain_is_judged_by_the_inertia_that_the_joint_feels() -> None:

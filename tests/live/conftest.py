@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 import simkit
+from simkit.bridges.live.socket_files import is_possible
 from simkit.live import Client, Server
-from simkit.live.place import is_possible
 
 COURT = """<sdf version="1.9"><world name="court">
 <model name="ball"><pose>0 0 1 0 0 0</pose><link name="l"/></model>

@@ -15,10 +15,20 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.live.frames import ASK, HEAD, LARGEST_IN, MESSAGE, NUMBER, FrameReader, message_to, read_words, worded
-from simkit.live.peer import MOST_BYTES, MOST_OPEN
-from simkit.live.server import MOST_CLIENTS, Server
-from simkit.sinks.recorder import Recorder
+from simkit.bridges.live.connection import MOST_BYTES, MOST_OPEN
+from simkit.bridges.live.protocol import (
+    ASK,
+    HEAD,
+    LARGEST_IN,
+    MESSAGE,
+    NUMBER,
+    FrameReader,
+    json_frame,
+    message_frame,
+    read_json_frame,
+)
+from simkit.bridges.live.server import MOST_CLIENTS, Server
+from simkit.recording.bags.recorder import Recorder
 
 SLICES, STEPS = 40, 25
 
@@ -34,7 +44,7 @@ class Caller:
 
     def ask(self, question: str, **args: Any) -> None:
         self._numbers += 1
-        self.send(worded(ASK, {"id": self._numbers, "ask": question, **args}))
+        self.send(json_frame(ASK, {"id": self._numbers, "ask": question, **args}))
 
     def send(self, data: bytes) -> int:
         with contextlib.suppress(BlockingIOError, BrokenPipeError, ConnectionResetError):
@@ -47,7 +57,7 @@ class Caller:
             while data := self.socket.recv(1 << 20):
                 self._reader.feed(data)
         frames = iter(self._reader.next, None)
-        return [read_words(body)[0] for kind, body in frames if kind != MESSAGE]
+        return [read_json_frame(body)[0] for kind, body in frames if kind != MESSAGE]
 
 
 Disturbance = Callable[[Server, int, list[Any]], None]
@@ -67,8 +77,8 @@ def dying(server: Server, index: int, open_: list[Any]) -> None:
     caller = Caller(server)
     caller.ask("advertise", number=1, topic="/cmd_vel", type=None)
     server.poll()
-    frame = message_to(1, msgs.serialize(msgs.make("geometry_msgs/msg/Twist", linear={"x": 9.0})))
-    caller.send(frame[: 5 + index] if index % 2 else worded(ASK, {"id": 9, "ask": "ping"})[:-3])
+    frame = message_frame(1, msgs.serialize(msgs.make("geometry_msgs/msg/Twist", linear={"x": 9.0})))
+    caller.send(frame[: 5 + index] if index % 2 else json_frame(ASK, {"id": 9, "ask": "ping"})[:-3])
     server.poll()
     caller.socket.close()
 
@@ -131,15 +141,15 @@ def huge(server: Server, index: int, open_: list[Any]) -> None:
 
 
 WORDS = (
-    worded(ASK, {"ask": "ping"}),
-    worded(ASK, {"id": 1, "ask": ["ping"]}),
-    worded(ASK, {"id": True, "ask": "ping"}),
+    json_frame(ASK, {"ask": "ping"}),
+    json_frame(ASK, {"id": 1, "ask": ["ping"]}),
+    json_frame(ASK, {"id": True, "ask": "ping"}),
     HEAD.pack(4 + 9, ASK) + NUMBER.pack(9) + b"[1,2,3,4]",
     HEAD.pack(4 + 100_000, ASK) + NUMBER.pack(100_000) + b"[" * 100_000,
     HEAD.pack(4, ASK) + NUMBER.pack(99),
     HEAD.pack(0, ASK),
     HEAD.pack(0, MESSAGE),
-    message_to(5, b""),
+    message_frame(5, b""),
     HEAD.pack(3, 77) + b"abc",
 )
 
@@ -180,7 +190,7 @@ ARGS: tuple[dict[str, Any], ...] = (
 def args(server: Server, index: int, open_: list[Any]) -> None:
     """Questions with arguments that are no such thing."""
     caller = Caller(server)
-    caller.send(worded(ASK, {"id": 5, **ARGS[index % len(ARGS)]}))
+    caller.send(json_frame(ASK, {"id": 5, **ARGS[index % len(ARGS)]}))
     for _ in range(4):
         server.poll()
     answer = next(words for words in caller.heard() if words.get("id") == 5)
@@ -194,7 +204,7 @@ def bad_cdr(server: Server, index: int, open_: list[Any]) -> None:
     caller.ask("advertise", number=1, topic="/points", type="sensor_msgs/msg/PointCloud2")
     server.poll()
     noise = random.Random(index).randbytes(200)
-    caller.send(message_to(1, b"\x00\x01\x00\x00" + struct.pack("<IiI", 1, 2, 0xFFFFFFF0 - index) + noise))
+    caller.send(message_frame(1, b"\x00\x01\x00\x00" + struct.pack("<IiI", 1, 2, 0xFFFFFFF0 - index) + noise))
     for _ in range(3):
         server.poll()
     assert caller.heard()[-1]["code"] == "SK-LIVE-006"
@@ -205,12 +215,12 @@ def mutated(server: Server, index: int, open_: list[Any]) -> None:
     """Frames of which some bytes are others."""
     draw = random.Random(index)
     twist = msgs.serialize(msgs.make("nav_msgs/msg/Path", poses=[{}, {}]))
-    frames = [worded(ASK, {"id": n, "ask": q, "name": "rover"}) for n, q in enumerate(("model", "topics", "node"))]
+    frames = [json_frame(ASK, {"id": n, "ask": q, "name": "rover"}) for n, q in enumerate(("model", "topics", "node"))]
     for _ in range(10):
         caller = Caller(server)
         caller.ask("advertise", number=1, topic="/path", type="nav_msgs/msg/Path")
         server.poll()
-        for frame in (*frames, message_to(1, twist)):
+        for frame in (*frames, message_frame(1, twist)):
             changed = bytearray(frame)
             for _ in range(draw.randint(0, 3)):
                 changed[draw.randrange(len(changed))] = draw.randrange(256)
@@ -316,7 +326,7 @@ def test_a_reset_leaves_clients_what_they_have_open(court: simkit.Simulation) ->
         server.poll()
         court.step(50)
         court.reset()
-        caller.send(message_to(1, msgs.serialize(msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.5}))))
+        caller.send(message_frame(1, msgs.serialize(msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.5}))))
         server.poll(0.1)
         court.step(50)
         assert heard.latest is not None and heard.latest.linear.x == 0.5
@@ -331,7 +341,7 @@ def test_clients_take_turns(court: simkit.Simulation) -> None:
         server.poll()
         flood.ask("advertise", number=1, topic="/cmd_vel", type=None)
         server.poll()
-        frame = message_to(1, msgs.serialize(msgs.make("geometry_msgs/msg/Twist")))
+        frame = message_frame(1, msgs.serialize(msgs.make("geometry_msgs/msg/Twist")))
         while flood.send(frame * 100) == len(frame) * 100:
             pass
         modest.ask("ping")
@@ -353,7 +363,7 @@ def test_no_command_is_dropped_while_the_run_goes_on(court: simkit.Simulation) -
         server.poll()
         caller.ask("advertise", number=1, topic="/numbers", type=None)
         for n in range(95):
-            caller.send(message_to(1, msgs.serialize(msgs.make("std_msgs/msg/Int32", data=n))))
+            caller.send(message_frame(1, msgs.serialize(msgs.make("std_msgs/msg/Int32", data=n))))
         steps = 0
         while len(heard) < 95:
             server.poll()
@@ -369,7 +379,7 @@ def test_json_of_answers_has_infinity_and_arrays() -> None:
     import numpy as np
 
     content = {"id": 1, "ok": [float("inf"), np.float64(0.5), np.array([1, 2]), b"ab", {3}]}
-    assert read_words(worded(2, content)[5:])[0]["ok"] == [float("inf"), 0.5, [1, 2], [97, 98], [3]]
+    assert read_json_frame(json_frame(2, content)[5:])[0]["ok"] == [float("inf"), 0.5, [1, 2], [97, 98], [3]]
     assert json.loads("[Infinity]") == [float("inf")]
 
 

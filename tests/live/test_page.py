@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 
 import simkit
-from simkit.live import connect, questions
+from simkit.bridges.live import requests
+from simkit.live import connect
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "live.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
@@ -34,7 +35,7 @@ def test_every_block_of_the_page_runs(run: Callable[..., Any], capsys: pytest.Ca
 
 def test_the_page_has_every_question() -> None:
     table = PAGE[PAGE.index("| question |") :]
-    assert set(questions.QUESTIONS) == set(
+    assert set(requests.QUESTIONS) == set(
         re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M)))
     )
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 import simkit
-from simkit.live import place
-from simkit.live.finding import simulations, socket_of
-from simkit.live.server import Server, serve
+from simkit.bridges.live import socket_files
+from simkit.bridges.live.discovery import find_socket, simulations
+from simkit.bridges.live.server import Server, serve
 
 
 def test_folder_and_socket_are_open_to_their_user_alone(court: simkit.Simulation, sockets: Path) -> None:
@@ -40,8 +40,8 @@ def test_a_folder_that_others_may_enter_is_not_used(court: simkit.Simulation, so
 
 def test_a_link_instead_of_the_folder_is_not_followed(sockets: Path, tmp_path: Path) -> None:
     sockets.symlink_to(tmp_path)
-    assert place.fault_of(sockets) == f"{sockets} is no folder"
-    assert sockets not in list(itertools.islice(place.open_folders(), 1))
+    assert socket_files.fault_of(sockets) == f"{sockets} is no folder"
+    assert sockets not in list(itertools.islice(socket_files.open_folders(), 1))
 
 
 def test_the_socket_of_one_who_died_is_replaced(court: simkit.Simulation, sockets: Path) -> None:
@@ -52,7 +52,7 @@ def test_the_socket_of_one_who_died_is_replaced(court: simkit.Simulation, socket
     assert simulations() == []
     with Server(court) as server:
         assert server.name == "court"
-        assert place.is_living(server.path)
+        assert socket_files.is_living(server.path)
         found = [(s.name, s.pid, s.world) for s in simulations()]
         assert found == [("court", os.getpid(), "")], "it says its world once it is polled"
         assert [path.name for path in sockets.glob("*.sock")] == ["court.sock"]
@@ -63,7 +63,7 @@ def test_the_socket_of_one_who_died_is_replaced(court: simkit.Simulation, socket
     [("lab/../x y", "lab_.._x_y"), ("Büro", "B_ro"), ("..", "simulation"), ("", "simulation"), ("a" * 99, "a" * 48)],
 )
 def test_any_name_becomes_one_of_a_file(name: str, file: str) -> None:
-    assert place.file_name(name) == file
+    assert socket_files.file_name(name) == file
 
 
 def test_where_the_path_is_too_long_the_temporary_files_are_the_place(
@@ -104,7 +104,7 @@ def test_one_who_holds_the_lock_for_ever_keeps_no_run_from_beginning(
 ) -> None:
     import fcntl
 
-    monkeypatch.setattr(place, "_PATIENCE", 0.05)
+    monkeypatch.setattr(socket_files, "_PATIENCE", 0.05)
     sockets.mkdir(mode=0o700)
     with (sockets / ".lock").open("w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
@@ -115,4 +115,4 @@ def test_one_who_holds_the_lock_for_ever_keeps_no_run_from_beginning(
 @pytest.mark.parametrize("name", ["Büro 7", "a/b", "n" * 300])
 def test_a_run_is_found_by_the_name_that_it_was_given(court: simkit.Simulation, name: str) -> None:
     with Server(court, name) as server:
-        assert socket_of(name) == server.path
+        assert find_socket(name) == server.path

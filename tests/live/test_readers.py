@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from simkit import msgs
-from simkit.live.readers import reader_of
+from simkit.bridges.live.message_reader import reader_of
 
 FIXED = [
     "geometry_msgs/msg/Twist",

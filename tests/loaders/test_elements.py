@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from wide_sdf import BARE, BARE_INCLUDE, BOX, WORLD
 
-from simkit.loaders.sdf.document import SdfLoader
 from simkit.loaders.sdf.elements import ELEMENTS, TABLES
+from simkit.loaders.sdf.loader import SdfLoader
 from simkit.loaders.sdf.workspace import Workspace
 from simkit.params import Params
 

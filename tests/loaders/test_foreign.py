@@ -9,7 +9,7 @@ import pytest
 
 import simkit
 from simkit.diagnostics import Diagnostics
-from simkit.loaders.xml import parse_file
+from simkit.loaders.resources.xml_reader import parse_file
 
 SCENARIO = "a scenario; simkit golden record, certify, bundle and grade take one"
 LFS = "a pointer of Git LFS; the content was not fetched (git lfs pull)"

@@ -13,7 +13,7 @@ import pytest
 import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, load_scene
-from simkit.loaders.mjcf import bounds
+from simkit.loaders.mjcf import size_limits
 from simkit.pose import Pose
 from simkit.scene import Box, Capsule, Mesh, Scene
 
@@ -349,7 +349,7 @@ def test_a_picture_that_promises_too_many_pixels_is_refused(tmp_path: Path) -> N
 
 def test_a_muscle_whose_range_cannot_be_found_in_time_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without any solver iteration the arm below flies apart, and the engine would measure its muscle for ever."""
-    monkeypatch.setattr("simkit.loaders.mjcf.ranges.PATIENCE", 0.01)
+    monkeypatch.setattr("simkit.loaders.mjcf.engine.RANGE_TIMEOUT", 0.01)
     text = """<mujoco><worldbody><body><joint name="j" range="-1 1" limited="true"/><geom size=".1" pos="1 0 0"/></body>
       </worldbody><actuator><muscle joint="j"/></actuator></mujoco>"""
     assert [d.code for d in errors_of(text)] == ["SK-MJCF-014"]
@@ -375,7 +375,7 @@ def test_nothing_is_written_where_the_engine_warns(tmp_path: Path, capfd: pytest
 
 
 def test_the_bounds_count_what_replication_makes() -> None:
-    assert bounds.MOST_ELEMENTS == 100_000
+    assert size_limits.MOST_ELEMENTS == 100_000
     text = """<mujoco><worldbody><replicate count="300" offset="1 0 0"><body><geom size=".1"/></body></replicate>
       </worldbody></mujoco>"""
     assert len(scene_of(text)[0].world.models) == 300

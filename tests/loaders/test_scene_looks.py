@@ -6,7 +6,7 @@ import pytest
 
 from simkit.diagnostics import Diagnostics
 from simkit.scene.world import Fog
-from simkit.writers.sdf import sdf_text
+from simkit.writers.sdf_world import sdf_text
 
 FOG = "<fog><type>exp2</type><color>0.1 0.2 0.3 1</color><start>2</start><end>30</end><density>0.05</density></fog>"
 

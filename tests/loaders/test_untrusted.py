@@ -16,7 +16,7 @@ from xml.sax.saxutils import quoteattr
 import pytest
 
 import simkit
-from simkit.loaders.files import read_bounded
+from simkit.loaders.resources.bounded_file import read_bounded
 
 ROOT = Path(__file__).resolve().parents[2]
 WIDE = int(os.environ.get("SIMKIT_WIDEST", "200000"))  # elements beside each other; a million take 20 s a format
@@ -103,7 +103,7 @@ def test_a_pipe_is_read_and_a_silent_one_is_not_waited_for_long(tmp_path, monkey
     writer.start()
     assert read_bounded(pipe, 10_000) == content
     writer.join()
-    monkeypatch.setattr("simkit.loaders.files.PATIENCE", 0.2)
+    monkeypatch.setattr("simkit.loaders.resources.bounded_file.PIPE_TIMEOUT", 0.2)
     assert errors(pipe) == ["SK-LOAD-002"]
 
 
@@ -363,7 +363,7 @@ def test_a_thousand_million_copies_are_refused(count):
 
 
 def test_more_moving_bodies_than_the_engine_compiles_in_a_minute_are_refused(monkeypatch):
-    monkeypatch.setattr("simkit.compiler.builder.MOST_MOVING", 50)
+    monkeypatch.setattr("simkit.compiler.spec_builder.MOST_MOVING", 50)
     box = "<box><size>1 1 1</size></box><distribution><type>random</type></distribution>"
     assert errors(WORLD.format(COPIES.format(60, box))) == ["SK-PHYS-029"]
 
@@ -398,7 +398,7 @@ def test_topics_of_odd_names_are_recorded_and_read_back(tmp_path, name):
     plugin += '<plugin filename="gz-sim-odometry-publisher-system" name="o"/>'
     world = f"""<sdf version="1.9"><world name={quoted}><model name={quoted}><link name={quoted}>
     <sensor name={quoted} type="imu">    <update_rate>500</update_rate></sensor></link>{plugin}</model></world></sdf>"""
-    from simkit.sinks.recorder import Recorder
+    from simkit.recording.bags.recorder import Recorder
 
     with simkit.load(world) as sim, Recorder(sim, tmp_path / "bag.mcap") as recording:
         sim.run(0.02)

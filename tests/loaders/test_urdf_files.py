@@ -13,10 +13,10 @@ import pytest
 import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, load_scene
+from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.loaders.urdf import ELEMENTS
 from simkit.loaders.urdf.robot import build_robot, declare_robot
-from simkit.loaders.xml import parse_text
 
 _ORIGIN = '<origin xyz="0 0 1" rpy="0 0 0" quat_xyzw="0 0 0 1"/>'
 _SHAPES = (

@@ -13,11 +13,11 @@ from urdf_robots import errors, said
 import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver
+from simkit.loaders.resources.xml_reader import parse_file
 from simkit.loaders.xacro import expand
-from simkit.loaders.xacro.bounds import BoundError, Budget, ExpansionError
+from simkit.loaders.xacro.budget import BoundError, Budget, ExpansionError
 from simkit.loaders.xacro.expression import Evaluator
-from simkit.loaders.xacro.functions import math_functions, python_functions
-from simkit.loaders.xml import parse_file
+from simkit.loaders.xacro.expression_functions import math_functions, python_functions
 
 PARTS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:property name="deep" value="7"/>

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from simkit.diagnostics import Diagnostics
-from simkit.loaders import xml
-from simkit.loaders.xml import parse_text
+from simkit.loaders.resources import xml_reader
+from simkit.loaders.resources.xml_reader import parse_text
 
 
 def test_every_element_knows_its_line_and_keeps_its_prefix():
@@ -46,6 +46,6 @@ def test_faults_in_front_of_the_root_are_only_warned_about(text):
 def test_depth_and_number_of_elements_are_bounded(monkeypatch):
     found = Diagnostics()
     assert parse_text("<a>" * 300 + "</a>" * 300, found) is None
-    monkeypatch.setattr(xml, "MAX_ELEMENTS", 10)
+    monkeypatch.setattr(xml_reader, "MAX_ELEMENTS", 10)
     assert parse_text("<a>" + "<b/>" * 20 + "</a>", found) is None
     assert {d.code for d in found} == {"SK-XML-002"}

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import simkit
-from simkit.motion.play import PlayMotion
+from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
 
 SPEED = 2.0  # [rad/s] of the joints
 CONTROLLERS = """

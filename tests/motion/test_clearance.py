@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.motion.clearance import Clearance, Meeting
+from simkit.plugins.play_motion.collision_check import CollisionCheck, LinkCollision
 
 sys.path.insert(0, str(Path(__file__).parent))
 import planar_arm as arm
@@ -19,12 +19,12 @@ JOINTS = ("shoulder", "elbow", "wrist")
 FINGERS = ("left_finger", "right_finger")
 
 
-def clearance(sim: simkit.Simulation, *names: str, free: tuple[str, ...] = FINGERS) -> Clearance:
+def clearance(sim: simkit.Simulation, *names: str, free: tuple[str, ...] = FINGERS) -> CollisionCheck:
     robot = sim.model("arm")
-    return Clearance(sim, robot, [robot.joints[name] for name in names or JOINTS], free)
+    return CollisionCheck(sim, robot, [robot.joints[name] for name in names or JOINTS], free)
 
 
-def meeting(sim: simkit.Simulation, *positions: float) -> Meeting | None:
+def meeting(sim: simkit.Simulation, *positions: float) -> LinkCollision | None:
     return clearance(sim).meeting(np.array(positions))
 
 
@@ -97,7 +97,7 @@ def test_fingers_may_touch_what_lies_loose_and_not_what_stands(tmp_path: Path) -
         with arm.load(tmp_path, cube) as sim:
             robot: Any = sim.model("arm")
             robot.set_joint_positions(dict.fromkeys(FINGERS, 0.04))
-            closing = Clearance(sim, robot, [robot.joints[name] for name in FINGERS], FINGERS)
+            closing = CollisionCheck(sim, robot, [robot.joints[name] for name in FINGERS], FINGERS)
             found = closing.meeting(np.zeros(2))
             assert (found is not None) == static
             assert found is None or found.second == "cube::body"

@@ -9,8 +9,8 @@ from textwrap import dedent
 import pytest
 
 from simkit.diagnostics import NOWHERE, Diagnostics
-from simkit.motion.motions import Motion
-from simkit.motion.reading import MotionFile, read_motions
+from simkit.plugins.play_motion.motion import Motion
+from simkit.plugins.play_motion.motion_files import MotionFile, read_motions
 
 BOW = Motion("bow", ("shoulder", "elbow"), (0.5, 2.0), ((0.0, 0.1), (0.2, 0.3)), (), "Bow", "demo", "Bends down.")
 ROS_2 = """

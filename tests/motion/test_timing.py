@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from simkit.motion.motions import Motion
-from simkit.motion.plan import Approach, course_from
-from simkit.motion.timing import Course
+from simkit.plugins.play_motion.motion import Motion
+from simkit.plugins.play_motion.motion_planning import Approach, course_from
+from simkit.plugins.play_motion.motion_timing import Course
 
 LIMITS = np.array([1.0, 2.0])
 

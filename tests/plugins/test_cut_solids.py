@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from simkit.plugins.fluids.solids import Polyhedron, Solid, solid_of
+from simkit.plugins.fluids.submerged_volume import Polyhedron, Solid, solid_of
 from simkit.scene import Box, Capsule, Cone, Cylinder, Ellipsoid, Geometry, Plane, Sphere
 
 SHAPES: list[Geometry] = [

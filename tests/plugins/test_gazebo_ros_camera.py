@@ -23,7 +23,7 @@ from camera_worlds import (
 from renderer import NEEDS_RENDERER
 
 import simkit
-from simkit.sensors import pictures
+from simkit.sensors.cameras import image_messages
 
 pytestmark = NEEDS_RENDERER
 
@@ -95,7 +95,7 @@ def test_a_depth_camera_has_colours_depths_and_a_cloud_in_optical_axes() -> None
         }
     names = ("/eye/image_raw", "/eye/depth/image_raw", "/eye/points", "/eye/depth/camera_info")
     image, depth, cloud, info = heard(text, *names)
-    depths, points = pictures.pixels_of(depth), points_of(cloud)
+    depths, points = image_messages.pixels_of(depth), points_of(cloud)
     right = depths[:, 20:]
     np.testing.assert_allclose(right, 3.0, atol=1e-4)
     assert (depths[:, 2] == -math.inf).all()  # 0.25 m, and <min_depth> is 0.4 m where the file says nothing
@@ -106,7 +106,7 @@ def test_a_depth_camera_has_colours_depths_and_a_cloud_in_optical_axes() -> None
     assert points["y"][-1, 25] > 0 > points["y"][0, 25]
     assert {m.header.frame_id for m in (image, depth, cloud, info)} == {"optical"}
     bytes_ = points["rgb"][:, 25].copy().view(np.uint8).reshape(-1, 4)
-    np.testing.assert_array_equal(bytes_[:, 2::-1], pictures.pixels_of(image)[:, 25])
+    np.testing.assert_array_equal(bytes_[:, 2::-1], image_messages.pixels_of(image)[:, 25])
 
 
 def test_each_trigger_of_ros_2_gives_a_picture() -> None:
@@ -209,7 +209,7 @@ def test_ros_1s_depth_cameras_have_nan_where_there_is_no_depth(library: str) -> 
         assert sorted(topics_of(sim)) == sorted([*names, "/kinect/depth/points"])
     image, _, depth, info, cloud = heard(text, *names, "/kinect/depth/points")
     assert {m.header.frame_id for m in (image, depth, info, cloud)} == {"optical"}
-    depths, points = pictures.pixels_of(depth), points_of(cloud)
+    depths, points = image_messages.pixels_of(depth), points_of(cloud)
     assert depth.encoding == "32FC1"
     np.testing.assert_allclose(depths[:, 20:], 3.0, atol=1e-4)
     assert np.isnan(depths[:, 2]).all()
@@ -226,7 +226,7 @@ def test_ros_1s_depth_cameras_have_nan_where_there_is_no_depth(library: str) -> 
 def test_millimetres_in_16_bits() -> None:
     content = "<cameraName>k</cameraName><useDepth16UC1Format>true</useDepth16UC1Format>"
     (depth,) = heard(world("depth", CAMERA, plugin("gazebo_ros_openni_kinect", content)), "/k/depth/image_raw")
-    depths = pictures.pixels_of(depth)
+    depths = image_messages.pixels_of(depth)
     assert (depth.encoding, depth.step) == ("16UC1", 2 * WIDTH)
     np.testing.assert_allclose(depths[:, 20:], 3000, atol=1)
     assert not depths[:, [2, 16]].any()
@@ -273,7 +273,7 @@ def test_a_plugins_camera_is_the_same_after_reset_restore_and_spawn() -> None:
         first, before = [bytes(m.data) for m in depth.messages], sim.snapshot()
         sim.spawn(f'<sdf version="1.6">{wall(2.0, -1.0, 1.0, "1 1 1")}</sdf>')
         sim.run(0.1)
-        assert pictures.pixels_of(depth.latest)[12, 20] == pytest.approx(2.0, abs=1e-3)
+        assert image_messages.pixels_of(depth.latest)[12, 20] == pytest.approx(2.0, abs=1e-3)
         sim.restore(before)
         sim.reset()
         count = len(depth.messages)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.gzpython.math import Vector3d
-from simkit.gzpython.sim import Link, Model, World, world_entity
-from simkit.plugins.gz.system import GzSystem
+from simkit.plugins.gz.gz_system import GzSystem
+from simkit.plugins.gz_python.math import Vector3d
+from simkit.plugins.gz_python.sim import Link, Model, World, world_entity
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="body"><link name="link"/></model>
   </world></sdf>"""

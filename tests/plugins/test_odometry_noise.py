@@ -10,16 +10,21 @@ import pytest
 
 import simkit
 from simkit.plugins.drives.odometry import DeadReckoning
-from simkit.plugins.drives.odometry_noise import ErringOdometry, FollowedMotion, OdometryNoise, displaced
+from simkit.plugins.drives.odometry_noise import (
+    EquivalentWheelAngles,
+    NoisyOdometry,
+    OdometryNoise,
+    replace_planar_pose,
+)
 from simkit.pose import Pose
-from simkit.runtime.random import RandomStreams
+from simkit.runtime.engine.random_streams import RandomStreams
 
 RADIUS, SEPARATION = 0.1, 0.4
 
 
 def drive(noise: OdometryNoise, seed: int = 0, steps: int = 50, left: float = 0.032, right: float = 0.048) -> Any:
     """An arc of 2 m that turns left by 2 rad, in steps; ways of each wheel and step in m."""
-    odometry = ErringOdometry(noise, RADIUS, SEPARATION, RandomStreams(seed).stream("m", "odometry_noise", 2))
+    odometry = NoisyOdometry(noise, RADIUS, SEPARATION, RandomStreams(seed).stream("m", "odometry_noise", 2))
     for k in range(1, steps + 1):
         odometry.advance(k * left / RADIUS, k * right / RADIUS, 0.02)
     return odometry
@@ -81,7 +86,7 @@ def test_unequal_wheels_turn_a_straight_into_an_arc() -> None:
 
 def test_counted_wheels_are_never_more_than_half_a_count_off() -> None:
     step = 2 * math.pi / 64
-    odometry = ErringOdometry(OdometryNoise(resolution=step), RADIUS, SEPARATION, None)
+    odometry = NoisyOdometry(OdometryNoise(resolution=step), RADIUS, SEPARATION, None)
     for k in range(1, 500):
         odometry.advance(k * 0.013, k * 0.013, 0.02)
         assert abs(odometry.reckoning.x - k * 0.0013) <= step / 2 * RADIUS + 1e-12
@@ -99,14 +104,14 @@ def test_a_twist_is_as_far_off_as_it_says() -> None:
 
 def test_a_true_motion_is_told_as_the_turns_of_wheels_and_comes_out_again() -> None:
     """Along any curve, also sideways and past half a turn."""
-    followed = FollowedMotion(Pose.from_rpy(1, 2, 0, 0, 0, 3.0), RADIUS, SEPARATION)
-    odometry = ErringOdometry(OdometryNoise(), RADIUS, SEPARATION, None, followed.angles, followed.start)
+    followed = EquivalentWheelAngles(Pose.from_rpy(1, 2, 0, 0, 0, 3.0), RADIUS, SEPARATION)
+    odometry = NoisyOdometry(OdometryNoise(), RADIUS, SEPARATION, None, followed.angles, followed.start)
     for k in range(1, 400):
         t = k * 0.01
         pose = Pose.from_rpy(1 + math.sin(t), 2 + t * t / 3, 0.1, 0.05, 0, 3.0 + 0.8 * t)
         left, right, sideways = followed.follow(pose)
         odometry.advance(left, right, 0.01, sideways)
-    back = displaced(pose, odometry.reckoning)
+    back = replace_planar_pose(pose, odometry.reckoning)
     np.testing.assert_allclose(back.position, pose.position, atol=1e-9)
     np.testing.assert_allclose(back.matrix, pose.matrix, atol=1e-9)
 

@@ -7,7 +7,7 @@ from camera_worlds import CAMERA, IMAGE, WALLS, heard, plugin, points_of, topics
 from renderer import NEEDS_RENDERER
 
 import simkit
-from simkit.sensors import pictures
+from simkit.sensors.cameras import image_messages
 
 pytestmark = NEEDS_RENDERER
 
@@ -52,7 +52,7 @@ def test_a_realsense_publishes_its_streams_as_the_driver_does() -> None:
     assert (colour.encoding, grey.encoding, depth.encoding) == ("rgb8", "8UC1", "16UC1")
     assert (colour.header.frame_id, depth.header.frame_id) == ("color_optical", "depth_optical")
     assert info.header == depth.header
-    found = pictures.pixels_of(depth)
+    found = image_messages.pixels_of(depth)
     np.testing.assert_allclose(found[:, 20:], 3000, atol=1)
     np.testing.assert_allclose(found[:, 16], 6000, atol=1)
     assert not found[:, 2].any()

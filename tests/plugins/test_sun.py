@@ -13,8 +13,8 @@ import pytest
 pytest.importorskip("pvlib", reason="the sun's position is pvlib's")
 
 import simkit
-from simkit.plugins import sun, sun_position
-from simkit.plugins.sun_position import Site, SunPath, air_mass, clear_sky
+from simkit.plugins.world import sun, sun_position
+from simkit.plugins.world.sun_position import Site, SunPath, air_mass, clear_sky
 from simkit.pose import Pose, quat_rotate
 
 LIGHT = "<light name='sun' type='directional'><direction>0.3 0.2 -0.9</direction></light>"
@@ -327,5 +327,5 @@ def test_whatever_way_the_light_shone_it_shines_from_the_sun(direction: str) -> 
 )
 def test_half_a_turn_has_an_axis_too(start: tuple[float, float, float]) -> None:
     opposite = (-start[0], -start[1], -start[2])
-    turned = Pose((0, 0, 0), sun._turn(start, opposite)).rotate(start)
+    turned = Pose((0, 0, 0), sun._shortest_rotation(start, opposite)).rotate(start)
     np.testing.assert_allclose(turned, opposite, atol=1e-12)

@@ -13,7 +13,7 @@ from plugin_worlds import GROUND, rover, world
 import simkit
 from simkit.params import Params
 from simkit.plugins import aliases, find_plugin, normalise, plugin_kinds
-from simkit.plugins.gazebo_names import KNOWN
+from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS
 from simkit.scene import ScenePlugin
 
 SYSTEMS = {
@@ -175,6 +175,6 @@ def test_every_plugin_that_real_files_name_is_there_or_is_known_to_be_gazebos() 
     unknown = set()
     for filename, name in named:
         spellings = aliases(ScenePlugin(name, filename, "m", Params("plugin")))
-        if not any(spelling in plugin_kinds() or spelling in KNOWN for spelling in spellings):
+        if not any(spelling in plugin_kinds() or spelling in GAZEBO_PLUGINS for spelling in spellings):
             unknown.add(normalise(filename))
     assert unknown <= STRANGERS

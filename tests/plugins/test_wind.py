@@ -10,7 +10,7 @@ import pytest
 import simkit
 from simkit import msgs
 from simkit.plugins.base import NEVER
-from simkit.plugins.fluids.blowing import Blowing
+from simkit.plugins.fluids.wind_effects import WindPluginBase
 
 _NOW = "<time_for_rise>1e-6</time_for_rise>"
 AT_ONCE = (
@@ -161,7 +161,7 @@ def test_a_command_without_numbers_is_left_out() -> None:
 def test_what_is_spawned_later_is_pushed_too_and_nothing_is_done_before() -> None:
     text = world().replace("<enable_wind>true", "<enable_wind>false")
     sim = simkit.load(text)
-    assert [plugin.before_step_rate for plugin in sim.plugins.values() if isinstance(plugin, Blowing)] == [NEVER]
+    assert [plugin.before_step_rate for plugin in sim.plugins.values() if isinstance(plugin, WindPluginBase)] == [NEVER]
     sim.step(100)
     sim.spawn(f'<sdf version="1.9">{BODY.format(name="late", x=3, windy="true")}</sdf>')
     sim.step(10)

@@ -12,8 +12,8 @@ from service_worlds import load, model
 
 import simkit
 from simkit import msgs
-from simkit.sinks.recorder import Recorder
-from simkit.sinks.topic_counts import TopicCounter
+from simkit.recording.bags.recorder import Recorder
+from simkit.recording.topic_counts import TopicCounter
 
 WALL = ("real_time", "pause_time", "real_time_factor")
 ASIDE = {"/stats", "/world/w/stats", "/world/w/clock", "/world/w/pose/info", "/world/w/dynamic_pose/info"}

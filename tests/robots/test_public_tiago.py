@@ -17,7 +17,7 @@ import pytest
 import trimesh
 
 import simkit
-from simkit.compiler.groups import VISUAL
+from simkit.compiler.geom_groups import VISUAL
 
 NAMES = ("tiago", "tiago_no_hand", "tiago_dual")
 LINKS = {"tiago": 78, "tiago_no_hand": 38, "tiago_dual": 130}

@@ -10,12 +10,12 @@ import pytest
 
 import simkit
 from simkit.diagnostics import Diagnostics
-from simkit.motion.motions import Motion
-from simkit.motion.movers import movers_of
-from simkit.motion.plan import Approach, course_from, plan
-from simkit.motion.play import PlayMotion
-from simkit.motion.reading import read_motions
-from simkit.motion.session import empty_world_with, play_all, players
+from simkit.plugins.play_motion.motion import Motion
+from simkit.plugins.play_motion.motion_files import read_motions
+from simkit.plugins.play_motion.motion_planning import Approach, course_from, plan_motion
+from simkit.plugins.play_motion.motion_session import empty_world_with, motion_players, play_motions
+from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
+from simkit.plugins.play_motion.trajectory_controllers import active_controllers
 
 FILES = Path(__file__).resolve().parents[2] / "assets" / "tiago" / "motions"
 # points, time of the last one [s], and the last one, as tiago_bringup (humble) has them
@@ -64,7 +64,7 @@ def test_the_file_has_the_published_numbers(motions: dict[str, Motion]) -> None:
 
 def test_every_motion_is_one_of_the_robots_and_says_what_it_is_for(sim: Any, motions: dict[str, Motion]) -> None:
     assert not [str(d) for d in sim.diagnostics if "MOTION" in d.code and d.severity != "note"]
-    assert players(sim)["tiago"].motions.keys() == motions.keys()
+    assert motion_players(sim)["tiago"].motions.keys() == motions.keys()
     assert all(m.name and m.usage and m.description for m in motions.values())
     stretched = [d.message.split("'")[1] for d in sim.diagnostics if d.code == "SK-MOTION-005"]
     assert stretched == ["reach_max", "prepare_grasp", "pick_from_floor", "pregrasp_demo", "grasp_demo"]
@@ -74,7 +74,7 @@ def test_from_home_every_motion_can_be_played(sim: Any, motions: dict[str, Motio
     robot = sim.model("tiago")
     robot.set_joint_positions(dict(zip(motions["home"].joints, motions["home"].positions[-1], strict=True)))
     for motion in motions.values():
-        course = plan(sim, robot, motion, movers_of(sim, robot), Approach())
+        course = plan_motion(sim, robot, motion, active_controllers(sim, robot), Approach())
         limits = np.array([robot.joints[name].scene.axes[0].velocity for name in motion.joints])
         assert course.duration >= motion.duration
         assert np.all(np.abs(course.velocities) <= limits * (1 + 1e-6))
@@ -86,7 +86,7 @@ def test_the_torso_takes_its_time() -> None:
 
 
 def test_home_is_reached_and_the_base_stays(sim: Any) -> None:
-    for played in play_all(sim, players(sim)["tiago"], ["home", "open"]):
+    for played in play_motions(sim, motion_players(sim)["tiago"], ["home", "open"]):
         joint, off = played.furthest
         assert abs(off) < 0.01, f"{played.motion.key}: {joint}"
     assert np.linalg.norm(sim.model("tiago").pose.position[:2]) < 1e-3
@@ -99,7 +99,7 @@ def test_a_wall_before_the_robot_is_named(motions: dict[str, Motion]) -> None:
     with simkit.load(text.replace("</world>", f"{wall}</world>"), resource_paths=folders) as sim:
         robot = sim.model("tiago")
         robot.set_joint_positions(dict(zip(motions["home"].joints, motions["home"].positions[-1], strict=True)))
-        player = players(sim)["tiago"]
+        player = motion_players(sim)["tiago"]
         assert isinstance(player, PlayMotion)
         goal = sim.send_goal("/play_motion2", {"motion_name": "reach_max"})
         sim.run(0.1)
@@ -111,7 +111,7 @@ def test_without_an_arm_the_head_has_its_motions() -> None:
     text, folders = empty_world_with("tiago_no_arm")
     with simkit.load(text, resource_paths=folders) as sim:
         assert not [str(d) for d in sim.diagnostics if "MOTION" in d.code and d.severity != "note"]
-        assert list(players(sim)["tiago_no_arm"].motions) == ["inspect_surroundings", "head_tour"]
+        assert list(motion_players(sim)["tiago_no_arm"].motions) == ["inspect_surroundings", "head_tour"]
         goal = sim.send_goal("/play_motion2", {"motion_name": "inspect_surroundings"})
         assert sim.run_until(lambda _: goal.is_done, timeout=15.0)
         assert goal.status.name == "SUCCEEDED", goal.result.error

@@ -9,7 +9,7 @@ import pytest
 from renderer import NEEDS_RENDERER
 
 import simkit
-from simkit.sensors.pictures import pixels_of
+from simkit.sensors.cameras.image_messages import pixels_of
 
 pytestmark = NEEDS_RENDERER
 

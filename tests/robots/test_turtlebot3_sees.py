@@ -11,7 +11,7 @@ from renderer import NEEDS_RENDERER
 
 import simkit
 from simkit.pose import Pose
-from simkit.sensors.pictures import pixels_of
+from simkit.sensors.cameras.image_messages import pixels_of
 
 pytestmark = NEEDS_RENDERER
 

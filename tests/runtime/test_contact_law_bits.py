@@ -14,10 +14,10 @@ import pytest
 
 import simkit
 from simkit.errors import SimulationDiverged
-from simkit.runtime import carried_contacts, contact_law
-from simkit.runtime.contact_law import window_of
-from simkit.runtime.corrected_contacts import ManyContacts
-from simkit.runtime.physics import STALE, VELOCITY
+from simkit.runtime.contact import centripetal_friction, contact_law
+from simkit.runtime.contact.contact_correction import ArrayContactCorrection
+from simkit.runtime.contact.contact_law import window_length
+from simkit.runtime.engine.physics import STALE, VELOCITY
 
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 SENSORS = """<sensor name="imu" type="imu"><update_rate>1000</update_rate></sensor>
@@ -174,7 +174,7 @@ def test_a_run_restored_to_any_tick_of_a_window_repeats(name: str) -> None:
         states.append(bits(alone))
     sim = WORLDS[name]()
     sim.step(40)
-    for _ in range(2 * window_of(0.001) + 1):
+    for _ in range(2 * window_length(0.001) + 1):
         here, tick = sim.snapshot(), sim.tick
         for count in (5, 20):
             sim.model("ground").pose  # noqa: B018 - a reader
@@ -262,8 +262,8 @@ def test_a_held_state_has_the_controls_of_its_tick() -> None:
 def test_few_and_many_contacts_give_the_same_bits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     found = set()
     for many in (0, 10**9):
-        monkeypatch.setattr(contact_law, "MANY", many)
-        monkeypatch.setattr(carried_contacts, "MANY", many)
+        monkeypatch.setattr(contact_law, "ARRAY_THRESHOLD", many)
+        monkeypatch.setattr(centripetal_friction, "ARRAY_THRESHOLD", many)
         sim = WORLDS[name]()
         sim.step(200)
         found.add(bits(sim))
@@ -276,7 +276,7 @@ def test_few_and_many_contacts_with_other_friction_give_the_same_bits(
 ) -> None:
     found = set()
     for many in (0, 10**9):
-        monkeypatch.setattr(contact_law, "MANY", many)
+        monkeypatch.setattr(contact_law, "ARRAY_THRESHOLD", many)
         sim = simkit.load(mjcf("implicitfast", "elliptic", condim))
         push(sim)
         sim.step(150)
@@ -444,15 +444,15 @@ def test_an_interrupt_within_a_stage_comes_out_and_leaves_no_callback(monkeypatc
     sim = simkit.load(mjcf("RK4"))
     push(sim)
     sim.step(3)
-    correct, calls = ManyContacts.correct, []
+    correct, calls = ArrayContactCorrection.correct, []
 
-    def interrupted(self: ManyContacts, *args: object) -> bool:
+    def interrupted(self: ArrayContactCorrection, *args: object) -> bool:
         calls.append(0)
         if len(calls) == 3:
             raise KeyboardInterrupt
         return correct(self, *args)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(ManyContacts, "correct", interrupted)
+    monkeypatch.setattr(ArrayContactCorrection, "correct", interrupted)
     with pytest.raises(KeyboardInterrupt):
         sim.step(2)
     assert mujoco.get_mjcb_control() is None

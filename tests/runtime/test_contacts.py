@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from simkit.runtime.contacts import touches
+from simkit.runtime.contact.collision_contacts import find_contacts
 
 
 def two_balls(distance: float, **settings: str) -> tuple[Any, Any]:
@@ -27,7 +27,7 @@ EITHER = np.array([True, False, False])
 
 
 def test_overlapping_balls_touch() -> None:
-    found = touches(*two_balls(0.19), EITHER)
+    found = find_contacts(*two_balls(0.19), EITHER)
     assert found is not None
     assert found.depths == pytest.approx([0.01])
     assert found.geoms.tolist() == [[0, 1]]
@@ -39,19 +39,19 @@ def test_what_comes_near_is_no_contact_until_it_is_pushed() -> None:
     """Within the gap the engine lists a pair without a force; within the margin it pushes already."""
     model, data = two_balls(0.205, gap="0.01")
     assert data.ncon == 1
-    assert touches(model, data, EITHER) is None
+    assert find_contacts(model, data, EITHER) is None
     model, data = two_balls(0.205, margin="0.01")
-    found = touches(model, data, EITHER)
+    found = find_contacts(model, data, EITHER)
     assert found is not None and found.depths == pytest.approx([-0.005]) and found.wrenches[0, 0] > 0
     data.qvel[6] = 100.0  # it flies off: within the margin, and no force
     mujoco.mj_forward(model, data)
     assert data.ncon == 1
-    assert touches(model, data, EITHER) is None
+    assert find_contacts(model, data, EITHER) is None
 
 
 def test_others_contacts_do_not_count() -> None:
     model, data = two_balls(0.19)
-    assert touches(model, data, np.zeros(3, bool)) is None
+    assert find_contacts(model, data, np.zeros(3, bool)) is None
 
 
 @pytest.mark.parametrize("cone", ["pyramidal", "elliptic"])
@@ -60,7 +60,7 @@ def test_the_wrenches_are_those_that_move_the_bodies(cone: str) -> None:
     model.opt.cone = getattr(mujoco.mjtCone, f"mjCONE_{cone.upper()}")
     data.qvel[:] = np.linspace(-0.3, 0.4, 12)
     mujoco.mj_forward(model, data)
-    found = touches(model, data, EITHER)
+    found = find_contacts(model, data, EITHER)
     assert found is not None
     force = found.frames[0].T @ found.wrenches[0, :3]
     torque = found.frames[0].T @ found.wrenches[0, 3:]

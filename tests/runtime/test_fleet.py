@@ -6,8 +6,8 @@ import pytest
 import simkit
 from simkit import msgs
 from simkit.errors import PluginError, SubscriberError
-from simkit.runtime import together
-from simkit.sensors import crews
+from simkit.runtime.engine import grouped_hooks
+from simkit.sensors import batch
 
 COUNT = 5
 
@@ -97,8 +97,8 @@ def apart(monkeypatch):
 
     def alone(call, *args, **kwargs):
         with monkeypatch.context() as patch:
-            patch.setattr(crews, "LEAST", 10_000)
-            patch.setattr(together, "LEAST", 10_000)
+            patch.setattr(batch, "MIN_MEMBERS", 10_000)
+            patch.setattr(grouped_hooks, "MIN_GROUP_SIZE", 10_000)
             return call(*args, **kwargs)
 
     return alone
@@ -107,9 +107,9 @@ def apart(monkeypatch):
 @pytest.fixture
 def by_numpy(monkeypatch):
     """Lidars cast in NumPy, as they do among more than 64 moving bodies."""
-    from simkit.sensors.rays import fan
+    from simkit.sensors.rays import ray_fan
 
-    monkeypatch.setattr(fan, "MOST_MOVING", 0)
+    monkeypatch.setattr(ray_fan, "MAX_MOVING_BODIES", 0)
 
 
 def crew_sizes(sim):

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import simkit
-from simkit.runtime.free_motion import FreeMotion
+from simkit.runtime.engine.free_motion import FreeMotionIntegrator
 
 MASS = 0.1  # [kg] of a link
 
@@ -29,7 +29,7 @@ def chain(links: int, length: float, step: float = 0.001, axis: str = "", more: 
     </physics><model name="chain"><pose>0 0 20 0 0 0</pose>{text}</model>{more}</world></sdf>"""
 
 
-def step(model: mujoco.MjModel, data: mujoco.MjData, motion: FreeMotion | None) -> None:
+def step(model: mujoco.MjModel, data: mujoco.MjData, motion: FreeMotionIntegrator | None) -> None:
     """One step of the engine with the correction of free motion."""
     if motion is not None:
         motion.prepare(data)
@@ -42,7 +42,7 @@ def step(model: mujoco.MjModel, data: mujoco.MjData, motion: FreeMotion | None) 
 def test_fifty_links_that_fall_keep_their_energy(length: float) -> None:
     sim = simkit.load(chain(50, length))
     model, data = sim.mj_model, sim.mj_data
-    motion = FreeMotion.of(model)
+    motion = FreeMotionIntegrator.of(model)
     model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
     mujoco.mj_forward(model, data)
     start = float(data.energy.sum())
@@ -62,7 +62,7 @@ def test_a_robot_beside_a_chain_keeps_its_bits() -> None:
     <collision name="c"><geometry><plane><normal>0 0 1</normal><size>9 9</size></plane></geometry></collision></link>
     </model>"""
     sim, plain = simkit.load(chain(10, 0.1, more=ball)), simkit.load(chain(10, 0.1, more=ball))
-    motion = FreeMotion.of(sim.mj_model)
+    motion = FreeMotionIntegrator.of(sim.mj_model)
     for _ in range(800):
         step(sim.mj_model, sim.mj_data, motion)
         step(plain.mj_model, plain.mj_data, None)
@@ -76,12 +76,12 @@ def test_a_robot_beside_a_chain_keeps_its_bits() -> None:
 @pytest.mark.parametrize("kind", ["damping", "friction"])
 def test_joints_with_damping_or_friction_are_no_free_chain(kind: str) -> None:
     axis = f"<dynamics><{kind}>0.01</{kind}></dynamics>"
-    assert FreeMotion.of(simkit.load(chain(20, 0.1, axis=axis)).mj_model) is None
+    assert FreeMotionIntegrator.of(simkit.load(chain(20, 0.1, axis=axis)).mj_model) is None
 
 
 def test_a_chain_as_long_as_an_arm_is_left_to_the_engine() -> None:
-    assert FreeMotion.of(simkit.load(chain(7, 0.1)).mj_model) is None
-    assert FreeMotion.of(simkit.load(chain(8, 0.1)).mj_model) is not None
+    assert FreeMotionIntegrator.of(simkit.load(chain(7, 0.1)).mj_model) is None
+    assert FreeMotionIntegrator.of(simkit.load(chain(8, 0.1)).mj_model) is not None
 
 
 # ------------------------------------------------------------------ spinning
@@ -101,7 +101,7 @@ def test_a_top_precesses_at_the_speed_of_theory(spin: float) -> None:
     tilt, height, across, along, gravity = 0.5, 0.1, 0.002, 0.002, 9.8
     joint = '<joint name="j" type="ball"><parent>world</parent><child>l</child></joint>'
     sim = simkit.load(spinner((across, across, along), height, tilt, joint, gravity))
-    model, data, motion = sim.mj_model, sim.mj_data, FreeMotion.of(sim.mj_model)
+    model, data, motion = sim.mj_model, sim.mj_data, FreeMotionIntegrator.of(sim.mj_model)
     linear = along * spin
     quadratic = (across + height**2 - along) * math.cos(tilt)
     # with the spin of the body frame the gyroscopic term is I₃ (spin + P cos(tilt))
@@ -123,7 +123,7 @@ def test_a_top_precesses_at_the_speed_of_theory(spin: float) -> None:
 def test_a_tennis_racket_flips_when_eulers_equations_have_it() -> None:
     inertia, start = np.array([0.01, 0.02, 0.028]), np.array([0.01, 10.0, 0.01])
     sim = simkit.load(spinner((0.01, 0.02, 0.028), 0.0, 0.0, "", 0.0))
-    model, data, motion = sim.mj_model, sim.mj_data, FreeMotion.of(sim.mj_model)
+    model, data, motion = sim.mj_model, sim.mj_data, FreeMotionIntegrator.of(sim.mj_model)
     data.qvel[3:] = start
 
     def euler(_time: float, w: np.ndarray) -> np.ndarray:
@@ -144,7 +144,7 @@ def test_a_tennis_racket_flips_when_eulers_equations_have_it() -> None:
 def test_a_slow_body_and_one_that_may_touch_are_left_to_the_engine() -> None:
     world = spinner((0.01, 0.02, 0.028), 0.0, 0.0, "", 9.8)
     sim, plain = simkit.load(world), simkit.load(world)
-    motion = FreeMotion.of(sim.mj_model)
+    motion = FreeMotionIntegrator.of(sim.mj_model)
     for each in (sim, plain):
         each.mj_data.qvel[3:] = (1.0, 2.0, 3.0)
     for _ in range(100):
@@ -154,4 +154,4 @@ def test_a_slow_body_and_one_that_may_touch_are_left_to_the_engine() -> None:
     solid = world.replace(
         "</link>", '<collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision></link>'
     )
-    assert FreeMotion.of(simkit.load(solid).mj_model) is None
+    assert FreeMotionIntegrator.of(simkit.load(solid).mj_model) is None

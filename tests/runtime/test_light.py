@@ -9,7 +9,7 @@ import pytest
 
 import simkit
 from simkit.pose import Pose
-from simkit.runtime.light import LightState
+from simkit.runtime.handles.light import LightState
 
 SUN = '<light name="sun" type="directional"><direction>0 0 -1</direction></light>'
 POST = (

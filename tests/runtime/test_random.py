@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simkit.runtime.random import RandomStreams
+from simkit.runtime.engine.random_streams import RandomStreams
 
 
 def draws(stream, indices):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import simkit
-from simkit.runtime.contact_law import window_of
-from simkit.runtime.speculative import FLAG
+from simkit.runtime.contact.contact_law import window_length
+from simkit.runtime.contact.speculative_contacts import SPECULATIVE_FLAG
 
 SHAPES = {
     "ball": "<sphere><radius>0.02</radius></sphere>",
@@ -157,10 +157,10 @@ def test_windows_are_on_only_while_something_fast_comes_near() -> None:
     sim = simkit.load(world(wall(0.01), body("b", SHAPES["ball"], "-3 0.03 0.02 0 0 0")))
     sim.model("b").set_velocity((40, 0, 0), (0, 0, 0))
     on = []
-    window = window_of(sim.timestep)
+    window = window_length(sim.timestep)
     for _ in range(160):
         sim.step()
-        on.append(bool(sim.mj_model.opt.enableflags & FLAG))
+        on.append(bool(sim.mj_model.opt.enableflags & SPECULATIVE_FLAG))
     assert not any(on[: 2 * window])  # it is 1.7 m away then, and a window takes it 1.3 m at twice its speed
     assert any(on)
     assert not any(on[-2 * window :])  # it rests at the wall

@@ -4,7 +4,7 @@ import pytest
 
 from simkit import msgs
 from simkit.errors import MessageError
-from simkit.runtime.topics import TopicBus
+from simkit.runtime.communication.topic_bus import TopicBus
 
 
 def test_a_subscriber_may_come_before_the_publisher():

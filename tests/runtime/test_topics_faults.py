@@ -7,8 +7,8 @@ import simkit
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
 from simkit.errors import PluginError, SubscriberError
-from simkit.runtime.inbox import DEPTH
-from simkit.runtime.topics import TopicBus
+from simkit.runtime.communication.command_queue import QUEUE_DEPTH
+from simkit.runtime.communication.topic_bus import TopicBus
 
 FLOAT = "std_msgs/msg/Float64"
 
@@ -131,12 +131,12 @@ def test_of_too_many_messages_for_one_step_the_newest_are_kept_counted_and_repor
     bus.listen("/x", (FLOAT,), lambda m: got.append(m.data))
     for i in range(20_000):
         bus.publish("/x", number(i))
-    assert len(bus.inbox) == DEPTH
+    assert len(bus.inbox) == QUEUE_DEPTH
     bus.deliver_inputs()
-    assert got == list(range(20_000 - DEPTH, 20_000))
-    assert bus.dropped == {"/x": 20_000 - DEPTH}
+    assert got == list(range(20_000 - QUEUE_DEPTH, 20_000))
+    assert bus.dropped == {"/x": 20_000 - QUEUE_DEPTH}
     assert [d.code for d in reports] == ["SK-TOPIC-004"]
-    assert f"more than {DEPTH} messages on '/x'" in next(iter(reports)).message
+    assert f"more than {QUEUE_DEPTH} messages on '/x'" in next(iter(reports)).message
 
 
 def test_a_flood_on_one_topic_takes_nothing_from_another_nor_from_the_order():

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from simkit import LoadError
-from simkit.scenario import Check, Scenario, Tolerance
-from simkit.scenario.read import is_scenario_file, read_scenario
-from simkit.scenario.run import open_scenario, run_scenario
+from simkit.testing.scenarios import Check, Scenario, Tolerance
+from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
+from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 BALL = """<sdf version="1.9"><world name="default"><model name="ball"><pose>0 0 5 0 0 0</pose><link name="b">
 <collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
@@ -215,7 +215,7 @@ def test_a_file_that_is_not_there_says_so(tmp_path):
 def test_a_python_file_has_a_scenario(tmp_path):
     found = scenario(
         tmp_path,
-        "from simkit.scenario import Check, Scenario\n"
+        "from simkit.testing.scenarios import Check, Scenario\n"
         "scenario = Scenario('ball.sdf', 0.2, checks=(Check('goal', expression='time > 0.1'),))\n",
         "drop.py",
     )
@@ -247,9 +247,9 @@ SLED = """<sdf version="1.9"><world name="ice"><model name="sled"><pose>0 0 1 0 
 
 def test_what_is_played_is_sent_at_its_ticks_and_says_how_long_the_run_is(tmp_path):
     """Bit for bit: also from a golden run's file, which names the bag from where it lies itself."""
-    from simkit.golden.written import plain_scenario, scenario_from
-    from simkit.runtime.state_hash import state_hash
-    from simkit.sinks.recorder import Recorder
+    from simkit.recording.bags.recorder import Recorder
+    from simkit.runtime.engine.snapshot import state_hash
+    from simkit.testing.golden.scenario_encoding import decode_scenario, encode_scenario
 
     (tmp_path / "ice.sdf").write_text(SLED)
     topic = "/model/sled/cmd_vel"
@@ -263,7 +263,7 @@ def test_what_is_played_is_sent_at_its_ticks_and_says_how_long_the_run_is(tmp_pa
     read = read_scenario(tmp_path / "again.yaml")
     golden = tmp_path / "golden" / "ice"
     golden.mkdir(parents=True)
-    for played in (read, scenario_from(plain_scenario(read, golden), golden)):
+    for played in (read, decode_scenario(encode_scenario(read, golden), golden)):
         assert played.duration == pytest.approx(0.2)
         with open_scenario(played) as sim:
             run_scenario(played, sim)
@@ -309,13 +309,13 @@ def test_a_spawned_file_is_looked_for_beside_the_scenario(tmp_path):
     (tmp_path / "box.sdf").write_text("<sdf/>")
     found = scenario(tmp_path, "world: ball.sdf\nspawn: ['box.sdf:1,2,0', 'tiago:0,0,0']\n")
     assert found.spawn == (f"{tmp_path / 'box.sdf'}:1,2,0", "tiago:0,0,0")
-    text = "from simkit.scenario import Scenario\nscenario = Scenario('ball.sdf', spawn=('box.sdf:1,2,0',))\n"
+    text = "from simkit.testing.scenarios import Scenario\nscenario = Scenario('ball.sdf', spawn=('box.sdf:1,2,0',))\n"
     assert scenario(tmp_path, text, "drop.py").spawn == (f"{tmp_path / 'box.sdf'}:1,2,0",)
 
 
 def test_a_scenario_made_in_python_is_looked_at_too(tmp_path):
     text = """
-from simkit.scenario import Check, Scenario
+from simkit.testing.scenarios import Check, Scenario
 scenario = Scenario(
     3, float("nan"), seed=-1, topics="imu", spawn=[1], until=None, commands=({"topic": "/x"},), tolerances=(1,),
     checks=(Check("gaol", by="now"), Check("apart", models="ball")),

@@ -13,7 +13,7 @@ import numpy as np
 import simkit
 from simkit import msgs
 from simkit.sensors import sensor_kinds
-from simkit.sensors.rendered import RenderedSensor
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
 
 RATE = 40
 DURATION = 0.26
@@ -82,7 +82,7 @@ _WORLD = """<sdf version="1.9"><world name="w">
 
 def is_rendered(kind: str) -> bool:
     """Whether the kind draws pictures."""
-    return issubclass(sensor_kinds()[kind], RenderedSensor)
+    return issubclass(sensor_kinds()[kind], RenderedCamera)
 
 
 def source(kind: str, *, noisy: bool = False, extra: str = "") -> str:

@@ -7,12 +7,12 @@ from typing import Final
 import pytest
 
 from simkit.errors import RenderError
-from simkit.sensors.rendering import gl
+from simkit.sensors.cameras.rendering import gl_context
 
 
 def _why_not() -> str:
     try:
-        with gl.current():
+        with gl_context.current():
             return ""
     except RenderError as error:
         return str(error)

@@ -11,8 +11,8 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, noise, sensor, world
 
 import simkit
-from simkit.sensors.rendering.depths import metres
-from simkit.sensors.rendering.overview import render_view
+from simkit.sensors.cameras.rendering.frame_buffer import depths_in_metres
+from simkit.sensors.cameras.rendering.overview_image import render_view
 
 pytestmark = NEEDS_RENDERER
 
@@ -319,7 +319,7 @@ def test_raw_depths_become_metres() -> None:
     near, far = 0.01, 100.0
     z = np.array(((0.01, 1.0), (99.0, 100.0)))
     raw = (near * (far - z) / (z * (far - near))).astype(np.float32)
-    found = metres(raw, near, far)
+    found = depths_in_metres(raw, near, far)
     np.testing.assert_allclose(found[0], z[0], rtol=1e-5)
     assert found[1, 0] == pytest.approx(99.0, rel=1e-3)
     assert found[1, 1] == math.inf

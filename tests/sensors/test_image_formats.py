@@ -12,8 +12,8 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import box, sensor, world
 
 import simkit
-from simkit.sensors import pictures
-from simkit.sensors.saved_pictures import ALLOWED, as_png
+from simkit.sensors.cameras import image_messages
+from simkit.sensors.cameras.saved_images import SAVE_PATH_VARIABLE, encode_png
 
 pytestmark = NEEDS_RENDERER
 
@@ -48,7 +48,7 @@ def picture(fmt: str, kind: str = "camera") -> Any:
 @pytest.fixture(scope="module")
 def colours() -> np.ndarray:
     """The picture as it is in 8 bits, red, green, blue, shape (48, 64, 3)."""
-    found = pictures.pixels_of(picture("R8G8B8"))
+    found = image_messages.pixels_of(picture("R8G8B8"))
     assert found.shape == (HEIGHT, WIDTH, 3)
     assert found[24, 16].argmax() == 0
     assert found[24, 48].argmax() == 1
@@ -87,7 +87,7 @@ def test_a_format_has_ross_encoding_and_step(names: tuple[str, ...], encoding: s
 
 
 def pixels(fmt: str) -> np.ndarray:
-    return pictures.pixels_of(picture(fmt))
+    return image_messages.pixels_of(picture(fmt))
 
 
 def test_every_format_holds_the_same_picture(colours: np.ndarray) -> None:
@@ -107,7 +107,7 @@ def test_brightness_is_rec_601s_and_white_is_the_whole_range(colours: np.ndarray
     np.testing.assert_allclose(pixels("L8"), expected, atol=1)
     np.testing.assert_array_equal(pixels("L16"), pixels("L8").astype(np.uint16) * 257)
     white = np.full((2, 2), 255, np.uint8)
-    assert pictures.pixels_of(pictures.colour_message(None, white, "mono16")).max() == 65535
+    assert image_messages.pixels_of(image_messages.colour_message(None, white, "mono16")).max() == 65535
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ def test_noise_is_in_the_picture_of_every_format() -> None:
         with simkit.load(text) as sim:
             sim.run(0.02)
             eye = sim.sensor("m::l::s")
-            noisy, true = (pictures.pixels_of(m).astype(float) for m in (eye.latest, eye.truth))
+            noisy, true = (image_messages.pixels_of(m).astype(float) for m in (eye.latest, eye.truth))
             assert np.count_nonzero(noisy != true) > 0.5 * true.size
 
 
@@ -147,7 +147,7 @@ def test_a_depth_cameras_float_format_is_of_its_depths() -> None:
             assert sim.sensor("m::l::s").options.encoding == "rgb8"
 
 
-@pytest.mark.parametrize("fmt", pictures.WITHOUT_ENCODING)
+@pytest.mark.parametrize("fmt", image_messages.WITHOUT_ENCODING)
 def test_what_no_message_can_hold_is_said_and_drawn_in_colours(fmt: str) -> None:
     with simkit.load(one(camera(fmt=fmt))) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-120"]
@@ -230,7 +230,7 @@ def test_a_triggered_camera_follows_a_change_of_its_rate() -> None:
 @pytest.fixture
 def there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(ALLOWED, raising=False)
+    monkeypatch.delenv(SAVE_PATH_VARIABLE, raising=False)
     return tmp_path
 
 
@@ -244,7 +244,7 @@ def test_each_picture_is_saved_whether_anybody_listens_or_not(there: Path) -> No
         sim.run(0.081)  # at 1, 20, 40, 60 and 80 ms
         names = sorted(p.name for p in (there / "seen/here").iterdir())
         assert names == [f"m::l::s_{i}.png" for i in range(5)]
-        latest = pictures.pixels_of(sim.sensor("m::l::s").latest)
+        latest = image_messages.pixels_of(sim.sensor("m::l::s").latest)
         np.testing.assert_array_equal(read(there / "seen/here/m::l::s_4.png")[..., ::-1], latest)
         sim.reset()
         sim.run(0.02)
@@ -263,7 +263,7 @@ def test_a_saved_picture_holds_what_the_message_holds(fmt: str, dtype: type, the
         sim.run(0.01)
         found = read(there / "seen/m::l::s_0.png")
         assert found.dtype == dtype
-        np.testing.assert_array_equal(found, pictures.pixels_of(sim.sensor("m::l::s").latest))
+        np.testing.assert_array_equal(found, image_messages.pixels_of(sim.sensor("m::l::s").latest))
 
 
 def test_depths_are_saved_as_shades(there: Path) -> None:
@@ -282,7 +282,7 @@ def test_a_world_writes_nowhere_else(path: str, there: Path, monkeypatch: pytest
     monkeypatch.chdir(there / "work")
     with simkit.load(saving(path)) as sim:
         (found,) = [d for d in sim.diagnostics if d.code == "SK-SENSOR-009"]
-        assert ALLOWED in str(found)
+        assert SAVE_PATH_VARIABLE in str(found)
         sim.run(0.02)
     assert sorted(p.name for p in there.rglob("*")) == ["elsewhere", "link", "work"]
 
@@ -291,7 +291,7 @@ def test_the_user_may_allow_another_folder(there: Path, monkeypatch: pytest.Monk
     (there / "work").mkdir()
     (there / "kept").mkdir()
     monkeypatch.chdir(there / "work")
-    monkeypatch.setenv(ALLOWED, str(there / "kept"))
+    monkeypatch.setenv(SAVE_PATH_VARIABLE, str(there / "kept"))
     with simkit.load(saving(str(there / "kept/today"))) as sim:
         sim.step()
     assert [p.name for p in (there / "kept/today").iterdir()] == ["m::l::s_0.png"]
@@ -319,9 +319,9 @@ def test_saving_needs_a_path_and_a_word_that_is_one(there: Path) -> None:
 
 def test_every_encoding_becomes_a_png() -> None:
     colours = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
-    for encoding in set(pictures.ENCODINGS.values()):
-        source = pictures.grey(colours) if pictures.is_grey(encoding) else colours
-        data = as_png(pictures.colour_message(None, source, encoding))
+    for encoding in set(image_messages.ENCODINGS.values()):
+        source = image_messages.grey(colours) if image_messages.is_grey(encoding) else colours
+        data = encode_png(image_messages.colour_message(None, source, encoding))
         assert cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED).shape[:2] == (4, 6)
 
 

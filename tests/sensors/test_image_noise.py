@@ -12,8 +12,8 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import colours, depths, noise, sensor, world
 
 import simkit
-from simkit.runtime.random import RandomStreams
-from simkit.sensors.image_noise import ImageNoise
+from simkit.runtime.engine.random_streams import RandomStreams
+from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.noise import NoiseModel
 
 drawn = NEEDS_RENDERER

@@ -10,7 +10,7 @@ import pytest
 
 import simkit
 from simkit.pose import Pose
-from simkit.sensors.logical_camera import Frustum, LogicalCameraOptions
+from simkit.sensors.cameras.logical_camera import Frustum, LogicalCameraOptions
 
 TOPIC = "/world/w/model/eye/link/l/sensor/s/logical_camera"
 IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"

@@ -11,7 +11,7 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import box, colours, noise, sensor, world
 
 import simkit
-from simkit.sensors import pictures
+from simkit.sensors.cameras import image_messages
 
 pytestmark = NEEDS_RENDERER
 
@@ -118,7 +118,7 @@ def test_cameras_have_their_own_size_lens_format_and_place() -> None:
     assert [m.d[0] for m in infos] == pytest.approx([0, 0, -0.1, 0])
     assert [m.header.frame_id for m in images] == ["m::l::s", "m::l::s", "b_optical", "m::l::s"]
     assert colours(images[0])[24, 32, 0] > 200
-    assert pictures.pixels_of(images[1])[24, 16] > 0
+    assert image_messages.pixels_of(images[1])[24, 16] > 0
     assert not colours(images[3])[..., 0].any()  # it looks the other way
 
 

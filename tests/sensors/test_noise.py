@@ -11,10 +11,10 @@ from sensor_worlds import box, sensor, world
 import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
-from simkit.runtime.random import RandomStreams
-from simkit.sensors.image_noise import ImageNoise
+from simkit.runtime.engine.random_streams import RandomStreams
+from simkit.sensors.bias_drift import ALLAN_FLOOR, ALLAN_PEAK, FLICKER_TIMES
+from simkit.sensors.cameras.image_noise import ImageNoise
 from simkit.sensors.noise import NO_NOISE, Noise, NoiseModel, UniformNoise, quantise, read_noise
-from simkit.sensors.wander import FLICKER_TIMES, FLOOR, PEAK
 
 
 def samples(model: NoiseModel, count: int, dt: float = 0.01, seed: int = 1) -> np.ndarray:
@@ -197,8 +197,8 @@ def markov_peak() -> float:
 
 
 def test_the_constants_of_the_allan_deviation_are_those_of_the_formulas() -> None:
-    assert pytest.approx(0.664, abs=5e-4) == FLOOR
-    assert pytest.approx(markov_peak(), rel=1e-4) == PEAK
+    assert pytest.approx(0.664, abs=5e-4) == ALLAN_FLOOR
+    assert pytest.approx(markov_peak(), rel=1e-4) == ALLAN_PEAK
 
 
 def test_the_processes_of_flicker_noise_make_a_flat_floor() -> None:
@@ -209,7 +209,7 @@ def test_the_processes_of_flicker_noise_make_a_flat_floor() -> None:
 
     taus = np.geomspace(1.0, 1000.0, 200)
     floor = np.sqrt([variance_at(t) for t in taus])
-    assert np.abs(floor / FLOOR - 1).max() < 0.025
+    assert np.abs(floor / ALLAN_FLOOR - 1).max() < 0.025
 
 
 def test_bias_instability_is_the_floor_of_the_allan_deviation() -> None:
@@ -227,7 +227,9 @@ def test_with_a_correlation_time_the_floor_is_the_peak_at_189_of_it() -> None:
     x = samples(model, 60_000, 0.2)
     assert allan(x, round(1.89 * tau / 0.2)) == pytest.approx(0.664 * 0.2, rel=0.05)
     starts = [samples(model, 1, 0.2, seed)[0] for seed in range(800)]
-    assert np.std(starts) == pytest.approx(0.2 * FLOOR / PEAK, rel=0.1)  # in its steady state from the start
+    assert np.std(starts) == pytest.approx(
+        0.2 * ALLAN_FLOOR / ALLAN_PEAK, rel=0.1
+    )  # in its steady state from the start
 
 
 def test_twenty_minutes_of_an_imu_at_rest_give_density_and_instability_back() -> None:

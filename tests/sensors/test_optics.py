@@ -13,8 +13,8 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import box, cloud, colours, depths, sensor, world
 
 import simkit
-from simkit.sensors.camera_model import CameraModel
-from simkit.sensors.distortion import Distorter, Distortion, bend, straighten
+from simkit.sensors.cameras.camera_model import CameraModel
+from simkit.sensors.cameras.lens_distortion import Distortion, ImageDistorter, distort, undistort
 
 draws = NEEDS_RENDERER
 
@@ -140,7 +140,7 @@ def test_given_intrinsics_are_drawn_with_their_skew(skew: float) -> None:
 
 def test_a_skewed_view_is_wide_enough() -> None:
     model = CameraModel(160, 120, 120, 90, 70, 66, 1.2, 0.1, 100, skew=40)
-    view = Distorter(model).view()
+    view = ImageDistorter(model).view()
     x, y = model.directions()
     assert view.left < x.min() < x.max() < view.right
     assert -view.top < y.min() < y.max() < -view.bottom
@@ -187,7 +187,7 @@ def test_straightening_is_what_opencv_finds(lens: Distortion) -> None:
     points = np.stack((x, y), axis=-1).reshape(-1, 1, 2)
     stop = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 500, 1e-12)
     expected = cv2.undistortPoints(points, np.eye(3), lens.coefficients, criteria=stop).reshape(9, 11, 2)
-    np.testing.assert_allclose(np.stack(straighten(x, y, lens), axis=-1), expected, atol=1e-7)
+    np.testing.assert_allclose(np.stack(undistort(x, y, lens), axis=-1), expected, atol=1e-7)
 
 
 @ALL_LENSES
@@ -195,14 +195,14 @@ def test_bending_is_what_opencv_projects(lens: Distortion) -> None:
     y, x = np.meshgrid(np.linspace(-0.5, 0.5, 9), np.linspace(-0.7, 0.7, 11), indexing="ij")
     points = np.stack((x, y, np.ones_like(x)), axis=-1).reshape(-1, 1, 3)
     expected, _ = cv2.projectPoints(points, np.zeros(3), np.zeros(3), np.eye(3), lens.coefficients)
-    np.testing.assert_allclose(np.stack(bend(x, y, lens), axis=-1).reshape(-1, 1, 2), expected, atol=1e-12)
-    np.testing.assert_allclose(straighten(*bend(x, y, lens), lens), (x, y), atol=1e-9)
+    np.testing.assert_allclose(np.stack(distort(x, y, lens), axis=-1).reshape(-1, 1, 2), expected, atol=1e-12)
+    np.testing.assert_allclose(undistort(*distort(x, y, lens), lens), (x, y), atol=1e-9)
 
 
 def test_beyond_the_fold_there_is_no_answer() -> None:
     lens = Distortion(-0.5)  # folds back at r² = 1 / 1.5, seen at r = 0.5443
     x = np.array([[0.0, 0.544, 0.545, 2.0]])
-    found, _ = straighten(x, np.zeros_like(x), lens)
+    found, _ = undistort(x, np.zeros_like(x), lens)
     assert np.isnan(found).tolist() == [[False, False, True, True]]
 
 
@@ -230,7 +230,7 @@ def test_distortion_is_about_the_principal_point_and_with_skew_too() -> None:
     block = camera(f"<lens>{INTRINSICS.format(25)}</lens>{distortion(LENSES[0])}")
     with load(block, spots(PLACES)) as sim:
         (image,) = shown(sim, "image")
-    bent = [bend(np.array(x), np.array(y), LENSES[0]) for x, y in PLACES]
+    bent = [distort(np.array(x), np.array(y), LENSES[0]) for x, y in PLACES]
     expected = sorted((120 * x + 25 * y + 70, 90 * y + 66) for x, y in bent)
     np.testing.assert_allclose(middles(image), expected, atol=0.3)
 
@@ -242,7 +242,7 @@ def test_a_centre_elsewhere_is_drawn_and_said() -> None:
         assert [d.severity for d in sim.diagnostics if d.code == "SK-SENSOR-100"] == ["warning"]
     f = info.k[0]
     off = np.array((64 - 80, 72 - 60)) / f
-    bent = [np.array(bend(*np.array(p - off).reshape(2, 1), LENSES[0])).ravel() for p in np.array(PLACES)]
+    bent = [np.array(distort(*np.array(p - off).reshape(2, 1), LENSES[0])).ravel() for p in np.array(PLACES)]
     expected = sorted(((b + off) * f + (80, 60)).tolist() for b in bent)
     np.testing.assert_allclose(middles(image), expected, atol=0.3)
 
@@ -269,7 +269,7 @@ def test_a_lens_that_folds_back_is_said_and_black_there() -> None:
 
 def test_what_a_strong_lens_crowds_is_averaged() -> None:
     """Stripes one pixel wide: in a corner, where two of them fall on one pixel, grey comes of them and no pattern."""
-    lens = Distorter(CameraModel(160, 120, 90, 90, 80, 60, 1.4, 0.1, 100, distortion=Distortion(-0.3, 0.08)))
+    lens = ImageDistorter(CameraModel(160, 120, 90, 90, 80, 60, 1.4, 0.1, 100, distortion=Distortion(-0.3, 0.08)))
     view = lens.view()
     stripes = np.zeros((view.height, view.width, 3), np.uint8)
     stripes[:, ::2] = 255
@@ -311,7 +311,7 @@ def points_of(message: Any) -> np.ndarray:
 def projected(points: np.ndarray, info: Any) -> np.ndarray:
     """Pixels (u, v) of points (x forward, y left, z up), by K with its skew and D, shape (n, 2)."""
     lens = Distortion(info.d[0], info.d[1], info.d[4], info.d[2], info.d[3])
-    x, y = bend(-points[..., 1] / points[..., 0], -points[..., 2] / points[..., 0], lens)
+    x, y = distort(-points[..., 1] / points[..., 0], -points[..., 2] / points[..., 0], lens)
     k = np.array(info.k).reshape(3, 3)
     return np.stack((k[0, 0] * x + k[0, 1] * y + k[0, 2], k[1, 1] * y + k[1, 2]), axis=-1)
 

@@ -15,10 +15,10 @@ import simkit
 from simkit.errors import RenderError
 from simkit.params import Params
 from simkit.sensors import sensor_kinds
+from simkit.sensors.cameras.rendering import gl_context
 from simkit.sensors.presets import Preset, find, presets
-from simkit.sensors.presets.page import in_words, page
 from simkit.sensors.presets.preset import outline
-from simkit.sensors.rendering import gl
+from simkit.sensors.presets.preset_page import describe_preset, presets_page
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "sensors" / "presets.md"
 PLACE = """<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>47</latitude_deg>
@@ -57,7 +57,7 @@ def leaves(settings: Mapping[str, Any], path: tuple[str, ...] = ()) -> list[tupl
 
 
 try:
-    with gl.current():
+    with gl_context.current():
         _renders = True
 except RenderError:
     _renders = False
@@ -99,7 +99,7 @@ def test_what_is_unconfirmed_is_an_element_and_is_marked_wherever_a_preset_is_sh
     for names in preset.unconfirmed:
         assert any(set(names.split()) <= path for path in paths)
     mark = f"unconfirmed: {', '.join(preset.unconfirmed)}"
-    assert (mark in in_words(preset)) is bool(preset.unconfirmed)
+    assert (mark in describe_preset(preset)) is bool(preset.unconfirmed)
 
 
 def test_the_page_says_where_a_band_is_taken_for_a_deviation() -> None:
@@ -107,7 +107,7 @@ def test_the_page_says_where_a_band_is_taken_for_a_deviation() -> None:
     for preset in presets():
         if "deviation: " in preset.remark:
             assert "deviation: our choice" in preset.remark, preset.name
-    assert "our choice" in page() and "*unconfirmed*: " in page()
+    assert "our choice" in presets_page() and "*unconfirmed*: " in presets_page()
 
 
 def test_the_lidars_of_ouster_are_of_one_revision() -> None:
@@ -280,11 +280,11 @@ def test_the_settings_are_the_elements_of_a_file() -> None:
 
 def test_the_page_is_what_the_data_say() -> None:
     """Written with `python -m simkit.sensors.presets > docs/sensors/presets.md`."""
-    assert PAGE.read_text(encoding="utf-8") == page()
+    assert PAGE.read_text(encoding="utf-8") == presets_page()
 
 
 def test_one_preset_in_words() -> None:
-    text = in_words(find("puck")["lidar"])
+    text = describe_preset(find("puck")["lidar"])
     assert "VLP-16 (Velodyne)" in text
     assert "also:   Puck" in text
     assert "samples 16" in text

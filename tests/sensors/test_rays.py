@@ -13,10 +13,10 @@ from PIL import Image
 from sensor_worlds import box, sensor, world
 
 import simkit
-from simkit.compiler.groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION
+from simkit.compiler.geom_groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION
 from simkit.sensors.rays import MANY_RAYS, RayFan, fan_directions
-from simkit.sensors.rays.shapes import Fan
-from simkit.sensors.rays.targets import has_embree
+from simkit.sensors.rays.numpy_rays import FanDirections
+from simkit.sensors.rays.ray_targets import has_embree
 
 GROUPS = (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
 FEW, MANY = (5, 120), (20, 240)  # rows and columns
@@ -141,7 +141,7 @@ def test_distances_are_geometrys(shape: str, pose: str, distance: float, grid: t
 @needs_embree
 def test_no_ray_slips_between_triangles() -> None:
     """Rays at the corners and along the edges of a wall of many triangles."""
-    from simkit.sensors.rays.triangles import TriangleScene
+    from simkit.sensors.rays.embree_rays import TriangleScene
 
     side = 40
     y, z = np.meshgrid(np.linspace(-1, 1, side + 1), np.linspace(-1, 1, side + 1))
@@ -185,7 +185,7 @@ def test_a_fan_knows_every_ray_towards_a_sphere(grid: Any) -> None:
     """Also behind, over the pole, with the sensor inside, and where the fan goes round more than once."""
     elevations, azimuths = grid or (np.linspace(-0.7, 0.9, 13), np.linspace(-4.0, 5.0, 60))
     directions = fan_directions(azimuths, elevations)
-    fan = Fan(directions, grid)
+    fan = FanDirections(directions, grid)
     centres = np.array(((2, 0, 0), (-2, 0.01, 0.3), (0.1, 0.1, 2), (0.2, 0, 0), (0, -3, -1), (0.5, 0.5, -9)), float)
     radii = np.array((0.5, 0.3, 0.4, 0.5, 0.01, 0.2))
     listed = [set() for _ in centres]

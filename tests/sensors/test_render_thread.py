@@ -20,10 +20,10 @@ from sensor_worlds import box, noise, sensor, world
 import simkit
 from simkit import msgs
 from simkit.errors import RenderError
-from simkit.sensors.camera import Camera
-from simkit.sensors.rendering import gl, thread
-from simkit.sensors.rgbd_camera import RgbdCamera
-from simkit.sinks.recorder import Recorder
+from simkit.recording.bags.recorder import Recorder
+from simkit.sensors.cameras.camera import Camera
+from simkit.sensors.cameras.rendering import gl_context, render_thread
+from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
 pytestmark = NEEDS_RENDERER
 
@@ -217,7 +217,7 @@ def test_a_picture_that_fails_switches_its_camera_off_and_is_said_once(
     with simkit.load(two_cameras(), render_thread=is_on) as sim:
         image, depth = sim.subscribe("/b/image"), sim.subscribe("/a/depth_image")
         sim.run(0.2)
-        thread.drain()
+        render_thread.drain()
         sim.run(0.2)
         assert made[0] < 20
         assert [m.header.stamp.nanosec for m in image.messages[:2]] == [1_000_000, 20_000_000]
@@ -248,10 +248,10 @@ def test_messages_stay_after_the_simulation_is_closed() -> None:
 
 def test_only_so_much_waits() -> None:
     gate, count, done = threading.Event(), 40, []
-    first = thread.submit(gate.wait)
-    accepted: list[thread.Work] = []
+    first = render_thread.submit(gate.wait)
+    accepted: list[render_thread.RenderJob] = []
     filling = threading.Thread(
-        target=lambda: [accepted.append(thread.submit(lambda i=i: done.append(i))) for i in range(count)]
+        target=lambda: [accepted.append(render_thread.submit(lambda i=i: done.append(i))) for i in range(count)]
     )
     filling.start()
     filling.join(0.2)
@@ -259,7 +259,7 @@ def test_only_so_much_waits() -> None:
     assert len(accepted) <= 8
     gate.set()
     filling.join()
-    thread.drain()
+    render_thread.drain()
     assert first.is_done
     assert done == list(range(count))
 
@@ -316,29 +316,31 @@ def test_an_interrupt_amid_a_picture_waits_for_its_end_and_is_no_fault_of_the_re
     reached = []
 
     def draw() -> None:
-        with gl.current():
+        with gl_context.current():
             signal.raise_signal(signal.SIGINT)
-            reached.append(gl.describe_renderer())
+            reached.append(gl_context.describe_renderer())
 
     with pytest.raises(KeyboardInterrupt):
         draw()
     assert reached[0]
-    with gl.current():
-        assert gl.is_open()
+    with gl_context.current():
+        assert gl_context.is_open()
 
 
-@pytest.mark.parametrize("wait", [thread.Work.wait, lambda _: thread.drain()], ids=["for_one", "for_all"])
-def test_who_waits_for_pictures_hears_an_interrupt_at_once(wait: Callable[[thread.Work], None]) -> None:
+@pytest.mark.parametrize(
+    "wait", [render_thread.RenderJob.wait, lambda _: render_thread.drain()], ids=["for_one", "for_all"]
+)
+def test_who_waits_for_pictures_hears_an_interrupt_at_once(wait: Callable[[render_thread.RenderJob], None]) -> None:
     gate = threading.Event()
 
     def interrupt() -> None:
         os.kill(os.getpid(), signal.SIGINT)
         gate.wait()
 
-    work = thread.submit(interrupt)
+    work = render_thread.submit(interrupt)
     with pytest.raises(KeyboardInterrupt):
         wait(work)
     assert not work.is_done
     gate.set()
-    thread.drain()
+    render_thread.drain()
     assert work.is_done

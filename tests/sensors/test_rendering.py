@@ -14,10 +14,10 @@ from sensor_worlds import box, colours, sensor, world
 
 import simkit
 from simkit.errors import InputError
-from simkit.sensors.rendering.culling import Bounds
-from simkit.sensors.rendering.overview import render_view
-from simkit.sensors.rendering.renderer import renderer_of
-from simkit.sensors.rendering.view import Shot, View
+from simkit.sensors.cameras.rendering.overview_image import render_view
+from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.rendering.view import Shot, View
+from simkit.sensors.cameras.rendering.view_culling import Bounds
 
 pytestmark = NEEDS_RENDERER
 

@@ -11,7 +11,7 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import colours
 
 from simkit.errors import LoadError
-from simkit.sensors.label_colours import colours_of
+from simkit.sensors.cameras.segmentation_camera import label_colours
 
 pytestmark = NEEDS_RENDERER
 PLATE = "<box><size>0.01 1 0.5</size></box>"
@@ -77,7 +77,7 @@ def test_a_mesh_of_several_materials_and_a_round_thing_have_one_label() -> None:
 
 def test_the_colour_of_a_label_is_gazebos() -> None:
     # Lehmer's numbers with the factor 16807 begin 16807, 282475249, 1622650073; 2147483645 // 256 = 8388607
-    assert colours_of([1])[1] == (16806 // 8388607, 282475248 // 8388607, 1622650072 // 8388607) == (0, 33, 193)
+    assert label_colours([1])[1] == (16806 // 8388607, 282475248 // 8388607, 1622650072 // 8388607) == (0, 33, 193)
     with load("segmentation", thing("a", "2 0 0 0 0 0", visual(PLATE), 1)) as sim:
         coloured = sim.subscribe("/eye/colored_map")
         sim.run(0.01)
@@ -85,7 +85,7 @@ def test_the_colour_of_a_label_is_gazebos() -> None:
 
 
 def test_no_two_numbers_have_one_colour() -> None:
-    found = colours_of([*range(1, 256), *(65536 * 40 + i for i in range(1, 2000))])
+    found = label_colours([*range(1, 256), *(65536 * 40 + i for i in range(1, 2000))])
     assert len(set(found.values())) == len(found)
     assert (0, 0, 0) not in found.values()
 

@@ -10,7 +10,7 @@ import pytest
 from sensor_worlds import box, noise, sensor, world
 
 import simkit
-from simkit.sensors.sonar import FINEST, MOST_RINGS, cone_directions
+from simkit.sensors.rays.sonar import MAX_RINGS, MIN_RAY_ANGLE, cone_directions
 
 FORWARD = "<axis>1 0 0</axis>"
 HALF = math.atan2(0.5, 4.0)  # of the cone below
@@ -70,7 +70,7 @@ def test_a_wall_more_askew_is_met_on_the_edge() -> None:
 def test_a_ball_in_the_cone_is_met_at_its_nearest_point(away: float) -> None:
     message, hit, _ = reading(world(sonar(), others=ball(f"3 {away} 1 0 0 0", 0.15)))
     exact = math.hypot(3, away) - 0.15
-    spacing = HALF / math.ceil(HALF / FINEST)
+    spacing = HALF / math.ceil(HALF / MIN_RAY_ANGLE)
     # off by at most 0.75 of a spacing, on a surface that curves away
     assert exact - 1e-9 <= message.range <= exact + (3 * 0.75 * spacing) ** 2 / (2 * 0.15) * 1.1
     assert hit == "ball::l::c"
@@ -172,7 +172,7 @@ def test_rays_fill_the_cone_and_stay_in_it(half_angle: float) -> None:
     if half_angle < 0.01 or half_angle >= math.pi:
         return
     assert angles.max() == pytest.approx(half_angle)
-    rings = min(math.ceil(half_angle / FINEST), MOST_RINGS)
+    rings = min(math.ceil(half_angle / MIN_RAY_ANGLE), MAX_RINGS)
     rng = np.random.default_rng(0)
     tilt, turn = half_angle * np.sqrt(rng.random(4000)), 2 * np.pi * rng.random(4000)
     upright = np.stack((np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)), -1)

@@ -12,7 +12,7 @@ import pytest
 from sensor_worlds import sensor, world
 
 import simkit
-from simkit.runtime.clock import Clock, Timing
+from simkit.runtime.engine.clock import Clock, SampleTiming
 
 IMU = "<imu><angular_velocity><x>{}</x></angular_velocity></imu>"
 NOISE = (
@@ -128,7 +128,7 @@ def test_jitter_scatters_samples_evenly_around_the_grid_and_keeps_their_number()
 
 def test_the_jitter_of_any_sample_can_be_had_without_those_before() -> None:
     clock, draws = Clock(0.001), np.random.default_rng(0).uniform(-1, 1, 400)
-    grid = clock.samples(Timing(Fraction(1, 97), Fraction(1, 500), Fraction(1, 250), lambda k: float(draws[k])))
+    grid = clock.samples(SampleTiming(Fraction(1, 97), Fraction(1, 500), Fraction(1, 250), lambda k: float(draws[k])))
     assert grid is not None
     walked, tick = [], 0
     while len(walked) < 300:

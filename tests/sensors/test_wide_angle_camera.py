@@ -13,8 +13,8 @@ from renderer import NEEDS_RENDERER
 from sensor_worlds import box, colours, sensor, world
 
 import simkit
-from simkit.sensors.cube import CubePicture
-from simkit.sensors.lens import LENSES, WideAngleModel
+from simkit.sensors.cameras.cube_map import CubeMap
+from simkit.sensors.cameras.wide_angle_lens import LENSES, WideAngleModel
 
 draws = NEEDS_RENDERER
 
@@ -172,7 +172,7 @@ def test_only_faces_that_are_seen_are_drawn() -> None:
     def shots(name: str, hfov: float, cutoff: float = math.pi / 2) -> list[Any]:
         lens = LENSES[name].scaled_to(hfov)
         model = WideAngleModel(64, 64, 1, 1, 32, 32, hfov, 0.1, 100, lens=replace(lens, cutoff=cutoff))
-        return CubePicture(model).shots
+        return CubeMap(model).shots
 
     assert [len(shots("stereographic", h)) for h in (1.0, 2.0, 3.1)] == [1, 5, 5]
     assert len(shots("equidistant", 6.2, 0.8)) == 1
@@ -184,7 +184,7 @@ def test_only_faces_that_are_seen_are_drawn() -> None:
 def test_a_face_has_the_size_that_is_asked_for() -> None:
     lens = LENSES["equidistant"].scaled_to(3.1)
     model = WideAngleModel(64, 64, 1, 1, 32, 32, 3.1, 0.1, 100, lens=lens, face_size=128)
-    front = CubePicture(model).shots[0].view
+    front = CubeMap(model).shots[0].view
     assert front.width == pytest.approx(128, abs=6)
     assert (front.right - front.left) / front.width == pytest.approx(2 / 128, rel=0.02)
 

@@ -12,10 +12,9 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from simkit import msgs
 from simkit.errors import InputError
-from simkit.sinks.bag_reader import open_bag_to_read
-from simkit.sinks.bag_text import bag_summary, bag_text
-from simkit.sinks.mcap_bag import McapBag
-from simkit.sinks.rosbag2_folder import Rosbag2Folder
+from simkit.recording.bags.reader import open_bag_to_read
+from simkit.recording.bags.summary import bag_summary, bag_text
+from simkit.recording.bags.writer import McapBag, Rosbag2Folder
 
 SECOND = 1_000_000_000
 FOREIGN = "lab_msgs/msg/Reading"

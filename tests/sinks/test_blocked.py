@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 import simkit
 from simkit import Params, WorldPlugin
 from simkit.cli import app
+from simkit.cli.terminal.blocked_plugins import BlockedPlugins, describe_blocking_plugin
 from simkit.runtime import Simulation
-from simkit.sinks.blocked import BlockedPlugins, describe
 
 EMPTY = "<sdf version='1.9'><world name='w'/></sdf>"
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +31,7 @@ class Looker(WorldPlugin):
         self.offer("ask", "std_srvs/srv/Empty", lambda _: self.note("ask"))
 
     def look(self) -> str:
-        found = describe(sys._getframe())
+        found = describe_blocking_plugin(sys._getframe())
         return "" if found is None else found[1]
 
     def note(self, what: str) -> None:
@@ -50,7 +50,7 @@ def test_the_hook_at_work_is_found_in_the_stack_with_its_line() -> None:
         sim.publish("/poke", {})
         sim.call("/ask")
         sim.step()
-        assert describe(sys._getframe()) is None
+        assert describe_blocking_plugin(sys._getframe()) is None
     for hook, said in {
         "load": "in load,",
         "before_step": "in before_step,",

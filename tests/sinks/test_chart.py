@@ -11,8 +11,8 @@ import pytest
 from PIL import Image
 
 from simkit.errors import InputError
-from simkit.sinks.chart import Chart, check_ending, drawn
-from simkit.sinks.series import Series, against
+from simkit.recording.charts.chart import Chart, check_suffix, render_chart
+from simkit.recording.charts.series import Series, series_over
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -34,7 +34,7 @@ def points(path: str) -> np.ndarray:
 
 
 def test_the_line_goes_through_the_numbers() -> None:
-    found = points(paths(drawn(Chart([series("a", [0.0, 1.0, 0.5])]), ".svg"))[0])
+    found = points(paths(render_chart(Chart([series("a", [0.0, 1.0, 0.5])]), ".svg"))[0])
     assert len(found) == 3
     assert found[1, 0] - found[0, 0] == pytest.approx(found[2, 0] - found[1, 0], abs=0.11)
     up = found[0, 1] - found[:, 1]  # pixels upwards
@@ -44,41 +44,41 @@ def test_the_line_goes_through_the_numbers() -> None:
 def test_a_peak_among_a_million_numbers_is_seen_in_a_small_file() -> None:
     values = np.zeros(1_000_000)
     values[123_456] = 7.0
-    svg = drawn(Chart([series("a", values)]), ".svg")
+    svg = render_chart(Chart([series("a", values)]), ".svg")
     found = points(paths(svg)[0])
     assert len(svg) < 200_000
     assert found[:, 1].min() < found[0, 1] - 300
 
 
 def test_a_line_is_broken_where_a_number_is_missing_and_where_an_angle_comes_round() -> None:
-    assert len(paths(drawn(Chart([series("a", [0, 1, np.nan, 1, 2, np.inf, 3, 4])]), ".svg"))) == 3
+    assert len(paths(render_chart(Chart([series("a", [0, 1, np.nan, 1, 2, np.inf, 3, 4])]), ".svg"))) == 3
     turning = [3.0, 3.1, -3.1, -3.0]
-    assert len(paths(drawn(Chart([series("yaw", turning, "rad", is_angle=True)]), ".svg"))) == 2
-    assert len(paths(drawn(Chart([series("x", turning, "rad")]), ".svg"))) == 1
+    assert len(paths(render_chart(Chart([series("yaw", turning, "rad", is_angle=True)]), ".svg"))) == 2
+    assert len(paths(render_chart(Chart([series("x", turning, "rad")]), ".svg"))) == 1
 
 
 @pytest.mark.parametrize("values", [[np.nan] * 3, [1.0], [1e300, -1e300], [5e-324, 0.0], [7.0] * 9, [1e9, 1e9 + 1e-6]])
 def test_numbers_of_any_size_are_drawn(values: list[float]) -> None:
     for ending in (".svg", ".png"):
-        assert drawn(Chart([series("a", values)]), ending)
+        assert render_chart(Chart([series("a", values)]), ending)
 
 
 def test_names_are_no_markup() -> None:
-    svg = drawn(Chart([series("</svg><script>alert(1)</script>\0\x1b&", [0, 1])], title="<b>\ud800"), ".svg")
+    svg = render_chart(Chart([series("</svg><script>alert(1)</script>\0\x1b&", [0, 1])], title="<b>\ud800"), ".svg")
     root = ElementTree.fromstring(svg)
     assert not list(root.iter(f"{SVG}script")) and not list(root.iter("script"))
 
 
 def test_units_have_panels_of_their_own_over_one_time() -> None:
-    svg = drawn(Chart([series("a", [0, 1]), series("b", [0, 9], "rad"), series("c", [0, 2])]), ".svg").decode()
+    svg = render_chart(Chart([series("a", [0, 1]), series("b", [0, 9], "rad"), series("c", [0, 2])]), ".svg").decode()
     assert svg.count(">[m]<") == 1 and svg.count(">[rad]<") == 1 and svg.count("time [s]") == 1
 
 
 def test_the_same_numbers_make_the_same_bytes() -> None:
     chart = Chart([series("a", np.sin(np.arange(100))), series("b²", np.cos(np.arange(100)), "m/s²")], title="t")
     for ending in (".svg", ".png"):
-        assert drawn(chart, ending) == drawn(chart, ending)
-    picture = Image.open(io.BytesIO(drawn(chart, ".png")))
+        assert render_chart(chart, ending) == render_chart(chart, ending)
+    picture = Image.open(io.BytesIO(render_chart(chart, ".png")))
     assert picture.format == "PNG" and picture.width == 1920
     assert len(picture.convert("RGB").getcolors(1 << 20)) > 10
 
@@ -86,12 +86,12 @@ def test_the_same_numbers_make_the_same_bytes() -> None:
 def test_one_number_is_drawn_over_the_newest_of_another() -> None:
     y = series("y", [10.0, 20.0, 30.0], step=0.1)
     x = Series("x", "m", times=np.array([0.05, 0.2]), values=np.array([1.0, 2.0]))
-    (found,) = against([y], x)
+    (found,) = series_over([y], x)
     assert found.times.tolist() == [1.0, 2.0] and found.values.tolist() == [20.0, 30.0]
 
 
 def test_other_endings_are_refused() -> None:
-    check_ending("a.SVG")
+    check_suffix("a.SVG")
     for name in ("a.pdf", "a", ""):
         with pytest.raises(InputError, match="SK-BAG-012"):
-            check_ending(name)
+            check_suffix(name)

@@ -17,8 +17,8 @@ import pytest
 
 from simkit import msgs
 from simkit.errors import InputError
-from simkit.sinks.export import Wish, export
-from simkit.sinks.mcap_bag import McapBag
+from simkit.recording.bags.writer import McapBag
+from simkit.recording.export import ExportOptions, export_bag
 
 SECOND = 1_000_000_000
 
@@ -72,7 +72,7 @@ FRAMES = [
 
 def test_a_table_has_a_line_a_message_and_the_bits_of_each_number(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, *FRAMES)
-    export(bag, tmp_path / "out", Wish())
+    export_bag(bag, tmp_path / "out", ExportOptions())
     first, second = table(tmp_path / "out" / "scan.csv")
     assert first["time"] == "0.500000000" and second["time"] == "1.500000000"
     assert [first[f"ranges[{i}]"] for i in range(3)] == ["0.1", "inf", "nan"]
@@ -88,7 +88,7 @@ def test_a_table_has_a_line_a_message_and_the_bits_of_each_number(tmp_path: Path
 
 def test_arrays_are_those_of_the_messages_and_lists_of_other_lengths_have_offsets(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, *FRAMES)
-    export(bag, tmp_path / "out", Wish(format="npz"))
+    export_bag(bag, tmp_path / "out", ExportOptions(format="npz"))
     scan = np.load(tmp_path / "out" / "scan.npz", allow_pickle=False)
     assert scan["time_ns"].tolist() == [SECOND // 2, 3 * SECOND // 2]
     assert scan["ranges.offsets"].tolist() == [0, 3, 4] and scan["ranges"].dtype == np.float32
@@ -100,7 +100,7 @@ def test_arrays_are_those_of_the_messages_and_lists_of_other_lengths_have_offset
 
 def test_parquet_keeps_lists(tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet", reason="Parquet is an extra")
-    export(written(tmp_path / "a.mcap", *SCANS), tmp_path / "out", Wish(format="parquet"))
+    export_bag(written(tmp_path / "a.mcap", *SCANS), tmp_path / "out", ExportOptions(format="parquet"))
     rows = parquet.read_table(tmp_path / "out" / "scan.parquet").to_pylist()
     assert [len(r["ranges"]) for r in rows] == [3, 1] and rows[1]["ranges"][0] == np.float32(3.3)
 
@@ -113,12 +113,12 @@ def test_lists_in_lists_lose_nothing(tmp_path: Path) -> None:
     both = msgs.make("ros_gz_interfaces/msg/Contacts", contacts=[contact, msgs.make("ros_gz_interfaces/msg/Contact")])
     none = msgs.make("ros_gz_interfaces/msg/Contacts")
     bag = written(tmp_path / "a.mcap", (0.0, "/touch", both), (1.0, "/touch", none))
-    export(bag, tmp_path / "out", Wish(format="npz"))
+    export_bag(bag, tmp_path / "out", ExportOptions(format="npz"))
     found = np.load(tmp_path / "out" / "touch.npz")
     assert found["contacts[].positions[].x"].tolist() == [0.0, 1.0, 2.0]
     assert found["contacts[].positions[].x.count"].tolist() == [3, 0]
     assert found["contacts[].positions[].x.count.offsets"].tolist() == [0, 2, 2]
-    export(bag, tmp_path / "text", Wish())
+    export_bag(bag, tmp_path / "text", ExportOptions())
     assert len(table(tmp_path / "text" / "touch.csv")) == 2
 
 
@@ -146,12 +146,12 @@ def test_a_picture_has_the_values_that_were_recorded(
     import cv2
 
     bag = written(tmp_path / "a.mcap", (0.0, "/camera/image", image(values, encoding, pad, big=big)))
-    export(bag, tmp_path / "out", Wish())
+    export_bag(bag, tmp_path / "out", ExportOptions())
     (row,) = table(tmp_path / "out" / "camera_image.csv")
     assert row["file"] == "camera_image/000000.png" and row["encoding"] == encoding and "data" not in row
     found = cv2.imread(str(tmp_path / "out" / row["file"]), cv2.IMREAD_UNCHANGED)
     assert np.array_equal(found, wanted)
-    export(bag, tmp_path / "raw", Wish(images="npz"))
+    export_bag(bag, tmp_path / "raw", ExportOptions(images="npz"))
     raw = np.load(tmp_path / "raw" / "camera_image" / "000000.npz")["pixels"]
     assert np.array_equal(raw, values, equal_nan=raw.dtype.kind == "f")
 
@@ -161,7 +161,7 @@ def test_a_compressed_picture_is_the_file_that_it_was(tmp_path: Path) -> None:
 
     data = cv2.imencode(".jpg", COLOURS)[1].ravel()
     message = msgs.make("sensor_msgs/msg/CompressedImage", format="jpeg", data=data)
-    export(written(tmp_path / "a.mcap", (0.0, "/image", message)), tmp_path / "out", Wish())
+    export_bag(written(tmp_path / "a.mcap", (0.0, "/image", message)), tmp_path / "out", ExportOptions())
     assert (tmp_path / "out" / "image" / "000000.jpg").read_bytes() == data.tobytes()
 
 
@@ -171,7 +171,7 @@ def test_a_film_goes_by_the_times_of_the_bag(tmp_path: Path) -> None:
     frames = [image(np.full((48, 64, 3), 20 * k, np.uint8), "rgb8") for k in range(12)]
     times = [k * 0.1 for k in range(6)] + [1.0 + k * 0.1 for k in range(6)]  # half a second without
     rows = [(t, "/image", f) for t, f in zip(times, frames, strict=True)]
-    found = export(written(tmp_path / "a.mcap", *rows), tmp_path / "out", Wish(images="mp4"))
+    found = export_bag(written(tmp_path / "a.mcap", *rows), tmp_path / "out", ExportOptions(images="mp4"))
     assert found[0].beside == "image.mp4"
     film = cv2.VideoCapture(str(tmp_path / "out" / "image.mp4"))
     levels = []
@@ -187,7 +187,7 @@ def test_pictures_that_cannot_be_read_are_told_and_the_rest_is_there(tmp_path: P
     strange = msgs.make("sensor_msgs/msg/Image", height=1, width=1, encoding="yuv9", step=1, data=np.zeros(1, np.uint8))
     bag = written(tmp_path / "a.mcap", (0.0, "/a", odd), (0.0, "/b", strange), (1.0, "/a", image(COLOURS, "rgb8")))
     for images in ("png", "mp4", "npz"):
-        a, b = export(bag, tmp_path / images, Wish(images=images))
+        a, b = export_bag(bag, tmp_path / images, ExportOptions(images=images))
         assert "has 5 bytes" in a.notes[0] and "'yuv9' is not known" in b.notes[0]
         assert [bool(r["file"]) for r in table(tmp_path / images / "a.csv")] == [False, True]
 
@@ -210,10 +210,10 @@ def test_a_cloud_has_its_fields(tmp_path: Path) -> None:
     import trimesh
 
     bag = written(tmp_path / "a.mcap", (0.0, "/points", cloud()))
-    export(bag, tmp_path / "npz", Wish())
+    export_bag(bag, tmp_path / "npz", ExportOptions())
     found = np.load(tmp_path / "npz" / "points" / "000000.npz")
     assert found["ring"].tolist() == [4, 5, 6] and np.isnan(found["x"][1])
-    export(bag, tmp_path / "ply", Wish(clouds="ply"))
+    export_bag(bag, tmp_path / "ply", ExportOptions(clouds="ply"))
     points = trimesh.load(tmp_path / "ply" / "points" / "000000.ply")
     assert points.vertices[:, 0].tolist() == [1.0, 3.0]
     assert points.colors[0][:3].tolist() == [16, 32, 48]
@@ -221,10 +221,10 @@ def test_a_cloud_has_its_fields(tmp_path: Path) -> None:
 
 def test_two_exports_of_one_bag_are_equal(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, (0.0, "/points", cloud()), (0.0, "/image", image(COLOURS, "rgb8")))
-    for wish in (Wish(), Wish(format="npz", images="npz", clouds="ply")):
+    for wish in (ExportOptions(), ExportOptions(format="npz", images="npz", clouds="ply")):
         trees = []
         for name in (f"{wish.format}_1", f"{wish.format}_2"):
-            export(bag, tmp_path / name, wish)
+            export_bag(bag, tmp_path / name, wish)
             files = sorted(p for p in (tmp_path / name).rglob("*") if p.is_file())
             trees.append([(str(p.relative_to(tmp_path / name)), p.read_bytes()) for p in files])
         assert trees[0] == trees[1] and len(trees[0]) == 6
@@ -233,7 +233,7 @@ def test_two_exports_of_one_bag_are_equal(tmp_path: Path) -> None:
 def test_topics_whose_names_would_be_one_file_have_two(tmp_path: Path) -> None:
     text = msgs.make("std_msgs/msg/String", data='a,\n"b"')
     bag = written(tmp_path / "a.mcap", *((0.0, t, text) for t in ("/a/b", "/a_b", "/A_b", "/index", "/../../x")))
-    found = export(bag, tmp_path / "out", Wish())
+    found = export_bag(bag, tmp_path / "out", ExportOptions())
     assert len({f.file.lower() for f in found}) == 5
     assert all((tmp_path / "out" / f.file).resolve().parent == (tmp_path / "out").resolve() for f in found)
     assert table(tmp_path / "out" / found[0].file)[0]["data"] == 'a,\n"b"'
@@ -241,37 +241,37 @@ def test_topics_whose_names_would_be_one_file_have_two(tmp_path: Path) -> None:
 
 def test_only_what_is_wanted_is_taken(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS, *FRAMES)
-    assert [f.topic for f in export(bag, tmp_path / "1", Wish(skip=("/t*",)))] == ["/scan"]
-    assert export(bag, tmp_path / "2", Wish(topics=("/tf",), start=1.0))[0].count == 1
-    assert export(bag, tmp_path / "3", Wish(topics=("/scan",), end=1.0))[0].count == 1
+    assert [f.topic for f in export_bag(bag, tmp_path / "1", ExportOptions(skip=("/t*",)))] == ["/scan"]
+    assert export_bag(bag, tmp_path / "2", ExportOptions(topics=("/tf",), start=1.0))[0].count == 1
+    assert export_bag(bag, tmp_path / "3", ExportOptions(topics=("/scan",), end=1.0))[0].count == 1
     with pytest.raises(InputError, match="SK-CLI-030"):
-        export(bag, tmp_path / "4", Wish(topics=("/skan",)))
+        export_bag(bag, tmp_path / "4", ExportOptions(topics=("/skan",)))
     with pytest.raises(InputError, match="SK-BAG-011"):
-        export(bag, tmp_path / "4", Wish(skip=("*",)))
+        export_bag(bag, tmp_path / "4", ExportOptions(skip=("*",)))
     assert not (tmp_path / "4").exists()
 
 
 def test_lists_that_no_spreadsheet_opens_are_left_out_and_told(tmp_path: Path) -> None:
     grid = msgs.make("nav_msgs/msg/OccupancyGrid", data=np.zeros(20_000, np.int8))
     bag = written(tmp_path / "a.mcap", (0.0, "/map", grid))
-    (found,) = export(bag, tmp_path / "out", Wish())
+    (found,) = export_bag(bag, tmp_path / "out", ExportOptions())
     assert "20000 items" in found.notes[0]
-    export(bag, tmp_path / "all", Wish(format="npz"))
+    export_bag(bag, tmp_path / "all", ExportOptions(format="npz"))
     assert np.load(tmp_path / "all" / "map.npz")["data"].shape == (1, 20_000)
 
 
 def test_an_export_replaces_an_export_only_and_only_where_asked(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS)
-    export(bag, tmp_path / "out", Wish())
+    export_bag(bag, tmp_path / "out", ExportOptions())
     with pytest.raises(InputError, match="SK-BAG-013"):
-        export(bag, tmp_path / "out", Wish())
-    export(bag, tmp_path / "out", Wish(format="npz", overwrite=True))
+        export_bag(bag, tmp_path / "out", ExportOptions())
+    export_bag(bag, tmp_path / "out", ExportOptions(format="npz", overwrite=True))
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["index.json", "scan.npz"]
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").write_text("all of it", encoding="utf-8")
     for name in ("mine", "mine/thesis.txt", "x" * 300):
         with pytest.raises(InputError, match="SK-BAG-013"):
-            export(bag, tmp_path / name, Wish(overwrite=True))
+            export_bag(bag, tmp_path / name, ExportOptions(overwrite=True))
     assert (tmp_path / "mine" / "thesis.txt").read_text(encoding="utf-8") == "all of it"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.mcap", "mine", "out"]
 
@@ -280,7 +280,7 @@ def test_an_export_replaces_an_export_only_and_only_where_asked(tmp_path: Path) 
 def test_an_export_that_is_killed_leaves_nothing_half_and_the_next_one_tidies_up(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *((float(t), "/image", image(COLOURS, "rgb8")) for t in range(30)))
     program = (
-        "import os, signal, sys\nfrom pathlib import Path\nfrom simkit.sinks.export import Wish, export, pictures\n"
+        "import os, signal, sys\nfrom pathlib import Path\nfrom simkit.recording.export import Wish, export, pictures\n"
         "usual, count = pictures.PngSeries.take, []\n"
         "def take(self, *given):\n    count.append(1)\n"
         "    if len(count) == 20:\n        os.kill(os.getpid(), signal.SIGKILL)\n    return usual(self, *given)\n"
@@ -289,7 +289,7 @@ def test_an_export_that_is_killed_leaves_nothing_half_and_the_next_one_tidies_up
     ended = subprocess.run([sys.executable, "-c", program, bag, tmp_path / "out"], check=False, timeout=60)
     assert ended.returncode == -signal.SIGKILL
     assert not (tmp_path / "out").exists() and len(list(tmp_path.iterdir())) == 2
-    export(bag, tmp_path / "out", Wish())
+    export_bag(bag, tmp_path / "out", ExportOptions())
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.mcap", "out"]
     assert len(list((tmp_path / "out" / "image").iterdir())) == 30
 
@@ -297,12 +297,12 @@ def test_an_export_that_is_killed_leaves_nothing_half_and_the_next_one_tidies_up
 @pytest.mark.skipif(os.name == "nt", reason="who is over cannot be asked there")
 def test_who_is_killed_between_the_old_export_and_the_new_one_has_not_lost_the_old(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *SCANS)
-    export(bag, tmp_path / "out", Wish())
+    export_bag(bag, tmp_path / "out", ExportOptions())
     over = subprocess.Popen([sys.executable, "-c", ""])
     over.wait()
     aside = tmp_path / f".out.unfinished-{over.pid}-x"
     aside.mkdir()
     (tmp_path / "out").rename(aside / "old")
     with pytest.raises(InputError, match="SK-BAG-013"):
-        export(bag, tmp_path / "out", Wish())
+        export_bag(bag, tmp_path / "out", ExportOptions())
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.mcap", "out"]

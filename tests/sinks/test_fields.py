@@ -9,7 +9,7 @@ import pytest
 
 from simkit import msgs
 from simkit.errors import InputError
-from simkit.sinks.fields import curves_of
+from simkit.recording.charts.fields import curves_of
 
 TOPICS = {
     "/odom": "nav_msgs/msg/Odometry",

@@ -9,18 +9,18 @@ import pytest
 from lxml import etree
 
 from simkit.errors import InputError
-from simkit.sinks.junit import LONGEST, Case, junit_text, write_junit
-from simkit.sinks.whole_file import write_whole
+from simkit.recording.atomic_output import write_atomically
+from simkit.testing.junit import LONGEST, JunitCase, junit_text, write_junit
 
 CASES = [
-    Case("straight", "drive", 1.25),
-    Case("turn", "drive", 0.5, failure=("/odom +3 mm", "/odom.x: +3 mm\nfrom t = 1 s"), output="a note"),
-    Case("world", "drive", error=("SK-XML-001 not XML", "w.sdf:1: …"), file="drive/w.sdf"),
-    Case("camera", "drive", skipped="no renderer"),
+    JunitCase("straight", "drive", 1.25),
+    JunitCase("turn", "drive", 0.5, failure=("/odom +3 mm", "/odom.x: +3 mm\nfrom t = 1 s"), output="a note"),
+    JunitCase("world", "drive", error=("SK-XML-001 not XML", "w.sdf:1: …"), file="drive/w.sdf"),
+    JunitCase("camera", "drive", skipped="no renderer"),
 ]
 
 
-def tree(cases: list[Case]) -> etree._Element:
+def tree(cases: list[JunitCase]) -> etree._Element:
     return etree.fromstring(junit_text("golden", cases).encode())
 
 
@@ -58,7 +58,7 @@ def test_each_case_says_what_became_of_it() -> None:
     ],
 )
 def test_any_text_is_read_back_less_what_xml_cannot_hold(text: str, read: str) -> None:
-    root = tree([Case(text, text, failure=(text, text), output=text)])
+    root = tree([JunitCase(text, text, failure=(text, text), output=text)])
     failure = root[0][0].find("failure")
     assert failure is not None
     assert failure.text == read
@@ -67,7 +67,7 @@ def test_any_text_is_read_back_less_what_xml_cannot_hold(text: str, read: str) -
 
 
 def test_an_endless_text_keeps_its_beginning_and_its_end() -> None:
-    text = tree([Case("c", output="first" + "x" * 10 * LONGEST + "last")])[0][0].findtext("system-out")
+    text = tree([JunitCase("c", output="first" + "x" * 10 * LONGEST + "last")])[0][0].findtext("system-out")
     assert text is not None
     assert text.startswith("first")
     assert text.endswith("last")
@@ -76,7 +76,7 @@ def test_an_endless_text_keeps_its_beginning_and_its_end() -> None:
 
 
 def test_a_time_that_is_no_number_counts_as_none() -> None:
-    assert tree([Case("c", seconds=float("nan")), Case("d", seconds=-1.0)])[0].get("time") == "0.000"
+    assert tree([JunitCase("c", seconds=float("nan")), JunitCase("d", seconds=-1.0)])[0].get("time") == "0.000"
 
 
 def test_nothing_tried_is_a_file_too() -> None:
@@ -103,7 +103,7 @@ def test_a_link_stays_a_link_and_the_mask_of_the_process_counts(tmp_path: Path) 
     (tmp_path / "link").symlink_to("real")
     old = os.umask(0o027)
     try:
-        write_whole(tmp_path / "link", b"new")
+        write_atomically(tmp_path / "link", b"new")
     finally:
         os.umask(old)
     assert (tmp_path / "link").is_symlink()
@@ -113,7 +113,7 @@ def test_a_link_stays_a_link_and_the_mask_of_the_process_counts(tmp_path: Path) 
 
 def test_a_pipe_is_written_as_it_is(tmp_path: Path) -> None:
     read, write = os.pipe()
-    write_whole(f"/dev/fd/{write}", b"<xml/>")
+    write_atomically(f"/dev/fd/{write}", b"<xml/>")
     os.close(write)
     assert os.read(read, 100) == b"<xml/>"
     os.close(read)

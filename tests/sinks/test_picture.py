@@ -13,7 +13,7 @@ from simkit import msgs
 from simkit.build import render_view
 from simkit.errors import InputError, RenderError
 from simkit.pose import Pose
-from simkit.sinks.picture import DrivenPath, check_target, save_picture, scan_points
+from simkit.recording.run_picture import DrivenPath, check_target, save_picture, scan_points
 
 WORLD = """
 <sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>

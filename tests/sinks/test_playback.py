@@ -13,10 +13,10 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 import simkit
 from simkit import msgs
 from simkit.errors import InputError
-from simkit.runtime.state_hash import state_hash
-from simkit.sinks.commands import Command, Commands
-from simkit.sinks.playback import Playback
-from simkit.sinks.recorder import Recorder
+from simkit.recording.bags.playback import Playback
+from simkit.recording.bags.recorder import Recorder
+from simkit.recording.commands import Command, Commands
+from simkit.runtime.engine.snapshot import state_hash
 
 EPOCH = 1_700_000_000 * 1_000_000_000  # a day in 2023
 CART = """<sdf version="1.9"><world name="w">

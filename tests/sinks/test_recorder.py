@@ -19,8 +19,8 @@ from rosbags.highlevel import AnyReader
 import simkit
 from simkit import msgs
 from simkit.errors import InputError, MessageError
-from simkit.sinks.recorder import Recorder, RecordError
-from simkit.sinks.recover import recover
+from simkit.recording.bags.recorder import Recorder, RecordError
+from simkit.recording.bags.recovery import recover_bag
 
 WORLD = """
 <sdf version="1.9"><world name="w">
@@ -106,7 +106,7 @@ def test_static_transforms_are_offered_as_transient_local(tmp_path: Path) -> Non
 def test_two_processes_write_the_same_bytes(tmp_path: Path) -> None:
     here = record(tmp_path / "here.mcap", seed=3).read_bytes()
     code = (
-        "import sys, simkit; from pathlib import Path; from simkit.sinks.recorder import Recorder\n"
+        "import sys, simkit; from pathlib import Path; from simkit.recording.bags.recorder import Recorder\n"
         "sim = simkit.load(sys.stdin.read(), seed=3)\n"
         "with Recorder(sim, 'there.mcap'): sim.run(2.5)\n"
     )
@@ -199,7 +199,7 @@ def test_a_message_that_cannot_be_written_is_its_publishers_error(tmp_path: Path
 def _killed_recording(folder: Path, name: str) -> Path:
     """A process records as fast as it goes until some seconds are on disk, and is then killed."""
     code = (
-        "import sys, simkit; from simkit.sinks.recorder import Recorder\n"
+        "import sys, simkit; from simkit.recording.bags.recorder import Recorder\n"
         "sim = simkit.load(sys.stdin.read()); recorder = Recorder(sim, sys.argv[1])\n"
         "while True:\n    sim.run(1.0); print(sim.time, flush=True)\n"
     )
@@ -243,7 +243,7 @@ def test_after_a_kill_everything_up_to_the_last_second_is_readable_and_can_be_me
     torn = _killed_recording(tmp_path, "torn.mcap")
     times = _readable(torn)
     assert max(times) >= 4_900_000_000
-    found = recover(torn, tmp_path / "whole.mcap")
+    found = recover_bag(torn, tmp_path / "whole.mcap")
     assert (found.messages, found.end, found.complete) == (len(times), max(times), False)
     with AnyReader([tmp_path / "whole.mcap"]) as reader:
         assert reader.message_count == len(times)
@@ -254,14 +254,14 @@ def test_after_a_kill_everything_up_to_the_last_second_is_readable_and_can_be_me
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
 def test_a_killed_folder_is_mended_into_a_folder(tmp_path: Path) -> None:
     torn = _killed_recording(tmp_path, "torn")
-    found = recover(torn, tmp_path / "whole")
+    found = recover_bag(torn, tmp_path / "whole")
     with AnyReader([tmp_path / "whole"]) as reader:
         assert reader.message_count == found.messages
 
 
 def test_mending_a_whole_recording_gives_the_same_messages(tmp_path: Path) -> None:
     path = record(tmp_path / "run.mcap")
-    found = recover(path, tmp_path / "again.mcap")
+    found = recover_bag(path, tmp_path / "again.mcap")
     assert found.complete
     assert (tmp_path / "again.mcap").read_bytes() == path.read_bytes()
 
@@ -270,6 +270,6 @@ def test_mending_a_whole_recording_gives_the_same_messages(tmp_path: Path) -> No
 def test_what_is_no_recording_cannot_be_mended(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "bad.mcap").write_bytes(content)
     with pytest.raises(InputError) as error:
-        recover(tmp_path / "bad.mcap", tmp_path / "whole.mcap")
+        recover_bag(tmp_path / "bad.mcap", tmp_path / "whole.mcap")
     assert error.value.code == "SK-BAG-004"
     assert not (tmp_path / "whole.mcap").exists()

@@ -8,8 +8,8 @@ import pytest
 
 import simkit
 from simkit import msgs
-from simkit.sinks.recorder import Recorder
-from simkit.sinks.topic_counts import TopicCounter
+from simkit.recording.bags.recorder import Recorder
+from simkit.recording.topic_counts import TopicCounter
 
 WORLD = """
 <sdf version="1.9"><world name="w"><model name="m"><static>true</static><link name="l">

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from simkit.sinks.yaml_text import NotYaml, finite_number, read_yaml
+from simkit.yaml_reader import NotYaml, finite_number, read_yaml
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,20 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.meshes.collada_look import Looks
-from simkit.compiler.meshes.files import Companions
-from simkit.compiler.meshes.part import Floats, MeshFileError, MeshPart
-from simkit.compiler.meshes.text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan, indexed, integers_of, numbers_of
+from simkit.compiler.meshes.collada_materials import ColladaMaterials
+from simkit.compiler.meshes.companion_files import Companions
+from simkit.compiler.meshes.mesh_part import (
+    DEEPEST_NODE,
+    LARGEST_FACES,
+    MOST_NODES,
+    Floats,
+    MeshFileError,
+    MeshPart,
+    fan_triangles,
+    integers_of,
+    numbers_of,
+    unique_rows,
+)
 
 _DEEPEST: Final = 500  # levels of elements, of which a node takes one and what it draws a few
 _PRIMITIVES: Final = ("triangles", "polylist", "polygons", "tristrips", "trifans")
@@ -35,7 +45,7 @@ def read_root(content: bytes) -> Any:
         recover=True,
         remove_comments=True,
     )
-    target: Any = _Untrusted()  # the stubs ask for more callbacks than lxml does
+    target: Any = _BoundedTreeBuilder()  # the stubs ask for more callbacks than lxml does
     try:
         etree.fromstring(content, kind(target=target))
         root = etree.fromstring(content, kind())
@@ -48,7 +58,7 @@ def read_root(content: bytes) -> Any:
     return root
 
 
-class _Untrusted:
+class _BoundedTreeBuilder:
     """Reads a document without keeping it, and refuses one with entities, or with elements that are too deep.
 
     What lxml itself lets pass depends on the libxml2 that a process has loaded first: an old one, which comes with some
@@ -83,7 +93,7 @@ class ColladaFile:
             name = element.get("id")
             if name:
                 self.by_id.setdefault(name, element)
-        self.looks = Looks(self.by_id, companions)
+        self.looks = ColladaMaterials(self.by_id, companions)
         self.arrays: dict[Any, Floats] = {}
         self.geometries: dict[str, list[tuple[MeshPart, str]]] = {}
         self.out: list[MeshPart] = []
@@ -119,7 +129,7 @@ class ColladaFile:
         if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
             raise MeshFileError(f"has nodes nested deeper than {DEEPEST_NODE} or more than {MOST_NODES} of them")
         name = node.get("name") or named
-        matrix = above @ transform_of(node)
+        matrix = above @ node_transform(node)
         for child in node.iterfind("{*}node"):
             self._node(child, matrix, name, depth + 1)
         for instance in node.iterfind("{*}instance_node"):
@@ -209,10 +219,10 @@ class ColladaFile:
             found = self._source(self._target(e, "source"))
             at_uv = corners[:, offset]
             if found.shape[1] >= 2 and len(found) and at_uv.min() >= 0 and at_uv.max() < len(found):
-                pairs, inverse = indexed(np.column_stack([at, at_uv]))
+                pairs, inverse = unique_rows(np.column_stack([at, at_uv]))
                 uv = found[pairs[:, 1], :2]
         if uv is None:
-            pairs, inverse = indexed(at[:, None])
+            pairs, inverse = unique_rows(at[:, None])
         faces = inverse[triangles].astype(np.int32)
         return (points[pairs[:, 0]], faces, uv), element.get("material", "")
 
@@ -255,20 +265,20 @@ def _corners(element: Any, width: int) -> tuple[Any, Any]:
     counts = np.array([len(p) for p in lists], np.int64)
     corners = np.concatenate(lists)
     if kind == "polygons" or kind == "trifans":
-        return corners, fan(counts)
+        return corners, fan_triangles(counts)
     if kind == "tristrips":
-        return corners, strips(counts)
+        return corners, strip_triangles(counts)
     if kind == "polylist":
         listed = element.find("{*}vcount")
         counts = integers_of("" if listed is None else listed.text or "", "polygon sizes")
         if len(counts) and (counts.min() < 0 or int(counts.sum()) > len(corners)):
             raise MeshFileError("promises more corners than it has")
-        return corners, fan(counts)
+        return corners, fan_triangles(counts)
     whole = len(corners) // 3
     return corners, np.arange(3 * whole).reshape(-1, 3)
 
 
-def strips(counts: Any) -> Any:
+def strip_triangles(counts: Any) -> Any:
     """Triangles of strips that lie one behind the other: every second one turned round."""
     out, start = [], 0
     for count in np.asarray(counts).tolist():
@@ -279,21 +289,21 @@ def strips(counts: Any) -> Any:
     return np.concatenate(out) if out else np.zeros((0, 3), np.int64)
 
 
-def transform_of(node: Any) -> Floats:
+def node_transform(node: Any) -> Floats:
     """A node's transform as Gazebo takes it: its matrix alone, else move, then turn, then stretch."""
     found = node.find("{*}matrix")
     if found is not None:
-        return _exactly(found, 16).reshape(4, 4)
+        return _exact_count(found, 16).reshape(4, 4)
     matrix = np.eye(4)
     move = node.find("{*}translate")
     if move is not None:
-        matrix[:3, 3] = _exactly(move, 3)
+        matrix[:3, 3] = _exact_count(move, 3)
     for turn in node.iterfind("{*}rotate"):
-        x, y, z, degrees = _exactly(turn, 4)
+        x, y, z, degrees = _exact_count(turn, 4)
         matrix = matrix @ _rotation((x, y, z), math.radians(degrees))
     stretch = node.find("{*}scale")
     if stretch is not None:
-        matrix = matrix @ np.diag([*_exactly(stretch, 3), 1.0])
+        matrix = matrix @ np.diag([*_exact_count(stretch, 3), 1.0])
     return matrix
 
 
@@ -308,7 +318,7 @@ def _rotation(axis: tuple[float, float, float], angle: float) -> Floats:
     return matrix
 
 
-def _exactly(element: Any, count: int) -> Floats:
+def _exact_count(element: Any, count: int) -> Floats:
     numbers = numbers_of(element.text or "", f"<{_local(element)}>")
     if len(numbers) != count or not np.isfinite(numbers).all():
         raise MeshFileError(f"has <{_local(element)}> with {len(numbers)} numbers, it needs {count}")

@@ -13,10 +13,18 @@ from typing import Any, Final
 
 import numpy as np
 
-from simkit.compiler.meshes.collada import strips
-from simkit.compiler.meshes.files import LARGEST_COMPANION, Companions, Pixels
-from simkit.compiler.meshes.part import Colour, Floats, MeshFileError, MeshPart
-from simkit.compiler.meshes.text import DEEPEST_NODE, LARGEST_FACES, MOST_NODES, fan
+from simkit.compiler.meshes.collada import strip_triangles
+from simkit.compiler.meshes.companion_files import LARGEST_COMPANION, Companions, Pixels
+from simkit.compiler.meshes.mesh_part import (
+    DEEPEST_NODE,
+    LARGEST_FACES,
+    MOST_NODES,
+    Colour,
+    Floats,
+    MeshFileError,
+    MeshPart,
+    fan_triangles,
+)
 
 _TYPES: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _NUMBERS: Final = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
@@ -142,7 +150,9 @@ class _Gltf:
             raise MeshFileError(f"has a face with vertex {int(order.max())}; there are {len(points)}")
         count = np.array([len(order)])
         loose = np.arange(len(order) // 3 * 3).reshape(-1, 3)
-        faces = order[strips(count) if mode == 5 else fan(count) if mode == 6 else loose].astype(np.int32)
+        faces = order[strip_triangles(count) if mode == 5 else fan_triangles(count) if mode == 6 else loose].astype(
+            np.int32
+        )
         material = primitive.get("material")
         where = self._base_texture(material).get("texCoord", 0)
         uv = None

@@ -7,13 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from simkit.compiler.meshes.files import Companions, Pixels
-from simkit.compiler.meshes.part import Colour, Floats, MeshFileError, MeshPart
-from simkit.compiler.meshes.text import LARGEST_FACES, fan, indexed, integers_of, numbers_of
+from simkit.compiler.meshes.companion_files import Companions, Pixels
+from simkit.compiler.meshes.mesh_part import (
+    LARGEST_FACES,
+    Colour,
+    Floats,
+    MeshFileError,
+    MeshPart,
+    fan_triangles,
+    integers_of,
+    numbers_of,
+    unique_rows,
+)
 
 
 @dataclass
-class _Look:
+class _MtlMaterial:
     """A material; each channel None where the file says nothing."""
 
     diffuse: tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -25,7 +34,7 @@ class _Look:
 
 
 @dataclass
-class _Faces:
+class _FaceGroup:
     """Faces of one group and material: texts of corners, and how many corners each face has."""
 
     group: str
@@ -40,10 +49,10 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
     content = content.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
     positions: list[bytes] = []
     texcoords: list[bytes] = []
-    blocks: dict[tuple[str, str], _Faces] = {}
+    blocks: dict[tuple[str, str], _FaceGroup] = {}
     libraries: list[str] = []
     group, material, faces = "", "", 0
-    block: _Faces | None = None
+    block: _FaceGroup | None = None
     for line in content.splitlines():
         if line.startswith(b"v "):  # most lines, and as most of them are written
             positions.append(line[2:])
@@ -57,7 +66,7 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
             texcoords.append(rest)
         elif word == b"f":
             if block is None:
-                block = blocks.setdefault((group, material), _Faces(group, material))
+                block = blocks.setdefault((group, material), _FaceGroup(group, material))
             corners = rest.split(b"#")[0].split()
             block.corners += corners
             block.counts.append(len(corners))
@@ -71,7 +80,7 @@ def read_obj(content: bytes, companions: Companions) -> list[MeshPart]:
             material, block = rest.strip().decode("utf-8", "replace"), None
         elif word == b"mtllib":
             libraries.append(rest.strip().decode("utf-8", "replace"))
-    looks = _looks(libraries, companions) if any(m for _, m in blocks) else {}
+    looks = _read_materials(libraries, companions) if any(m for _, m in blocks) else {}
     points = _rows(positions, 3, "vertices")
     uvs = _rows(texcoords, 2, "texture coordinates")
     found = (_part(one, points, uvs, looks, companions) for one in blocks.values())
@@ -101,11 +110,11 @@ def _rows(lines: list[bytes], width: int, what: str) -> Floats:
 
 
 def _part(
-    block: _Faces, points: Floats, uvs: Floats, looks: dict[str, _Look], companions: Companions
+    block: _FaceGroup, points: Floats, uvs: Floats, looks: dict[str, _MtlMaterial], companions: Companions
 ) -> MeshPart | None:
     counts = np.array(block.counts, np.int64)
     at, at_uv = _indices(block, counts)
-    triangles = fan(counts)
+    triangles = fan_triangles(counts)
     if not len(triangles):
         return None
     if at.min() < 0 or at.max() >= len(points):
@@ -113,10 +122,10 @@ def _part(
         raise MeshFileError(f"has a face with vertex {bad}; there are {len(points)}")
     has_uv = bool(len(at_uv)) and bool((at_uv >= 0).all()) and int(at_uv.max()) < len(uvs)
     if has_uv:
-        pairs, inverse = indexed(np.column_stack([at, at_uv]))
+        pairs, inverse = unique_rows(np.column_stack([at, at_uv]))
         uv: Floats | None = uvs[pairs[:, 1]]
     else:
-        pairs, inverse = indexed(at[:, None])
+        pairs, inverse = unique_rows(at[:, None])
         uv = None
     look = looks.get(block.material)
     if block.material and look is None and looks:
@@ -139,7 +148,7 @@ def _part(
     )
 
 
-def _indices(block: _Faces, counts: Any) -> tuple[Any, Any]:
+def _indices(block: _FaceGroup, counts: Any) -> tuple[Any, Any]:
     """Zero-based vertex and texture indices of each corner; the latter empty unless each corner has one."""
     plain = b" ".join(block.corners)
     slashes = block.corners[0].count(b"/") if block.corners else 0
@@ -162,8 +171,8 @@ def _indices(block: _Faces, counts: Any) -> tuple[Any, Any]:
     return at, at_uv
 
 
-def _looks(libraries: list[str], companions: Companions) -> dict[str, _Look]:
-    looks: dict[str, _Look] = {}
+def _read_materials(libraries: list[str], companions: Companions) -> dict[str, _MtlMaterial]:
+    looks: dict[str, _MtlMaterial] = {}
     for line in dict.fromkeys(libraries):
         # several libraries may stand in a line, and one name may have spaces in it
         for name in [line] if line.lower().count(".mtl") <= 1 else line.split():
@@ -173,13 +182,13 @@ def _looks(libraries: list[str], companions: Companions) -> dict[str, _Look]:
     return looks
 
 
-def _read_mtl(content: bytes, looks: dict[str, _Look], companions: Companions) -> None:
-    look = _Look()
+def _read_mtl(content: bytes, looks: dict[str, _MtlMaterial], companions: Companions) -> None:
+    look = _MtlMaterial()
     for line in content.decode("utf-8", "replace").splitlines():
         word, _, rest = line.strip().replace("\t", " ").partition(" ")
         word, rest = word.lower(), rest.strip()
         if word == "newmtl":
-            look = looks.setdefault(rest, _Look())
+            look = looks.setdefault(rest, _MtlMaterial())
         elif word in ("kd", "ks", "ke"):
             colour = _numbers(rest, 3)
             if colour is None:

@@ -7,9 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from simkit.compiler.meshes.files import Companions
-from simkit.compiler.meshes.part import Floats, Ints, MeshFileError, MeshPart
-from simkit.compiler.meshes.text import LARGEST_FACES, numbers_of
+from simkit.compiler.meshes.companion_files import Companions
+from simkit.compiler.meshes.mesh_part import LARGEST_FACES, Floats, Ints, MeshFileError, MeshPart, numbers_of
 
 _HEADER: Final = 84
 _RECORD: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -35,7 +34,7 @@ def read_stl(content: bytes, companions: Companions) -> list[MeshPart]:
         raise MeshFileError(f"is cut short: its header promises {promised} triangles, there are {max(0, held)}")
     else:
         raise MeshFileError("holds no triangles")
-    return [MeshPart("", *merged(corners))]
+    return [MeshPart("", *merge_corners(corners))]
 
 
 def _binary(content: bytes, count: int) -> Floats:
@@ -54,7 +53,7 @@ def _ascii(content: bytes) -> Floats:
     return numbers.reshape(-1, 3)
 
 
-def merged(corners: Floats) -> tuple[Floats, Ints]:
+def merge_corners(corners: Floats) -> tuple[Floats, Ints]:
     """Vertices and faces of loose triangles, shape (3·m, 3); equal corners are one."""
     packed = np.ascontiguousarray(corners + 0.0).view(np.dtype((np.void, 24))).reshape(-1)
     _, first, inverse = np.unique(packed, return_index=True, return_inverse=True)

@@ -1,12 +1,12 @@
-"""MuJoCo's parser and compiler on a gathered file; what they say becomes diagnostics at the user's own lines.
-
-The one place in this room that knows the engine: its parser alone can say what defaults, classes, replication and
-attachment make of a file.
-"""
+"""Parse and compile a gathered MJCF file with MuJoCo; its messages become diagnostics at the user's own lines."""
 
 from __future__ import annotations
 
+import base64
+import json
 import re
+import subprocess
+import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -14,18 +14,72 @@ from functools import partial
 from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.loaders.mjcf.bundle import Bundle
-from simkit.loaders.mjcf.ranges import Ranges, measured_ranges
+from simkit.loaders.mjcf.gathered_file import GatheredFile
 
-_PLACE: Final = re.compile(r"\n?Element (?:name )?'([^']*)'(?:, id \d+)?(?:, line (\d+))?(?:, column \d+)?\s*$")
-_LINE: Final = re.compile(r"\bline (?:number=)?(\d+)", re.IGNORECASE)
-_UNKNOWN: Final = re.compile(r"(\w+) (?:target )?'([^']*)' (?:not found|for actuator)|unknown \w+ (?:\w+ )*'([^']*)'")
+RANGE_TIMEOUT: Final = 30.0
+"""[s] of wall time."""
 
-Opened = tuple[Any, Any, Callable[[], Any]]
+LengthRanges = dict[str, tuple[float, float]]
+
+_RANGE_SCRIPT: Final = """
+import base64, json, sys
+import mujoco
+mujoco.set_mju_user_warning(lambda text: None)
+given = json.load(sys.stdin)
+models, assets = ({k: base64.b64decode(v) for k, v in given[kind].items()} for kind in ("models", "assets"))
+try:
+    model = mujoco.MjSpec.from_string(given["text"], include=models, assets=assets).compile()
+except Exception as problem:
+    json.dump({"problem": str(problem)}, sys.stdout)
+else:
+    json.dump({"ranges": model.actuator_lengthrange.tolist()}, sys.stdout)
+"""
+
+
+def measure_length_ranges(
+    bundle: GatheredFile, names: list[str], where: Where, diagnostics: Diagnostics
+) -> LengthRanges | None:
+    """The length ranges of a file's actuators by name; None, with an error recorded, where they cannot be found.
+
+    A file that does not compile for another reason has none, and says why when it is compiled here.
+    """
+    files = {"models": bundle.models, "assets": bundle.assets}
+    texts = {kind: {k: base64.b64encode(v).decode() for k, v in held.items()} for kind, held in files.items()}
+    given = json.dumps({"text": bundle.text, **texts})
+    try:
+        done = subprocess.run(
+            [sys.executable, "-I", "-c", _RANGE_SCRIPT],
+            input=given.encode(),
+            capture_output=True,
+            timeout=RANGE_TIMEOUT,
+            check=False,
+        )
+        found = json.loads(done.stdout) if done.returncode == 0 else {}
+    except (subprocess.TimeoutExpired, OSError, ValueError):
+        found = {}
+    if "ranges" in found:
+        return {name: (low, high) for name, (low, high) in zip(names, found["ranges"], strict=False)}
+    why = found.get("problem", f"it did not come to rest within {RANGE_TIMEOUT:g} s")
+    diagnostics.error(
+        "SK-MJCF-014",
+        f"the length ranges of the muscles cannot be found: {' '.join(str(why).split())}",
+        where,
+        "give each muscle its lengthrange, or its tendon or joint a range and <lengthrange uselimit='true'/>",
+    )
+    return None
+
+
+_MESSAGE_PLACE: Final = re.compile(r"\n?Element (?:name )?'([^']*)'(?:, id \d+)?(?:, line (\d+))?(?:, column \d+)?\s*$")
+_MESSAGE_LINE: Final = re.compile(r"\bline (?:number=)?(\d+)", re.IGNORECASE)
+_UNKNOWN_NAME: Final = re.compile(
+    r"(\w+) (?:target )?'([^']*)' (?:not found|for actuator)|unknown \w+ (?:\w+ )*'([^']*)'"
+)
+
+OpenedModel = tuple[Any, Any, Callable[[], Any]]
 """A specification, the model it compiles to, and what makes such a specification again."""
 
 
-def open_specification(bundle: Bundle, ranges: Ranges | None = None, in_axes_of_file: bool = False) -> Any:
+def open_specification(bundle: GatheredFile, ranges: LengthRanges | None = None, in_axes_of_file: bool = False) -> Any:
     """A fresh `mujoco.MjSpec` of a file in which every element has a name.
 
     Args:
@@ -38,7 +92,7 @@ def open_specification(bundle: Bundle, ranges: Ranges | None = None, in_axes_of_
     """
     import mujoco
 
-    with _quietly():
+    with _collect_warnings():
         spec = mujoco.MjSpec.from_string(bundle.text, include=dict(bundle.models), assets=dict(bundle.assets))
         name_everything(spec)
         spec.compiler.fusestatic = spec.compiler.discardvisual = False  # all of it can be asked for by name
@@ -75,33 +129,35 @@ def is_aligned(spec: Any) -> bool:
     return any(int(j.align) == 1 or (int(j.align) == 2 and spec.compiler.alignfree) for j in free)
 
 
-def open_and_compile(bundle: Bundle, diagnostics: Diagnostics, in_axes_of_file: bool = False) -> Opened | None:
+def open_and_compile(
+    bundle: GatheredFile, diagnostics: Diagnostics, in_axes_of_file: bool = False
+) -> OpenedModel | None:
     """The specification of a file, and the model it compiles to on its own; None, with an error, where it does not."""
     import mujoco
 
-    with _quietly() as said:
+    with _collect_warnings() as said:
         try:
             spec = open_specification(bundle)
-            ranges: Ranges | None = None
+            ranges: LengthRanges | None = None
             if _wants_ranges(spec):
                 names = [actuator.name for actuator in spec.actuators]
-                ranges = measured_ranges(bundle, names, bundle.root.where, diagnostics)
+                ranges = measure_length_ranges(bundle, names, bundle.root.where, diagnostics)
                 if ranges is None:
                     return None
             document = partial(open_specification, bundle, ranges, in_axes_of_file)
             spec = document()
             model = spec.compile()
         except (ValueError, RuntimeError, MemoryError, mujoco.FatalError) as problem:
-            _refused(str(problem), bundle, diagnostics)
+            _report_refusal(str(problem), bundle, diagnostics)
             return None
     for text in dict.fromkeys(said):
-        message, where = _located(text, bundle)
+        message, where = _locate_message(text, bundle)
         diagnostics.warning("SK-MJCF-008", f"MuJoCo warns: {message}", where)
     return spec, model, document
 
 
 @contextmanager
-def _quietly() -> Iterator[list[str]]:
+def _collect_warnings() -> Iterator[list[str]]:
     """What the engine warns of, instead of on the terminal and in a log file in the working folder."""
     import mujoco
 
@@ -117,32 +173,32 @@ def _quietly() -> Iterator[list[str]]:
         mujoco.set_mju_user_warning(before)
 
 
-def _refused(text: str, bundle: Bundle, diagnostics: Diagnostics) -> None:
-    message, where = _located(text, bundle)
-    found = _UNKNOWN.search(message)
+def _report_refusal(text: str, bundle: GatheredFile, diagnostics: Diagnostics) -> None:
+    message, where = _locate_message(text, bundle)
+    found = _UNKNOWN_NAME.search(message)
     hint = ""
     if found is not None:
         name = found[2] or found[3] or ""
-        hint = did_you_mean(name, _names(bundle))
+        hint = did_you_mean(name, _element_names(bundle))
     diagnostics.error("SK-MJCF-001", f"MuJoCo refuses the file: {message}", where, hint)
 
 
-def _located(text: str, bundle: Bundle) -> tuple[str, Where]:
+def _locate_message(text: str, bundle: GatheredFile) -> tuple[str, Where]:
     """A message of the engine in one line, without its line number, and the place that this number means."""
     text = text.strip().removeprefix("XML Error: ").removeprefix("Error: ")
     where = bundle.root.where
-    place = _PLACE.search(text)
+    place = _MESSAGE_PLACE.search(text)
     line = place[2] if place is not None and place[2] else None
     if place is not None:
         text = text[: place.start()] + (f" (element {place[1]!r})" if place[1] else "")
-    elif (found := _LINE.search(text)) is not None:
+    elif (found := _MESSAGE_LINE.search(text)) is not None:
         line = found[1]
     if line is not None:
         where = bundle.where(int(line))
     return " ".join(text.split()), where
 
 
-def _names(bundle: Bundle) -> Iterable[str]:
+def _element_names(bundle: GatheredFile) -> Iterable[str]:
     stack = [bundle.root]
     while stack:
         element = stack.pop()
@@ -157,24 +213,26 @@ def _names(bundle: Bundle) -> Iterable[str]:
 def name_everything(spec: Any) -> None:
     """Gives a name to each element without one, always the same: bodies by number, others by what they belong to."""
     bodies = list(spec.bodies)
-    _name(bodies[1:], "body", lambda _, i: f"body{i + 1}")
+    _name_elements(bodies[1:], "body", lambda _, i: f"body{i + 1}")
     for body in bodies:
         owner = "world" if body.name == "world" else body.name
-        _name(body.joints, "", lambda j, i, owner=owner: f"{owner}_{'free' if int(j.type) == 0 else 'joint'}{i or ''}")
-        _name(body.geoms, "", lambda _, i, owner=owner: f"{owner}_geom{i}")
-        _name(body.sites, "", lambda _, i, owner=owner: f"{owner}_site{i}")
-        _name(body.cameras, "", lambda _, i, owner=owner: f"{owner}_camera{i}")
-        _name(body.lights, "", lambda _, i, owner=owner: f"{owner}_light{i}")
-    _unique(spec)
+        _name_elements(
+            body.joints, "", lambda j, i, owner=owner: f"{owner}_{'free' if int(j.type) == 0 else 'joint'}{i or ''}"
+        )
+        _name_elements(body.geoms, "", lambda _, i, owner=owner: f"{owner}_geom{i}")
+        _name_elements(body.sites, "", lambda _, i, owner=owner: f"{owner}_site{i}")
+        _name_elements(body.cameras, "", lambda _, i, owner=owner: f"{owner}_camera{i}")
+        _name_elements(body.lights, "", lambda _, i, owner=owner: f"{owner}_light{i}")
+    _make_names_unique(spec)
     for kind in (
         "actuators", "sensors", "equalities", "tendons", "excludes", "pairs", "keys", "textures", "skins", "flexes",
         "materials", "meshes", "hfields",
     ):  # fmt: skip
         word = {"equalities": "equality", "flexes": "flex", "meshes": "mesh"}.get(kind, kind[:-1])
-        _name(getattr(spec, kind), word, lambda _, i, word=word: f"{word}{i}")
+        _name_elements(getattr(spec, kind), word, lambda _, i, word=word: f"{word}{i}")
 
 
-def _name(elements: Any, _kind: str, named: Any) -> None:
+def _name_elements(elements: Any, _kind: str, named: Any) -> None:
     elements = list(elements)
     taken = {e.name for e in elements if e.name}
     for i, element in enumerate(elements):
@@ -189,7 +247,7 @@ def _name(elements: Any, _kind: str, named: Any) -> None:
         taken.add(name)
 
 
-def _unique(spec: Any) -> None:
+def _make_names_unique(spec: Any) -> None:
     """A name made for one body's part may be another body's own: those made later step aside."""
     for kind in ("joints", "geoms", "sites", "cameras", "lights"):
         seen: set[str] = set()
@@ -236,7 +294,7 @@ def has_gravity(model: Any) -> bool:
     return not int(model.opt.disableflags) & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
 
 
-def may_sleep(model: Any) -> bool:
+def allows_sleep(model: Any) -> bool:
     """Whether the file's flags let sleep what rests."""
     import mujoco
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from simkit.loaders.mjcf.placed import Found, Placed
+from simkit.loaders.mjcf.element_ids import ElementIds, ModelPlacement
 from simkit.pose import Pose
 from simkit.scene import Axis, Mimic, SceneJoint
 
@@ -17,7 +17,9 @@ _EQUAL_JOINTS: Final = 2
 _TYPES: Final = {_BALL: "ball", _SLIDE: "prismatic"}
 
 
-def read_joints(reader: ModelReader, body: int, placed: Placed, place: Pose, found: Found) -> list[SceneJoint]:
+def read_joints(
+    reader: ModelReader, body: int, placed: ModelPlacement, place: Pose, found: ElementIds
+) -> list[SceneJoint]:
     """The joints that carry a body; one that is rigidly held hangs on a fixed joint."""
     model = reader.model
     child, parent = reader.scoped_link(body, placed), reader.scoped_link(int(model.body_parentid[body]), placed)
@@ -45,7 +47,7 @@ def read_joints(reader: ModelReader, body: int, placed: Placed, place: Pose, fou
 
 
 def _joint(
-    reader: ModelReader, j: int, placed: Placed, body: Pose, parent: str, child: str, found: Found
+    reader: ModelReader, j: int, placed: ModelPlacement, body: Pose, parent: str, child: str, found: ElementIds
 ) -> SceneJoint:
     model, full = reader.model, reader.name("JOINT", j)
     name = full.removeprefix(placed.strip)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.loaders.mjcf.placed import Found
+from simkit.loaders.mjcf.element_ids import ElementIds
 from simkit.pose import Pose
 from simkit.scene import SceneLight
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _TYPES: Final = {0: "spot", 1: "directional"}
 
 
-def read_lights(reader: ModelReader, body: int, link: str, pose: Pose, found: Found) -> tuple[SceneLight, ...]:
+def read_lights(reader: ModelReader, body: int, link: str, pose: Pose, found: ElementIds) -> tuple[SceneLight, ...]:
     """The lights of a body.
 
     Args:
@@ -25,7 +25,7 @@ def read_lights(reader: ModelReader, body: int, link: str, pose: Pose, found: Fo
     return tuple(_light(reader, i, link, pose, found) for i in reader.lights_of.get(body, ()))
 
 
-def _light(reader: ModelReader, i: int, link: str, body: Pose, found: Found) -> SceneLight:
+def _light(reader: ModelReader, i: int, link: str, body: Pose, found: ElementIds) -> SceneLight:
     model, name = reader.model, reader.name("LIGHT", i)
     pose = body @ Pose(model.light_pos[i])
     x, y, z = (float(v) for v in model.light_dir[i])

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from simkit.diagnostics import Where
-from simkit.loaders.mjcf.bundle import Bundle
+from simkit.loaders.mjcf.element_ids import ElementIds, ModelPlacement
 from simkit.loaders.mjcf.engine import first_state, name_of
+from simkit.loaders.mjcf.gathered_file import GatheredFile
 from simkit.loaders.mjcf.joints import read_joints
 from simkit.loaders.mjcf.lights import read_lights
-from simkit.loaders.mjcf.placed import Found, Placed
 from simkit.pose import Pose
 from simkit.scene import (
     Box,
@@ -34,7 +34,7 @@ from simkit.scene import (
     Sphere,
     Surface,
 )
-from simkit.scene.mjcf import MjcfGeom, MjcfSource
+from simkit.scene.mjcf_source import MjcfGeom, MjcfSource
 
 WORLD_LINK: Final = "worldbody"
 """Name of the link that holds what a file puts into its world body."""
@@ -55,18 +55,18 @@ class ModelReader:
         document: makes a fresh specification of the same content.
     """
 
-    def __init__(self, bundle: Bundle, spec: Any, model: Any, document: Any) -> None:
+    def __init__(self, bundle: GatheredFile, spec: Any, model: Any, document: Any) -> None:
         self.bundle, self.spec, self.model, self.document = bundle, spec, model, document
         self.data = first_state(model)
         pairs = {int(g) for ids in (model.pair_geom1, model.pair_geom2) for g in ids}
         self.colliding = {
             g for g in range(model.ngeom) if model.geom_contype[g] or model.geom_conaffinity[g] or g in pairs
         }
-        self.settings = _settings(bundle)
-        self.sites_of = _by(model.site_bodyid)
-        self.lights_of = _by(model.light_bodyid)
-        self.equalities_of = _by(model.eq_obj1id)
-        self.bodies_of = _by(model.body_rootid)
+        self.settings = _engine_settings(bundle)
+        self.sites_of = _ids_by_owner(model.site_bodyid)
+        self.lights_of = _ids_by_owner(model.light_bodyid)
+        self.equalities_of = _ids_by_owner(model.eq_obj1id)
+        self.bodies_of = _ids_by_owner(model.body_rootid)
 
     def name(self, kind: str, number: int) -> str:
         """The name of an element of the compiled model."""
@@ -94,9 +94,9 @@ class ModelReader:
 
     # ------------------------------------------------------------------ models
 
-    def read(self, placed: Placed) -> SceneModel:
+    def read(self, placed: ModelPlacement) -> SceneModel:
         """One model with its links, joints and frames."""
-        found = Found()
+        found = ElementIds()
         place = placed.pose_world @ placed.frame.inverse()
         bodies = sorted(b for root in placed.roots for b in self.bodies_of[root])
         links = [self._link(b, placed, place, found) for b in ([0] if placed.has_world else []) + bodies]
@@ -134,15 +134,15 @@ class ModelReader:
             mjcf=source,
         )
 
-    def link_name(self, body: int, placed: Placed) -> str:
+    def link_name(self, body: int, placed: ModelPlacement) -> str:
         """What a body's link is called within its model."""
         return WORLD_LINK if body == 0 else self.name("BODY", body).removeprefix(placed.strip)
 
-    def scoped_link(self, body: int, placed: Placed) -> str:
+    def scoped_link(self, body: int, placed: ModelPlacement) -> str:
         """The same from the world down."""
         return f"{placed.scoped}::{self.link_name(body, placed)}"
 
-    def _link(self, body: int, placed: Placed, place: Pose, found: Found) -> SceneLink:
+    def _link(self, body: int, placed: ModelPlacement, place: Pose, found: ElementIds) -> SceneLink:
         model, name = self.model, self.link_name(body, placed)
         scoped = f"{placed.scoped}::{name}"
         found.bodies[scoped] = self.name("BODY", body)
@@ -181,7 +181,7 @@ class ModelReader:
         x, y, z = (float(v) for v in model.body_ipos[body])
         return Inertial(float(model.body_mass[body]), (x, y, z), (xx, yy, zz, xy, xz, yz))
 
-    def _frames(self, body: int, placed: Placed, place: Pose) -> Iterable[SceneFrame]:
+    def _frames(self, body: int, placed: ModelPlacement, place: Pose) -> Iterable[SceneFrame]:
         model = self.model
         for s in self.sites_of.get(body, ()):
             name = self.name("SITE", s).removeprefix(placed.strip)
@@ -191,7 +191,7 @@ class ModelReader:
     # ------------------------------------------------------------------ geoms
 
     def _geom(
-        self, g: int, link: str, collisions: list[SceneCollision], visuals: list[SceneVisual], found: Found
+        self, g: int, link: str, collisions: list[SceneCollision], visuals: list[SceneVisual], found: ElementIds
     ) -> None:
         model, name = self.model, self.name("GEOM", g)
         collides, drawn = g in self.colliding, int(model.geom_group[g]) < _SHOWN_GROUPS
@@ -253,7 +253,7 @@ class ModelReader:
         return Path(self.bundle.file or ""), f"#{name}"
 
 
-def _by(owners: Any) -> dict[int, list[int]]:
+def _ids_by_owner(owners: Any) -> dict[int, list[int]]:
     """Numbers of elements by the number of what they belong to."""
     found: dict[int, list[int]] = {}
     for number, owner in enumerate(owners.tolist()):
@@ -261,7 +261,7 @@ def _by(owners: Any) -> dict[int, list[int]]:
     return found
 
 
-def _settings(bundle: Bundle) -> dict[str, Where]:
+def _engine_settings(bundle: GatheredFile) -> dict[str, Where]:
     """What the file itself says of the engine: option attributes and flags, and other global elements, with lines."""
     found: dict[str, Where] = {}
     for element in bundle.root.children:

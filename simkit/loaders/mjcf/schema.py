@@ -16,7 +16,7 @@ from simkit.params import Params
 
 _LINE: Final = re.compile(r"^( *)(\S+) \((.)\) *(.*)$")
 _INDENT: Final = 3
-_OUTSIDE: Final[dict[str, frozenset[str]]] = {
+_PREPROCESSED: Final[dict[str, frozenset[str]]] = {
     "include": frozenset({"file"}),
     "frame": frozenset(("name", "class", "childclass", "pos", "quat", "axisangle", "xyaxes", "zaxis", "euler")),
     "replicate": frozenset(("count", "offset", "euler", "sep", "prefix", "childclass")),
@@ -25,17 +25,17 @@ _OUTSIDE: Final[dict[str, frozenset[str]]] = {
 
 
 @dataclass(slots=True)
-class _Kind:
+class _ElementKind:
     recursive: bool = False
     attributes: set[str] = field(default_factory=set)
-    children: dict[str, _Kind] = field(default_factory=dict)
+    children: dict[str, _ElementKind] = field(default_factory=dict)
 
 
 @lru_cache(maxsize=1)
-def _table() -> _Kind | None:
+def _schema_table() -> _ElementKind | None:
     """The outermost element's kind; None where the engine's table has another form than it had."""
-    stack: list[tuple[int, _Kind]] = []
-    root: _Kind | None = None
+    stack: list[tuple[int, _ElementKind]] = []
+    root: _ElementKind | None = None
     for line in schema_text().splitlines():
         found = _LINE.match(line)
         if found is None:
@@ -43,7 +43,7 @@ def _table() -> _Kind | None:
                 stack[-1][1].attributes.update(line.split())
             continue
         level = len(found[1]) // _INDENT
-        kind = _Kind(found[3] == "R", set(found[4].split()))
+        kind = _ElementKind(found[3] == "R", set(found[4].split()))
         while stack and stack[-1][0] >= level:
             stack.pop()
         if stack:
@@ -58,54 +58,54 @@ def _table() -> _Kind | None:
 
 def check_names(root: Params, diagnostics: Diagnostics) -> None:
     """Records an error for every element and attribute that MJCF does not have, with the closest name."""
-    table = _table()
+    table = _schema_table()
     if table is not None:
-        _walk(root, table, diagnostics)
+        _check_children(root, table, diagnostics)
 
 
-def _walk(element: Params, kind: _Kind, diagnostics: Diagnostics) -> None:
+def _check_children(element: Params, kind: _ElementKind, diagnostics: Diagnostics) -> None:
     for child in element.children:
         name = child.name
-        if name in _OUTSIDE:
-            _attributes(child, _OUTSIDE[name], diagnostics)
-            _walk(child, kind, diagnostics)
+        if name in _PREPROCESSED:
+            _check_attributes(child, _PREPROCESSED[name], diagnostics)
+            _check_children(child, kind, diagnostics)
             continue
         below = kind if kind.recursive and name == _own_name(element, name) else kind.children.get(name)
         if below is None:
-            known = [*kind.children, *_OUTSIDE, *(("body", "default") if kind.recursive else ())]
-            hint = did_you_mean(name, known) or _elsewhere(name)
+            known = [*kind.children, *_PREPROCESSED, *(("body", "default") if kind.recursive else ())]
+            hint = did_you_mean(name, known) or _allowed_parents(name)
             diagnostics.error("SK-MJCF-002", f"<{element.name}> has no element <{name}>", child.where, hint)
             continue
-        _attributes(child, below.attributes, diagnostics)
-        _walk(child, below, diagnostics)
+        _check_attributes(child, below.attributes, diagnostics)
+        _check_children(child, below, diagnostics)
 
 
 def _own_name(element: Params, name: str) -> str:
     """The name by which an element that may hold others of its kind does so."""
-    if name == "body" and element.name in ("worldbody", "body", *_OUTSIDE):
+    if name == "body" and element.name in ("worldbody", "body", *_PREPROCESSED):
         return "body"
     return "default" if name == "default" and element.name == "default" else ""
 
 
-def _attributes(element: Params, known: set[str] | frozenset[str], diagnostics: Diagnostics) -> None:
+def _check_attributes(element: Params, known: set[str] | frozenset[str], diagnostics: Diagnostics) -> None:
     for name in element.attributes:
         if name not in known and ":" not in name:
             hint = did_you_mean(name, known) or (f"known are {', '.join(sorted(known))}" if len(known) < 12 else "")
             diagnostics.error(
                 "SK-MJCF-003",
-                f"<{element.name}> has no attribute {name!r} (= {_short(element, name)})",
+                f"<{element.name}> has no attribute {name!r} (= {_shortened_value(element, name)})",
                 element.where,
                 hint,
             )
 
 
-def _short(element: Params, name: str) -> str:
+def _shortened_value(element: Params, name: str) -> str:
     text = element.attributes[name]
     return repr(text if len(text) <= 40 else text[:37] + "...")
 
 
-def _elsewhere(name: str) -> str:
+def _allowed_parents(name: str) -> str:
     """Where an element belongs that stands in the wrong place."""
-    table = _table()
+    table = _schema_table()
     places = [] if table is None else [f"<{p}>" for p, kind in table.children.items() if name in kind.children]
     return f"<{name}> belongs in {' or '.join(places[:3])}" if places else ""

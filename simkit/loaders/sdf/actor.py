@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from simkit.loaders.resources.paths import is_small_integer
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.uris import is_count
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Animation, PersonLook, SceneActor, Trajectory, Waypoint
@@ -49,7 +49,7 @@ def _animation(element: Params) -> Animation:
 
 def _trajectory(element: Params) -> Trajectory:
     number = element.attribute("id", "0").strip()
-    if not is_count(number.removeprefix("-")):
+    if not is_small_integer(number.removeprefix("-")):
         element.error("SK-PARAM-002", f"found <trajectory id={number!r}>, allowed is a whole number")
         number = "0"
     points = [Waypoint(p.number("time", required=True), p.pose("pose")) for p in element.all("waypoint")]

@@ -133,7 +133,7 @@ class Scope:
             else:
                 begun.add(id(one))
                 waiting.append((one, True))
-                waiting.extend((needed, False) for needed in _needs(one))
+                waiting.extend((needed, False) for needed in _required_frames(one))
         return frame.resolved or IDENTITY
 
     def _resolved(self, frame: Frame) -> Pose:
@@ -202,7 +202,7 @@ class Scope:
         return [*self.names, *nested]
 
 
-def _needs(frame: Frame) -> list[Frame]:
+def _required_frames(frame: Frame) -> list[Frame]:
     """The frames whose poses the pose of `frame` is made of."""
     needed: list[Frame] = []
     base = frame.relative_to or frame.default_base
@@ -220,7 +220,7 @@ def world_pose(frame: Frame) -> Pose:
     return frame.scope.world @ frame.scope.resolve(frame)
 
 
-def base_of(pose: Params | None) -> str:
+def pose_base(pose: Params | None) -> str:
     """The frame that a `<pose>` speaks of: `relative_to`, or `frame` before 1.7."""
     if pose is None:
         return ""

@@ -5,30 +5,28 @@ from __future__ import annotations
 from functools import partial
 
 from simkit.diagnostics import Diagnostics, did_you_mean
-from simkit.loaders.sdf.builtin import builtin_model
-from simkit.loaders.sdf.changes import BLOCK, apply_changes
-from simkit.loaders.sdf.names import read_name
-from simkit.loaders.sdf.parts import Source, pose_place, read_pose
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
-from simkit.loaders.turtlebot3 import chosen_robot
-from simkit.loaders.xml import parse_text
+from simkit.loaders.resources.bundled_models import builtin_model, turtlebot3_uri
+from simkit.loaders.resources.xml_reader import parse_text
+from simkit.loaders.sdf.entity_names import read_name
+from simkit.loaders.sdf.experimental_params import BLOCK, apply_changes
+from simkit.loaders.sdf.workspace import EntitySource, SdfFile, Workspace, pose_location, read_pose
 from simkit.params import Params
 
 _ENTITIES = ("model", "light", "actor")
 
 
-def written_here(element: Params, file: SdfFile, workspace: Workspace) -> Source | None:
+def read_inline_entity(element: Params, file: SdfFile, workspace: Workspace) -> EntitySource | None:
     """A `<model>` or `<light>` that stands in the file itself; None where it has no name."""
     name = read_name(element, workspace.diagnostics, file.version)
     if not name:
         return None
     pose, base = read_pose(element)
     placement = element.attribute("placement_frame") if element.name == "model" else ""
-    where, place = element.where, pose_place(element)
-    return Source(name, element, file, pose, base, placement=placement, where=where, pose_where=place)
+    where, place = element.where, pose_location(element)
+    return EntitySource(name, element, file, pose, base, placement=placement, where=where, pose_where=place)
 
 
-def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source | None:
+def read_include(include: Params, file: SdfFile, workspace: Workspace) -> EntitySource | None:
     """What an `<include>` brings; None, with an error recorded, where it brings nothing usable."""
     uri = include.text("uri", required=True)
     name = include.text("name", "")
@@ -39,7 +37,7 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
     pose, base = read_pose(include)
     if not uri:
         return None
-    found = _open(uri, include, file, workspace)
+    found = _open_include(uri, include, file, workspace)
     if found is None:
         return None
     element = _only_entity(found, uri, include, workspace)
@@ -59,7 +57,7 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
         )
         include.all(BLOCK)
         return None
-    element = _changed(include, element, found, workspace)
+    element = _with_changes(include, element, found, workspace)
     own, own_base = read_pose(element)
     own_name = name or read_name(element, workspace.diagnostics, found.version)
     if not own_name:
@@ -70,7 +68,7 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
     if merge and element.name != "model":
         include.error("SK-SDF-016", f"only a model can be merged, {uri} holds a <{element.name}>")
         return None
-    return Source(
+    return EntitySource(
         name=own_name,
         element=element,
         file=found,
@@ -81,11 +79,11 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Source
         plugins=plugins,
         merge=merge,
         where=include.where,
-        pose_where=pose_place(include if placed else element),
+        pose_where=pose_location(include if placed else element),
     )
 
 
-def _changed(include: Params, element: Params, file: SdfFile, workspace: Workspace) -> Params:
+def _with_changes(include: Params, element: Params, file: SdfFile, workspace: Workspace) -> Params:
     """The included model with the changes that the include makes; without any, the model itself."""
     blocks = include.all(BLOCK)
     if not blocks:
@@ -94,26 +92,26 @@ def _changed(include: Params, element: Params, file: SdfFile, workspace: Workspa
     own = element.copied()
     workspace.changed.append(own)
     for block in blocks:
-        apply_changes(block, own, partial(_name_given, file=file, workspace=workspace))
+        apply_changes(block, own, partial(_included_name, file=file, workspace=workspace))
     return own
 
 
-def _name_given(include: Params, file: SdfFile, workspace: Workspace) -> str:
+def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
     """The name of what an include brings, without a word about its mistakes: reading it in earnest says them."""
     name = include.text("name", "")
     uri = include.text("uri", "")
     if name or not uri:
         return name
     quiet = Workspace(workspace.resolver, Diagnostics())
-    found = _open(uri, include, file, quiet)
+    found = _open_include(uri, include, file, quiet)
     element = None if found is None else _only_entity(found, uri, include, quiet)
     return "" if element is None else element.attribute("name").strip()
 
 
-def _open(uri: str, include: Params, file: SdfFile, workspace: Workspace) -> SdfFile | None:
+def _open_include(uri: str, include: Params, file: SdfFile, workspace: Workspace) -> SdfFile | None:
     resolver, diagnostics = workspace.resolver, workspace.diagnostics
     place = include.child("uri") or include
-    chosen = chosen_robot(uri, place.where, diagnostics)
+    chosen = turtlebot3_uri(uri, place.where, diagnostics)
     if chosen is None:
         return None
     uri = chosen

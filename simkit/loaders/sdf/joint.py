@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 from simkit.diagnostics import Where, did_you_mean
+from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import MODEL, WORLD, Frame, world_pose
-from simkit.loaders.sdf.names import named, scoped
-from simkit.loaders.sdf.parts import Part, local_pose
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
-from simkit.loaders.sdf.workspace import Workspace
+from simkit.loaders.sdf.workspace import NamedElement, Workspace, local_pose
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Axis, Mimic, SceneJoint, SceneSensor
@@ -29,13 +28,13 @@ AXES = {
 _NO_LIMIT = 1e15
 
 
-def end_name(joint: Params, name: str) -> str:
+def joint_link_name(joint: Params, name: str) -> str:
     """The text of `<parent>` or `<child>`; before 1.2 it was an attribute."""
     found = joint.child(name)
     return "" if found is None else found.value or found.attribute("link").strip()
 
 
-def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | None:
+def read_joint(part: NamedElement, model: str, workspace: Workspace) -> SceneJoint | None:
     """A joint whose frame is known; None, with errors recorded, when it joins nothing.
 
     Args:
@@ -44,7 +43,7 @@ def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | Non
     element, diagnostics = part.element, workspace.diagnostics
     own = scoped(model, part.name)
     kind = element.attribute("type").strip()
-    parent, child = _end(part, "parent", workspace), _end(part, "child", workspace)
+    parent, child = _joint_link(part, "parent", workspace), _joint_link(part, "child", workspace)
     if kind not in AXES:
         hint = did_you_mean(kind, AXES)
         diagnostics.error(
@@ -81,21 +80,21 @@ def read_joint(part: Part, model: str, workspace: Workspace) -> SceneJoint | Non
     )
 
 
-def _sensors(part: Part, own: str, child: Frame, workspace: Workspace) -> tuple[SceneSensor, ...]:
+def _sensors(part: NamedElement, own: str, child: Frame, workspace: Workspace) -> tuple[SceneSensor, ...]:
     """The joint's sensors, their poses in the child link's frame."""
     diagnostics, base = workspace.diagnostics, world_pose(child)
     in_child = base.inverse() @ world_pose(part.frame)
     sensors = []
-    for name, e in named(part.element.all("sensor"), f"joint {part.name!r}", diagnostics, part.file.version):
+    for name, e in named_elements(part.element.all("sensor"), f"joint {part.name!r}", diagnostics, part.file.version):
         pose = in_child @ local_pose(e, part.scope, part.frame, f"sensor {name!r}")
         sensors.append(read_sensor(e, name, own, True, pose, base, diagnostics))
     return tuple(sensors)
 
 
-def _end(part: Part, which: str, workspace: Workspace) -> Frame | None:
+def _joint_link(part: NamedElement, which: str, workspace: Workspace) -> Frame | None:
     """The link at one end; the parent may be the world."""
     element, diagnostics = part.element, workspace.diagnostics
-    name = end_name(element, which)
+    name = joint_link_name(element, which)
     place = element.child(which) or element
     what = f"joint {part.name!r}: the {which}"
     if not name:
@@ -117,7 +116,7 @@ def _end(part: Part, which: str, workspace: Workspace) -> Frame | None:
     return part.scope.body(name, place.where, what)
 
 
-def _axes(part: Part, kind: str, pose_world: Pose, workspace: Workspace) -> tuple[Axis, ...]:
+def _axes(part: NamedElement, kind: str, pose_world: Pose, workspace: Workspace) -> tuple[Axis, ...]:
     axes = []
     for index, name in enumerate(("axis", "axis2")):
         if index >= AXES[kind]:
@@ -136,11 +135,11 @@ def _axes(part: Part, kind: str, pose_world: Pose, workspace: Workspace) -> tupl
     return tuple(axes)
 
 
-def _axis(part: Part, element: Params, kind: str, pose_world: Pose, workspace: Workspace) -> Axis:
+def _axis(part: NamedElement, element: Params, kind: str, pose_world: Pose, workspace: Workspace) -> Axis:
     direction = _direction(part, element, workspace)
     limit, dynamics = element.block("limit"), element.block("dynamics")
-    lower = _bound(limit, "lower", -math.inf)
-    upper = _bound(limit, "upper", math.inf)
+    lower = _position_limit(limit, "lower", -math.inf)
+    upper = _position_limit(limit, "upper", math.inf)
     if kind == "continuous":
         lower, upper = -math.inf, math.inf
     if lower > upper:
@@ -156,24 +155,24 @@ def _axis(part: Part, element: Params, kind: str, pose_world: Pose, workspace: W
         xyz_joint=direction,
         lower=lower,
         upper=upper,
-        effort=_magnitude(limit, "effort"),
-        velocity=_magnitude(limit, "velocity"),
+        effort=_unsigned_limit(limit, "effort"),
+        velocity=_unsigned_limit(limit, "velocity"),
         damping=dynamics.number("damping", 0.0, maximum=_NO_LIMIT),
         friction=dynamics.number("friction", 0.0, maximum=_NO_LIMIT),
         stiffness=dynamics.number("spring_stiffness", 0.0, maximum=_NO_LIMIT),
         spring_ref=dynamics.number("spring_reference", 0.0, minimum=-_NO_LIMIT, maximum=_NO_LIMIT),
         mimic=_mimic(part, element),
-        limit_stiffness=_given(limit, "stiffness"),
-        limit_dissipation=_given(limit, "dissipation"),
+        limit_stiffness=_optional_non_negative(limit, "stiffness"),
+        limit_dissipation=_optional_non_negative(limit, "dissipation"),
     )
 
 
-def _given(block: Params, name: str) -> float | None:
+def _optional_non_negative(block: Params, name: str) -> float | None:
     """A number that is not negative, where the file gives one."""
     return block.number(name, 0.0, minimum=0.0) if block.has(name) else None
 
 
-def _direction(part: Part, element: Params, workspace: Workspace) -> tuple[float, float, float]:
+def _direction(part: NamedElement, element: Params, workspace: Workspace) -> tuple[float, float, float]:
     """The unit axis in the joint frame; it is given there, in `expressed_in`, or (before 1.5) in the model frame."""
     x, y, z = element.vector3("xyz", (0.0, 0.0, 1.0))
     xyz = element.child("xyz")
@@ -198,19 +197,19 @@ def _direction(part: Part, element: Params, workspace: Workspace) -> tuple[float
     return (float(turned[0]), float(turned[1]), float(turned[2]))
 
 
-def _bound(limit: Params, name: str, none: float) -> float:
+def _position_limit(limit: Params, name: str, none: float) -> float:
     """A position limit; from 1e15 on it means none."""
     value = limit.number(name, none, finite=False)
     return math.copysign(math.inf, value) if abs(value) >= _NO_LIMIT else value
 
 
-def _magnitude(limit: Params, name: str) -> float:
+def _unsigned_limit(limit: Params, name: str) -> float:
     """An effort or velocity limit; negative means none."""
     value = limit.number(name, -1.0, finite=False)
     return math.inf if value < 0 or value >= _NO_LIMIT else value
 
 
-def _mimic(part: Part, element: Params) -> Mimic | None:
+def _mimic(part: NamedElement, element: Params) -> Mimic | None:
     block = element.child("mimic")
     if block is None:
         return None
@@ -240,7 +239,7 @@ def _thread_pitch(element: Params) -> float:
     return -2 * math.pi / old if element.has("thread_pitch") else 1.0
 
 
-def _gearbox_reference(part: Part, workspace: Workspace) -> str:
+def _gearbox_reference(part: NamedElement, workspace: Workspace) -> str:
     name = part.element.text("gearbox_reference_body", "")
     if not name:
         workspace.diagnostics.error(

@@ -5,23 +5,22 @@ from __future__ import annotations
 from dataclasses import replace
 
 from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import world_pose
 from simkit.loaders.sdf.geometry import read_geometry
-from simkit.loaders.sdf.inertia import read_inertial
+from simkit.loaders.sdf.inertial import read_inertial
 from simkit.loaders.sdf.light import read_light
 from simkit.loaders.sdf.material import read_material
-from simkit.loaders.sdf.names import named, scoped
-from simkit.loaders.sdf.parts import Part, local_pose
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
 from simkit.loaders.sdf.surface import read_surface
-from simkit.loaders.sdf.workspace import Workspace
+from simkit.loaders.sdf.workspace import NamedElement, Workspace, local_pose
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface
 
 
-def read_link(part: Part, model: str, static: bool, windy: bool, workspace: Workspace) -> SceneLink:
+def read_link(part: NamedElement, model: str, static: bool, windy: bool, workspace: Workspace) -> SceneLink:
     """A link whose frame is known.
 
     Args:
@@ -35,13 +34,13 @@ def read_link(part: Part, model: str, static: bool, windy: bool, workspace: Work
     element.child("pose")
     read = [
         _collision(part, c, name, own, workspace)
-        for name, c in named(element.all("collision"), f"link {part.name!r}", diagnostics, part.file.version)
+        for name, c in named_elements(element.all("collision"), f"link {part.name!r}", diagnostics, part.file.version)
     ]
     collisions = tuple(c for c, _ in read if c is not None)
     densities = [density for c, density in read if c is not None]
     visuals = tuple(
         visual
-        for name, v in named(element.all("visual"), f"link {part.name!r}", diagnostics, part.file.version)
+        for name, v in named_elements(element.all("visual"), f"link {part.name!r}", diagnostics, part.file.version)
         if (visual := _visual(part, v, name, own, workspace)) is not None
     )
     return SceneLink(
@@ -70,13 +69,13 @@ def _velocity_decay(element: Params) -> tuple[float, float]:
 
 
 def _collision(
-    part: Part, element: Params, name: str, link: str, workspace: Workspace
+    part: NamedElement, element: Params, name: str, link: str, workspace: Workspace
 ) -> tuple[SceneCollision | None, float | None]:
     """A collision and its density [kg/m³], None where not given."""
     what = f"collision {name!r} of link {part.name!r}"
     shape = read_geometry(element, part.file, workspace, what)
     density = element.number("density", 1000.0, minimum=0, maximum=1e15) if element.has("density") else None
-    surface = _directed(read_surface(element), part, element, link)
+    surface = _with_friction_frame(read_surface(element), part, element, link)
     if shape is None:
         element.mark_all_read()
         return None, density
@@ -92,7 +91,7 @@ def _collision(
     return collision, density
 
 
-def _directed(surface: Surface, part: Part, element: Params, link: str) -> Surface:
+def _with_friction_frame(surface: Surface, part: NamedElement, element: Params, link: str) -> Surface:
     """A surface whose `<fdir1>` is told in a link: in the one that the frame moves with that the file names."""
     name = surface.fdir1_frame
     if not name:
@@ -119,7 +118,7 @@ def _directed(surface: Surface, part: Part, element: Params, link: str) -> Surfa
     )
 
 
-def _visual(part: Part, element: Params, name: str, link: str, workspace: Workspace) -> SceneVisual | None:
+def _visual(part: NamedElement, element: Params, name: str, link: str, workspace: Workspace) -> SceneVisual | None:
     what = f"visual {name!r} of link {part.name!r}"
     shape = read_geometry(element, part.file, workspace, what)
     if shape is None:
@@ -140,8 +139,8 @@ def _visual(part: Part, element: Params, name: str, link: str, workspace: Worksp
     )
 
 
-def _sensors(part: Part, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneSensor, ...]:
-    found = named(part.element.all("sensor"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
+def _sensors(part: NamedElement, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneSensor, ...]:
+    found = named_elements(part.element.all("sensor"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
     return tuple(
         read_sensor(
             e, name, link, False, local_pose(e, part.scope, part.frame, f"sensor {name!r}"), pose, workspace.diagnostics
@@ -150,8 +149,8 @@ def _sensors(part: Part, link: str, pose: Pose, workspace: Workspace) -> tuple[S
     )
 
 
-def _lights(part: Part, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneLight, ...]:
-    found = named(part.element.all("light"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
+def _lights(part: NamedElement, link: str, pose: Pose, workspace: Workspace) -> tuple[SceneLight, ...]:
+    found = named_elements(part.element.all("light"), f"link {part.name!r}", workspace.diagnostics, part.file.version)
     return tuple(
         read_light(
             e,

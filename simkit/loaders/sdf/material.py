@@ -29,7 +29,7 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
         return None
     script = block.block("script")
     name = script.text("name", "") or (script.value.split("/", 1)[1] if "/" in script.value else "")
-    ogre, places = _ogre(name, script, file, workspace)
+    ogre, places = _script_material(name, script, file, workspace)
     script_colours = _script_colours(name, ogre)
     diffuse = read_colour(block, "diffuse", script_colours.get("diffuse", _WHITE))
     ambient = read_colour(block, "ambient", script_colours.get("ambient", diffuse))
@@ -38,9 +38,9 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
     if texture is None and ogre is not None and ogre.texture:
         texture, scale = find_texture(ogre, places), ogre.scale or scale
         if texture is None:
-            _missing(f"texture {ogre.texture} of material {name!r}", script, workspace)
+            _report_missing_texture(f"texture {ogre.texture} of material {name!r}", script, workspace)
     if name and not script_colours and ogre is None and not block.has("diffuse") and texture is None:
-        _unknown(name, script, workspace)
+        _report_unknown_script(name, script, workspace)
     return Material(
         ambient=ambient,
         diffuse=diffuse,
@@ -48,19 +48,23 @@ def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Materi
         emissive=read_colour(block, "emissive", script_colours.get("emissive", _BLACK)),
         texture=texture,
         script=name,
-        roughness=workflow.number("roughness", minimum=0.0, maximum=1.0) if _says(workflow, "roughness") else None,
+        roughness=workflow.number("roughness", minimum=0.0, maximum=1.0)
+        if _has_content(workflow, "roughness")
+        else None,
         double_sided=block.boolean("double_sided", ogre.is_double_sided if ogre is not None else False),
         texture_scale=scale,
-        shininess=block.number("shininess", minimum=0.0) if _says(block, "shininess") else None,
+        shininess=block.number("shininess", minimum=0.0) if _has_content(block, "shininess") else None,
     )
 
 
-def _says(block: Params, name: str) -> bool:
+def _has_content(block: Params, name: str) -> bool:
     found = block.child(name)
     return found is not None and bool(found.value)
 
 
-def _ogre(name: str, script: Params, file: SdfFile, workspace: Workspace) -> tuple[OgreMaterial | None, list[Path]]:
+def _script_material(
+    name: str, script: Params, file: SdfFile, workspace: Workspace
+) -> tuple[OgreMaterial | None, list[Path]]:
     """The material of that name in the scripts that the file points to, and the places it points to."""
     places: list[Path] = []
     for element in script.all("uri"):
@@ -84,7 +88,7 @@ def _script_colours(name: str, ogre: OgreMaterial | None) -> dict[str, Colour]:
     return {k: getattr(known, k) for k in ("ambient", "diffuse", "specular", "emissive")}
 
 
-def _unknown(name: str, script: Params, workspace: Workspace) -> None:
+def _report_unknown_script(name: str, script: Params, workspace: Workspace) -> None:
     """One note for each name, however often it is used."""
     if name not in workspace.unknown_materials:
         workspace.unknown_materials.add(name)
@@ -113,7 +117,7 @@ def _workflow(block: Params) -> Params:
     """The block of `<pbr>` that says most: metal before specular, one with a picture before one without."""
     pbr = block.block("pbr")
     workflows = [*pbr.all("metal"), *pbr.all("specular")]
-    with_picture = [w for w in workflows if _says(w, "albedo_map")]
+    with_picture = [w for w in workflows if _has_content(w, "albedo_map")]
     return (with_picture or workflows or [Params("metal", where=block.where, diagnostics=block.diagnostics)])[0]
 
 
@@ -124,11 +128,11 @@ def _texture(workflow: Params, file: SdfFile, workspace: Workspace) -> Path | No
     path, _ = workspace.resolver.search(found.value, file.folder)
     if path is not None and path.is_file():
         return path.absolute()
-    _missing(f"texture {found.value}", found, workspace)
+    _report_missing_texture(f"texture {found.value}", found, workspace)
     return None
 
 
-def _missing(what: str, element: Params, workspace: Workspace) -> None:
+def _report_missing_texture(what: str, element: Params, workspace: Workspace) -> None:
     """One warning for each picture, however often it is used."""
     if what not in workspace.reported:
         workspace.reported.add(what)

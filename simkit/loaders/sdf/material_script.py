@@ -145,7 +145,7 @@ def _read(lines: list[list[str]], folder: Path) -> Iterator[OgreMaterial]:
         elif depth == 0:
             header = _header(words, folder)
         elif current is not None and depth <= _DEEPEST:
-            current = _with(current, words)
+            current = _apply_line(current, words)
     if current is not None:
         yield current
 
@@ -159,7 +159,7 @@ def _header(words: list[str], folder: Path) -> OgreMaterial | None:
     return OgreMaterial(name.strip(), folder, parent.strip())
 
 
-def _with(material: OgreMaterial, words: list[str]) -> OgreMaterial:
+def _apply_line(material: OgreMaterial, words: list[str]) -> OgreMaterial:
     key, *values = words
     if key in _COLOURS and key not in material.colours:
         colour = _colour(values, 3 if key == "specular" and len(values) == 4 else 4)

@@ -6,22 +6,29 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from simkit.diagnostics import Diagnostics
+from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import MODEL, Frame, Scope, world_pose
-from simkit.loaders.sdf.include import read_include, written_here
-from simkit.loaders.sdf.joint import end_name, read_joint
+from simkit.loaders.sdf.include import read_include, read_inline_entity
+from simkit.loaders.sdf.joint import joint_link_name, read_joint
 from simkit.loaders.sdf.link import read_link
-from simkit.loaders.sdf.names import named, scoped
-from simkit.loaders.sdf.parts import Draft, Part, Source, pose_place, read_pose
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.sdf.workspace import (
+    EntitySource,
+    ModelDraft,
+    NamedElement,
+    SdfFile,
+    Workspace,
+    pose_location,
+    read_pose,
+)
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneFrame, SceneModel
 
-_OF_A_MODEL = ("static", "self_collide", "enable_wind", "allow_auto_disable")
+_MODEL_SETTINGS = ("static", "self_collide", "enable_wind", "allow_auto_disable")
 
 
-def declare_model(source: Source, outer: Scope, outer_scoped: str, workspace: Workspace) -> Draft | None:
+def declare_model(source: EntitySource, outer: Scope, outer_scoped: str, workspace: Workspace) -> ModelDraft | None:
     """Enters a model and everything named in it; None when it is one too many."""
     if not workspace.count_model(source.where):
         return None
@@ -39,14 +46,14 @@ def declare_model(source: Source, outer: Scope, outer_scoped: str, workspace: Wo
         where=source.where,
         pose_where=source.pose_where,
     )
-    draft = Draft(source, own, frame, scope)
+    draft = ModelDraft(source, own, frame, scope)
     _declare_content(draft, source.element, source.file, scope, workspace)
     draft.plugins.extend(source.plugins)
     _choose_canonical(draft, source.element, workspace)
     return draft
 
 
-def enter(frame: Frame, scope: Scope, version: tuple[int, int], diagnostics: Diagnostics) -> None:
+def register_frame(frame: Frame, scope: Scope, version: tuple[int, int], diagnostics: Diagnostics) -> None:
     """Gives a name to a frame; from 1.7 on all siblings of any kind share one set of names."""
     taken = scope.names.setdefault(frame.name, frame)
     if taken is frame:
@@ -59,33 +66,37 @@ def enter(frame: Frame, scope: Scope, version: tuple[int, int], diagnostics: Dia
         diagnostics.warning("SK-SDF-024", f"{text}; the name means the {taken.kind}", frame.where)
 
 
-def _declare_content(draft: Draft, element: Params, file: SdfFile, scope: Scope, workspace: Workspace) -> None:
+def _declare_content(draft: ModelDraft, element: Params, file: SdfFile, scope: Scope, workspace: Workspace) -> None:
     diagnostics, owner = workspace.diagnostics, f"model {draft.source.name!r}"
-    for name, link in named(element.all("link"), owner, diagnostics, file.version):
-        draft.links.append(_part(draft, name, link, "link", "", scope, file, workspace))
+    for name, link in named_elements(element.all("link"), owner, diagnostics, file.version):
+        draft.links.append(_declare_element(draft, name, link, "link", "", scope, file, workspace))
     for source in model_sources(element, file, workspace):
         if source.element.name != "model":
-            _refuse(source, workspace)
+            _report_non_model(source, workspace)
         elif source.merge:
-            merge(draft, source, scope, workspace)
+            merge_model(draft, source, scope, workspace)
         else:
             nested = declare_model(source, scope, draft.scoped, workspace)
             if nested is not None:
                 draft.models.append(nested)
-                enter(nested.frame, scope, file.version, diagnostics)
-    for name, joint in named(element.all("joint"), owner, diagnostics, file.version):
-        draft.joints.append(_part(draft, name, joint, "joint", end_name(joint, "child"), scope, file, workspace))
-    for name, frame in named(element.all("frame"), owner, diagnostics, file.version):
-        draft.frames.append(_part(draft, name, frame, "frame", frame.attribute("attached_to"), scope, file, workspace))
+                register_frame(nested.frame, scope, file.version, diagnostics)
+    for name, joint in named_elements(element.all("joint"), owner, diagnostics, file.version):
+        draft.joints.append(
+            _declare_element(draft, name, joint, "joint", joint_link_name(joint, "child"), scope, file, workspace)
+        )
+    for name, frame in named_elements(element.all("frame"), owner, diagnostics, file.version):
+        draft.frames.append(
+            _declare_element(draft, name, frame, "frame", frame.attribute("attached_to"), scope, file, workspace)
+        )
     draft.plugins.extend(element.all("plugin"))
 
 
-def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Iterable[Source]:
+def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Iterable[EntitySource]:
     """The models written in an element and those it includes, in document order."""
     written, included = set(map(id, element.all("model"))), set(map(id, element.all("include")))
     for child in element.children:
         if id(child) in written:
-            source = written_here(child, file, workspace)
+            source = read_inline_entity(child, file, workspace)
         elif id(child) in included:
             source = read_include(child, file, workspace)
         else:
@@ -94,8 +105,8 @@ def model_sources(element: Params, file: SdfFile, workspace: Workspace) -> Itera
             yield source
 
 
-def _part(
-    draft: Draft,
+def _declare_element(
+    draft: ModelDraft,
     name: str,
     element: Params,
     kind: str,
@@ -103,17 +114,17 @@ def _part(
     scope: Scope,
     file: SdfFile,
     workspace: Workspace,
-) -> Part:
+) -> NamedElement:
     pose, base = read_pose(element)
     frame = Frame(name, kind, scoped(draft.scoped, name), scope, pose, base, attached_to, where=element.where)
-    frame.pose_where = pose_place(element)
+    frame.pose_where = pose_location(element)
     if kind == "joint" and attached_to == "world":
         frame.attached_to = ""
-    enter(frame, scope, file.version, workspace.diagnostics)
-    return Part(name, element, frame, scope, file)
+    register_frame(frame, scope, file.version, workspace.diagnostics)
+    return NamedElement(name, element, frame, scope, file)
 
 
-def _refuse(source: Source, workspace: Workspace) -> None:
+def _report_non_model(source: EntitySource, workspace: Workspace) -> None:
     kind = source.element.name
     source.element.mark_all_read()
     workspace.diagnostics.error(
@@ -124,7 +135,7 @@ def _refuse(source: Source, workspace: Workspace) -> None:
     )
 
 
-def merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace, base: str = MODEL) -> None:
+def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace: Workspace, base: str = MODEL) -> None:
     """Puts the content of an included model into `draft`; a frame that stands where it was placed is its root.
 
     Args:
@@ -140,7 +151,7 @@ def merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace, base
     proxy = Frame(
         name, "frame", scoped(draft.scoped, name), scope, pose, source.relative_to or base, where=source.where
     )
-    enter(proxy, scope, (1, 12), workspace.diagnostics)
+    register_frame(proxy, scope, (1, 12), workspace.diagnostics)
     inner = Scope(proxy, workspace.diagnostics, scope.names)
     first, models = len(draft.links), len(draft.models)
     _declare_content(draft, source.element, source.file, inner, workspace)
@@ -155,9 +166,9 @@ def merge(draft: Draft, source: Source, scope: Scope, workspace: Workspace, base
     draft.merged.append(inner)
 
 
-def _report_lost(source: Source, workspace: Workspace) -> None:
+def _report_lost(source: EntitySource, workspace: Workspace) -> None:
     """Says which settings of a merged model are lost: there is no model left to have them."""
-    lost = [name for name in _OF_A_MODEL if source.element.child(name) is not None]
+    lost = [name for name in _MODEL_SETTINGS if source.element.child(name) is not None]
     if source.static is not None and "static" not in lost:
         lost.insert(0, "static")
     source.element.child("pose")
@@ -168,7 +179,7 @@ def _report_lost(source: Source, workspace: Workspace) -> None:
         )
 
 
-def _choose_canonical(draft: Draft, element: Params, workspace: Workspace) -> None:
+def _choose_canonical(draft: ModelDraft, element: Params, workspace: Workspace) -> None:
     """The link that stands for the model: the named one, else the first link, else that of the first nested model."""
     scope, diagnostics = draft.scope, workspace.diagnostics
     wanted = element.attribute("canonical_link")
@@ -194,33 +205,33 @@ def _choose_canonical(draft: Draft, element: Params, workspace: Workspace) -> No
         )
 
 
-def _is_static(source: Source) -> bool:
+def _is_static(source: EntitySource) -> bool:
     own = source.element.boolean("static", False)
     return own if source.static is None else source.static
 
 
-def place(draft: Draft) -> None:
+def place_model(draft: ModelDraft) -> None:
     """Fixes where a model and its nested ones stand in the world."""
     draft.scope.world = world_pose(draft.frame)
     for merged in draft.merged:
         merged.world = draft.scope.world
     for nested in draft.models:
-        place(nested)
+        place_model(nested)
 
 
-def build_model(draft: Draft, static: bool, workspace: Workspace, base: str = "auto") -> SceneModel:
+def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str = "auto") -> SceneModel:
     """The scene of a placed model; a nested model of a static one is static."""
     source, element = draft.source, draft.source.element
     declared = _is_static(source)
     still = declared or static
     if source.file.mjcf is not None:
-        from simkit.loaders.sdf.mjcf import build_included
+        from simkit.loaders.mjcf.included_model import build_included_model
 
-        return build_included(source.file.mjcf, draft, still, base)
+        return build_included_model(source.file.mjcf, draft, still, base)
     if source.file.urdf is not None:
-        from simkit.loaders.urdf import included  # it reads <gazebo> with the readers of this package
+        from simkit.loaders.urdf import included_robot  # it reads <gazebo> with the readers of this package
 
-        return included.build_included(draft, source.file.urdf, still, workspace, base)
+        return included_robot.build_included_robot(draft, source.file.urdf, still, workspace, base)
     element.child("pose")
     windy = element.boolean("enable_wind", False)
     links = tuple(read_link(part, draft.scoped, still, windy, workspace) for part in draft.links)
@@ -238,7 +249,7 @@ def build_model(draft: Draft, static: bool, workspace: Workspace, base: str = "a
         base=base,
         links=links,
         joints=joints,
-        frames=(*read_frames(draft.frames), *(_proxy(p) for p in draft.proxies)),
+        frames=(*read_frames(draft.frames), *(_proxy_frame(p) for p in draft.proxies)),
         models=tuple(build_model(nested, still, workspace) for nested in draft.models),
         plugins=read_plugins(draft.plugins, draft.scoped),
         where=source.where,
@@ -246,7 +257,7 @@ def build_model(draft: Draft, static: bool, workspace: Workspace, base: str = "a
     )
 
 
-def read_frames(parts: Iterable[Part]) -> tuple[SceneFrame, ...]:
+def read_frames(parts: Iterable[NamedElement]) -> tuple[SceneFrame, ...]:
     """Frames with the body each is attached to; one attached to nothing is an error."""
     frames = []
     for part in parts:
@@ -254,20 +265,20 @@ def read_frames(parts: Iterable[Part]) -> tuple[SceneFrame, ...]:
         body = part.scope.body(part.name, place_of, f"frame {part.name!r}")
         part.element.child("pose")
         frames.append(
-            SceneFrame(part.name, part.frame.scoped, _world(part.frame), body.scoped if body is not None else "")
+            SceneFrame(part.name, part.frame.scoped, _frame_pose(part.frame), body.scoped if body is not None else "")
         )
     return tuple(frames)
 
 
-def _proxy(frame: Frame) -> SceneFrame:
-    return SceneFrame(frame.name, frame.scoped, _world(frame), "")
+def _proxy_frame(frame: Frame) -> SceneFrame:
+    return SceneFrame(frame.name, frame.scoped, _frame_pose(frame), "")
 
 
-def _world(frame: Frame) -> Pose:
+def _frame_pose(frame: Frame) -> Pose:
     return world_pose(frame) if frame.scope is not None else IDENTITY
 
 
-def _report_defaults(draft: Draft, names: list[str], static: bool, workspace: Workspace) -> None:
+def _report_defaults(draft: ModelDraft, names: list[str], static: bool, workspace: Workspace) -> None:
     if names and not static:
         listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
         workspace.diagnostics.note(

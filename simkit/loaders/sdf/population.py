@@ -14,9 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.sdf.names import read_name
-from simkit.loaders.sdf.parts import Source, read_pose
-from simkit.loaders.sdf.workspace import MAX_MODELS, SdfFile, Workspace
+from simkit.loaders.sdf.entity_names import read_name
+from simkit.loaders.sdf.workspace import MAX_MODELS, EntitySource, SdfFile, Workspace, read_pose
 from simkit.params import Params
 from simkit.pose import Pose
 
@@ -44,7 +43,7 @@ class _Region:
         return np.column_stack((radius * np.cos(angle), radius * np.sin(angle), self.size[2] * numbers[:, 2]))
 
 
-def population_sources(population: Params, world: str, file: SdfFile, workspace: Workspace) -> list[Source]:
+def population_sources(population: Params, world: str, file: SdfFile, workspace: Workspace) -> list[EntitySource]:
     """The copies, named `model_clone_0`, `model_clone_1`, ...; none, with errors recorded, where it says no place.
 
     A copy stands upright at its point: like Gazebo, what the model's own `<pose>` says does not count.
@@ -63,7 +62,7 @@ def population_sources(population: Params, world: str, file: SdfFile, workspace:
         models[0].mark_all_read()
         return []
     return [
-        Source(f"{model}_clone_{i}", models[0], file, Pose(tuple(point)), base, where=population.where)
+        EntitySource(f"{model}_clone_{i}", models[0], file, Pose(tuple(point)), base, where=population.where)
         for i, point in enumerate(points)
     ]
 
@@ -78,7 +77,7 @@ def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | 
         place.error(_CODE, f"distribution {kind!r} is not one of {known}", did_you_mean(kind, DISTRIBUTIONS))
         return None
     if kind == "grid":
-        return _placed(_grid(population, rule, name), pose, np.zeros(3))
+        return _turn_points(_grid(population, rule, name), pose, np.zeros(3))
     count = population.integer("model_count", 1, minimum=1)
     if count > MAX_MODELS:
         population.error(_CODE, f"population {name!r} has {count} models, allowed are {MAX_MODELS}")
@@ -91,13 +90,13 @@ def _points(population: Params, name: str, stream: str, pose: Pose) -> Points | 
         if region.kind != "box":
             population.error(_CODE, f"population {name!r}: distribution {kind!r} needs a <box>")
             return None
-        return _placed(_line(region.size, count, "xyz".index(kind[-1])), pose, corner)
-    generator = _stream(stream)
-    points = region.drawn(count, generator) if kind == "random" else _spread(region, count, generator)
-    return _placed(points, pose, corner)
+        return _turn_points(_line(region.size, count, "xyz".index(kind[-1])), pose, corner)
+    generator = _random_stream(stream)
+    points = region.drawn(count, generator) if kind == "random" else _evenly_spread(region, count, generator)
+    return _turn_points(points, pose, corner)
 
 
-def _placed(points: Points | None, pose: Pose, corner: Points) -> Points | None:
+def _turn_points(points: Points | None, pose: Pose, corner: Points) -> Points | None:
     """Points turned about the population's pose, which is the middle of a box (Gazebo does not turn the half size)."""
     if points is None:
         return None
@@ -146,7 +145,7 @@ def _line(size: tuple[float, float, float], count: int, axis: int) -> Points:
     return points
 
 
-def _spread(region: _Region, count: int, stream: np.random.Generator) -> Points:
+def _evenly_spread(region: _Region, count: int, stream: np.random.Generator) -> Points:
     """Evenly spread places: the means of as many clusters of points drawn from the region (Lloyd's algorithm)."""
     cloud = region.drawn(max(_SAMPLES, 4 * count), stream)
     centres = cloud[:count].copy()
@@ -176,7 +175,7 @@ def _nearest(cloud: Points, centres: Points) -> npt.NDArray[np.intp]:
     return index
 
 
-def _stream(name: str) -> np.random.Generator:
+def _random_stream(name: str) -> np.random.Generator:
     """A stream of random numbers that depends on its name alone."""
     words = np.frombuffer(hashlib.sha256(name.encode()).digest(), dtype="<u4")
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence([int(w) for w in words])))

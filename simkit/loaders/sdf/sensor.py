@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from simkit.diagnostics import Diagnostics
-from simkit.loaders.sdf.names import scoped as join
+from simkit.loaders.sdf.entity_names import scoped as join
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.params import Params
 from simkit.pose import Pose

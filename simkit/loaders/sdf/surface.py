@@ -22,15 +22,15 @@ def read_surface(collision: Params) -> Surface:
         mu=mu,
         mu2=mu2,
         fdir1=ode.vector3("fdir1", bullet.vector3("fdir1", (0.0, 0.0, 0.0))),
-        slip1=_not_negative(ode, "slip1", 0.0),
-        slip2=_not_negative(ode, "slip2", 0.0),
+        slip1=_non_negative(ode, "slip1", 0.0),
+        slip2=_non_negative(ode, "slip2", 0.0),
         torsional=twist.number("coefficient", 1.0, minimum=0) if twist.has("coefficient") else None,
-        kp=_given(soft, "kp"),
-        kd=_given(soft, "kd"),
-        soft_cfm=_given(soft, "soft_cfm"),
-        soft_erp=_given(soft, "soft_erp"),
-        min_depth=_given(soft, "min_depth"),
-        max_vel=_given(soft, "max_vel"),
+        kp=_optional_number(soft, "kp"),
+        kd=_optional_number(soft, "kd"),
+        soft_cfm=_optional_number(soft, "soft_cfm"),
+        soft_erp=_optional_number(soft, "soft_erp"),
+        min_depth=_optional_number(soft, "min_depth"),
+        max_vel=_optional_number(soft, "max_vel"),
         restitution=bounce.number("restitution_coefficient", 0.0, minimum=0),
         restitution_threshold=bounce.number("threshold", 1e5, finite=False),
         collide_bitmask=_mask(contact, "collide_bitmask"),
@@ -56,10 +56,10 @@ def _direction_frame(ode: Params) -> str:
 
 def _friction(block: Params, name: str, default: float) -> float:
     """A coefficient; old files write a negative one where they mean the default."""
-    return _not_negative(block, name, default, finite=False)
+    return _non_negative(block, name, default, finite=False)
 
 
-def _not_negative(block: Params, name: str, default: float, *, finite: bool = True) -> float:
+def _non_negative(block: Params, name: str, default: float, *, finite: bool = True) -> float:
     """A number; the default, with a warning, for a negative one."""
     value = block.number(name, default, finite=finite)
     if value >= 0:
@@ -71,7 +71,7 @@ def _not_negative(block: Params, name: str, default: float, *, finite: bool = Tr
     return default
 
 
-def _given(block: Params | None, name: str) -> float | None:
+def _optional_number(block: Params | None, name: str) -> float | None:
     """A number where the file gives one."""
     if block is None or not block.has(name):
         return None

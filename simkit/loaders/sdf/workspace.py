@@ -1,4 +1,4 @@
-"""What every part of one load shares: resolver, diagnostics, the files read so far, and the bounds on includes."""
+"""State that one load shares, and drafts: elements with their names, frames and files, before any pose is resolved."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.base import MeshReader
-from simkit.loaders.resolver import NEWEST_SDF, Resolver, sdf_version
-from simkit.loaders.sdf.flattened import nested
-from simkit.loaders.sdf.old import modern
-from simkit.loaders.xml import Document, parse_file
+from simkit.loaders.resources.loader import MeshReader
+from simkit.loaders.resources.resolver import NEWEST_SDF, Resolver, sdf_version
+from simkit.loaders.resources.xml_reader import Document, parse_file
+from simkit.loaders.sdf.frames import Frame, Scope, pose_base
+from simkit.loaders.sdf.older_versions import modernise, nest_flattened_models
 from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from simkit.loaders.mjcf.document import MjcfFile
+    from simkit.loaders.mjcf.loader import MjcfFile
+
 
 MAX_INCLUDE_DEPTH = 32
 MAX_MODELS = 20_000
@@ -91,7 +93,9 @@ class Workspace:
 
     def _urdf(self, document: Document, path: Path, chain: tuple[str, ...]) -> SdfFile | None:
         """An included robot in URDF or xacro, expanded once however often it is included."""
-        from simkit.loaders.urdf.included import stand_in  # it reads <gazebo> with the readers of this package
+        from simkit.loaders.urdf.included_robot import (
+            frames_document,  # it reads <gazebo> with the readers of this package
+        )
         from simkit.loaders.xacro import expand, needs_expansion
 
         if path not in self._robots:
@@ -103,16 +107,16 @@ class Workspace:
         if robot is None:
             return None
         file = SdfFile(robot, (1, 11), path.parent, chain)
-        return SdfFile(stand_in(file, self), (1, 11), path.parent, chain, urdf=robot)
+        return SdfFile(frames_document(file, self), (1, 11), path.parent, chain, urdf=robot)
 
     def _mjcf(self, document: Document, path: Path, chain: tuple[str, ...]) -> SdfFile | None:
         """An included file in MuJoCo's own format, read and compiled once however often it is included."""
-        from simkit.loaders.mjcf.document import open_mjcf
-        from simkit.loaders.sdf.mjcf import stand_in
+        from simkit.loaders.mjcf.included_model import frames_document
+        from simkit.loaders.mjcf.loader import open_mjcf
 
         if path not in self._mjcf_files:
             found = open_mjcf(document.root, document.path, self.resolver, self.diagnostics)
-            root = None if found is None else stand_in(found, self.diagnostics)
+            root = None if found is None else frames_document(found, self.diagnostics)
             self._mjcf_files[path] = None if found is None or root is None else (found, root)
         known = self._mjcf_files[path]
         return None if known is None else SdfFile(known[1], (1, 7), path.parent, chain, known[0])
@@ -135,7 +139,7 @@ class Workspace:
                 "SK-LOAD-004", f"SDF {text} is from 2012; it is read in today's spelling", root.where
             )
         if key not in self.roots:
-            self.roots[key] = nested(modern(root, version), version)
+            self.roots[key] = nest_flattened_models(modernise(root, version), version)
         root = self.roots[key]
         return SdfFile(root, version, folder, chain)
 
@@ -145,3 +149,86 @@ class Workspace:
         if self.models == MAX_MODELS + 1:
             self.diagnostics.error("SK-SDF-016", f"more than {MAX_MODELS} models", where)
         return self.models <= MAX_MODELS
+
+
+@dataclass(frozen=True)
+class NamedElement:
+    """One named element of a model: `scope` is where the names it uses are looked up."""
+
+    name: str
+    element: Params
+    frame: Frame
+    scope: Scope
+    file: SdfFile
+
+
+@dataclass(frozen=True)
+class EntitySource:
+    """A model or light, written in place or included.
+
+    Attributes:
+        pose, relative_to: where it stands, as written by whoever has the last word.
+        static: forced by an include; None where it says nothing.
+        placement: frame of the model that the pose speaks of; empty for the model frame.
+        plugins: those that the include adds.
+        merge: whether its content becomes part of the including model.
+        where: the place of the model, or of the include.
+        pose_where: the place of its pose.
+    """
+
+    name: str
+    element: Params
+    file: SdfFile
+    pose: Pose = IDENTITY
+    relative_to: str = ""
+    static: bool | None = None
+    placement: str = ""
+    plugins: tuple[Params, ...] = ()
+    merge: bool = False
+    where: Where = field(default_factory=Where)
+    pose_where: Where | None = None
+
+
+@dataclass
+class ModelDraft:
+    """A model whose names are known and whose poses are not resolved yet.
+
+    Attributes:
+        saved_links: what a saved state of the world says of its links.
+    """
+
+    source: EntitySource
+    scoped: str
+    frame: Frame
+    scope: Scope
+    links: list[NamedElement] = field(default_factory=list)
+    joints: list[NamedElement] = field(default_factory=list)
+    frames: list[NamedElement] = field(default_factory=list)
+    proxies: list[Frame] = field(default_factory=list)
+    merged: list[Scope] = field(default_factory=list)
+    models: list[ModelDraft] = field(default_factory=list)
+    plugins: list[Params] = field(default_factory=list)
+    saved_links: list[Params] = field(default_factory=list)
+
+
+def read_pose(element: Params, name: str = "pose") -> tuple[Pose, str]:
+    """The `<pose>` of an element and the frame it speaks of (empty for the default)."""
+    return element.pose(name), pose_base(element.child(name))
+
+
+def pose_location(element: Params) -> Where:
+    """The line of an element's pose, or its own."""
+    pose = element.child("pose")
+    return element.where if pose is None else pose.where
+
+
+def local_pose(element: Params, scope: Scope, owner: Frame, what: str) -> Pose:
+    """The pose of something inside a link (or joint) in that link's frame; `relative_to` may name another frame."""
+    pose, base = read_pose(element)
+    if not base:
+        return pose
+    frames = scope.chain(base)
+    if frames is None:
+        scope.unknown(base, f"{what}: the frame", pose_location(element))
+        return pose
+    return scope.resolve(owner).inverse() @ scope.pose_of(base) @ pose

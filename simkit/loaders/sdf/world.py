@@ -5,23 +5,45 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from simkit.loaders.sdf.actor import read_actor
+from simkit.loaders.sdf.entity_names import named_elements, read_name
 from simkit.loaders.sdf.frames import WORLD, Frame, Scope, world_pose
-from simkit.loaders.sdf.joint import end_name, read_joint
+from simkit.loaders.sdf.joint import joint_link_name, read_joint
 from simkit.loaders.sdf.light import read_light
-from simkit.loaders.sdf.model import build_model, declare_model, enter, merge, model_sources, place, read_frames
-from simkit.loaders.sdf.names import named, read_name
-from simkit.loaders.sdf.parts import Draft, Part, Source, pose_place, read_pose
-from simkit.loaders.sdf.physics import read_physics
+from simkit.loaders.sdf.model import (
+    build_model,
+    declare_model,
+    merge_model,
+    model_sources,
+    place_model,
+    read_frames,
+    register_frame,
+)
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.population import population_sources
-from simkit.loaders.sdf.state import deleted, inserted, place_models, report_unapplied, saved_lights, saved_states
-from simkit.loaders.sdf.surroundings import (
+from simkit.loaders.sdf.saved_state import (
+    apply_saved_poses,
+    deleted_names,
+    inserted_blocks,
+    report_unapplied,
+    saved_light_poses,
+    saved_states,
+)
+from simkit.loaders.sdf.workspace import (
+    EntitySource,
+    ModelDraft,
+    NamedElement,
+    SdfFile,
+    Workspace,
+    pose_location,
+    read_pose,
+)
+from simkit.loaders.sdf.world_settings import (
     read_atmosphere,
+    read_physics,
     read_quality,
     read_spherical_coordinates,
     read_surroundings,
 )
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneActor, SceneFrame, SceneLight, SceneWorld
@@ -35,15 +57,15 @@ def world_scope(workspace: Workspace) -> Scope:
 
 
 @dataclass
-class _Content:
+class _WorldContent:
     """What stands in a world, before any pose is resolved."""
 
     scope: Scope
-    drafts: list[Draft] = field(default_factory=list)
-    lights: list[Source] = field(default_factory=list)
-    actors: list[Source] = field(default_factory=list)
-    frames: list[Part] = field(default_factory=list)
-    joints: list[Part] = field(default_factory=list)
+    drafts: list[ModelDraft] = field(default_factory=list)
+    lights: list[EntitySource] = field(default_factory=list)
+    actors: list[EntitySource] = field(default_factory=list)
+    frames: list[NamedElement] = field(default_factory=list)
+    joints: list[NamedElement] = field(default_factory=list)
     proxies: list[Frame] = field(default_factory=list)
     plugins: list[Params] = field(default_factory=list)
 
@@ -53,18 +75,18 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
     diagnostics = workspace.diagnostics
     name = read_name(element, diagnostics, file.version) or "default"
     states = saved_states(element, name, diagnostics)
-    content = _Content(world_scope(workspace))
+    content = _WorldContent(world_scope(workspace))
     content.plugins.extend(element.all("plugin"))
-    for source in _sources(element, name, states, file, workspace):
-        _take(source, content, workspace)
-    content.frames += _parts(element, "frame", file, content.scope, workspace)
-    content.joints += _parts(element, "joint", file, content.scope, workspace)
-    place_models(states, content.drafts, diagnostics)
+    for source in _entity_sources(element, name, states, file, workspace):
+        _add_entity(source, content, workspace)
+    content.frames += _declare_elements(element, "frame", file, content.scope, workspace)
+    content.joints += _declare_elements(element, "joint", file, content.scope, workspace)
+    apply_saved_poses(states, content.drafts, diagnostics)
     for draft in content.drafts:
-        place(draft)
+        place_model(draft)
         report_unapplied(draft, diagnostics)
     physics, gravity = read_physics(element, diagnostics)
-    stood = saved_lights(states)
+    stood = saved_light_poses(states)
     return SceneWorld(
         name=name,
         gravity=gravity,
@@ -72,7 +94,7 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
         physics=physics,
         models=tuple(build_model(draft, False, workspace) for draft in content.drafts),
         lights=tuple(_light(source, content.scope, stood.get(source.name), workspace) for source in content.lights),
-        frames=(*read_frames(content.frames), *(_proxy(p, content.scope) for p in content.proxies)),
+        frames=(*read_frames(content.frames), *(_proxy_frame(p, content.scope) for p in content.proxies)),
         joints=tuple(j for part in content.joints if (j := read_joint(part, "", workspace)) is not None),
         plugins=read_plugins(content.plugins, ""),
         surroundings=read_surroundings(element),
@@ -86,28 +108,30 @@ def read_world(element: Params, file: SdfFile, workspace: Workspace) -> SceneWor
     )
 
 
-def _sources(element: Params, world: str, states: list[Params], file: SdfFile, workspace: Workspace) -> list[Source]:
+def _entity_sources(
+    element: Params, world: str, states: list[Params], file: SdfFile, workspace: Workspace
+) -> list[EntitySource]:
     """Models, lights and actors: those written, included and populated, and what a saved state adds and removes."""
     diagnostics = workspace.diagnostics
-    found: list[Source] = []
+    found: list[EntitySource] = []
     for kind in ("light", "actor"):
-        for name, e in named(element.all(kind), "the world", diagnostics, file.version):
-            found.append(_source(e, name, file))
+        for name, e in named_elements(element.all(kind), "the world", diagnostics, file.version):
+            found.append(_entity_source(e, name, file))
     found += model_sources(element, file, workspace)
     for population in element.all("population"):
         found += population_sources(population, world, file, workspace)
-    for block in inserted(states):
+    for block in inserted_blocks(states):
         found += model_sources(block, file, workspace)
-        for name, e in named(block.all("light"), "the saved state", diagnostics, file.version):
-            found.append(_source(e, name, file))
-    gone = deleted(states)
+        for name, e in named_elements(block.all("light"), "the saved state", diagnostics, file.version):
+            found.append(_entity_source(e, name, file))
+    gone = deleted_names(states)
     for source in found:
         if source.name in gone:
             source.element.mark_all_read()
     return [source for source in found if source.name not in gone]
 
 
-def _take(source: Source, content: _Content, workspace: Workspace) -> None:
+def _add_entity(source: EntitySource, content: _WorldContent, workspace: Workspace) -> None:
     """Enters one entity in the world's names."""
     kind = source.element.name
     if kind != "model":
@@ -118,17 +142,17 @@ def _take(source: Source, content: _Content, workspace: Workspace) -> None:
         else:
             others.append(source)
     elif source.merge:
-        _merge(source, content, workspace)
+        _merge_into_world(source, content, workspace)
     else:
         draft = declare_model(source, content.scope, "", workspace)
         if draft is not None:
             before = content.scope.names.get(source.name)
-            enter(draft.frame, content.scope, source.file.version, workspace.diagnostics)
+            register_frame(draft.frame, content.scope, source.file.version, workspace.diagnostics)
             if before is None:
                 content.drafts.append(draft)
 
 
-def _merge(source: Source, content: _Content, workspace: Workspace) -> None:
+def _merge_into_world(source: EntitySource, content: _WorldContent, workspace: Workspace) -> None:
     """Puts what an included model holds into the world, which has neither links nor grippers of its own."""
     for kind in ("link", "gripper"):
         for part in source.element.all(kind):
@@ -137,8 +161,8 @@ def _merge(source: Source, content: _Content, workspace: Workspace) -> None:
             workspace.diagnostics.error("SK-SDF-016", text, source.where, "include it without merge")
     if any(source.element.has(kind) for kind in ("link", "gripper")):
         return
-    draft = Draft(source, "", content.scope.root, content.scope)
-    merge(draft, source, content.scope, workspace, WORLD)
+    draft = ModelDraft(source, "", content.scope.root, content.scope)
+    merge_model(draft, source, content.scope, workspace, WORLD)
     content.drafts += draft.models
     content.frames += draft.frames
     content.joints += draft.joints
@@ -146,37 +170,39 @@ def _merge(source: Source, content: _Content, workspace: Workspace) -> None:
     content.plugins += draft.plugins
 
 
-def _parts(element: Params, kind: str, file: SdfFile, scope: Scope, workspace: Workspace) -> list[Part]:
+def _declare_elements(
+    element: Params, kind: str, file: SdfFile, scope: Scope, workspace: Workspace
+) -> list[NamedElement]:
     parts = []
-    for name, found in named(element.all(kind), "the world", workspace.diagnostics, file.version):
+    for name, found in named_elements(element.all(kind), "the world", workspace.diagnostics, file.version):
         pose, base = read_pose(found)
-        attached = end_name(found, "child") if kind == "joint" else found.attribute("attached_to")
+        attached = joint_link_name(found, "child") if kind == "joint" else found.attribute("attached_to")
         frame = Frame(name, kind, name, scope, pose, base, attached, where=found.where)
-        frame.pose_where = pose_place(found)
-        enter(frame, scope, file.version, workspace.diagnostics)
-        parts.append(Part(name, found, frame, scope, file))
+        frame.pose_where = pose_location(found)
+        register_frame(frame, scope, file.version, workspace.diagnostics)
+        parts.append(NamedElement(name, found, frame, scope, file))
     return parts
 
 
-def _proxy(frame: Frame, scope: Scope) -> SceneFrame:
+def _proxy_frame(frame: Frame, scope: Scope) -> SceneFrame:
     body = scope.body(frame.name, frame.where, f"frame {frame.name!r}") if frame.attached_to else None
     return SceneFrame(frame.name, frame.scoped, world_pose(frame), "" if body is None else body.scoped)
 
 
-def _source(element: Params, name: str, file: SdfFile) -> Source:
+def _entity_source(element: Params, name: str, file: SdfFile) -> EntitySource:
     pose, base = read_pose(element)
-    return Source(name, element, file, pose, base, where=element.where)
+    return EntitySource(name, element, file, pose, base, where=element.where)
 
 
-def _pose_of(source: Source, kind: str, scope: Scope) -> Pose:
+def _pose_of(source: EntitySource, kind: str, scope: Scope) -> Pose:
     frame = Frame(source.name, kind, source.name, scope, source.pose, source.relative_to, where=source.where)
     return world_pose(frame)
 
 
-def _light(source: Source, scope: Scope, saved: Pose | None, workspace: Workspace) -> SceneLight:
+def _light(source: EntitySource, scope: Scope, saved: Pose | None, workspace: Workspace) -> SceneLight:
     pose = saved if saved is not None else _pose_of(source, "light", scope)
     return read_light(source.element, source.name, source.name, pose, "", workspace.diagnostics)
 
 
-def _actor(source: Source, scope: Scope) -> SceneActor:
+def _actor(source: EntitySource, scope: Scope) -> SceneActor:
     return read_actor(source.element, source.name, _pose_of(source, "actor", scope))

@@ -6,28 +6,28 @@ from collections.abc import Callable
 from pathlib import Path
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.urdf.draft import Draft
-from simkit.loaders.urdf.reading import (
+from simkit.loaders.urdf.attributes import (
     FARTHEST,
-    as_can_be,
-    bad,
-    leading,
-    missing,
-    number,
-    numbers,
+    leading_numbers,
+    number_attribute,
+    numbers_attribute,
     parse_number,
-    text,
-    vector3,
+    report_bad_value,
+    report_missing,
+    report_substitute,
+    text_attribute,
+    vector3_attribute,
 )
+from simkit.loaders.urdf.robot_draft import RobotDraft
 from simkit.params import Params
 from simkit.scene import Box, Capsule, Cylinder, Geometry, Mesh, Plane, Sphere
 from simkit.scene.geometry import Vec3
 
 THINNEST = 1e-4
-_Reader = Callable[[Params, Draft, str], Geometry | None]
+_Reader = Callable[[Params, RobotDraft, str], Geometry | None]
 
 
-def read_geometry(owner: Params, draft: Draft, what: str) -> Geometry | None:
+def read_geometry(owner: Params, draft: RobotDraft, what: str) -> Geometry | None:
     """The shape of a collision or visual; None, with an error recorded, where there is no usable one."""
     block = owner.child("geometry")
     if block is None:
@@ -52,13 +52,13 @@ def read_geometry(owner: Params, draft: Draft, what: str) -> Geometry | None:
     if hint:
         draft.diagnostics.error("SK-URDF-009", message, shapes[0].where, hint)
     else:
-        as_can_be(shapes[0], message, "it is left out")
+        report_substitute(shapes[0], message, "it is left out")
     block.mark_all_read()
     return None
 
 
 def _positive(element: Params, attribute: str, what: str) -> float:
-    return _sizes(element, attribute, what, (number(element, attribute, owner=what),))[0]
+    return _sizes(element, attribute, what, (number_attribute(element, attribute, owner=what),))[0]
 
 
 def _sizes(element: Params, attribute: str, what: str, sizes: tuple[float, ...]) -> tuple[float, ...]:
@@ -77,36 +77,36 @@ def _sizes(element: Params, attribute: str, what: str, sizes: tuple[float, ...])
     return tuple(v or THINNEST for v in sizes)
 
 
-def _box(element: Params, _draft: Draft, what: str) -> Geometry:
-    size = numbers(element, "size", 3)
+def _box(element: Params, _draft: RobotDraft, what: str) -> Geometry:
+    size = numbers_attribute(element, "size", 3)
     if size is None:
         if "size" not in element.attributes:
-            missing(element, "size", "3 numbers", what)
+            report_missing(element, "size", "3 numbers", what)
         return Box((1.0, 1.0, 1.0))
     x, y, z = _sizes(element, "size", what, size)
     return Box((x, y, z))
 
 
-def _cylinder(element: Params, _draft: Draft, what: str) -> Geometry:
+def _cylinder(element: Params, _draft: RobotDraft, what: str) -> Geometry:
     return Cylinder(_positive(element, "radius", what), _positive(element, "length", what))
 
 
-def _capsule(element: Params, _draft: Draft, what: str) -> Geometry:
+def _capsule(element: Params, _draft: RobotDraft, what: str) -> Geometry:
     return Capsule(_positive(element, "radius", what), _positive(element, "length", what))
 
 
-def _sphere(element: Params, _draft: Draft, what: str) -> Geometry:
+def _sphere(element: Params, _draft: RobotDraft, what: str) -> Geometry:
     return Sphere(_positive(element, "radius", what))
 
 
-def _mesh(element: Params, draft: Draft, what: str) -> Geometry | None:
-    uri = text(element, "filename")
+def _mesh(element: Params, draft: RobotDraft, what: str) -> Geometry | None:
+    uri = text_attribute(element, "filename")
     scale = _scale(element)
     if any(v == 0 for v in scale):
-        bad(element, "scale", "3 numbers that are not 0")
+        report_bad_value(element, "scale", "3 numbers that are not 0")
         scale = (1.0, 1.0, 1.0)
     if not uri:
-        missing(element, "filename", "the URI of a mesh", what)
+        report_missing(element, "filename", "the URI of a mesh", what)
         return None
     path = draft.assets.mesh(uri, element)
     if path is None:
@@ -116,18 +116,18 @@ def _mesh(element: Params, draft: Draft, what: str) -> Geometry | None:
 
 def _scale(element: Params) -> Vec3:
     """Three factors; one alone stands for all three."""
-    written = text(element, "scale").split()
+    written = text_attribute(element, "scale").split()
     if len(written) == 1 and parse_number(written[0]) is not None:
-        as_can_be(element, f'<mesh scale="{written[0]}"> has one number', "it is used for x, y and z")
+        report_substitute(element, f'<mesh scale="{written[0]}"> has one number', "it is used for x, y and z")
         element.attributes["scale"] = " ".join(written * 3)
-    found = leading(element, "scale", 3)
+    found = leading_numbers(element, "scale", 3)
     return (1.0, 1.0, 1.0) if found is None else (found[0], found[1], found[2])
 
 
-def _plane(element: Params, _draft: Draft, what: str) -> Geometry:
+def _plane(element: Params, _draft: RobotDraft, what: str) -> Geometry:
     """PyBullet's: an endless plane through the origin of its frame."""
-    as_can_be(element, f"{what}: <plane> is PyBullet's word", "it is an endless plane, as there")
-    return Plane(vector3(element, "normal", (0.0, 0.0, 1.0)))
+    report_substitute(element, f"{what}: <plane> is PyBullet's word", "it is an endless plane, as there")
+    return Plane(vector3_attribute(element, "normal", (0.0, 0.0, 1.0)))
 
 
 _READERS: dict[str, _Reader] = {

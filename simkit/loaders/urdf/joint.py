@@ -5,28 +5,34 @@ from __future__ import annotations
 import math
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.sdf.names import named
-from simkit.loaders.sdf.parts import local_pose
+from simkit.loaders.sdf.entity_names import named_elements
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
-from simkit.loaders.urdf import extensions
-from simkit.loaders.urdf.draft import Draft, JointDraft
-from simkit.loaders.urdf.reading import missing, number, parse_number, text, vector3
+from simkit.loaders.sdf.workspace import local_pose
+from simkit.loaders.urdf import gazebo_extensions
+from simkit.loaders.urdf.attributes import (
+    number_attribute,
+    parse_number,
+    report_missing,
+    text_attribute,
+    vector3_attribute,
+)
+from simkit.loaders.urdf.robot_draft import JointDraft, RobotDraft
 from simkit.params import Params
 from simkit.pose import Pose, Vector
 from simkit.scene import Axis, Calibration, Mimic, Safety, SceneJoint, SceneSensor
 from simkit.scene.geometry import Vec3
 
 _NO_LIMIT = 1e15
-_ALWAYS_SO = ("preserveFixedJoint", "disableFixedJointLumping")  # every link stays a link here
+_FIXED_DEFAULTS = ("preserveFixedJoint", "disableFixedJointLumping")  # every link stays a link here
 
 
-def read_joint(draft: Draft, joint: JointDraft) -> SceneJoint:
+def read_joint(draft: RobotDraft, joint: JointDraft) -> SceneJoint:
     """A joint whose ends have their places."""
     element, name = joint.element, joint.name
     extension = draft.extensions.of(name)
     pose = draft.links_world[joint.child]
-    for said in _ALWAYS_SO:
+    for said in _FIXED_DEFAULTS:
         extension.all(said)
     own = draft.own(name)
     return SceneJoint(
@@ -48,7 +54,7 @@ def read_joint(draft: Draft, joint: JointDraft) -> SceneJoint:
 # ---------------------------------------------------------------------- axes
 
 
-def _axes(draft: Draft, joint: JointDraft, pose: Pose, extension: Params) -> tuple[Axis, ...]:
+def _axes(draft: RobotDraft, joint: JointDraft, pose: Pose, extension: Params) -> tuple[Axis, ...]:
     """One axis; for a planar joint x and y of its plane and the normal; none for fixed and floating."""
     element = joint.element
     mimic = _mimic(draft, joint)
@@ -63,10 +69,10 @@ def _axes(draft: Draft, joint: JointDraft, pose: Pose, extension: Params) -> tup
     direction = _direction(draft, joint)
     limit = _limits(draft, joint)
     dynamics = element.block("dynamics")
-    damping = number(dynamics, "damping", 0.0)
-    friction = number(dynamics, "friction", 0.0)
-    stiffness = extensions.number(extension, "springStiffness") or 0.0
-    spring_ref = extensions.number(extension, "springReference") or 0.0
+    damping = number_attribute(dynamics, "damping", 0.0)
+    friction = number_attribute(dynamics, "friction", 0.0)
+    stiffness = gazebo_extensions.read_number(extension, "springStiffness") or 0.0
+    spring_ref = gazebo_extensions.read_number(extension, "springReference") or 0.0
     directions = (*_plane_axes(direction), direction) if joint.type == "planar" else (direction,)
     return tuple(
         Axis(
@@ -86,14 +92,14 @@ def _axes(draft: Draft, joint: JointDraft, pose: Pose, extension: Params) -> tup
     )
 
 
-def _direction(draft: Draft, joint: JointDraft) -> Vec3:
+def _direction(draft: RobotDraft, joint: JointDraft) -> Vec3:
     """The unit axis in the joint frame; x where none is given, as URDF has it."""
     element = joint.element.child("axis")
     if element is None:
         return (1.0, 0.0, 0.0)
     if "xyz" not in element.attributes:
-        missing(element, "xyz", "3 numbers", f"joint {joint.name!r}")
-    x, y, z = vector3(element, "xyz", (1.0, 0.0, 0.0))
+        report_missing(element, "xyz", "3 numbers", f"joint {joint.name!r}")
+    x, y, z = vector3_attribute(element, "xyz", (1.0, 0.0, 0.0))
     length = math.sqrt(x * x + y * y + z * z)
     if not 1e-12 < length < math.inf:
         message = f"joint {joint.name!r} has an axis of length {length:g}"
@@ -122,7 +128,7 @@ def _vec3(values: Vector) -> Vec3:
 # ---------------------------------------------------------------------- limits
 
 
-def _limits(draft: Draft, joint: JointDraft) -> tuple[float, float, float, float]:
+def _limits(draft: RobotDraft, joint: JointDraft) -> tuple[float, float, float, float]:
     """Lower, upper, effort, velocity; infinite where there is none."""
     element, name = joint.element, joint.name
     limit = element.child("limit")
@@ -133,8 +139,8 @@ def _limits(draft: Draft, joint: JointDraft) -> tuple[float, float, float, float
             message = f"{joint.type} joint {name!r} has no <limit>, which URDF requires; it is read as unlimited"
             draft.diagnostics.warning("SK-URDF-020", message, element.where, hint)
         return (-math.inf, math.inf, math.inf, math.inf)
-    effort, velocity = _most(draft, joint, limit, "effort"), _most(draft, joint, limit, "velocity")
-    lower, upper = _bound(limit, "lower"), _bound(limit, "upper")
+    effort, velocity = _unsigned_limit(draft, joint, limit, "effort"), _unsigned_limit(draft, joint, limit, "velocity")
+    lower, upper = _position_limit(limit, "lower"), _position_limit(limit, "upper")
     if not bounded:
         return (-math.inf, math.inf, effort, velocity)
     if "lower" not in limit.attributes and "upper" not in limit.attributes:
@@ -147,12 +153,12 @@ def _limits(draft: Draft, joint: JointDraft) -> tuple[float, float, float, float
     return (lower, upper, effort, velocity)
 
 
-def _bound(limit: Params, attribute: str) -> float:
-    value = number(limit, attribute, 0.0, finite=False)
+def _position_limit(limit: Params, attribute: str) -> float:
+    value = number_attribute(limit, attribute, 0.0, finite=False)
     return math.copysign(math.inf, value) if abs(value) >= _NO_LIMIT else value
 
 
-def _most(draft: Draft, joint: JointDraft, limit: Params, attribute: str) -> float:
+def _unsigned_limit(draft: RobotDraft, joint: JointDraft, limit: Params, attribute: str) -> float:
     """An effort or velocity limit; negative or none means unlimited, and so does a velocity of 0."""
     if attribute not in limit.attributes:
         limit.attribute(attribute)
@@ -160,7 +166,7 @@ def _most(draft: Draft, joint: JointDraft, limit: Params, attribute: str) -> flo
             message = f"joint {joint.name!r}: <limit> has no {attribute}, which URDF requires; it is read as unlimited"
             draft.diagnostics.warning("SK-URDF-020", message, limit.where)
         return math.inf
-    value = number(limit, attribute, -1.0, finite=False)
+    value = number_attribute(limit, attribute, -1.0, finite=False)
     if value == 0 and attribute == "velocity":
         message = f"joint {joint.name!r} has a velocity limit of 0, under which it could never move; read as unlimited"
         draft.diagnostics.warning("SK-URDF-019", message, limit.where)
@@ -171,16 +177,16 @@ def _most(draft: Draft, joint: JointDraft, limit: Params, attribute: str) -> flo
 # ---------------------------------------------------------------------- mimic, safety, calibration
 
 
-def _mimic(draft: Draft, joint: JointDraft) -> Mimic | None:
+def _mimic(draft: RobotDraft, joint: JointDraft) -> Mimic | None:
     """position = multiplier · leader + offset."""
     element = joint.element.child("mimic")
     if element is None:
         return None
-    leader = text(element, "joint")
-    multiplier, offset = number(element, "multiplier", 1.0), number(element, "offset", 0.0)
+    leader = text_attribute(element, "joint")
+    multiplier, offset = number_attribute(element, "multiplier", 1.0), number_attribute(element, "offset", 0.0)
     message, said = "", draft.diagnostics.error
     if not leader:
-        missing(element, "joint", "the name of a joint", f"joint {joint.name!r}")
+        report_missing(element, "joint", "the name of a joint", f"joint {joint.name!r}")
         return None
     if leader not in draft.joints:
         message = f"joint {joint.name!r} mimics {leader!r}, which does not exist; it moves freely"
@@ -192,7 +198,7 @@ def _mimic(draft: Draft, joint: JointDraft) -> Mimic | None:
             "SK-URDF-015", f"{joint.type} joint {joint.name!r}: <mimic> has no effect", element.where
         )
         return None
-    elif leader == joint.name or _in_ring(draft, joint.name):
+    elif leader == joint.name or _is_in_mimic_ring(draft, joint.name):
         message = f"joint {joint.name!r} mimics itself"
     if message:
         moving = [n for n, j in draft.joints.items() if j.type not in ("fixed", "floating", "planar")]
@@ -201,14 +207,14 @@ def _mimic(draft: Draft, joint: JointDraft) -> Mimic | None:
     return Mimic(draft.own(leader), 0, multiplier, offset)
 
 
-def _in_ring(draft: Draft, start: str) -> bool:
+def _is_in_mimic_ring(draft: RobotDraft, start: str) -> bool:
     name, steps = start, 0
     while steps <= len(draft.joints):
         joint = draft.joints.get(name)
         element = None if joint is None else joint.element.child("mimic")
         if element is None:
             return False
-        name, steps = text(element, "joint"), steps + 1
+        name, steps = text_attribute(element, "joint"), steps + 1
         if name == start:
             return True
     return False
@@ -219,10 +225,10 @@ def _safety(element: Params) -> Safety | None:
     if block is None:
         return None
     return Safety(
-        number(block, "soft_lower_limit", 0.0, finite=False),
-        number(block, "soft_upper_limit", 0.0, finite=False),
-        number(block, "k_position", 0.0),
-        number(block, "k_velocity", owner="safety_controller"),
+        number_attribute(block, "soft_lower_limit", 0.0, finite=False),
+        number_attribute(block, "soft_upper_limit", 0.0, finite=False),
+        number_attribute(block, "k_position", 0.0),
+        number_attribute(block, "k_velocity", owner="safety_controller"),
     )
 
 
@@ -230,17 +236,17 @@ def _calibration(element: Params) -> Calibration | None:
     block = element.child("calibration")
     if block is None:
         return None
-    rising = number(block, "rising", 0.0) if text(block, "rising") else None
-    falling = number(block, "falling", 0.0) if text(block, "falling") else None
-    if text(block, "reference_position") and rising is None:  # the spelling of URDF before 1.0
-        rising = parse_number(text(block, "reference_position"))
+    rising = number_attribute(block, "rising", 0.0) if text_attribute(block, "rising") else None
+    falling = number_attribute(block, "falling", 0.0) if text_attribute(block, "falling") else None
+    if text_attribute(block, "reference_position") and rising is None:  # the spelling of URDF before 1.0
+        rising = parse_number(text_attribute(block, "reference_position"))
     return Calibration(rising, falling)
 
 
 # ---------------------------------------------------------------------- sensors
 
 
-def _sensors(draft: Draft, joint: JointDraft, extension: Params) -> tuple[SceneSensor, ...]:
+def _sensors(draft: RobotDraft, joint: JointDraft, extension: Params) -> tuple[SceneSensor, ...]:
     """Sensors of a joint; its frame is that of its child link."""
     pose, frame = draft.links_world[joint.child], draft.frame(joint.child)
     own = draft.own(joint.name)
@@ -254,7 +260,7 @@ def _sensors(draft: Draft, joint: JointDraft, extension: Params) -> tuple[SceneS
             pose,
             draft.diagnostics,
         )
-        for name, element in named(
+        for name, element in named_elements(
             extension.all("sensor"), f"joint {joint.name!r}", draft.diagnostics, draft.file.version
         )
     )

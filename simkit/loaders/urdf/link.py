@@ -7,19 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from simkit.loaders.sdf.entity_names import named_elements
 from simkit.loaders.sdf.light import read_light
-from simkit.loaders.sdf.names import named
-from simkit.loaders.sdf.old import modern
-from simkit.loaders.sdf.parts import local_pose
+from simkit.loaders.sdf.older_versions import modernise
 from simkit.loaders.sdf.plugin import read_plugins
 from simkit.loaders.sdf.sensor import read_sensor
 from simkit.loaders.sdf.surface import read_surface
-from simkit.loaders.urdf.draft import Draft
-from simkit.loaders.urdf.extensions import flag, number, vector
+from simkit.loaders.sdf.workspace import local_pose
+from simkit.loaders.urdf.attributes import number_attribute as attribute_number
+from simkit.loaders.urdf.attributes import read_origin, report_bad_value, report_substitute, text_attribute
+from simkit.loaders.urdf.gazebo_extensions import read_flag, read_number, read_vector
 from simkit.loaders.urdf.geometry import read_geometry
 from simkit.loaders.urdf.material import Materials, extended_material
-from simkit.loaders.urdf.reading import as_can_be, bad, origin, text
-from simkit.loaders.urdf.reading import number as attribute_number
+from simkit.loaders.urdf.robot_draft import RobotDraft
 from simkit.params import Params
 from simkit.scene import Inertial, SceneCollision, SceneLight, SceneLink, SceneSensor, SceneVisual, Surface
 
@@ -29,21 +29,21 @@ _SENSORS_VERSION = (1, 4)  # of SDF, as which Gazebo read URDF when robots wrote
 NO_MASS = Inertial(0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), given=False)
 
 
-def read_link(draft: Draft, name: str, materials: Materials, windy: bool) -> SceneLink:
+def read_link(draft: RobotDraft, name: str, materials: Materials, windy: bool) -> SceneLink:
     """A link whose place is known; `windy`: whether the wind pushes the links that do not say it themselves."""
     element, extension = draft.links[name], draft.extensions.of(name)
-    decay = number(extension, "dampingFactor", minimum=0.0)
+    decay = read_number(extension, "dampingFactor", minimum=0.0)
     block = extension.block("velocity_decay")
-    wind = flag(extension, "enable_wind")
-    off, gravity = flag(extension, "turnGravityOff"), flag(extension, "gravity")
+    wind = read_flag(extension, "enable_wind")
+    off, gravity = read_flag(extension, "turnGravityOff"), read_flag(extension, "gravity")
     return SceneLink(
         name=name,
         scoped=draft.own(name),
         pose_world=draft.links_world[name],
         inertial=_inertial(draft, name, element),
         gravity=(gravity if gravity is not None else True) if off is None else not off,
-        kinematic=bool(flag(extension, "kinematic")),
-        self_collide=bool(flag(extension, "selfCollide", "self_collide")),
+        kinematic=bool(read_flag(extension, "kinematic")),
+        self_collide=bool(read_flag(extension, "selfCollide", "self_collide")),
         collisions=_collisions(draft, name, element, extension),
         visuals=_visuals(draft, name, element, extension, materials),
         sensors=_sensors(draft, name, extension),
@@ -58,26 +58,26 @@ def read_link(draft: Draft, name: str, materials: Materials, windy: bool) -> Sce
     )
 
 
-def _inertial(draft: Draft, name: str, link: Params) -> Inertial:
+def _inertial(draft: RobotDraft, name: str, link: Params) -> Inertial:
     """Mass properties in link axes; a link without them is a frame without mass."""
     block = link.child("inertial")
     if block is None:
         return NO_MASS
-    pose = origin(block)
+    pose = read_origin(block)
     mass, inertia = block.child("mass"), block.child("inertia")
     if mass is None:
-        as_can_be(block, f"link {name!r}: <inertial> has no <mass value=...>", "the link has no mass")
+        report_substitute(block, f"link {name!r}: <inertial> has no <mass value=...>", "the link has no mass")
         block.mark_all_read()
         return NO_MASS
     if inertia is None:
         said = f"link {name!r}: <inertial> has no <inertia ixx= iyy= izz= ixy= ixz= iyz=...>"
-        as_can_be(block, said, "its mass is at one point", "give it the moments of its shape")
+        report_substitute(block, said, "its mass is at one point", "give it the moments of its shape")
     kilograms = attribute_number(mass, "value", owner=f"link {name!r}")
     if kilograms < 0:
         message = f"link {name!r} has mass {kilograms:g} kg, it cannot be negative"
         draft.diagnostics.error("SK-URDF-016", message, mass.where)
     if kilograms > HEAVIEST:
-        bad(mass, "value", f"at most {HEAVIEST:g} kg")
+        report_bad_value(mass, "value", f"at most {HEAVIEST:g} kg")
         kilograms = 1.0
     values = tuple(_moment(inertia, key, name) for key in _MOMENTS) if inertia is not None else (0.0,) * 6
     x, y, z = (float(v) for v in pose.position)
@@ -95,7 +95,7 @@ def _moment(inertia: Params, key: str, link: str) -> float:
     default = 0.0 if key[1] != key[2] else None
     value = attribute_number(inertia, key, default, owner=f"link {link!r}")
     if abs(value) > HEAVIEST:
-        bad(inertia, key, f"at most {HEAVIEST:g} kg m2")
+        report_bad_value(inertia, key, f"at most {HEAVIEST:g} kg m2")
         return 0.0
     return value
 
@@ -105,7 +105,7 @@ def _moment(inertia: Params, key: str, link: str) -> float:
 
 def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
     """Names of a link's collisions or visuals: as written, else `<link>_<kind>`, `<link>_<kind>_1`, ... as Gazebo's."""
-    written = [text(element, "name") for element in elements]
+    written = [text_attribute(element, "name") for element in elements]
     taken = {name for name in written if name}
     names: list[str] = []
     used: set[str] = set()
@@ -120,13 +120,13 @@ def unique_names(elements: list[Params], link: str, kind: str) -> list[str]:
     return names
 
 
-def _collisions(draft: Draft, link: str, element: Params, extension: Params) -> tuple[SceneCollision, ...]:
+def _collisions(draft: RobotDraft, link: str, element: Params, extension: Params) -> tuple[SceneCollision, ...]:
     elements = element.all("collision")
-    surface, retro = _surface(extension), number(extension, "laserRetro")
+    surface, retro = _surface(extension), read_number(extension, "laserRetro")
     found = []
     for name, collision in zip(unique_names(elements, link, "collision"), elements, strict=True):
         shape = read_geometry(collision, draft, f"collision {name!r} of link {link!r}")
-        pose = origin(collision)
+        pose = read_origin(collision)
         collision.attribute("group")
         if shape is not None:
             found.append(
@@ -150,30 +150,30 @@ def _surface(extension: Params) -> Surface:
         surface = read_surface(blob)
         blob.child("max_contacts")
     given = {
-        "mu": number(extension, "mu1", minimum=0.0),
-        "mu2": number(extension, "mu2", minimum=0.0),
-        "fdir1": vector(extension, "fdir1"),
-        "kp": number(extension, "kp"),
-        "kd": number(extension, "kd"),
-        "min_depth": number(extension, "minDepth"),
-        "max_vel": number(extension, "maxVel"),
-        "soft_cfm": number(extension, "softCfm"),
-        "soft_erp": number(extension, "softErp"),
+        "mu": read_number(extension, "mu1", minimum=0.0),
+        "mu2": read_number(extension, "mu2", minimum=0.0),
+        "fdir1": read_vector(extension, "fdir1"),
+        "kp": read_number(extension, "kp"),
+        "kd": read_number(extension, "kd"),
+        "min_depth": read_number(extension, "minDepth"),
+        "max_vel": read_number(extension, "maxVel"),
+        "soft_cfm": read_number(extension, "softCfm"),
+        "soft_erp": read_number(extension, "softErp"),
     }
     known = {key: value for key, value in given.items() if value is not None}
     return replace(surface, **known, where=extension.where) if known else surface  # type: ignore[arg-type]
 
 
 def _visuals(
-    draft: Draft, link: str, element: Params, extension: Params, materials: Materials
+    draft: RobotDraft, link: str, element: Params, extension: Params, materials: Materials
 ) -> tuple[SceneVisual, ...]:
     elements = element.all("visual")
     blobs = extension.all("visual")
-    retro = number(extension, "laserRetro")
+    retro = read_number(extension, "laserRetro")
     found = []
     for name, visual in zip(unique_names(elements, link, "visual"), elements, strict=True):
         shape = read_geometry(visual, draft, f"visual {name!r} of link {link!r}")
-        pose = origin(visual)
+        pose = read_origin(visual)
         material = materials.of(visual)
         if shape is None:
             continue
@@ -202,9 +202,9 @@ def _visuals(
 # ---------------------------------------------------------------------- what hangs on the link
 
 
-def _sensors(draft: Draft, link: str, extension: Params) -> tuple[SceneSensor, ...]:
+def _sensors(draft: RobotDraft, link: str, extension: Params) -> tuple[SceneSensor, ...]:
     pose, frame = draft.links_world[link], draft.frame(link)
-    elements = [modern(e, _SENSORS_VERSION) for e in _without_twins(extension.all("sensor"), link, draft)]
+    elements = [modernise(e, _SENSORS_VERSION) for e in _without_duplicates(extension.all("sensor"), link, draft)]
     return tuple(
         read_sensor(
             element,
@@ -215,11 +215,11 @@ def _sensors(draft: Draft, link: str, extension: Params) -> tuple[SceneSensor, .
             pose,
             draft.diagnostics,
         )
-        for name, element in named(elements, f"link {link!r}", draft.diagnostics, draft.file.version)
+        for name, element in named_elements(elements, f"link {link!r}", draft.diagnostics, draft.file.version)
     )
 
 
-def _without_twins(sensors: list[Params], link: str, draft: Draft) -> list[Params]:
+def _without_duplicates(sensors: list[Params], link: str, draft: RobotDraft) -> list[Params]:
     """Sensors without those that are named like an earlier one, as robots have them whose xacro is included twice."""
     first: dict[str, Params] = {}
     for element in sensors:
@@ -232,7 +232,7 @@ def _without_twins(sensors: list[Params], link: str, draft: Draft) -> list[Param
     return [e for e in sensors if not e.attribute("name").strip() or first[e.attribute("name").strip()] is e]
 
 
-def _lights(draft: Draft, link: str, extension: Params) -> tuple[SceneLight, ...]:
+def _lights(draft: RobotDraft, link: str, extension: Params) -> tuple[SceneLight, ...]:
     pose, frame = draft.links_world[link], draft.frame(link)
     return tuple(
         read_light(
@@ -243,7 +243,9 @@ def _lights(draft: Draft, link: str, extension: Params) -> tuple[SceneLight, ...
             draft.own(link),
             draft.diagnostics,
         )
-        for name, element in named(extension.all("light"), f"link {link!r}", draft.diagnostics, draft.file.version)
+        for name, element in named_elements(
+            extension.all("light"), f"link {link!r}", draft.diagnostics, draft.file.version
+        )
     )
 
 

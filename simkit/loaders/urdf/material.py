@@ -6,9 +6,15 @@ from dataclasses import dataclass, field
 
 from simkit.diagnostics import did_you_mean
 from simkit.loaders.sdf.material import GAZEBO_COLOURS, read_material
-from simkit.loaders.urdf.draft import Draft
-from simkit.loaders.urdf.extensions import last
-from simkit.loaders.urdf.reading import as_can_be, leading, missing, text, value_of
+from simkit.loaders.urdf.attributes import (
+    extension_text,
+    leading_numbers,
+    report_missing,
+    report_substitute,
+    text_attribute,
+)
+from simkit.loaders.urdf.gazebo_extensions import last_child
+from simkit.loaders.urdf.robot_draft import RobotDraft
 from simkit.params import Params
 from simkit.scene import Material
 from simkit.scene.model import Colour
@@ -20,16 +26,16 @@ _BLACK: Colour = (0.0, 0.0, 0.0, 1.0)
 class Materials:
     """The named materials of one robot: those of the robot itself, and those that a visual defines in place."""
 
-    draft: Draft
+    draft: RobotDraft
     named: dict[str, Material] = field(default_factory=dict)
     _lines: dict[str, int | None] = field(default_factory=dict)
     _unknown: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         for element in self.draft.element.all("material"):
-            name = text(element, "name")
+            name = text_attribute(element, "name")
             if not name:
-                missing(element, "name", "a text")
+                report_missing(element, "name", "a text")
             elif name in self._lines:
                 message = f"two materials are named {name!r}: the other is at line {self._lines[name]}, which is used"
                 self.draft.diagnostics.warning("SK-URDF-026", message, element.where)
@@ -40,7 +46,7 @@ class Materials:
             for visual in link.all("visual"):
                 inside = visual.child("material")
                 if inside is not None and (inside.has("color") or inside.has("texture")):
-                    name = text(inside, "name")
+                    name = text_attribute(inside, "name")
                     if name not in self.named:
                         self._define(name, inside)
 
@@ -49,7 +55,7 @@ class Materials:
         element = visual.child("material")
         if element is None:
             return None
-        name = text(element, "name")
+        name = text_attribute(element, "name")
         own = self._read(element)
         if own is not None:
             return own
@@ -77,18 +83,18 @@ class Materials:
         colour, texture = element.child("color"), element.child("texture")
         rgba: Colour | None = None
         if colour is not None:
-            found = leading(colour, "rgba", 4, "red green blue alpha")
+            found = leading_numbers(colour, "rgba", 4, "red green blue alpha")
             if found is None and "rgba" not in colour.attributes:
-                missing(colour, "rgba", "red green blue alpha")
+                report_missing(colour, "rgba", "red green blue alpha")
             if found is not None:
                 clamped = [min(1.0, max(0.0, v)) for v in found]
                 if clamped != list(found):
-                    said = f'<color rgba="{text(colour, "rgba")[:60]}"> leaves the range from 0 to 1'
-                    as_can_be(colour, said, "each number is brought back to its nearer end")
+                    said = f'<color rgba="{text_attribute(colour, "rgba")[:60]}"> leaves the range from 0 to 1'
+                    report_substitute(colour, said, "each number is brought back to its nearer end")
                 rgba = (clamped[0], clamped[1], clamped[2], clamped[3])
         path = None
         if texture is not None:
-            uri = text(texture, "filename")
+            uri = text_attribute(texture, "filename")
             if not uri:
                 message = "<texture> names no file (filename=); drawn without it"
                 self.draft.diagnostics.warning("SK-URI-006", message, texture.where)
@@ -103,9 +109,9 @@ def _plain(colour: Colour) -> Material:
     return Material(colour, colour)
 
 
-def extended_material(extension: Params, own: Material | None, draft: Draft) -> Material | None:
+def extended_material(extension: Params, own: Material | None, draft: RobotDraft) -> Material | None:
     """A visual's material after `<gazebo>` had its say: a script name, or SDF's words in `<visual>`."""
-    script = last(extension, "material")
+    script = last_child(extension, "material")
     if script is not None:
         element = _as_sdf(script) if not script.children else Params("visual", children=[script])
         element.diagnostics = script.diagnostics
@@ -118,7 +124,7 @@ def extended_material(extension: Params, own: Material | None, draft: Draft) -> 
 def _as_sdf(element: Params) -> Params:
     """`<material>Gazebo/Red</material>` in SDF's words."""
 
-    inner = Params("name", value_of(element), where=element.where, diagnostics=element.diagnostics)
+    inner = Params("name", extension_text(element), where=element.where, diagnostics=element.diagnostics)
     for name in ("script", "material", "visual"):
         inner = Params(name, children=[inner], where=element.where, diagnostics=element.diagnostics)
     return inner

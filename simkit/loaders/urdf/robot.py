@@ -5,26 +5,68 @@ from __future__ import annotations
 from pathlib import Path
 from typing import ClassVar
 
-from simkit.loaders.base import Loader, LoadRequest
-from simkit.loaders.resolver import Resolver
+from simkit.loaders.resources.loader import Loader, LoadRequest
+from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import Frame, Scope
-from simkit.loaders.sdf.names import scoped
+from simkit.loaders.sdf.joint import joint_link_name
+from simkit.loaders.sdf.joint import read_joint as read_sdf_joint
+from simkit.loaders.sdf.link import read_link as read_sdf_link
+from simkit.loaders.sdf.model import read_frames
 from simkit.loaders.sdf.plugin import read_plugins
-from simkit.loaders.sdf.workspace import SdfFile, Workspace
-from simkit.loaders.urdf.additions import Additions
-from simkit.loaders.urdf.assets import Assets
-from simkit.loaders.urdf.draft import Draft
-from simkit.loaders.urdf.extensions import Extensions, flag
+from simkit.loaders.sdf.workspace import NamedElement, SdfFile, Workspace, read_pose
+from simkit.loaders.urdf.attributes import text_attribute
+from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions, read_flag
 from simkit.loaders.urdf.joint import read_joint
+from simkit.loaders.urdf.kinematic_tree import declare_tree, place_links
 from simkit.loaders.urdf.link import is_massless, read_link
 from simkit.loaders.urdf.material import Materials
-from simkit.loaders.urdf.reading import text
+from simkit.loaders.urdf.robot_draft import RobotDraft, RobotFiles
 from simkit.loaders.urdf.transmission import read_controls, read_transmissions
-from simkit.loaders.urdf.tree import declare, place
-from simkit.loaders.urdf.unread import report_unread
-from simkit.loaders.xml import Document
+from simkit.loaders.urdf.unread_elements import report_unread
+from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
-from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel
+from simkit.scene import Scene, SceneFrame, SceneJoint, SceneLink, SceneModel
+
+
+class GazeboAdditions:
+    """What the blocks without a reference add; its names are entered in the robot's scope at once."""
+
+    def __init__(self, draft: RobotDraft, block: Params, windy: bool) -> None:
+        self._draft, self._block, self._windy = draft, block, windy
+        self._links = self._parts("link")
+        self._joints = self._parts("joint")
+        self._frames = self._parts("frame")
+
+    def links(self) -> tuple[SceneLink, ...]:
+        return tuple(
+            read_sdf_link(p, self._draft.scoped, False, self._windy, self._draft.workspace) for p in self._links
+        )
+
+    def joints(self) -> tuple[SceneJoint, ...]:
+        found = (read_sdf_joint(p, self._draft.scoped, self._draft.workspace) for p in self._joints)
+        return tuple(j for j in found if j is not None)
+
+    def frames(self) -> tuple[SceneFrame, ...]:
+        return read_frames(self._frames)
+
+    def _parts(self, kind: str) -> list[NamedElement]:
+        draft, parts = self._draft, []
+        owner = f"robot {draft.name!r}"
+        for name, element in named_elements(self._block.all(kind), owner, draft.diagnostics, draft.file.version):
+            taken = draft.scope.names.get(name)
+            if taken is not None:
+                message = f"<gazebo>: {kind} {name!r} has the name of a {taken.kind} (line {taken.where.line})"
+                draft.diagnostics.error("SK-URDF-002", message, element.where)
+                continue
+            pose, base = read_pose(element)
+            attached = joint_link_name(element, "child") if kind == "joint" else element.attribute("attached_to")
+            frame = Frame(name, kind, draft.own(name), draft.scope, pose, base, attached, where=element.where)
+            draft.scope.names[name] = frame
+            parts.append(NamedElement(name, element, frame, draft.scope, draft.file))
+        return parts
+
 
 WORLD = "world"
 _SDF_VERSION = (1, 11)  # of the words in <gazebo>
@@ -47,30 +89,30 @@ class UrdfLoader(Loader):
         return Scene((), model, None if document.path is None else str(document.path))
 
 
-def declare_robot(file: SdfFile, workspace: Workspace, resolver: Resolver) -> Draft:
+def declare_robot(file: SdfFile, workspace: Workspace, resolver: Resolver) -> RobotDraft:
     """The names in a robot's file; every mistake in its structure is recorded."""
     element, diagnostics = file.root, workspace.diagnostics
-    name = text(element, "name")
+    name = text_attribute(element, "name")
     if not name:
         name = Path(file.chain[-1]).name.partition(".")[0] or "robot"
         message = f"<robot> has no name, URDF requires one; it is called {name!r}"
         diagnostics.warning("SK-URDF-027", message, element.where)
-    draft = Draft(
+    draft = RobotDraft(
         name=name,
         scoped="",
         element=element,
         file=file,
         workspace=workspace,
-        assets=Assets(resolver, file.folder, diagnostics),
+        assets=RobotFiles(resolver, file.folder, diagnostics),
         scope=Scope(Frame(name, "model", name), diagnostics),
-        extensions=Extensions(element, diagnostics),
+        extensions=GazeboExtensions(element, diagnostics),
     )
-    declare(draft)
+    declare_tree(draft)
     return draft
 
 
 def build_robot(
-    draft: Draft,
+    draft: RobotDraft,
     outer: str,
     pose: Pose | None = None,
     base: str = "auto",
@@ -91,15 +133,15 @@ def build_robot(
     own_pose = robot.pose("pose", IDENTITY)
     draft.pose = own_pose if pose is None else pose
     draft.scope.world = draft.pose
-    place(draft)
+    place_links(draft)
     materials = Materials(draft)
-    windy = bool(flag(robot, "enable_wind"))
-    additions = Additions(draft, robot, windy)
+    windy = bool(read_flag(robot, "enable_wind"))
+    additions = GazeboAdditions(draft, robot, windy)
     links = (*(read_link(draft, name, materials, windy) for name in draft.links), *additions.links())
     joints = (*(read_joint(draft, joint) for joint in draft.joints.values()), *additions.joints())
     draft.extensions.report_unknown(draft.links, draft.joints)
     _check_force_sensors(draft, links, joints)
-    declared = bool(flag(robot, "static"))
+    declared = bool(read_flag(robot, "static"))
     still = declared if static is None else static
     model = SceneModel(
         name=draft.name,
@@ -107,15 +149,15 @@ def build_robot(
         pose_world=draft.pose,
         static=still,
         declared_static=declared,
-        self_collide=bool(flag(robot, "self_collide", "selfCollide")),
+        self_collide=bool(read_flag(robot, "self_collide", "selfCollide")),
         canonical_link=draft.own(draft.root) if draft.root else "",
-        base=base if still else _base(draft, base, is_included, _why_held(draft, links, joints)),
+        base=base if still else _choose_base(draft, base, is_included, _fixed_base_reason(draft, links, joints)),
         links=links,
         joints=joints,
         frames=additions.frames(),
         plugins=read_plugins(robot.all("plugin"), draft.scoped),
         where=draft.element.where,
-        allow_auto_disable=flag(robot, "allow_auto_disable") is not False,
+        allow_auto_disable=read_flag(robot, "allow_auto_disable") is not False,
         transmissions=read_transmissions(draft),
         controls=read_controls(draft),
     )
@@ -125,7 +167,7 @@ def build_robot(
     return model
 
 
-def _why_held(draft: Draft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> str:
+def _fixed_base_reason(draft: RobotDraft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> str:
     """Why the base cannot float; empty where it can. Gazebo drops such links, PyBullet holds the first kind as well."""
     heavy = {link.scoped for link in links if link.inertial.mass > 0}
     if not heavy:
@@ -148,7 +190,7 @@ def _why_held(draft: Draft, links: tuple[SceneLink, ...], joints: tuple[SceneJoi
     )
 
 
-def _base(draft: Draft, base: str, is_included: bool, held: str) -> str:
+def _choose_base(draft: RobotDraft, base: str, is_included: bool, held: str) -> str:
     """Gazebo's rule: a robot whose root link is named `world` is fixed to it; any other floats.
 
     One that cannot float, for the reason in `held`, is fixed.
@@ -172,7 +214,7 @@ def _base(draft: Draft, base: str, is_included: bool, held: str) -> str:
     return base
 
 
-def _report_frames(draft: Draft, links: tuple[SceneLink, ...]) -> None:
+def _report_frames(draft: RobotDraft, links: tuple[SceneLink, ...]) -> None:
     names = [link.name for link in links if not link.inertial.given and link.name != WORLD]
     if names:
         listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
@@ -180,7 +222,7 @@ def _report_frames(draft: Draft, links: tuple[SceneLink, ...]) -> None:
         draft.diagnostics.note("SK-URDF-024", message, draft.links.get(names[0], draft.element).where)
 
 
-def _check_force_sensors(draft: Draft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> None:
+def _check_force_sensors(draft: RobotDraft, links: tuple[SceneLink, ...], joints: tuple[SceneJoint, ...]) -> None:
     """A force_torque sensor on a joint that carries neither mass nor collision would read zero for ever."""
     by_name = {link.scoped: link for link in links}
     below: dict[str, list[str]] = {}

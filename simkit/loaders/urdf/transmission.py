@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.urdf.draft import Draft
-from simkit.loaders.urdf.reading import as_can_be, missing, parse_number, text, value_of
+from simkit.loaders.urdf.attributes import (
+    extension_text,
+    parse_number,
+    report_missing,
+    report_substitute,
+    text_attribute,
+)
+from simkit.loaders.urdf.robot_draft import RobotDraft
 from simkit.params import Params
 from simkit.scene import Transmission, TransmissionEnd
 
@@ -15,28 +21,28 @@ _KINDS = {
 }
 
 
-def read_transmissions(draft: Draft) -> tuple[Transmission, ...]:
+def read_transmissions(draft: RobotDraft) -> tuple[Transmission, ...]:
     """Every transmission, in document order."""
     return tuple(_transmission(draft, element) for element in draft.element.all("transmission"))
 
 
-def read_controls(draft: Draft) -> tuple[Params, ...]:
+def read_controls(draft: RobotDraft) -> tuple[Params, ...]:
     """The `<ros2_control>` blocks as they stand; a joint that they name and that does not exist is reported."""
     blocks = draft.element.all("ros2_control")
     for block in blocks:
         block.mark_all_read()
         for owner in (block, *block.all("transmission")):
             for joint in owner.all("joint"):
-                _known(draft, joint, f"<{block.name} name={text(block, 'name')!r}>")
+                _is_known_joint(draft, joint, f"<{block.name} name={text_attribute(block, 'name')!r}>")
     return tuple(blocks)
 
 
-def _transmission(draft: Draft, element: Params) -> Transmission:
-    name = text(element, "name")
+def _transmission(draft: RobotDraft, element: Params) -> Transmission:
+    name = text_attribute(element, "name")
     if not name:
-        missing(element, "name", "a text")
+        report_missing(element, "name", "a text")
     written = element.child("type")
-    older = text(element, "type")
+    older = text_attribute(element, "type")
     kind = (written.value if written is not None else "") or older
     if not kind:
         message = f"transmission {name!r} needs <type>"
@@ -44,7 +50,7 @@ def _transmission(draft: Draft, element: Params) -> Transmission:
     common = _reduction(element, 1.0)
     joints = element.all("joint")
     for joint in joints:
-        _known(draft, joint, f"transmission {name!r}")
+        _is_known_joint(draft, joint, f"transmission {name!r}")
     if not joints:
         near = did_you_mean("joint", [c.name for c in element.children])
         draft.diagnostics.warning("SK-URDF-025", f"transmission {name!r} names no <joint>", element.where, near)
@@ -52,8 +58,8 @@ def _transmission(draft: Draft, element: Params) -> Transmission:
         name=name,
         kind=_kind(kind),
         type=kind,
-        joints=tuple(_end(e, 1.0) for e in joints),
-        actuators=tuple(_end(e, common) for e in element.all("actuator")),
+        joints=tuple(_transmission_end(e, 1.0) for e in joints),
+        actuators=tuple(_transmission_end(e, common) for e in element.all("actuator")),
         params=element,
         where=element.where,
     )
@@ -68,10 +74,10 @@ def _kind(written: str) -> str:
     return written
 
 
-def _end(element: Params, reduction: float) -> TransmissionEnd:
-    role, older = element.child("role"), text(element, "role")
+def _transmission_end(element: Params, reduction: float) -> TransmissionEnd:
+    role, older = element.child("role"), text_attribute(element, "role")
     return TransmissionEnd(
-        name=text(element, "name"),
+        name=text_attribute(element, "name"),
         reduction=_reduction(element, reduction),
         offset=_number(element, "offset", 0.0),
         role=role.value if role is not None else older,
@@ -93,15 +99,15 @@ def _number(element: Params, name: str, default: float) -> float:
     found = element.child(name)
     if found is None:
         return default
-    value = parse_number(value_of(found))
+    value = parse_number(extension_text(found))
     if value is None or abs(value) == float("inf"):
-        as_can_be(found, f"<{name}> is {value_of(found)!r}, allowed is a number", f"{default:g} is used")
+        report_substitute(found, f"<{name}> is {extension_text(found)!r}, allowed is a number", f"{default:g} is used")
         return default
     return value
 
 
-def _known(draft: Draft, joint: Params, owner: str) -> None:
-    name = text(joint, "name")
+def _is_known_joint(draft: RobotDraft, joint: Params, owner: str) -> None:
+    name = text_attribute(joint, "name")
     if name not in draft.joints:
         message = f"{owner}: there is no joint {name!r}"
         draft.diagnostics.warning("SK-URDF-025", message, joint.where, did_you_mean(name, draft.joints))

@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping
 
 from simkit.diagnostics import Diagnostics
-from simkit.loaders.resolver import Resolver
-from simkit.loaders.xml import Document
+from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.xml_reader import Document
 
 __all__ = ["expand", "needs_expansion"]
 

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
-from simkit.loaders.resolver import Resolver
-from simkit.loaders.xacro.bounds import MAX_FILES_DEEP, BoundError, Budget, ExpansionError
-from simkit.loaders.xacro.engine import MACRO_ARGUMENT, own_copy
+from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.xacro.budget import MAX_FILES_DEEP, BoundError, Budget, ExpansionError
+from simkit.loaders.xacro.dom import place_of, to_document, to_params
 from simkit.loaders.xacro.expression import Evaluator, Function
-from simkit.loaders.xacro.files import Files, MissingError
-from simkit.loaders.xacro.functions import direct_names, math_functions, python_functions, tokenize
-from simkit.loaders.xacro.tree import place_of, to_document, to_params
-from simkit.loaders.xml import Document
+from simkit.loaders.xacro.expression_functions import direct_names, math_functions, python_functions, tokenize
+from simkit.loaders.xacro.file_access import FileAccess, MissingError
+from simkit.loaders.xacro.private_package import MACRO_ARGUMENT, import_private_xacro
 
 MAX_EXPANDED = 50_000
 MAX_COPIED = 300_000
@@ -36,17 +36,20 @@ def expand(
         diagnostics: where problems go; xacro stops at the first error.
     """
     try:
-        engine = own_copy()
+        engine = import_private_xacro()
     except ImportError as error:
         hint = "pip install xacro"
         diagnostics.error(
-            "SK-XACRO-006", f"the file is xacro, and {error.name or error} is not installed", _top(document), hint
+            "SK-XACRO-006",
+            f"the file is xacro, and {error.name or error} is not installed",
+            _top_element(document),
+            hint,
         )
         return None
     return _Expansion(engine, document, resolver, arguments, diagnostics).run()
 
 
-def _top(document: Document) -> Where:
+def _top_element(document: Document) -> Where:
     return document.root.where
 
 
@@ -62,8 +65,8 @@ class _Expansion:
         diagnostics: Diagnostics,
     ) -> None:
         self.engine, self.document, self.diagnostics = engine, document, diagnostics
-        self.where = _top(document)
-        self.files = Files(resolver, diagnostics, lambda: self.where)
+        self.where = _top_element(document)
+        self.files = FileAccess(resolver, diagnostics, lambda: self.where)
         self.budget = Budget()
         self.given = {str(k): str(v) for k, v in arguments.items()}
         self.arguments: dict[str, str] = dict(self.given)
@@ -92,7 +95,7 @@ class _Expansion:
             self._fail("SK-XACRO-003", f"the expansion is stopped: {error}")
             return None
         except Exception as error:  # noqa: BLE001 - xacro raises what Python raises; the place is known here
-            inner = _cause(error)
+            inner = _inner_error(error)
             if isinstance(inner, (MissingError, BoundError)):
                 code = "SK-XACRO-002" if isinstance(inner, MissingError) else "SK-XACRO-003"
                 self._fail(code, str(inner), getattr(inner, "hint", ""))
@@ -124,7 +127,7 @@ class _Expansion:
                 self.diagnostics.warning(
                     "SK-XACRO-004",
                     f"the file has no argument {name!r} (it has: {known}); it has no effect",
-                    _top(self.document),
+                    _top_element(self.document),
                     did_you_mean(name, self.declared),
                 )
 
@@ -267,7 +270,7 @@ class _Expansion:
         except (BoundError, MissingError):
             raise
         except ExpansionError as error:
-            self._known |= _names(symbols)
+            self._known |= _table_names(symbols)
             where = "" if "when evaluating" in str(error) else f", when evaluating ${{{inner}}}"
             raise ExpansionError(f"{error}{where}") from None
 
@@ -342,7 +345,7 @@ class _MissingFile(OSError):
         self.error = error
 
 
-def _cause(error: BaseException) -> BaseException:
+def _inner_error(error: BaseException) -> BaseException:
     """The expansion's own error inside xacro's."""
     inner: Any = getattr(error, "exc", None)
     if isinstance(inner, _MissingFile):
@@ -350,7 +353,7 @@ def _cause(error: BaseException) -> BaseException:
     return inner if isinstance(inner, BaseException) else error
 
 
-def _names(symbols: Any) -> set[str]:
+def _table_names(symbols: Any) -> set[str]:
     """Names in a table of xacro and those around it."""
     found: set[str] = set()
     while isinstance(symbols, dict):

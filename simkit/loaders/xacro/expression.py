@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from simkit.loaders.xacro.bounds import MAX_BITS, MAX_ITEMS, MAX_TEXT, BoundError, Budget, ExpansionError
+from simkit.loaders.xacro.budget import MAX_BITS, MAX_ITEMS, MAX_TEXT, BoundError, Budget, ExpansionError
 
 MAX_EXPRESSION = 20_000
 
@@ -278,7 +278,7 @@ class Evaluator:
                 return
             generator = node.generators[index]
             for item in self._visit(generator.iter, scope):
-                inner = {**scope, **_bound(generator.target, item)}
+                inner = {**scope, **_loop_variables(generator.target, item)}
                 if all(self._visit(test, inner) for test in generator.ifs):
                     go(index + 1, inner)
 
@@ -297,7 +297,7 @@ class Evaluator:
         return format(repr(value) if node.conversion == ord("r") else value, width)
 
 
-def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
+def _loop_variables(target: ast.expr, item: Any) -> dict[str, Any]:
     """The names that a `for` of a comprehension binds."""
     if isinstance(target, ast.Name):
         return {target.id: item}
@@ -307,7 +307,7 @@ def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
             raise ExpansionError(f"{len(target.elts)} names cannot hold {len(items)} values")
         bound: dict[str, Any] = {}
         for one, value in zip(target.elts, items, strict=True):
-            bound.update(_bound(one, value))
+            bound.update(_loop_variables(one, value))
         return bound
     raise ExpansionError("a 'for' binds names only")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simkit.plugins.actors.mover import ActorMover
-from simkit.plugins.actors.stage import with_actors
+from simkit.plugins.actors.actor_model import with_actors
+from simkit.plugins.actors.actor_mover import ActorMover
 
 __all__ = ["ActorMover", "with_actors"]

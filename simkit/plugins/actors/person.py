@@ -50,7 +50,7 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class Looks:
+class Appearance:
     """Height [m] and colours of a person."""
 
     height: float
@@ -63,7 +63,7 @@ _SKINS: Final = ((0.89, 0.72, 0.60), (0.76, 0.57, 0.44), (0.55, 0.38, 0.28), (0.
 _HAIRS: Final = ((0.15, 0.11, 0.09), (0.35, 0.22, 0.13), (0.62, 0.50, 0.30), (0.45, 0.45, 0.46))
 
 
-def looks_of(name: str, given: PersonLook | None = None) -> Looks:
+def appearance_of(name: str, given: PersonLook | None = None) -> Appearance:
     """Height and colours that go with a name, the same in every run, where the file does not give them."""
     number = zlib.crc32(name.encode())
     colours = {}
@@ -75,10 +75,10 @@ def looks_of(name: str, given: PersonLook | None = None) -> Looks:
     if given is not None:
         colours |= given.colours
         height = given.height or height
-    return Looks(height, colours)
+    return Appearance(height, colours)
 
 
-def _at(x: float, y: float, z: float) -> Pose:
+def _offset_along_x(x: float, y: float, z: float) -> Pose:
     return Pose((x, y, z))
 
 
@@ -88,27 +88,29 @@ def _across(y: float, z: float) -> Pose:
 
 def _figure() -> tuple[Piece, ...]:
     found = [
-        Piece("torso", "pelvis", Ellipsoid((0.125, 0.170, 0.13)), _at(0.0, 0.0, 0.965), "trousers"),
-        Piece("torso", "belly", Ellipsoid((0.120, 0.162, 0.22)), _at(0.0, 0.0, 1.14), "shirt"),
-        Piece("torso", "chest", Ellipsoid((0.122, 0.190, 0.17)), _at(0.0, 0.0, 1.305), "shirt"),
+        Piece("torso", "pelvis", Ellipsoid((0.125, 0.170, 0.13)), _offset_along_x(0.0, 0.0, 0.965), "trousers"),
+        Piece("torso", "belly", Ellipsoid((0.120, 0.162, 0.22)), _offset_along_x(0.0, 0.0, 1.14), "shirt"),
+        Piece("torso", "chest", Ellipsoid((0.122, 0.190, 0.17)), _offset_along_x(0.0, 0.0, 1.305), "shirt"),
         Piece("torso", "shoulders", Capsule(0.068, 0.29), _across(0.0, 1.415), "shirt"),
-        Piece("torso", "neck", Cylinder(0.052, 0.12), _at(0.0, 0.0, 1.50), "skin"),
-        Piece("torso", "head", Ellipsoid((0.094, 0.076, 0.118)), _at(0.012, 0.0, 1.627), "skin"),
-        Piece("torso", "hair", Ellipsoid((0.094, 0.083, 0.092)), _at(-0.016, 0.0, 1.664), "hair"),
-        Piece("torso", "nose", Ellipsoid((0.020, 0.014, 0.022)), _at(0.104, 0.0, 1.618), "skin"),
+        Piece("torso", "neck", Cylinder(0.052, 0.12), _offset_along_x(0.0, 0.0, 1.50), "skin"),
+        Piece("torso", "head", Ellipsoid((0.094, 0.076, 0.118)), _offset_along_x(0.012, 0.0, 1.627), "skin"),
+        Piece("torso", "hair", Ellipsoid((0.094, 0.083, 0.092)), _offset_along_x(-0.016, 0.0, 1.664), "hair"),
+        Piece("torso", "nose", Ellipsoid((0.020, 0.014, 0.022)), _offset_along_x(0.104, 0.0, 1.618), "skin"),
     ]
     for side, sign in (("left", 1.0), ("right", -1.0)):
-        eye = Piece("torso", f"eye_{side}", Sphere(0.011), _at(0.094, sign * 0.031, 1.648), "eyes")
+        eye = Piece("torso", f"eye_{side}", Sphere(0.011), _offset_along_x(0.094, sign * 0.031, 1.648), "eyes")
         ear = Ellipsoid((0.018, 0.010, 0.028))
         found += [
             eye,
-            Piece("torso", f"ear_{side}", ear, _at(0.0, sign * 0.080, 1.628), "skin"),
-            Piece(f"thigh_{side}", "thigh", Capsule(0.078, 0.33), _at(0.0, 0.0, -0.205), "trousers"),
-            Piece(f"shin_{side}", "shin", Capsule(0.056, 0.36), _at(0.0, 0.0, -0.205), "trousers"),
-            Piece(f"shin_{side}", "shoe", Ellipsoid((0.135, 0.050, 0.052)), _at(0.055, 0.0, -0.448), "shoes"),
-            Piece(f"upper_arm_{side}", "upper_arm", Capsule(0.048, 0.24), _at(0.0, 0.0, -0.145), "shirt"),
-            Piece(f"forearm_{side}", "forearm", Capsule(0.037, 0.20), _at(0.0, 0.0, -0.125), "skin"),
-            Piece(f"forearm_{side}", "hand", Ellipsoid((0.042, 0.022, 0.075)), _at(0, 0, -0.300), "skin"),
+            Piece("torso", f"ear_{side}", ear, _offset_along_x(0.0, sign * 0.080, 1.628), "skin"),
+            Piece(f"thigh_{side}", "thigh", Capsule(0.078, 0.33), _offset_along_x(0.0, 0.0, -0.205), "trousers"),
+            Piece(f"shin_{side}", "shin", Capsule(0.056, 0.36), _offset_along_x(0.0, 0.0, -0.205), "trousers"),
+            Piece(
+                f"shin_{side}", "shoe", Ellipsoid((0.135, 0.050, 0.052)), _offset_along_x(0.055, 0.0, -0.448), "shoes"
+            ),
+            Piece(f"upper_arm_{side}", "upper_arm", Capsule(0.048, 0.24), _offset_along_x(0.0, 0.0, -0.145), "shirt"),
+            Piece(f"forearm_{side}", "forearm", Capsule(0.037, 0.20), _offset_along_x(0.0, 0.0, -0.125), "skin"),
+            Piece(f"forearm_{side}", "hand", Ellipsoid((0.042, 0.022, 0.075)), _offset_along_x(0, 0, -0.300), "skin"),
         ]
     return tuple(found)
 
@@ -116,7 +118,7 @@ def _figure() -> tuple[Piece, ...]:
 FIGURE: Final = _figure()
 
 
-def scaled(shape: Geometry, scale: float) -> Geometry:
+def scale_shape(shape: Geometry, scale: float) -> Geometry:
     """A shape of the figure in another size."""
     if isinstance(shape, Ellipsoid):
         x, y, z = shape.radii
@@ -127,7 +129,7 @@ def scaled(shape: Geometry, scale: float) -> Geometry:
     return type(shape)(shape.radius * scale, shape.length * scale)
 
 
-def walking(distance: Floats, speed: Floats) -> Floats:
+def walking_angles(distance: Floats, speed: Floats) -> Floats:
     """Angles of the limbs while walking; the stride follows the way, so that feet do not slide.
 
     Args:
@@ -160,11 +162,11 @@ SITTING: Final = (1.45, 1.45, -1.45, -1.45, 0.55, 0.55, 1.05, 1.05)
 """Angles of the limbs of somebody who sits at a desk, in the order of `LIMBS` [rad]."""
 
 
-def figures(angles: Floats) -> tuple[Floats, Floats]:
+def figure_poses(angles: Floats) -> tuple[Floats, Floats]:
     """Where the parts are, for a height of 1.75 m, the lower sole on the ground.
 
     Args:
-        angles: as `walking` gives them, shape (n, 8).
+        angles: as `walking_angles` gives them, shape (n, 8).
 
     Returns:
         Positions (n, 9, 3) and quaternions (n, 9, 4) of `PARTS`, in the person's frame.
@@ -189,8 +191,8 @@ def figures(angles: Floats) -> tuple[Floats, Floats]:
     return places, turns
 
 
-def still(sits: bool) -> dict[str, Pose]:
+def resting_poses(sits: bool) -> dict[str, Pose]:
     """Where the parts of somebody are who does not walk, for a height of 1.75 m."""
-    angles = np.array([SITTING]) if sits else walking(np.zeros(1), np.zeros(1))
-    places, turns = figures(angles)
+    angles = np.array([SITTING]) if sits else walking_angles(np.zeros(1), np.zeros(1))
+    places, turns = figure_poses(angles)
     return {part: Pose(places[0, i], turns[0, i]) for i, part in enumerate(PARTS)} | {"": IDENTITY}

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from simkit.compiler.meshes.part import MeshFileError
-from simkit.compiler.meshes.skin import Skin, read_skin
+from simkit.compiler.meshes.collada_skin import Skin, read_skin
+from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.diagnostics import Diagnostics
 from simkit.plugins.actors.script import Floats, Script, Stride, Track
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Animation, Mesh, SceneActor, SceneLink, SceneModel, SceneVisual
 
 if TYPE_CHECKING:
-    from simkit.plugins.actors.stage import FindFile
+    from simkit.plugins.actors.actor_model import FindFile
 
 _AT_THE_HIPS: Final = (0.5, 1.5)
 _ROOT: Final = "link"
@@ -82,33 +82,33 @@ def _times(clip: Clip, track: Track) -> Floats:
     return np.mod(track.times, length) if length > 0.0 else np.zeros_like(track.times)
 
 
-def dressed(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel | None:
+def skinned_actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel | None:
     """The actor in its own skin; None where there is none that can be read, which is reported."""
-    from simkit.plugins.actors.stage import is_led
+    from simkit.plugins.actors.actor_model import is_led_by_plugin
 
     if not actor.skin:
         return None
-    skin = _read(actor, actor.skin, "skin", find_file, diagnostics)
+    skin = _read_file(actor, actor.skin, "skin", find_file, diagnostics)
     if skin is None or not skin.pieces:
         if skin is not None:
             _report(actor, f"its skin {actor.skin} carries no mesh", diagnostics)
         return None
-    file = _found(actor, actor.skin, find_file)
+    file = _find_file(actor, actor.skin, find_file)
     assert file is not None
     carrying = sorted(skin.pieces)
     clips = _clips(actor, skin, carrying, find_file, diagnostics)
     first = next(iter(clips.values()))
     script = Script(actor, 0.0 if actor.trajectories and actor.trajectories[0].waypoints else first.length)
     base = script.pose(0.0)
-    goes = is_led(actor) or any(t.moves for t in script.tracks)
+    goes = is_led_by_plugin(actor) or any(t.moves for t in script.tracks)
     at_the_hips = goes and _AT_THE_HIPS[0] <= base.position[2] <= _AT_THE_HIPS[1]
     return _model(actor, skin, file, carrying, script, SkinRig(clips, at_the_hips))
 
 
 def _model(actor: SceneActor, skin: Skin, file: Path, carrying: list[int], script: Script, rig: SkinRig) -> SceneModel:
-    from simkit.plugins.actors.stage import Cast, is_led, model_of
+    from simkit.plugins.actors.actor_model import AnimatedActor, is_led_by_plugin, scripted_model
 
-    cast = Cast(actor.name, script, rig, is_led(actor))
+    cast = AnimatedActor(actor.name, script, rig, is_led_by_plugin(actor))
     poses = cast.poses(0.0)
     sizes = [_size(m) for m in _worlds(skin, {i: bone.rest[None] for i, bone in enumerate(skin.bones)}, 1)]
     links = [SceneLink(_ROOT, f"{actor.name}::{_ROOT}", Pose(poses[0, :3], poses[0, 3:]))]
@@ -119,7 +119,7 @@ def _model(actor: SceneActor, skin: Skin, file: Path, carrying: list[int], scrip
         visual = SceneVisual("skin", f"{scoped}::skin", IDENTITY, shape)
         pose = Pose(poses[row, :3], poses[row, 3:])
         links.append(SceneLink(name, scoped, pose, visuals=(visual,)))
-    return model_of(actor, links[0].pose_world, links, cast)
+    return scripted_model(actor, links[0].pose_world, links, cast)
 
 
 def _clips(
@@ -128,7 +128,7 @@ def _clips(
     """The animations by name; the skin's own where none of them can be read."""
     found = {}
     for animation in actor.animations:
-        moved = _read(actor, animation.uri, f"animation {animation.name!r}", find_file, diagnostics)
+        moved = _read_file(actor, animation.uri, f"animation {animation.name!r}", find_file, diagnostics)
         clip = None if moved is None else _clip(skin, moved, carrying, animation, actor.skin_scale)
         if clip is not None:
             found[animation.name] = clip
@@ -214,13 +214,13 @@ def _quaternions(matrices: Floats) -> Floats:
     return found
 
 
-def _found(actor: SceneActor, uri: str, find_file: FindFile) -> Path | None:
+def _find_file(actor: SceneActor, uri: str, find_file: FindFile) -> Path | None:
     folder = Path(actor.where.file).parent if actor.where.file else None
     return find_file(uri, folder)
 
 
-def _read(actor: SceneActor, uri: str, what: str, find_file: FindFile, diagnostics: Diagnostics) -> Skin | None:
-    file = _found(actor, uri, find_file)
+def _read_file(actor: SceneActor, uri: str, what: str, find_file: FindFile, diagnostics: Diagnostics) -> Skin | None:
+    file = _find_file(actor, uri, find_file)
     if file is None:
         _report(actor, f"its {what} {uri} is not found", diagnostics)
         return None

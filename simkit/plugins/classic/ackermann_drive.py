@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Any
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, command_of
-from simkit.plugins.drives.outputs import DriveOutputs, Told
-from simkit.plugins.drives.steering import find_turning, steering_angles
-from simkit.plugins.drives.wheels import find_wheels
-from simkit.plugins.joints.axes import JointAxis
+from simkit.plugins.drives.steering import find_drive_joint, steering_angles
+from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.pid import Pid
-from simkit.plugins.once import Once
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class GazeboRosAckermannDrive(ModelPlugin):
         self._read(params)
         named = {name.replace("_joint", " wheel").replace("_", " "): [params.text(name, name)] for name in _WHEELS}
         wheels = [joint for joints in find_wheels(scene, named, params).values() for joint in joints]
-        steering = [find_turning(scene, params.text(name, name), "steered wheel", params) for name in _STEERING]
+        steering = [find_drive_joint(scene, params.text(name, name), "steered wheel", params) for name in _STEERING]
         self._turned = [joint for joint in steering if joint is not None]
         self._wheels = wheels
         if len(wheels) == len(_WHEELS) and len(self._turned) == len(_STEERING):
@@ -65,7 +65,7 @@ class GazeboRosAckermannDrive(ModelPlugin):
         self._tells_distance = params.boolean("publish_distance", False)
         self._tells_angle = params.boolean("publish_steerangle", False)
         x, y = (params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy")
-        self._told = Told(
+        self._told = DriveOutputOptions(
             odometry_topic="odom",
             odometry_frame=params.text("odometry_frame", "odom"),
             base_frame=params.text("robot_base_frame", "base_footprint"),
@@ -108,11 +108,11 @@ class GazeboRosAckermannDrive(ModelPlugin):
         there = any(name in (joint.name, joint.scoped) for joint in scene.all_joints())
         if not (params.has("steering_wheel_joint") or there):
             return None
-        joint = find_turning(scene, name, "steering wheel", params)
+        joint = find_drive_joint(scene, name, "steering wheel", params)
         return joint and builder.add_position_servo(joint.scoped, max_effort=math.inf, owner=self.name)
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self.before_step_rate = self.after_step_rate = self._rate
         self._axes = [JointAxis(self.sim.joint(joint.scoped)) for joint in (*self._turned, *self._wheels[2:])]
         self._true = TrueMotion(parent, self.sim.link(self._canonical))

@@ -9,9 +9,9 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.fluids.displacement import Fluid
-from simkit.plugins.fluids.floating import Floating
-from simkit.plugins.fluids.hulls import Hull
+from simkit.plugins.fluids.buoyant_force import Fluid
+from simkit.plugins.fluids.collision_volumes import Hull
+from simkit.plugins.fluids.floating_links import BuoyancyBase
 from simkit.plugins.lookups import find_link
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ WATER: Final = 999.1026
 """[kg/m³], at 15 °C."""
 
 
-class BuoyancyPlugin(Floating, ModelPlugin):
+class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
     """The links of the model float, wholly under water, by the volume of their collisions or by numbers of the file.
 
     `<link name="…">` with `<center_of_volume>` (link frame) and `<volume>` says what the shapes do not.

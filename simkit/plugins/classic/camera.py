@@ -7,8 +7,8 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.classic import pictures
-from simkit.plugins.classic.pictures import CameraNames
+from simkit.plugins.classic import camera_settings
+from simkit.plugins.classic.camera_settings import CameraNames
 
 _NEAREST = 0.4  # [m] where <min_depth> says nothing
 
@@ -27,19 +27,19 @@ class GazeboRosCamera(SensorPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         if hasattr(parent, "eyes"):
-            publish_eyes(self, parent, CameraNames(self, parent), lambda name: name)
-        elif pictures.is_camera(self, parent, "camera, depth or multicamera"):
+            connect_stereo(self, parent, CameraNames(self, parent), lambda name: name)
+        elif camera_settings.is_camera(self, parent, "camera, depth or multicamera"):
             names = CameraNames(self, parent)
             topics = image_topics(names)
             if parent.has_depth:
-                near, far = pictures.read_depths(params, "min_depth", "max_depth", _NEAREST)
+                near, far = camera_settings.read_depths(params, "min_depth", "max_depth", _NEAREST)
                 parent.bound_depths(near, far if math.isfinite(far) else None)
                 topics["depth_image"] = names.topic("depth/image_raw")
                 topics["depth_camera_info"] = names.topic("depth/camera_info")
                 topics["points"] = names.topic("points")
-            publish(self, parent, names, topics)
+            connect_camera(self, parent, names, topics)
         if params.boolean("triggered", False) and hasattr(parent, "trigger_on"):
-            parent.trigger_on(CameraNames(self, parent).topic("image_trigger"), pictures.EMPTY, counts=True)
+            parent.trigger_on(CameraNames(self, parent).topic("image_trigger"), camera_settings.EMPTY, counts=True)
 
 
 class GazeboRosTriggeredCamera(SensorPlugin):
@@ -48,10 +48,10 @@ class GazeboRosTriggeredCamera(SensorPlugin):
     filenames = ("libgazebo_ros_triggered_camera.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        if pictures.is_camera(self, parent, "camera"):
+        if camera_settings.is_camera(self, parent, "camera"):
             names = CameraNames(self, parent, is_ros_1=True)
-            publish(self, parent, names, image_topics(names))
-            trigger(self, parent, names)
+            connect_camera(self, parent, names, image_topics(names))
+            connect_trigger(self, parent, names)
 
 
 class GazeboRosProsilica(SensorPlugin):
@@ -60,11 +60,11 @@ class GazeboRosProsilica(SensorPlugin):
     filenames = ("libgazebo_ros_prosilica.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        if pictures.is_camera(self, parent, "camera"):
+        if camera_settings.is_camera(self, parent, "camera"):
             names = CameraNames(self, parent, is_ros_1=True)
-            publish(self, parent, names, image_topics(names))
+            connect_camera(self, parent, names, image_topics(names))
             why = "there are no services; the camera streams"
-            pictures.report_without_effect(self, {"pollServiceName": why, "trigger_mode": why})
+            camera_settings.report_without_effect(self, {"pollServiceName": why, "trigger_mode": why})
 
 
 def image_topics(names: CameraNames) -> dict[str, str]:
@@ -72,15 +72,15 @@ def image_topics(names: CameraNames) -> dict[str, str]:
     return {"image": names.topic(names.image), "camera_info": names.topic(names.info)}
 
 
-def publish(plugin: SensorPlugin, sensor: Any, names: CameraNames, topics: dict[str, str]) -> None:
+def connect_camera(plugin: SensorPlugin, sensor: Any, names: CameraNames, topics: dict[str, str]) -> None:
     """Names a camera's topics and frame, and reads what all camera plugins do with it."""
     params = plugin.params
     baseline = params.number("hack_baseline", params.number("hackBaseline", 0.0))
-    pictures.name_frame(plugin, sensor)
+    camera_settings.name_frame(plugin, sensor)
     if names.is_ros_1:
-        pictures.take_rate(plugin, sensor)
-    pictures.tell_intrinsics(plugin, sensor, is_ros_1=names.is_ros_1)
-    pictures.report_without_effect(plugin, pictures.CROP)
+        camera_settings.apply_update_rate(plugin, sensor)
+    camera_settings.override_intrinsics(plugin, sensor, is_ros_1=names.is_ros_1)
+    camera_settings.report_without_effect(plugin, camera_settings.CROP)
     if baseline:
         sensor.set_baseline(baseline)
     if "points" in topics:
@@ -88,7 +88,7 @@ def publish(plugin: SensorPlugin, sensor: Any, names: CameraNames, topics: dict[
     sensor.publish_on(topics)
 
 
-def publish_eyes(plugin: SensorPlugin, sensor: Any, names: CameraNames, folder: Any) -> None:
+def connect_stereo(plugin: SensorPlugin, sensor: Any, names: CameraNames, folder: Any) -> None:
     """The same for a multicamera.
 
     Args:
@@ -98,10 +98,10 @@ def publish_eyes(plugin: SensorPlugin, sensor: Any, names: CameraNames, folder: 
     for eye in sensor.eyes:
         topics[f"{eye.name}/image"] = names.topic(names.image, folder(eye.name))
         topics[f"{eye.name}/camera_info"] = names.topic(names.info, folder(eye.name))
-    publish(plugin, sensor, names, topics)
+    connect_camera(plugin, sensor, names, topics)
 
 
-def trigger(plugin: SensorPlugin, sensor: Any, names: CameraNames) -> None:
+def connect_trigger(plugin: SensorPlugin, sensor: Any, names: CameraNames) -> None:
     """ROS 1: pictures only after a message on `<triggerTopicName>`."""
     topic = plugin.params.text("triggerTopicName", "image_trigger")
-    sensor.trigger_on(names.topic(topic), pictures.EMPTY)
+    sensor.trigger_on(names.topic(topic), camera_settings.EMPTY)

@@ -7,9 +7,9 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.classic import pictures
-from simkit.plugins.classic.camera import image_topics, publish
-from simkit.plugins.classic.pictures import CameraNames
+from simkit.plugins.classic import camera_settings
+from simkit.plugins.classic.camera import connect_camera, image_topics
+from simkit.plugins.classic.camera_settings import CameraNames
 
 _CUTOFF, _CUTOFF_MAX = 0.4, 5.0  # [m] where the file says nothing
 _NOT_DRAWN = {
@@ -31,9 +31,9 @@ class GazeboRosDepthCamera(SensorPlugin):
     filenames = ("libgazebo_ros_depth_camera.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        near = params.number("pointCloudCutoff", _CUTOFF, minimum=0, maximum=pictures.FARTHEST)
-        connect(self, parent, near, math.inf)
-        pictures.report_without_effect(self, _NOT_DRAWN)
+        near = params.number("pointCloudCutoff", _CUTOFF, minimum=0, maximum=camera_settings.FARTHEST)
+        connect_depth_camera(self, parent, near, math.inf)
+        camera_settings.report_without_effect(self, _NOT_DRAWN)
 
 
 class GazeboRosOpenniKinect(SensorPlugin):
@@ -43,14 +43,14 @@ class GazeboRosOpenniKinect(SensorPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         names = "pointCloudCutoff", "pointCloudCutoffMax"
-        connect(self, parent, *pictures.read_depths(params, *names, _CUTOFF, _CUTOFF_MAX))
+        connect_depth_camera(self, parent, *camera_settings.read_depths(params, *names, _CUTOFF, _CUTOFF_MAX))
 
 
-def connect(plugin: SensorPlugin, sensor: Any, near: float, far: float) -> None:
+def connect_depth_camera(plugin: SensorPlugin, sensor: Any, near: float, far: float) -> None:
     """Publishes a depth camera, with depths between `near` and `far` [m] only."""
     params = plugin.params
     in_millimetres = params.boolean("useDepth16UC1Format", False)
-    if not pictures.is_camera(plugin, sensor, "depth", "points"):
+    if not camera_settings.is_camera(plugin, sensor, "depth", "points"):
         return
     names = CameraNames(plugin, sensor, is_ros_1=True)
     sensor.cut_depths(near, far, in_millimetres=in_millimetres)
@@ -60,4 +60,6 @@ def connect(plugin: SensorPlugin, sensor: Any, near: float, far: float) -> None:
         "depth_camera_info": params.text("depthImageCameraInfoTopicName", "depth/camera_info"),
         "points": params.text("pointCloudTopicName", "points"),
     }
-    publish(plugin, sensor, names, image_topics(names) | {name: names.topic(topic) for name, topic in topics.items()})
+    connect_camera(
+        plugin, sensor, names, image_topics(names) | {name: names.topic(topic) for name, topic in topics.items()}
+    )

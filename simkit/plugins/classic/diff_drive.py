@@ -27,16 +27,16 @@ from simkit.plugins.drives.odometry import (
     transforms,
 )
 from simkit.plugins.drives.odometry_noise import (
-    ErringOdometry,
-    FollowedMotion,
+    EquivalentWheelAngles,
+    NoisyOdometry,
     OdometryNoise,
-    displaced,
     read_odometry_noise,
+    replace_planar_pose,
 )
-from simkit.plugins.drives.wheels import find_wheels
-from simkit.plugins.joint_states import JOINT_STATE, joint_state, readings
-from simkit.plugins.lookups import numbers
-from simkit.plugins.once import Once
+from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
+from simkit.plugins.lookups import read_numbers
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector
 
@@ -158,8 +158,8 @@ def _read_pairs(params: Params) -> tuple[Pair, ...]:
         found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
         params.error("SK-PARAM-002", f"{found_text}, allowed is one of each for each of {count} <num_wheel_pairs>")
         return ()
-    separations = numbers(params, "wheel_separation", minimum=1e-6)
-    diameters = numbers(params, "wheel_diameter", minimum=1e-6)
+    separations = read_numbers(params, "wheel_separation", minimum=1e-6)
+    diameters = read_numbers(params, "wheel_diameter", minimum=1e-6)
     # Gazebo's default stands for each pair that the lists do not reach
     separations += [0.34] * (len(left) - len(separations))
     diameters += [0.15] * (len(left) - len(diameters))
@@ -196,7 +196,7 @@ class GazeboRosDiffDrive(ModelPlugin):
             self._servos.append(servo)
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         options = self.options
         self.before_step_rate = self.after_step_rate = options.update_rate
         self._wheels = [self.sim.joint(name) for name, _, _ in self._joints]
@@ -269,31 +269,33 @@ class GazeboRosDiffDrive(ModelPlugin):
             if tf:
                 tf.publish_later(partial(transforms, now, *self._transforms(pose)))
         if self._states is not None and self._states.wanted:
-            self._states.publish_later(partial(joint_state, now, readings(self._wheels)))
+            self._states.publish_later(partial(joint_state_message, now, joint_readings(self._wheels)))
 
     def _measured(self) -> tuple[Pose, BodyTwist]:
         """Pose and twist from the chosen source; the twist in the robot's own axes."""
         if self._erring is not None:
             reckoned, twist = self._erring.reckoning, self._erring.twist
-            return (displaced(self._true.state()[0], reckoned) if self._followed is not None else reckoned.pose), twist
+            return (
+                replace_planar_pose(self._true.state()[0], reckoned) if self._followed is not None else reckoned.pose
+            ), twist
         if not self.options.from_encoders:
             return self._true.state()
         pair = self.options.pairs[0]
         return self._reckoning.pose, rolling_twist(self._wheels, pair.radius, pair.separation)
 
-    def _start_erring(self) -> tuple[ErringOdometry | None, FollowedMotion | None]:
+    def _start_erring(self) -> tuple[NoisyOdometry | None, EquivalentWheelAngles | None]:
         """The odometry that errs, and the wheels that it is told of where its source is the world."""
         options, followed = self.options, None
         if options.noise is None:
             return None, None
         pair, angles, start = options.pairs[0], self._angles, None
         if not options.from_encoders:
-            followed = FollowedMotion(self._true.state()[0], pair.radius, pair.separation)
+            followed = EquivalentWheelAngles(self._true.state()[0], pair.radius, pair.separation)
             angles, start = followed.angles, followed.start
         stream = self.random("odometry_noise", 2)
-        return ErringOdometry(options.noise, pair.radius, pair.separation, stream, angles, start), followed
+        return NoisyOdometry(options.noise, pair.radius, pair.separation, stream, angles, start), followed
 
-    def _err(self, erring: ErringOdometry) -> None:
+    def _err(self, erring: NoisyOdometry) -> None:
         now = self.sim.time_ns
         elapsed, self._last_read_ns = (now - self._last_read_ns) * 1e-9, now
         if self._followed is None:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.joints.axes import JointAxis
-from simkit.plugins.lookups import find_axis_joint, given_topic
-from simkit.plugins.once import Once
-from simkit.runtime.physics import CONTROL
+from simkit.plugins.joints.joint_axis import JointAxis
+from simkit.plugins.lookups import find_axis_joint, read_topic
+from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -74,7 +74,7 @@ class ElevatorPlugin(ModelPlugin):
         return find_axis_joint(scene, name, named) if named is not None else None
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._lift, self._door = (JointAxis(self.sim.joint(name)) for name in self._joints)
         self._phase: Phase = "idle"
         self._floor, self._until_ns = 0, 0
@@ -85,7 +85,7 @@ class ElevatorPlugin(ModelPlugin):
         """Listens to what floor to go to."""
         own = f"/gazebo/{self.sim.world.name}"
         topic = params.text("topic", "")
-        found = given_topic(params, "topic", f"{own}/elevator")
+        found = read_topic(params, "topic", f"{own}/elevator")
         self.listen(valid_topic(f"{own}/{topic[2:]}") if topic.startswith("~/") else found, STRING, self._on_floor)
 
     # ------------------------------------------------------------------ commands

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from simkit.params import Params
 from simkit.plugins.classic.ft_sensor import GazeboRosFtSensor
-from simkit.plugins.lookups import named_link
+from simkit.plugins.lookups import find_named_link
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -24,7 +24,7 @@ class GazeboRosF3D(GazeboRosFtSensor):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._topic = params.text("topicName", required=True)
-        self._joint, self._link = "", named_link(scene, "bodyName", params)
+        self._joint, self._link = "", find_named_link(scene, "bodyName", params)
         self._frame = params.text("frameName", "world").strip("/") or "world"
         self._deviation = 0.0
         params.child("alwaysOn")

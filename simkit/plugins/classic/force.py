@@ -9,8 +9,8 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.lookups import named_link
-from simkit.plugins.once import Once
+from simkit.plugins.lookups import find_named_link
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import Vector, quat_rotate
 
 if TYPE_CHECKING:
@@ -32,12 +32,12 @@ class GazeboRosForce(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         is_ros_1 = params.has("bodyName") or params.has("topicName")
-        self._scoped = named_link(scene, "bodyName" if is_ros_1 else "link_name", params)
+        self._scoped = find_named_link(scene, "bodyName" if is_ros_1 else "link_name", params)
         self._topic = params.text("topicName", required=True) if is_ros_1 else "gazebo_ros_force"
         self._turns = params.choice("force_frame", ("world", "link"), "world") == "link"
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._wrench = np.zeros(6)
         # what turns with the link is set anew at every step
         self.before_step_rate = None if self._turns else NEVER

@@ -14,7 +14,7 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_joint, find_link
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Vector
-from simkit.runtime.transmission import transmitted_wrench
+from simkit.runtime.handles.joint_mechanics import transmitted_wrench
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

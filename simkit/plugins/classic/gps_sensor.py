@@ -7,7 +7,7 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.classic.sensor_topics import given_frame
+from simkit.plugins.ros_names import read_frame
 
 _KINDS = ("gps", "navsat")
 _BACKWARDS = -0.999  # cosine of a heading of 180 degrees, or nearly
@@ -25,7 +25,7 @@ class GazeboRosGpsSensor(SensorPlugin):
         if parent.kind not in _KINDS:
             self.refuse(parent, "gps")
             return
-        parent.frame_id = given_frame(parent, params)
+        parent.frame_id = read_frame(parent, params)
         parent.err_as_classic()
         self._check_heading(params)
         parent.publish_on({"fix": self.ros.topic("~/out"), "velocity": self.ros.topic("~/vel")})

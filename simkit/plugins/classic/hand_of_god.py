@@ -12,8 +12,8 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
-from simkit.plugins.lookups import named_link
-from simkit.plugins.once import Once
+from simkit.plugins.lookups import find_named_link
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import IDENTITY, Pose
 
@@ -38,7 +38,7 @@ class GazeboRosHandOfGod(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         old = is_ros_1(params, ("linkName", "frameId"))
-        self._scoped = named_link(scene, "linkName" if old else "link_name", params)
+        self._scoped = find_named_link(scene, "linkName" if old else "link_name", params)
         self._frame = params.text("frameId" if old else "frame_id", _WORLD)
         self._stiffness = np.array([params.number(name, 200.0, minimum=0.0, maximum=1e9) for name in ("kl", "ka")])
         link = next((one for one in scene.all_links() if one.scoped == self._scoped), None)
@@ -46,7 +46,7 @@ class GazeboRosHandOfGod(ModelPlugin):
         self._has_weight = link is not None and link.gravity
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._damping = 2.0 * np.sqrt(self._stiffness * (self._mass, self._inertia))
         self._link = self.sim.link(self._scoped)
         self._frames: dict[str, tuple[str, Pose]] = {}

@@ -10,7 +10,7 @@ import numpy as np
 from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import named_link
+from simkit.plugins.lookups import find_named_link
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class GazeboRosImu(ModelPlugin):
     filenames = ("libgazebo_ros_imu.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._body = named_link(scene, "bodyName", params)
+        self._body = find_named_link(scene, "bodyName", params)
         self._topic = params.text("topicName", _DEFAULT)
         self._service = params.text("serviceName", _DEFAULT)
         self._frame = params.text("frameName", "").strip("/") or self._body.rsplit("::", 1)[-1]

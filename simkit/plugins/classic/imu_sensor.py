@@ -6,7 +6,7 @@ from typing import Any
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.classic.sensor_topics import given_frame, topic_of
+from simkit.plugins.ros_names import private_topic, read_frame
 
 _WORLD = (1.0, 0.0, 0.0, 0.0)
 
@@ -22,7 +22,7 @@ class GazeboRosImuSensor(SensorPlugin):
     filenames = ("libgazebo_ros_imu_sensor.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        topic = topic_of(self, "out", "topicName")
+        topic = private_topic(self, "out", "topicName")
         old = params.boolean("initialOrientationAsReference", False)
         from_start = params.boolean("initial_orientation_as_reference", old)
         body = params.text("bodyName", "")
@@ -30,7 +30,7 @@ class GazeboRosImuSensor(SensorPlugin):
             self.refuse(parent, "imu")
             return
         is_named = any(params.has(name) for name in ("frame_name", "frameName"))
-        frame = given_frame(parent, params)
+        frame = read_frame(parent, params)
         parent.frame_id = body if body and not is_named else frame
         parent.measure_against(parent.scene.pose_world.quaternion if from_start else _WORLD)
         parent.publish_on({"imu": topic})

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.errors import InputError
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.joints.axes import nearest
-from simkit.plugins.joints.trajectory import nanoseconds
-from simkit.plugins.once import Once
+from simkit.plugins.joints.joint_axis import suggest_names
+from simkit.plugins.joints.joint_trajectory import nanoseconds
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Link, Model
@@ -36,7 +36,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
     drives = True
 
     def load(self, parent: Model, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._model = parent
         is_ros_1 = any(params.has(name) for name in ("topicName", "serviceName", "updateRate", "robotNamespace"))
         if is_ros_1:
@@ -72,7 +72,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         unknown = [name for name in names if name not in known]
         if unknown:
             what = f"a trajectory is left out: model {model.scoped!r} has no joint {unknown[0]!r}"
-            self.once.left_out(unknown[0], what, nearest(unknown[0], list(known)))
+            self.once.left_out(unknown[0], what, suggest_names(unknown[0], list(known)))
             return
         points = [(tuple(float(v) for v in p.positions), nanoseconds(p.time_from_start)) for p in message.points]
         for i, (positions, _) in enumerate(points):
@@ -94,7 +94,7 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         found = found or next((link for scoped, link in links.items() if scoped.endswith("::" + frame)), None)
         if found is None:
             what = f"a trajectory is left out: its frame_id {frame!r} is neither 'world' nor a link"
-            self.once.left_out(f"frame {frame}", what, nearest(frame, list(links)))
+            self.once.left_out(f"frame {frame}", what, suggest_names(frame, list(links)))
         return found
 
     def before_step(self) -> None:

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
-from simkit.plugins.gz.battery import Battery, BatteryConsumer
-from simkit.plugins.gz.battery_cell import Cell
-from simkit.plugins.lookups import named_link, needed_name
+from simkit.plugins.battery import Battery, BatteryConsumer, Cell
+from simkit.plugins.lookups import find_named_link, read_required_name
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -24,8 +23,8 @@ class ClassicLinearBattery(Battery):
     filenames = ("libLinearBatteryPlugin.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        named_link(scene, "link_name", params)
-        self.battery = needed_name(params, "battery_name")
+        find_named_link(scene, "link_name", params)
+        self.battery = read_required_name(params, "battery_name")
         capacity = params.number("capacity", required=True, minimum=1e-12) or 1.0
         charge = params.number("initial_charge", 0.0, minimum=0.0)
         constant, linear = (params.number(f"open_circuit_voltage_{n}_coef", 0.0) for n in ("constant", "linear"))
@@ -45,8 +44,8 @@ class LinearBatteryConsumer(BatteryConsumer):
     filenames = ("libLinearBatteryConsumerPlugin.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        named_link(scene, "link_name", params)
-        self.battery = needed_name(params, "battery_name")
+        find_named_link(scene, "link_name", params)
+        self.battery = read_required_name(params, "battery_name")
 
     def load(self, parent: Any, params: Params) -> None:
         self._power = self.declare("power_load", 0.0, description="what is drawn from the battery [W]")

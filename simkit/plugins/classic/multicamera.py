@@ -6,8 +6,8 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.classic.camera import publish_eyes, trigger
-from simkit.plugins.classic.pictures import CameraNames
+from simkit.plugins.classic.camera import connect_stereo, connect_trigger
+from simkit.plugins.classic.camera_settings import CameraNames
 
 
 class GazeboRosMultiCamera(SensorPlugin):
@@ -20,7 +20,7 @@ class GazeboRosMultiCamera(SensorPlugin):
     filenames = ("libgazebo_ros_multicamera.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        if connect(self, parent) is None:
+        if connect_multicamera(self, parent) is None:
             self.refuse(parent, "multicamera")
 
 
@@ -30,19 +30,19 @@ class GazeboRosTriggeredMultiCamera(SensorPlugin):
     filenames = ("libgazebo_ros_triggered_multicamera.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        names = connect(self, parent)
+        names = connect_multicamera(self, parent)
         if names is None:
             self.refuse(parent, "multicamera")
         else:
-            trigger(self, parent, names)
+            connect_trigger(self, parent, names)
 
 
-def connect(plugin: SensorPlugin, sensor: Any) -> CameraNames | None:
+def connect_multicamera(plugin: SensorPlugin, sensor: Any) -> CameraNames | None:
     """Names the topics; None where the sensor is no multicamera."""
     if not hasattr(sensor, "eyes"):
         return None
     names = CameraNames(plugin, sensor, is_ros_1=True)
-    publish_eyes(plugin, sensor, names, _side)
+    connect_stereo(plugin, sensor, names, _side)
     return names
 
 

@@ -12,8 +12,8 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
-from simkit.plugins.heard import instants, publish_while_heard
-from simkit.plugins.lookups import named_link
+from simkit.plugins.lookups import find_named_link
+from simkit.plugins.on_demand import count_instants, publish_while_subscribed
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
@@ -56,7 +56,7 @@ class GazeboRosP3D(ModelPlugin):
         self._shift = np.array(_offset(params, "xyz", is_old))
         self._turn = quat_from_rpy(*_offset(params, "rpy", is_old))
         self._is_shifted = bool(self._shift.any()) or self._turn.tolist() != [1.0, 0.0, 0.0, 0.0]
-        self._body = named_link(scene, body, params)
+        self._body = find_named_link(scene, body, params)
         self._frame, self._reference = frame.strip("/"), self._find_reference(scene, frame.strip("/"), params)
 
     def _find_reference(self, scene: SceneModel, frame: str, params: Params) -> str:
@@ -77,13 +77,13 @@ class GazeboRosP3D(ModelPlugin):
         self._stream = self.random("gaussian_noise", 6) if self._deviation > 0 else None
         self._spread = np.diag([self._deviation**2] * 6).reshape(36)
         self._out = self.advertise(self._topic, ODOMETRY)
-        publish_while_heard(self, self._out, self._rate, "tell")
+        publish_while_subscribed(self, self._out, self._rate, "tell")
 
     def tell(self) -> None:
         """Publishes."""
         pose, motion = self._reading()
         # counted whether heard or not, so that who listens does not change the noise
-        index = instants(self, self._rate)
+        index = count_instants(self, self._rate)
         told = partial(self._message, self.sim.time_ns, pose, motion, index)
         self._out.publish_later(told)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.held_motion import HeldMotion, Move, Mover
+from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, VelocityTarget
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
@@ -23,13 +23,13 @@ from simkit.plugins.drives.odometry import (
     planar_covariance,
     transforms,
 )
-from simkit.plugins.once import Once
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_from_rpy
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.runtime.clock import Grid
+    from simkit.runtime.engine.clock import TickGrid
     from simkit.scene import SceneModel
 
 _ROS_1 = (
@@ -131,14 +131,14 @@ class GazeboRosPlanarMove(ModelPlugin):
         self._in_canonical = canonical.pose_world.inverse() @ scene.pose_world
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         options = self.options
         self._true = TrueMotion(parent, self.sim.link(self._canonical))
         self._told = self._command = (0.0, 0.0, 0.0)
         self._told_ns = self.sim.time_ns
         self._next = 0
-        self._motion = HeldMotion(self.sim, self._links, self._canonical, self._in_canonical)
-        self._mover = Mover(self.sim)
+        self._motion = KinematicMotion(self.sim, self._links, self._canonical, self._in_canonical)
+        self._mover = KinematicMover(self.sim)
         if not self._motion:
             message = f"plugin {self.name!r}: model {self.scoped!r} is joined to the world and stays where it is"
             hint = "leave out the joint to the world"
@@ -166,18 +166,18 @@ class GazeboRosPlanarMove(ModelPlugin):
         cls, plugins: Sequence[GazeboRosPlanarMove]
     ) -> Callable[[Iterable[GazeboRosPlanarMove]], None]:
         """The same of many: what they share is worked out once."""
-        mover = Mover(plugins[0].sim)
+        mover = KinematicMover(plugins[0].sim)
 
         def run(rota: Iterable[GazeboRosPlanarMove]) -> None:
             mover.move([move for plugin in rota for move in plugin._moves()])
 
         return run
 
-    def _moves(self) -> list[Move]:
+    def _moves(self) -> list[VelocityTarget]:
         """What is to be moved now: the model, in the axes of its heading."""
         tick = self.sim.tick
         if tick >= self._next:
-            grid: Grid | None = self.sim.clock.grid(self.options.update_rate)
+            grid: TickGrid | None = self.sim.clock.grid(self.options.update_rate)
             self._next = grid.next(tick) if grid is not None else tick
             self._command = self._told
         if (self.sim.time_ns - self._told_ns) * 1e-9 > self.options.timeout:
@@ -187,7 +187,7 @@ class GazeboRosPlanarMove(ModelPlugin):
         ahead, aside, turn = self._command
         pose = self._motion.frame
         level = Pose(pose.position, quat_from_rpy(0.0, 0.0, float(pose.rpy[2])))
-        return [Move(self._motion, level, (ahead, aside, 0.0), (0.0, 0.0, turn), falls=True)]
+        return [VelocityTarget(self._motion, level, (ahead, aside, 0.0), (0.0, 0.0, turn), falls=True)]
 
     # ------------------------------------------------------------------ readings
 

@@ -7,7 +7,7 @@ from typing import Any
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.classic.ray_sensor import RADIATION
-from simkit.plugins.classic.sensor_topics import given_frame
+from simkit.plugins.ros_names import read_frame
 
 
 class GazeboRosRange(SensorPlugin):
@@ -28,7 +28,7 @@ class GazeboRosRange(SensorPlugin):
         if not hasattr(parent, "range_noise"):
             self.refuse(parent, "ray")
             return
-        parent.frame_id = given_frame(parent, params)
+        parent.frame_id = read_frame(parent, params)
         parent.radiation, parent.field_of_view = radiation, view
         if stddev > 0:
             parent.add_range_noise(stddev)

@@ -7,7 +7,7 @@ from typing import Any
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.classic.sensor_topics import given_frame, topic_of
+from simkit.plugins.ros_names import private_topic, read_frame
 
 _OUTPUTS = {
     "sensor_msgs/LaserScan": "scan",
@@ -31,7 +31,7 @@ class GazeboRosRaySensor(SensorPlugin):
         output = _OUTPUTS[params.choice("output_type", tuple(_OUTPUTS), "sensor_msgs/PointCloud2")]
         radiation = RADIATION[params.choice("radiation_type", tuple(RADIATION), "infrared")]
         least = params.number("min_intensity", 0.0)
-        topic = topic_of(self, "out", "topicName")
+        topic = private_topic(self, "out", "topicName")
         _connect(self, parent, {output: topic}, least, radiation)
 
 
@@ -89,7 +89,7 @@ class GazeboRosVelodyneLaser(SensorPlugin):
         keeps_order = params.boolean("organize_cloud", False)
         least = params.number("min_intensity", -math.inf)
         noise = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
-        topic = topic_of(self, "out", "topicName")
+        topic = private_topic(self, "out", "topicName")
         if _connect(self, parent, {"velodyne": topic}, least, RADIATION["infrared"]):
             parent.cloud_range, parent.keeps_order = limits, keeps_order
             if noise > 0:
@@ -100,7 +100,7 @@ def _connect(plugin: SensorPlugin, sensor: Any, topics: dict[str, str], min_inte
     if not hasattr(sensor, "min_intensity"):
         plugin.refuse(sensor, "ray")
         return False
-    sensor.frame_id = given_frame(sensor, plugin.params)
+    sensor.frame_id = read_frame(sensor, plugin.params)
     sensor.min_intensity, sensor.radiation = min_intensity, radiation
     sensor.publish_on(topics)
     return True

@@ -7,7 +7,7 @@ from typing import Any
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.classic import pictures
+from simkit.plugins.classic import camera_settings
 
 _STREAMS = {"color": "color", "infrared1": "ired1", "infrared2": "ired2", "depth": "depth"}
 """What the parameters of a stream begin with -> how its sensor's name ends."""
@@ -33,7 +33,7 @@ class RealSense(ModelPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         prefix = params.text("prefix", "")
-        near, far = pictures.read_depths(params, "rangeMinDepth", "rangeMaxDepth", 0.0)
+        near, far = camera_settings.read_depths(params, "rangeMinDepth", "rangeMaxDepth", 0.0)
         cloud = self._read_cloud(params)
         for stream, ending in _STREAMS.items():
             topic = self._below(prefix, params.text(f"{stream}TopicName", "") or _TOPICS[stream])
@@ -52,14 +52,14 @@ class RealSense(ModelPlugin):
                 sensor.rework("image", _as_driver)
                 sensor.publish_on({"image": topics[0], "camera_info": topics[1]})
         rates = ("depthUpdateRate", "colorUpdateRate", "infraredUpdateRate")
-        pictures.report_without_effect(self, dict.fromkeys(rates, _SENSORS_OWN))
+        camera_settings.report_without_effect(self, dict.fromkeys(rates, _SENSORS_OWN))
 
     def _read_cloud(self, params: Params) -> tuple[str, float, float]:
         """Topic, nearest and farthest depth [m] of the cloud; without a topic there is none."""
         is_wanted = params.boolean("pointCloud", False)
         topic = params.text("pointCloudTopicName", "points")
         names = "pointCloudCutoff", "pointCloudCutoffMax"
-        return topic if is_wanted else "", *pictures.read_depths(params, *names, 0.0, _CUTOFF_MAX)
+        return topic if is_wanted else "", *camera_settings.read_depths(params, *names, 0.0, _CUTOFF_MAX)
 
     def _publish_depth(
         self, sensor: Any, prefix: str, topics: tuple[str, str], cloud: tuple[str, float, float]

@@ -6,8 +6,8 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
-from simkit.plugins.classic.service_states import STATES_RATE
-from simkit.plugins.classic.services import broadcast_states, offer_table, property_services, state_services
+from simkit.plugins.classic.server_services import broadcast_states, offer_table, property_services, state_services
+from simkit.plugins.classic.state_services import STATES_RATE
 
 
 class GazeboRosState(WorldPlugin):

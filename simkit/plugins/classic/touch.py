@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
-from simkit.plugins.gz.touch import Touching
+from simkit.plugins.gz.touch import TouchTimer
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
 
 
-class ClassicTouchPlugin(Touching):
+class ClassicTouchPlugin(TouchTimer):
     """Says once that its model has touched a target, and nothing else, for a while without a break.
 
     What counts are the collisions that the named contact sensors watch. Its messages are whole numbers: 1 on

@@ -8,17 +8,17 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
-from simkit.compiler.friction import MU_MOST, coefficients_of, priority_of
+from simkit.compiler.contact_friction import MU_MOST, directional_friction, friction_priority
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.belts import belt_of, needs_direction, report_nothing_to_run
 from simkit.plugins.drives.odometry import COMMAND_TYPES, command_of
-from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
+from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.lookups import find_link
-from simkit.plugins.once import Once
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import IDENTITY
-from simkit.runtime.surface import Belt, Run
+from simkit.runtime.contact.moving_surface import Belt, BeltMotion
 from simkit.scene import Cylinder, SceneJoint, SceneLink
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class _TrackedVehicle(ModelPlugin):
         ]
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         own = valid_topic(f"/{self._namespace}") if self._namespace else ""
         self.listen(f"{own}/cmd_vel", COMMAND_TYPES, partial(self._on_command, 1.0))
         self.listen(f"{own}/cmd_vel_twist", COMMAND_TYPES, partial(self._on_command, -1.0))
@@ -76,7 +76,7 @@ class _TrackedVehicle(ModelPlugin):
         """Gives the collisions of a link a coefficient of friction, in the engine's model."""
         geoms = list(self.sim.names.link(link.scoped).geoms)
         self.sim.touch("geom_friction")[geoms, 0] = mu
-        self.sim.touch("geom_priority")[geoms] = priority_of(mu)
+        self.sim.touch("geom_priority")[geoms] = friction_priority(mu)
         self.sim.physics.changed_model()
 
 
@@ -99,7 +99,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
             found += [find_link(scene, one.value, one) for one in params.all(f"{side}_flipper")]
             self._tracks += [(link, number) for link in found if link is not None]
         for link, _ in self._tracks:
-            report_nothing_to_run(link, params)
+            report_missing_collisions(link, params)
 
     def _link(self, element: str, scene: SceneModel, params: Params) -> SceneLink | None:
         name, named = params.text(element, required=True), params.child(element)
@@ -109,7 +109,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
         """Along and across the belt, where the plugin asks for any; what it leaves open is as the file has it."""
         if self._asked == [None, None] or not link.collisions:
             return None
-        of_file = coefficients_of(link.collisions[0].surface)
+        of_file = directional_friction(link.collisions[0].surface)
         along, across = (old if new is None else new for new, old in zip(self._asked, of_file, strict=True))
         return along, across
 
@@ -121,14 +121,14 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
             if friction is not None:
                 self.rub(link, max(friction))
         directed = [needs_direction(link) or friction for link, friction in zip(links, self._rubs, strict=True)]
-        self._stands = [Run(0.0) if one else None for one in directed]
-        self._runs: list[Run | None] = list(self._stands)
+        self._stands = [BeltMotion(0.0) if one else None for one in directed]
+        self._runs: list[BeltMotion | None] = list(self._stands)
         self._speeds = (0.0, 0.0)
         self.before_step_rate = 1e-9
         self.sim.friction.add_belts(self, self._belts)
 
     def _belts(self) -> list[Belt]:
-        def now(index: int) -> Run | None:
+        def now(index: int) -> BeltMotion | None:
             return self._runs[index]
 
         return [
@@ -163,7 +163,7 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
             x, y, z = (pose.position + pose.matrix[:, 1] * turn).tolist()
             centre = x, y, z
         runs = [
-            Run(self._speeds[side], centre) if self._speeds[side] else stands
+            BeltMotion(self._speeds[side], centre) if self._speeds[side] else stands
             for (_, side), stands in zip(self._tracks, self._stands, strict=True)
         ]
         if runs != self._runs:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     DeadReckoning,
@@ -23,10 +24,9 @@ from simkit.plugins.drives.odometry import (
     rolling_twist,
     wheel_angles,
 )
-from simkit.plugins.drives.outputs import DriveOutputs, Told
-from simkit.plugins.drives.steering import find_turning
-from simkit.plugins.drives.wheels import find_wheels
-from simkit.plugins.once import Once
+from simkit.plugins.drives.steering import find_drive_joint
+from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.plugins.ros_names import is_ros_1
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class Options:
     rate: float
     from_encoders: bool
     command_topic: str
-    told: Told
+    told: DriveOutputOptions
 
 
 def read_options(params: Params) -> Options:
@@ -99,7 +99,7 @@ def read_options(params: Params) -> Options:
         rate=params.number("update_rate", 100.0, minimum=0),
         from_encoders=params.integer("odometry_source", 1, minimum=0, maximum=1) == 0,
         command_topic="cmd_vel",
-        told=Told(
+        told=DriveOutputOptions(
             odometry_topic="odom",
             odometry_frame=params.text("odometry_frame", "odom"),
             base_frame=params.text("robot_base_frame", "base_link"),
@@ -133,7 +133,7 @@ def _read_ros_1(params: Params) -> Options:
         rate=params.number("updateRate", 100.0, minimum=0),
         from_encoders=params.choice("odometrySource", ("world", "encoder"), "world") == "encoder",
         command_topic=params.text("commandTopic", "cmd_vel"),
-        told=Told(
+        told=DriveOutputOptions(
             odometry_topic=params.text("odometryTopic", "odom"),
             odometry_frame=params.text("odometryFrame", "odom"),
             base_frame=params.text("robotBaseFrame", "base_link"),
@@ -156,7 +156,7 @@ class GazeboRosTricycleDrive(ModelPlugin):
         self.options = options = read_options(params)
         self._canonical = scene.canonical_link
         steering_name, driven_name, left, right = options.joints
-        steering = find_turning(scene, steering_name, "steering", params)
+        steering = find_drive_joint(scene, steering_name, "steering", params)
         named = {"driven wheel": [driven_name], "left encoder wheel": [left], "right encoder wheel": [right]}
         wheels = [joint for joints in find_wheels(scene, named, params).values() for joint in joints]
         self._all = [joint for joint in (steering, *wheels) if joint is not None]
@@ -170,7 +170,7 @@ class GazeboRosTricycleDrive(ModelPlugin):
             self._steering = builder.add_position_servo(steering.scoped, max_effort=math.inf, owner=owner)
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self.before_step_rate = self.after_step_rate = self.options.rate
         steering, _, left, right = (self.sim.joint(joint.scoped) for joint in self._all)
         self._turned, self._pair = steering, (left, right)

@@ -12,7 +12,7 @@ from simkit.diagnostics import Where
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_joint
-from simkit.runtime.physics import CONTROL
+from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

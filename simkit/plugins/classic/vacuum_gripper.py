@@ -11,10 +11,10 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.heard import publish_while_heard
-from simkit.plugins.lookups import find_link, named_link
+from simkit.plugins.lookups import find_link, find_named_link
+from simkit.plugins.on_demand import publish_while_subscribed
 from simkit.plugins.ros_names import is_ros_1
-from simkit.runtime.physics import STALE
+from simkit.runtime.engine.physics import STALE
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -47,7 +47,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         self._topic, self._rate = "grasping", _RATE
         fixed: list[str] = []
         if self._is_ros_1:
-            self._grippers = [named_link(scene, "bodyName", params)]
+            self._grippers = [find_named_link(scene, "bodyName", params)]
             self._topic, self._rate = params.text("topicName", required=True), 0.0
             self._reach = params.number("maxDistance", 0.05, minimum=0.0)
             for name in ("maxForce", "minDistance"):
@@ -69,7 +69,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
     def load(self, parent: Any, params: Params) -> None:
         self._is_on = False
         self._held: dict[str, str] = {}  # scoped link -> the weld that holds it
-        self._things = _Things()
+        self._things = _GrippableLinks()
         self.before_step_rate = NEVER
         words = ("on", "off") if self._is_ros_1 else ("switch",)
         self._services = tuple(self.ros.topic(word) for word in words)
@@ -82,7 +82,7 @@ class GazeboRosVacuumGripper(ModelPlugin):
         else:
             self.offer("switch", SET_BOOL, self._on_switch)
         self._grasping = self.advertise(self._topic, BOOL)
-        publish_while_heard(self, self._grasping, self._rate, "tell")
+        publish_while_subscribed(self, self._grasping, self._rate, "tell")
 
     def reset(self) -> None:
         self.sim.reschedule()
@@ -156,13 +156,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
         return True
 
 
-class _Things:
+class _GrippableLinks:
     """Where grippers and what they may hold are in the engine; a handle, without state of its own."""
 
     def __init__(self) -> None:
         self._known: Any = None
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> _Things:
+    def __deepcopy__(self, memo: dict[int, Any]) -> _GrippableLinks:
         return self
 
     def bind(self, sim: Any, own: str, fixed: frozenset[str], grippers: list[str]) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
-from simkit.plugins.heard import instants, publish_while_heard
-from simkit.plugins.lookups import named_link
+from simkit.plugins.lookups import find_named_link
+from simkit.plugins.on_demand import count_instants, publish_while_subscribed
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class GazeboWorldOdometry(ModelPlugin):
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._frame = params.text("frameName", "world")
         element = "bodyName" if params.has("bodyName") or not params.has("frameName") else "frameName"
-        self._body = named_link(scene, element, params)
+        self._body = find_named_link(scene, element, params)
         self._topic = params.text("topicName", "ft_data")  # Gazebo's default
         self._rate = params.number("updateRate", 1000.0, minimum=0)
 
@@ -53,12 +53,12 @@ class GazeboWorldOdometry(ModelPlugin):
         self._walk: Vector = np.zeros(3)
         self._out = self.advertise(self._topic, ODOMETRY)
         # whether heard or not, so that who listens does not change the noise
-        publish_while_heard(self, self._out, self._rate, "tell", also=lambda: self._deviation.value > 0)
+        publish_while_subscribed(self, self._out, self._rate, "tell", also=lambda: self._deviation.value > 0)
 
     def tell(self) -> None:
         """Publishes."""
         if self._deviation.value > 0:
-            self._walk = self._walk + self._deviation.value * self._stream.normal(instants(self, self._rate))
+            self._walk = self._walk + self._deviation.value * self._stream.normal(count_instants(self, self._rate))
         if not self._out.wanted:
             return
         link, (dx, dy, turn) = self._link, self._walk.tolist()

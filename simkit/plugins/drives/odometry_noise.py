@@ -56,7 +56,7 @@ def read_odometry_noise(params: Params) -> OdometryNoise | None:
     )
 
 
-class ErringOdometry:
+class NoisyOdometry:
     """Dead reckoning from the angles of two wheels as a drive reads them, and the covariance that it predicts.
 
     The covariance is that of the random errors; of systematic ones a drive knows nothing.
@@ -154,7 +154,7 @@ class ErringOdometry:
         self.twist_covariance = (by_wheel * variances) @ by_wheel.T
 
 
-class FollowedMotion:
+class EquivalentWheelAngles:
     """A true motion as the angles that wheels without slip would have turned by.
 
     Args:
@@ -189,7 +189,7 @@ class FollowedMotion:
         return (*self.angles, across)
 
 
-def displaced(pose: Pose, reckoned: DeadReckoning) -> Pose:
+def replace_planar_pose(pose: Pose, reckoned: DeadReckoning) -> Pose:
     """A true pose with the place and heading that a reckoning has instead; height and tilt stay."""
     turn = quat_from_rpy(0.0, 0.0, reckoned.yaw - _planar(pose)[2])
     return Pose((reckoned.x, reckoned.y, pose.position[2]), quat_multiply(turn, pose.quaternion))

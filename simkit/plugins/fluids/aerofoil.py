@@ -25,7 +25,7 @@ _STRAIGHT: Final = 1e-9  # sine of the angle below which a stream comes straight
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class CoefficientLine:
     """A coefficient over the angle of attack.
 
     Attributes:
@@ -69,9 +69,9 @@ class Aerofoil:
         lift_by_joint, moment_by_joint: by how much the coefficients grow with a control surface's angle [1/rad].
     """
 
-    lift: Line
-    drag: Line
-    moment: Line
+    lift: CoefficientLine
+    drag: CoefficientLine
+    moment: CoefficientLine
     stall: float
     zero: float
     density: float
@@ -136,8 +136,8 @@ def read_aerofoil(params: Params, *, has_moment: bool = True) -> Aerofoil:
         has_moment: whether it makes a pitching moment (Classic's makes none).
     """
 
-    def line(name: str, slope: float, beyond: float) -> Line:
-        return Line(_bounded(params, name, slope), _bounded(params, f"{name}_stall", beyond))
+    def line(name: str, slope: float, beyond: float) -> CoefficientLine:
+        return CoefficientLine(_bounded(params, name, slope), _bounded(params, f"{name}_stall", beyond))
 
     forward, upward = (_direction(params, n, d) for n, d in (("forward", (1.0, 0, 0)), ("upward", (0, 0, 1.0))))
     is_radial = params.boolean("radial_symmetry", False)
@@ -152,7 +152,7 @@ def read_aerofoil(params: Params, *, has_moment: bool = True) -> Aerofoil:
     return Aerofoil(
         lift=line("cla", 1.0, 0.0),
         drag=line("cda", 0.01, 1.0),
-        moment=moment if has_moment else Line(0.0, 0.0),
+        moment=moment if has_moment else CoefficientLine(0.0, 0.0),
         stall=params.number("alpha_stall", math.pi / 2, minimum=0),
         zero=_bounded(params, "a0", 0.0),
         density=params.number("air_density", 1.2041, minimum=0, maximum=1e9),

@@ -33,7 +33,7 @@ class Interval:
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class FieldPiece:
     """k · (p(x) + q(y) + r(z)) in a box of space.
 
     Attributes:
@@ -84,7 +84,7 @@ class WindField:
         everywhere: where it is.
     """
 
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[FieldPiece, ...] = ()
     everywhere: float = 0.0
 
     def at(self, places: Vector) -> Vector | float:
@@ -131,16 +131,16 @@ def read_field(params: Params, quirks: bool) -> WindField:
     return field
 
 
-def _piece(block: Params, is_bounded: bool = True) -> Piece:
+def _piece(block: Params, is_bounded: bool = True) -> FieldPiece:
     x, y, z = (_interval(block, axis) if is_bounded else Interval() for axis in "xyz")
     if not block.children:
         value = _number_of(block)
-        return Piece((x, y, z), value, _ONE)
-    p, q, r = (_four(block, name) for name in _AXES)
-    return Piece((x, y, z), block.number("k", 1.0, minimum=-1e9, maximum=1e9), (p, q, r))
+        return FieldPiece((x, y, z), value, _ONE)
+    p, q, r = (_four_coefficients(block, name) for name in _AXES)
+    return FieldPiece((x, y, z), block.number("k", 1.0, minimum=-1e9, maximum=1e9), (p, q, r))
 
 
-def _four(block: Params, name: str) -> Four:
+def _four_coefficients(block: Params, name: str) -> Four:
     a, b, c, d = block.vector(name, 4, _ZERO)
     return a, b, c, d
 

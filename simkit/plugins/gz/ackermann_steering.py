@@ -16,12 +16,11 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
-from simkit.plugins.drives.steering import AckermannOdometry, find_turning, steering_angles
-from simkit.plugins.drives.travel import joint_angles
-from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.drives.steering import AckermannOdometry, find_drive_joint, joint_angles, steering_angles
+from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.gz.diff_drive import speed_limits
-from simkit.plugins.lookups import given_topic
-from simkit.plugins.once import Once
+from simkit.plugins.lookups import read_topic
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -69,7 +68,7 @@ class AckermannSteering(ModelPlugin):
         named = params.all(element)
         if not named:
             params.text(element, required=True)
-        found = [find_turning(scene, one.value, "steered wheel", one) for one in named]
+        found = [find_drive_joint(scene, one.value, "steered wheel", one) for one in named]
         joints = [joint for joint in found if joint is not None]
         return [
             (j.scoped, builder.add_velocity_servo(j.scoped, max_effort=j.axes[0].effort, owner=self.name))
@@ -89,7 +88,7 @@ class AckermannSteering(ModelPlugin):
         ]
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         what = "speed of the steering per error of its angle [1/s]"
         self._gain = self.declare("steer_p_gain", 1.0, minimum=0.0, maximum=1e6, description=what)
         self._read_rest_of_gains(params)
@@ -107,9 +106,9 @@ class AckermannSteering(ModelPlugin):
         link = self._canonical.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{parent.name}/odom")
         self._child = params.text("child_frame_id", f"{parent.name}/{link}")
-        topic = given_topic(params, "odom_topic", f"/model/{parent.name}/odometry")
+        topic = read_topic(params, "odom_topic", f"/model/{parent.name}/odometry")
         self._odom = self.advertise(topic, ODOMETRY)
-        self._tf = self.advertise(given_topic(params, "tf_topic", f"/model/{parent.name}/tf"), TRANSFORMS)
+        self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{parent.name}/tf"), TRANSFORMS)
 
     def _read_rest_of_gains(self, params: Params) -> None:
         """Of gz's controller, which begins anew at every step: i and d are further proportional parts."""
@@ -126,8 +125,8 @@ class AckermannSteering(ModelPlugin):
         if not self._only:
             topic = f"/model/{model}/cmd_vel"
         if params.text("sub_topic", ""):
-            topic = f"/model/{model}{given_topic(params, 'sub_topic', '')}"
-        topic = given_topic(params, "topic", topic)
+            topic = f"/model/{model}{read_topic(params, 'sub_topic', '')}"
+        topic = read_topic(params, "topic", topic)
         if not self._only:
             self.listen(topic, COMMAND_TYPES, self._on_command)
         elif by_message:

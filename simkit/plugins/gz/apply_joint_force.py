@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.joints.axes import JointAxis, find_joints
-from simkit.plugins.joints.commands import DOUBLE
-from simkit.plugins.once import Once
+from simkit.plugins.joints.joint_axis import JointAxis, find_joints
+from simkit.plugins.joints.joint_commands import DOUBLE
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -38,7 +38,7 @@ class ApplyJointForce(ModelPlugin):
         self._written = names[0].value if names else ""
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._axis = JointAxis(self.sim.joint(self._scoped)) if self._scoped else None
         self._effort = 0.0
         self.listen(valid_topic(f"/model/{parent.name}/joint/{self._written}/cmd_force"), DOUBLE, self._on_command)

@@ -11,9 +11,9 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
-from simkit.plugins.lookups import given_topic, needed_name
-from simkit.plugins.once import Once
-from simkit.plugins.world.entities import Refused, entity_of
+from simkit.plugins.lookups import read_required_name, read_topic
+from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.world.entities import RequestRefused, entity_of
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -47,17 +47,17 @@ class ApplyLinkWrench(WorldPlugin):
     names = ("gz::sim::systems::ApplyLinkWrench",)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._verbose = params.boolean("verbose", True)
         self._persistent = [w for e in params.all("persistent") if (w := self._read(e)) is not None]
         self._stand()
         base = f"/world/{parent.world.name}/wrench"
-        self.listen(given_topic(params, "topic", base), ENTITY_WRENCH, self._on_wrench)
-        self.listen(given_topic(params, "topic_persistent", f"{base}/persistent"), ENTITY_WRENCH, self._on_persistent)
-        self.listen(given_topic(params, "topic_clear", f"{base}/clear"), ENTITY, self._on_clear)
+        self.listen(read_topic(params, "topic", base), ENTITY_WRENCH, self._on_wrench)
+        self.listen(read_topic(params, "topic_persistent", f"{base}/persistent"), ENTITY_WRENCH, self._on_persistent)
+        self.listen(read_topic(params, "topic_clear", f"{base}/clear"), ENTITY, self._on_clear)
 
     def _read(self, element: Params) -> _Wrench | None:
-        name = needed_name(element, "entity_name")
+        name = read_required_name(element, "entity_name")
         kind = element.choice("entity_type", tuple(_TYPES), "link" if element.has("entity_type") else "")
         force, torque = (element.vector3(n, (0.0, 0.0, 0.0)) for n in ("force", "torque"))
         if not name or kind not in _TYPES:
@@ -77,10 +77,10 @@ class ApplyLinkWrench(WorldPlugin):
         """The link that a name means: exactly, or the first whose scoped name ends so."""
         tables = self.sim.entities.tables
         if kind != _MODEL:
-            link: Link | None = _named(tables["link"], name)
+            link: Link | None = _find_entity(tables["link"], name)
             if link is not None or kind == _LINK:
                 return link
-        model = _named(tables["model"], name)
+        model = _find_entity(tables["model"], name)
         if model is None or not model.scene.canonical_link:
             return None
         return self.sim.link(model.scene.canonical_link)
@@ -149,7 +149,7 @@ class ApplyLinkWrench(WorldPlugin):
             return entity.name.removeprefix(f"{self.sim.world.name}::"), entity.type
         try:
             kind, name = entity_of(self.sim, entity, tuple(_TYPES))
-        except Refused as error:
+        except RequestRefused as error:
             self.log.warning("%s: %s", self.name, error)
             return None
         return name, _TYPES[kind]
@@ -180,7 +180,7 @@ def _xyz(vector: Any) -> tuple[float, float, float]:
     return float(vector.x), float(vector.y), float(vector.z)
 
 
-def _named(table: dict[str, Any], name: str) -> Any:
+def _find_entity(table: dict[str, Any], name: str) -> Any:
     if name in table:
         return table[name]
     return next((handle for scoped, handle in table.items() if scoped.endswith("::" + name)), None)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Final
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
-from simkit.plugins.fluids.displacement import Fluid
-from simkit.plugins.fluids.floating import Floating
-from simkit.plugins.fluids.hulls import Hull
+from simkit.plugins.fluids.buoyant_force import Fluid
+from simkit.plugins.fluids.collision_volumes import Hull
+from simkit.plugins.fluids.floating_links import BuoyancyBase
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -19,7 +19,7 @@ WATER: Final = 1000.0
 """[kg/m³]"""
 
 
-class Buoyancy(Floating, WorldPlugin):
+class Buoyancy(BuoyancyBase, WorldPlugin):
     """The whole world lies in a fluid or in level layers of several; every link floats by its collisions' volume.
 
     `<enable>` names the models and links that do, where not all should.

@@ -9,7 +9,7 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.lookups import given_topic, named_link, needed_name
+from simkit.plugins.lookups import find_named_link, read_required_name, read_topic
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -31,9 +31,9 @@ class DetachableJoint(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._own = scene.scoped
-        self._parent = named_link(scene, "parent_link", params)
-        self._child_model = needed_name(params, "child_model")
-        self._child_link = needed_name(params, "child_link")
+        self._parent = find_named_link(scene, "parent_link", params)
+        self._child_model = read_required_name(params, "child_model")
+        self._child_link = read_required_name(params, "child_link")
         self._wanted = params.boolean("initial_attach", True)
         self._quiet = params.boolean("suppress_child_warning", False)
         taken = {name for record in builder.records.values() for name in record.equalities}
@@ -69,14 +69,14 @@ class DetachableJoint(ModelPlugin):
     def load(self, parent: Any, params: Params) -> None:
         own = f"/model/{parent.name}/detachable_joint"
         old = params.text("topic", "")
-        detach = given_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{own}/detach")
+        detach = read_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{own}/detach")
         if old and valid_topic(old) != detach:
             params.diagnostics.warning(
                 "SK-PARAM-004", f"<topic> is {old!r} and <detach_topic> is {detach!r}: the latter counts", self.where
             )
-        state = given_topic(params, "output_topic", f"/model/{self._child_model}/detachable_joint/state")
+        state = read_topic(params, "output_topic", f"/model/{self._child_model}/detachable_joint/state")
         self.listen(detach, EMPTY, self._on_detach)
-        self.listen(given_topic(params, "attach_topic", f"{own}/attach"), EMPTY, self._on_attach)
+        self.listen(read_topic(params, "attach_topic", f"{own}/attach"), EMPTY, self._on_attach)
         self._state = self.advertise(state, STRING)
         # what was attached from the start is told with the first step
         self._is_attached = False

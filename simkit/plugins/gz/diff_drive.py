@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.diff_drive_fleet import DriveFleet, fleet_of
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
     ODOMETRY,
@@ -23,10 +22,11 @@ from simkit.plugins.drives.odometry import (
     transforms,
     wheel_angles,
 )
-from simkit.plugins.drives.odometry_noise import ErringOdometry, read_odometry_noise
-from simkit.plugins.drives.wheels import find_wheels
-from simkit.plugins.lookups import given_topic
-from simkit.plugins.once import Once
+from simkit.plugins.drives.odometry_noise import NoisyOdometry, read_odometry_noise
+from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.gz.diff_drive_fleet import DriveFleet, fleet_of
+from simkit.plugins.lookups import read_topic
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -119,7 +119,7 @@ class DiffDrive(ModelPlugin):
         ]
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         model = parent.name
         link = self._canonical.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{model}/odom")
@@ -132,15 +132,15 @@ class DiffDrive(ModelPlugin):
         self._enabled = True
         self._odometry = WheelOdometry(self._radius, self._separation, self.period)
         noise = read_odometry_noise(params)
-        self._erring: ErringOdometry | None = None
+        self._erring: NoisyOdometry | None = None
         if noise is not None:
             stream = self.random("odometry_noise", 2)
-            self._erring = ErringOdometry(noise, self._radius, self._separation, stream, wheel_angles(*self._pair))
+            self._erring = NoisyOdometry(noise, self._radius, self._separation, stream, wheel_angles(*self._pair))
         self._last_ns = self.sim.time_ns
-        self.listen(given_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        self.listen(read_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self._on_command)
         self.listen(valid_topic(f"/model/{model}/enable"), "std_msgs/msg/Bool", self._on_enable)
-        self._odom = self.advertise(given_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
-        self._tf = self.advertise(given_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
+        self._odom = self.advertise(read_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
+        self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
         truth = params.boolean("publish_ground_truth", False)
         self._truth = self.advertise(valid_topic(f"/model/{model}/ground_truth/odom"), ODOMETRY) if truth else None
 

@@ -9,7 +9,7 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.once import Once
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import rpy_from_quat
 
 Planar = tuple[float, float, float]
@@ -34,7 +34,7 @@ class DriveToPoseController(ModelPlugin):
     drives = True
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         number = self.declare
         says = "speed ahead [m/s] for each metre that is left"
         self._linear_gain = number("linear_p_gain", 1.0, minimum=0.0, description=says)
@@ -58,7 +58,7 @@ class DriveToPoseController(ModelPlugin):
     # ------------------------------------------------------------------ messages
 
     def _on_target(self, message: Any) -> None:
-        found = _first(message)
+        found = _first_pose(message)
         target = None if found is None else _planar(found)
         if found is None:
             self.once.left_out("empty", "a target without a pose is left out")
@@ -70,7 +70,7 @@ class DriveToPoseController(ModelPlugin):
             self._set_pace()
 
     def _on_place(self, message: Any) -> None:
-        found = _first(message)
+        found = _first_pose(message)
         place = None if found is None else _planar(found)
         if place is not None:
             self._place, self._pose = place, found
@@ -120,7 +120,7 @@ class DriveToPoseController(ModelPlugin):
         return (0.0 if is_there else left), 0.0
 
 
-def _first(message: Any) -> Any:
+def _first_pose(message: Any) -> Any:
     """The first pose of a message of poses: a Pose or a Transform; None where there is none."""
     if hasattr(message, "transforms"):
         return message.transforms[0].transform if message.transforms else None

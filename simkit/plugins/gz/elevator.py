@@ -10,10 +10,10 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.heard import publish_while_heard
-from simkit.plugins.joints.axes import JointAxis
-from simkit.plugins.lookups import find_axis_joint, find_link, given_topic
-from simkit.plugins.once import Once
+from simkit.plugins.joints.joint_axis import JointAxis
+from simkit.plugins.lookups import find_axis_joint, find_link, read_topic
+from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -73,13 +73,13 @@ class Elevator(ModelPlugin):
         self._joint_names = [cabin, *(f"{door}{k}" for k in range(count))]
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         own = f"/model/{parent.name}"
         axes = [JointAxis(self.sim.joint(name)) for name in (self._cabin, *self._doors)]
         self._lift, self._door_axes = axes[0], axes[1:]
         topics = [valid_topic(f"{own}/joint/{name}/0/cmd_pos") for name in self._joint_names]
         self._movers = [self.advertise(topic, DOUBLE) for topic in topics]
-        self._state = self.advertise(given_topic(params, "state_topic", f"{own}/state"), INT)
+        self._state = self.advertise(read_topic(params, "state_topic", f"{own}/state"), INT)
         self._phase: Phase = "idle"
         self._targets: list[int] = []
         self._kept: list[int] = []
@@ -88,11 +88,11 @@ class Elevator(ModelPlugin):
         self._was_blocked = False
         self._blocked = [False] * len(self._doors)
         self.after_step_rate = NEVER
-        self.listen(given_topic(params, "cmd_topic", f"{own}/cmd"), INT, self._on_command)
+        self.listen(read_topic(params, "cmd_topic", f"{own}/cmd"), INT, self._on_command)
         for k, name in enumerate(self._joint_names[1:]):
             self.subscribe(valid_topic(f"{own}/{name}/lidar"), partial(self._on_scan, k))
         rates = [rate for rate in (self._update_rate, self._state_rate) if rate > 0]
-        publish_while_heard(self, self._state, min(rates, default=0.0), "tell_floor")
+        publish_while_subscribed(self, self._state, min(rates, default=0.0), "tell_floor")
 
     @property
     def floor(self) -> int:

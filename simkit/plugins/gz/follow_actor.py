@@ -9,12 +9,12 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
-from simkit.plugins.actors.gait import Gait
+from simkit.plugins.actors.actor_model import AnimatedActor
 from simkit.plugins.actors.skin import SkinRig
-from simkit.plugins.actors.stage import Cast
+from simkit.plugins.actors.walk_cycle import Gait
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.lookups import needed_name
-from simkit.runtime.physics import STALE
+from simkit.plugins.lookups import read_required_name
+from simkit.runtime.engine.physics import STALE
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -39,14 +39,14 @@ class FollowActor(ModelPlugin):
     scenery_rate = _RATE
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._target = needed_name(params, "target")
+        self._target = read_required_name(params, "target")
         self._velocity = params.number("velocity", 0.8, minimum=0.0, maximum=1e6)
         self._least = params.number("min_distance", 1.2, minimum=0.0)
         self._most = params.number("max_distance", 4.0, minimum=0.0)
         self._seconds = params.number("animation_x_vel", 2.0, minimum=0.0, maximum=1e6)
         self._animation = params.text("animation", "")
         cast = scene.moved_by
-        if not isinstance(cast, Cast):
+        if not isinstance(cast, AnimatedActor):
             message = f"plugin {self.name!r} is for an actor, {scene.scoped!r} is a model"
             params.error("SK-PLUGIN-134", message, "put it into an <actor>")
             return
@@ -62,7 +62,7 @@ class FollowActor(ModelPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         scene: SceneModel = parent.scene
-        assert isinstance(scene.moved_by, Cast)
+        assert isinstance(scene.moved_by, AnimatedActor)
         self._gait = Gait(scene.moved_by, self._animation, self._velocity, self._seconds)
         self._links = [link.scoped for link in scene.links]
         pose = scene.pose_world
@@ -72,7 +72,7 @@ class FollowActor(ModelPlugin):
         # from an instant on it goes that way, for so many metres at most
         self._since_ns, self._way, self._left = self.sim.time_ns, (0.0, 0.0), 0.0
         self._is_following = True
-        self._places, self._shown = _Places(), (math.nan, 0.0, 0.0, False)
+        self._places, self._shown = _ActorBodies(), (math.nan, 0.0, 0.0, False)
         self.before_step_rate = None  # at once, then on the grid
         if self._find() is None:
             models = sorted(self.sim.entities.tables["model"])
@@ -143,13 +143,13 @@ class FollowActor(ModelPlugin):
         sim.physics.changed(STALE)
 
 
-class _Places:
+class _ActorBodies:
     """Where an actor's links are among the engine's movable bodies; a handle, without state of its own."""
 
     def __init__(self) -> None:
         self._known: tuple[Any, Any] = (None, None)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> _Places:
+    def __deepcopy__(self, memo: dict[int, Any]) -> _ActorBodies:
         return self
 
     def find(self, sim: Any, links: list[str]) -> Floats:

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
-from simkit.plugins.joints.commands import GAINS, JointCommander
+from simkit.plugins.joints.joint_commands import GAINS, JointCommander
 from simkit.plugins.joints.pid import Pid, declare_pid
 
 if TYPE_CHECKING:

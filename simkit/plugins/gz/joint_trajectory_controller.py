@@ -10,21 +10,21 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.joints.axes import JointAxis, has_axis, nearest
-from simkit.plugins.joints.commands import ControlledJoints
-from simkit.plugins.joints.pid import FIELDS, Pid, declare_pid
-from simkit.plugins.joints.trajectory import (
+from simkit.plugins.joints.joint_axis import JointAxis, has_axis, suggest_names
+from simkit.plugins.joints.joint_commands import ControlledJoints
+from simkit.plugins.joints.joint_trajectory import (
     INTERPOLATIONS,
-    Path,
-    Point,
-    State,
+    JointPath,
+    JointTarget,
+    TrajectoryPoint,
     active_point,
-    faults,
     nanoseconds,
     read_points,
+    trajectory_faults,
 )
-from simkit.plugins.lookups import find_joint, numbers
-from simkit.plugins.once import Once
+from simkit.plugins.joints.pid import FIELDS, Pid, declare_pid
+from simkit.plugins.lookups import find_joint, read_numbers
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -46,7 +46,7 @@ class _Axis:
     position: float
     velocity: float = 0.0
     effort: float = 0.0
-    path: Path | None = None
+    path: JointPath | None = None
 
 
 class JointTrajectoryController(ControlledJoints, ModelPlugin):
@@ -57,7 +57,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
     that runs. The start is the step after the message comes, or with `<use_header_start_time>` the time in its header.
     Each time that the target changes, how much of the trajectory is begun goes out on `<topic>_progress`.
 
-    `<simkit:interpolation>` linear, cubic or quintic (`simkit.plugins.joints.trajectory`) moves positions and
+    `<simkit:interpolation>` linear, cubic or quintic (`simkit.plugins.joints.joint_trajectory`) moves positions and
     velocities from point to point instead.
 
     Without `<joint_name>` all joints of the model with one axis. The numbers of the controllers are repeated, one
@@ -96,7 +96,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         return valid_topic(f"/model/{self.scoped.replace('::', '/')}/joint_trajectory_controller")
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._axes = self._read_axes(params)
         attribute = params.attribute("use_header_start_time")  # gz looks for it there, its manual has an element
         self._by_header = params.boolean("use_header_start_time", attribute.lower() in ("true", "1"))
@@ -105,9 +105,9 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         self.listen(topic, TRAJECTORY, self._on_trajectory)
         self._progress = self.advertise(f"{topic}_progress", PROGRESS)
         self._is_ready = False
-        self._message: tuple[list[str], list[Point], int] | None = None
+        self._message: tuple[list[str], list[TrajectoryPoint], int] | None = None
         self._names: list[str] = []
-        self._points: list[Point] = []
+        self._points: list[TrajectoryPoint] = []
         self._times: list[int] = []
         self._start, self._index = 0, -1
 
@@ -139,7 +139,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
 
     def _repeated(self, params: Params, element: str, default: float) -> list[float]:
         """A number for each joint: those of the elements in order, then the default."""
-        found, count = numbers(params, element), len(self._scoped)
+        found, count = read_numbers(params, element), len(self._scoped)
         if len(found) > count:
             message = f"plugin {self.name!r}: {len(found)} times <{element}> for {count} joint{'s'[: count != 1]}"
             hint = "one each, in the order of <joint_name>; those too many have no effect"
@@ -154,14 +154,14 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
 
     def _on_trajectory(self, message: Any) -> None:
         names, points = [str(name) for name in message.joint_names], read_points(message)
-        fault = faults(names, points) if names else "it names no joints"
+        fault = trajectory_faults(names, points) if names else "it names no joints"
         if fault:
             self.once.left_out(fault, f"a trajectory is left out: {fault}")
             return
         for name in names:
             if name not in self._axes:
                 what = f"a trajectory is for joint {name!r} too, which is not controlled; that part of it is left out"
-                self.once.left_out(name, what, nearest(name, list(self._axes)))
+                self.once.left_out(name, what, suggest_names(name, list(self._axes)))
         if any(point.accelerations for point in points) and self._rule != "quintic":
             what = "accelerations of a trajectory are not used"
             self.once.warn("SK-PLUGIN-045", "accelerations", what, "<simkit:interpolation>quintic uses them")
@@ -182,8 +182,8 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         for place, name in enumerate(self._names):
             found = self._axes.get(name)
             if found is not None:
-                here = State(found.joint.position, found.joint.velocity)
-                found.path = Path.through(here, self._points, place, self._rule)
+                here = JointTarget(found.joint.position, found.joint.velocity)
+                found.path = JointPath.through(here, self._points, place, self._rule)
 
     def _follow(self, now: int) -> None:
         """Sets the targets for now."""
@@ -198,7 +198,7 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
                 axis = self._axes.get(name)
                 if axis is None:
                     continue
-                for field, values in _targets(point):
+                for field, values in _read_targets(point):
                     if place < len(values):
                         setattr(axis, field, values[place])
             self._publish_progress((index + 1) / len(self._points))
@@ -230,5 +230,5 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
                     self.watch(joint, pid)
 
 
-def _targets(point: Point) -> tuple[tuple[str, tuple[float, ...]], ...]:
+def _read_targets(point: TrajectoryPoint) -> tuple[tuple[str, tuple[float, ...]], ...]:
     return ("position", point.positions), ("velocity", point.velocities), ("effort", point.efforts)

@@ -10,8 +10,8 @@ import numpy as np
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.gz.watch import watch_while_heard
-from simkit.plugins.lookups import given_topic, named_link
+from simkit.plugins.lookups import find_named_link, read_topic
+from simkit.plugins.on_demand import watch_while_subscribed
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -32,14 +32,14 @@ class KineticEnergyMonitor(ModelPlugin):
     names = ("gz::sim::systems::KineticEnergyMonitor",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._scoped = named_link(scene, "link_name", params)
+        self._scoped = find_named_link(scene, "link_name", params)
         self._threshold = params.number("kinetic_energy_threshold", 7.0, minimum=0.0)
 
     def load(self, parent: Any, params: Params) -> None:
-        self._lost = self.advertise(given_topic(params, "topic", f"/model/{parent.name}/kinetic_energy"), DOUBLE)
+        self._lost = self.advertise(read_topic(params, "topic", f"/model/{parent.name}/kinetic_energy"), DOUBLE)
         self._energy = 0.0
         self._was_heard = False
-        watch_while_heard(self, (self._lost,), "look")
+        watch_while_subscribed(self, (self._lost,), "look")
 
     def begin(self) -> None:
         """What the link has when somebody begins to listen."""

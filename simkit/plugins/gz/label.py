@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
-from simkit.runtime.labels import LARGEST_LABEL
+from simkit.runtime.handles.visual_properties import MAX_LABEL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -26,7 +26,7 @@ class Label(Plugin):
     names = ("gz::sim::systems::Label",)
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
-        self._label = params.integer("label", required=True, minimum=0, maximum=LARGEST_LABEL)
+        self._label = params.integer("label", required=True, minimum=0, maximum=MAX_LABEL)
         self._is_lost = self.scoped != scene.scoped
         if self._is_lost:
             message = f"plugin {self.name!r} labels a model or a visual, it hangs on {self.scoped!r}; it has no effect"

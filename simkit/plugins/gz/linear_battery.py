@@ -9,10 +9,9 @@ import numpy as np
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.gz.battery import Battery
-from simkit.plugins.gz.battery_cell import Cell
+from simkit.plugins.battery import Battery, Cell
 from simkit.plugins.gz.sensors import SensorsSystem
-from simkit.plugins.lookups import needed_name
+from simkit.plugins.lookups import read_required_name
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -37,7 +36,7 @@ class LinearBattery(Battery):
     names = ("gz::sim::systems::LinearBatteryPlugin",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self.battery = needed_name(params, "battery_name")
+        self.battery = read_required_name(params, "battery_name")
         self.cell = self._read_cell(params, params.number("voltage", required=True, minimum=0.0))
         self._joints = tuple(joint.scoped for joint in scene.all_joints() if joint.axes or joint.type == "ball")
         self.is_drained = params.boolean("start_draining", False)

@@ -13,14 +13,14 @@ from simkit.errors import SimkitError
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
-from simkit.plugins.once import Once
-from simkit.runtime.writable import ALLOWED, allowed_folder
+from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.pose import Vector
+    from simkit.recording.bags.recorder import Recorder
     from simkit.runtime import Simulation
-    from simkit.sinks.recorder import Recorder
 
 TRANSFORMS: Final = "tf2_msgs/msg/TFMessage"
 STRING: Final = "std_msgs/msg/String"
@@ -64,7 +64,7 @@ class LogRecord(WorldPlugin):
         if path is None or (path.exists() and not path.is_dir()):
             what = "is no folder" if path else "lies outside the folders that may be written to"
             message = f"plugin {self.name!r}: <record_path> {written} {what}; nothing is recorded"
-            hint = f"a path below the working directory, or the folder's name in the environment variable {ALLOWED}"
+            hint = f"a path below the working directory, or the folder's name in the environment variable {SAVE_PATH_VARIABLE}"
             params.diagnostics.warning("SK-PLUGIN-127", message, params.block("record_path").where, hint)
             return None
         return path
@@ -96,7 +96,7 @@ class LogRecord(WorldPlugin):
             params.diagnostics.note("SK-PLUGIN-128", message, self.where)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self.once, self._log = Once(self), _Log()
+        self.once, self._log = OneTimeWarnings(self), _Log()
         self.before_step_rate = self.after_step_rate = NEVER
         others = [p for p in self.sim.structure.all_plugins() if isinstance(p, LogRecord) and p._path is not None]
         if self._path is None:
@@ -122,7 +122,7 @@ class LogRecord(WorldPlugin):
         self.sim.reschedule()
 
     def _begin(self) -> None:
-        from simkit.sinks.recorder import Recorder
+        from simkit.recording.bags.recorder import Recorder
 
         path, log = self._path, self._log
         assert path is not None

@@ -1,7 +1,7 @@
 """gz's mecanum drive: `gz::sim::systems::MecanumDrive`, four wheels (or groups of them) with rollers at 45 degrees.
 
 The plugin only turns the wheels. That they roll across is in their collisions, whose friction differs along and across
-`<fdir1>`: see `simkit.runtime.directed_friction`.
+`<fdir1>`: see `simkit.runtime.contact.anisotropic_friction`.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from simkit.compiler.friction import has_direction
+from simkit.compiler.contact_friction import has_directional_friction
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, odometry_message, transforms
-from simkit.plugins.drives.travel import Motion, TravelOdometry, joint_angles
-from simkit.plugins.drives.wheels import find_wheels
+from simkit.plugins.drives.steering import Motion, TravelOdometry, joint_angles
+from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.gz.diff_drive import speed_limits
-from simkit.plugins.lookups import given_topic
-from simkit.plugins.once import Once
+from simkit.plugins.lookups import read_topic
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -88,7 +88,7 @@ class MecanumDrive(ModelPlugin):
         _report_rubber(scene, [joint for joints in wheels.values() for joint in joints], params)
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         model = parent.name
         link = self._canonical.rsplit("::", 1)[-1]
         self._frame = params.text("frame_id", f"{model}/odom")
@@ -99,9 +99,9 @@ class MecanumDrive(ModelPlugin):
         self._before_last: Triple = (0.0, 0.0, 0.0)
         self._settled = True
         self._odometry = MecanumOdometry(self._radius, self._arm, self.period)
-        self.listen(given_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self._on_command)
-        self._odom = self.advertise(given_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
-        self._tf = self.advertise(given_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
+        self.listen(read_topic(params, "topic", f"/model/{model}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        self._odom = self.advertise(read_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
+        self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
 
     # ------------------------------------------------------------------ commands
 
@@ -151,7 +151,7 @@ class MecanumDrive(ModelPlugin):
 def _report_rubber(scene: SceneModel, wheels: Sequence[SceneJoint], params: Params) -> None:
     """Warns where a wheel holds in every direction: the base then only drags sideways."""
     surfaces = {link.scoped: [c.surface for c in link.collisions] for link in scene.all_links()}
-    rubber = [j for j in wheels if (own := surfaces.get(j.child_link)) and not any(map(has_direction, own))]
+    rubber = [j for j in wheels if (own := surfaces.get(j.child_link)) and not any(map(has_directional_friction, own))]
     if rubber:
         names = ", ".join(repr(joint.child_link.rsplit("::", 1)[-1]) for joint in rubber)
         message = f"mecanum drive: friction of {names} is the same in every direction; such wheels have no rollers"

@@ -20,7 +20,7 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
-from simkit.plugins.lookups import given_topic
+from simkit.plugins.lookups import read_topic
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
@@ -60,10 +60,10 @@ class OdometryPublisher(ModelPlugin):
         self._trail: deque[tuple[float, ...]] = deque(maxlen=MEAN_STEPS)
         self._stream = self.random("gaussian_noise", 6) if self._noise > 0 else None
         self._index = 0
-        covariance = given_topic(params, "odom_covariance_topic", f"{own}/odometry_with_covariance")
-        self._odom = self.advertise(given_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
+        covariance = read_topic(params, "odom_covariance_topic", f"{own}/odometry_with_covariance")
+        self._odom = self.advertise(read_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
         self._sure = self.advertise(covariance, ODOMETRY)
-        self._tf = self.advertise(given_topic(params, "tf_topic", f"{own}/pose"), TRANSFORMS)
+        self._tf = self.advertise(read_topic(params, "tf_topic", f"{own}/pose"), TRANSFORMS)
 
     def before_step(self) -> None:
         """Remembers where the model is."""

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
-from simkit.gzpython.msgs.message import CLASSES, Message
 from simkit.msgs.monitors import STATUS
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
-from simkit.plugins.gz.watch import watch_while_heard
-from simkit.plugins.lookups import given_topic, needed_name
+from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
+from simkit.plugins.lookups import read_required_name, read_topic
+from simkit.plugins.on_demand import watch_while_subscribed
 from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Performers(WorldPlugin):
         models = [model.name for model in scene.models]
         for element in params.all("performer"):
             name = element.attribute("name")
-            model = needed_name(element, "ref")
+            model = read_required_name(element, "ref")
             size = element.block("geometry").block("box").vector3("size", required=True)
             if min(size) <= 0.0:
                 if element.block("geometry").block("box").has("size"):
@@ -94,7 +94,7 @@ class PerformerDetector(ModelPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         self._model, self._born = parent, self.sim.tick
-        topic = given_topic(params, "topic", f"/model/{parent.name}/performer_detector/status")
+        topic = read_topic(params, "topic", f"/model/{parent.name}/performer_detector/status")
         self._inside: tuple[str, ...] = ()
         self._was_heard = False
         self._poses, self._details = self.advertise(topic, POSE), self.advertise(topic + DETAILS, STATUS)
@@ -103,7 +103,7 @@ class PerformerDetector(ModelPlugin):
             message = f"plugin {self.name!r}: the world names no performers; it finds nothing"
             hint = 'a <plugin name="gz::sim" filename="dummy"> with <performer> in the world'
             params.diagnostics.warning("SK-PLUGIN-125", message, self.where, hint)
-        watch_while_heard(self, (self._poses, self._details), "look")
+        watch_while_subscribed(self, (self._poses, self._details), "look")
 
     def begin(self) -> None:
         """What is inside when somebody begins to listen is no news, but at the very start."""
@@ -159,7 +159,7 @@ class PerformerDetector(ModelPlugin):
 
 def pose_of_status(status: Any) -> Message:
     """The `gz.msgs.Pose` that a detector publishes in gz, with what gz has in its header."""
-    found: Any = CLASSES["Pose"](name=status.name)
+    found: Any = MESSAGE_CLASSES["Pose"](name=status.name)
     for ours, theirs in ((found.position, status.pose.position), (found.orientation, status.pose.orientation)):
         for axis in ours.FIELDS:
             if axis != "header":

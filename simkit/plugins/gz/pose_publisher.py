@@ -11,7 +11,14 @@ from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import TRANSFORMS
-from simkit.plugins.part_poses import Part, PartPoses, Taken, stamped, vector_message, what_joints_move
+from simkit.plugins.entity_poses import (
+    EntityPoses,
+    PosedEntity,
+    PoseSample,
+    links_moved_by_joints,
+    stamped_transform,
+    transforms_message,
+)
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -70,7 +77,7 @@ class PosePublisher(ModelPlugin):
         kind = TRANSFORMS if self._is_vector else self._type
         self._out = self.advertise(self._topic, kind)
         self._static = self.advertise(f"{self._topic}_static", kind) if self._has_static else None
-        self._jointed = what_joints_move(parent.scene.all_joints())
+        self._jointed = links_moved_by_joints(parent.scene.all_joints())
         parts = [*self._of_model(parent.scene)]
         self._resting = [part for part in parts if not part.moves]
         self._moving = [part for part in parts if part.moves]
@@ -91,44 +98,44 @@ class PosePublisher(ModelPlugin):
         grid, tick = self.sim.clock.grid(rate), self.sim.tick
         return grid is None or grid.next(tick - 1) == tick
 
-    def _publish(self, out: Any, which: str, parts: list[Part]) -> None:
-        poses = self.sim.names.shared(f"{which} poses {id(self)}", partial(PartPoses, self.sim, parts))
+    def _publish(self, out: Any, which: str, parts: list[PosedEntity]) -> None:
+        poses = self.sim.names.shared(f"{which} poses {id(self)}", partial(EntityPoses, self.sim, parts))
         taken, time_ns = poses.take(), self.sim.time_ns
         if self._is_vector:
-            out.publish_later(partial(vector_message, time_ns, taken))
+            out.publish_later(partial(transforms_message, time_ns, taken))
             return
         for index in range(len(parts)):
             out.publish_later(partial(_message, self._type, time_ns, taken, index))
 
-    def _of_model(self, scene: SceneModel) -> Iterator[Part]:
+    def _of_model(self, scene: SceneModel) -> Iterator[PosedEntity]:
         model = self.sim.model(scene.scoped)
         outer = scene.scoped.rpartition("::")[0]
         if outer and self._wants["nested"]:
-            yield Part(outer, scene.scoped, handle=model, within=self.sim.model(outer))
+            yield PosedEntity(outer, scene.scoped, handle=model, within=self.sim.model(outer))
         elif not outer and self._wants["model"]:
-            yield Part(self.sim.world.name, scene.scoped, handle=model)
+            yield PosedEntity(self.sim.world.name, scene.scoped, handle=model)
         for link in scene.links:
             if self._wants["link"]:
                 yield self._link(link, scene)
             yield from self._on_link(link)
         for joint in scene.joints:
             for sensor in joint.sensors if self._wants["sensor"] else ():
-                yield Part(joint.scoped, sensor.scoped, joint.pose_world.inverse() @ sensor.pose_world)
+                yield PosedEntity(joint.scoped, sensor.scoped, joint.pose_world.inverse() @ sensor.pose_world)
         for nested in scene.models:
             yield from self._of_model(nested)
 
-    def _link(self, link: SceneLink, outer: SceneModel) -> Part:
+    def _link(self, link: SceneLink, outer: SceneModel) -> PosedEntity:
         if link.scoped == outer.canonical_link:  # it carries the model's frame
-            return Part(outer.scoped, link.scoped, outer.pose_world.inverse() @ link.pose_world)
+            return PosedEntity(outer.scoped, link.scoped, outer.pose_world.inverse() @ link.pose_world)
         model, handle = self.sim.model(outer.scoped), self.sim.link(link.scoped)
-        return Part(outer.scoped, link.scoped, None, handle, model, link.scoped in self._jointed)
+        return PosedEntity(outer.scoped, link.scoped, None, handle, model, link.scoped in self._jointed)
 
-    def _on_link(self, link: SceneLink) -> Iterator[Part]:
+    def _on_link(self, link: SceneLink) -> Iterator[PosedEntity]:
         parts: dict[str, tuple[SceneVisual | SceneCollision | SceneSensor, ...]]
         parts = {"visual": link.visuals, "collision": link.collisions, "sensor": link.sensors}
         for kind, found in parts.items():
             for part in found if self._wants[kind] else ():
-                yield Part(link.scoped, part.scoped, part.pose_link)
+                yield PosedEntity(link.scoped, part.scoped, part.pose_link)
 
 
 def _common_rate(rate: float, other: float) -> float:
@@ -137,11 +144,11 @@ def _common_rate(rate: float, other: float) -> float:
     return high if low > 0 and (high / low).is_integer() else 0.0
 
 
-def _message(type_name: str, time_ns: int, taken: Taken, index: int) -> Any:
+def _message(type_name: str, time_ns: int, taken: PoseSample, index: int) -> Any:
     """The message of one part."""
     frame, child, seven = taken.placed[index]
     if type_name == STAMPED:
-        return stamped(time_ns, frame, child, seven)
+        return stamped_transform(time_ns, frame, child, seven)
     x, y, z, w, i, j, k = seven
     place, turn = {"x": x, "y": y, "z": z}, {"x": i, "y": j, "z": k, "w": w}
     if type_name.endswith("/Transform"):

@@ -13,10 +13,10 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.gzpython import imports
 from simkit.params import Params
 from simkit.plugins import GROUP
-from simkit.plugins.gz.system import HOOKS, GzSystem, line_of
+from simkit.plugins.gz.gz_system import HOOKS, GzSystem, line_of
+from simkit.plugins.gz_python import import_hook
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -77,7 +77,7 @@ class PythonSystemLoader(GzSystem):
         added = [str(f) for f in folders if str(f) not in sys.path]
         sys.path.extend(added)  # it may import what lies beside it
         try:
-            with imports.importable(self.shadow):
+            with import_hook.importable(self.shadow):
                 name = self._module_name if folder is None else f"{_package_of(folder)}.{self._module_name}"
                 importlib.invalidate_caches()  # it may have been written a moment ago
                 self._module = importlib.import_module(name)
@@ -92,8 +92,8 @@ class PythonSystemLoader(GzSystem):
     def _report_installed(self, params: Params) -> None:
         """Says which installed modules of Gazebo the import found instead of simkit's."""
         for name, module in sorted(sys.modules.items()):
-            target = imports.target_of(name)
-            if not target or imports.is_shim(module) or name.split(".")[0] == "simkit":
+            target = import_hook.module_behind(name)
+            if not target or import_hook.is_shim(module) or name.split(".")[0] == "simkit":
                 continue
             place = getattr(module, "__file__", None) or "a package"
             message = f"module {name} is installed ({place}) and goes before simkit's own"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
-from simkit.runtime.temperatures import HeatSignature, Temperature
+from simkit.runtime.handles.visual_properties import HeatSignature, Temperature
 from simkit.scene import Atmosphere, SceneModel, SceneVisual
 
 if TYPE_CHECKING:
@@ -85,8 +85,8 @@ def _read_range(params: Params) -> tuple[float | None, float | None]:
 
 def _find_picture(params: Params, builder: SpecBuilder) -> Path | None:
     """The file of a heat signature; where there is none that can be read, its surface is as warm as the air."""
-    from simkit.compiler.meshes.files import pixels_of
-    from simkit.compiler.meshes.part import MeshFileError
+    from simkit.compiler.meshes.companion_files import read_pixels
+    from simkit.compiler.meshes.mesh_part import MeshFileError
 
     element, uri = params.block("heat_signature"), params.text("heat_signature")
     folder = Path(element.where.file).parent if element.where.file else None
@@ -94,7 +94,7 @@ def _find_picture(params: Params, builder: SpecBuilder) -> Path | None:
     problem = "is not found"
     if path is not None:
         try:
-            pixels_of(path)
+            read_pixels(path)
             builder.files_read.append(path)
             return path
         except MeshFileError as error:

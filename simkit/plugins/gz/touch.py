@@ -10,8 +10,8 @@ from simkit.diagnostics import did_you_mean
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.lookups import needed_name
-from simkit.runtime.contacts import Bools, collisions_of, touches
+from simkit.plugins.lookups import read_required_name
+from simkit.runtime.contact.collision_contacts import Bools, collision_table, find_contacts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -21,7 +21,7 @@ BOOL: Final = "std_msgs/msg/Bool"
 SET_BOOL: Final = "std_srvs/srv/SetBool"
 
 
-class Touching(ModelPlugin):
+class TouchTimer(ModelPlugin):
     """What gz's and Classic's share: how long a target has been touched without a break."""
 
     reads_contacts: ClassVar[bool] = True
@@ -35,7 +35,7 @@ class Touching(ModelPlugin):
     _touched: Any
 
     def _read_common(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._target = needed_name(params, "target")
+        self._target = read_required_name(params, "target")
         duration = params.number("time", required=True, minimum=0.0, maximum=1e9)
         self._duration = round(duration * 1e9)
         self._topic = valid_topic(params.text("namespace", required=True))
@@ -52,7 +52,7 @@ class Touching(ModelPlugin):
         self._watched = frozenset(watched)
         self._since = -1  # [ns]; -1 while it does not touch
         self._set_pace()
-        names = collisions_of(self.sim.compiled).names
+        names = collision_table(self.sim.compiled).names
         if not any(self._is_target(name) for name in names):
             message = f"plugin {self.name!r}: no collision has {self._target!r} in its name; one is waited for"
             models = sorted({part for name in names for part in name.split("::")})
@@ -64,7 +64,7 @@ class Touching(ModelPlugin):
     def after_step(self) -> None:
         sim = self.sim
         own, target, model = sim.names.shared(f"touch {id(self)}", self._masks)
-        found = touches(sim.mj_model, sim.fresh_data(), own)
+        found = find_contacts(sim.mj_model, sim.fresh_data(), own)
         if found is None or not target[found.geoms].any():
             self._since = -1
             return
@@ -84,7 +84,7 @@ class Touching(ModelPlugin):
 
     def _masks(self) -> tuple[Bools, Bools, Bools]:
         """Which geoms are watched, which are targets, and which are of this model."""
-        collisions = collisions_of(self.sim.compiled)
+        collisions = collision_table(self.sim.compiled)
         targets = {name for name in collisions.names if self._is_target(name)}
         own = {name for name in collisions.names if name.startswith(f"{self.scoped}::")}
         return collisions.mask(self._watched), collisions.mask(targets), collisions.mask(own)
@@ -114,7 +114,7 @@ class Touching(ModelPlugin):
             self.sim.reschedule()
 
 
-class TouchPlugin(Touching):
+class TouchPlugin(TouchTimer):
     """Says once that its model has touched a target for a while without a break, then rests until it is enabled again.
 
     What counts are the collisions that contact sensors on the model's links watch (or those named in `<collision>`,

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.drives.belts import belt_of, needs_direction, report_nothing_to_run
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.gz.diff_drive import SpeedLimiter
-from simkit.plugins.heard import publish_while_heard
-from simkit.plugins.lookups import find_link, given_topic
-from simkit.plugins.once import Once
+from simkit.plugins.lookups import find_link, read_topic
+from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import Pose
-from simkit.runtime.surface import Belt, Run
+from simkit.runtime.contact.moving_surface import Belt, BeltMotion
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -46,7 +46,7 @@ class TrackController(ModelPlugin):
         self._link, self._name = ("", name) if link is None else (link.scoped, name)
         self._is_directed = link is not None and needs_direction(link)
         if link is not None and named is not None:
-            report_nothing_to_run(link, named)
+            report_missing_collisions(link, named)
         self._track = Pose.from_rpy(0.0, 0.0, 0.0, *params.vector3("track_orientation", (0.0, 0.0, 0.0)))
         self._limiter = read_limiter(params)
         self._patience = params.number("max_command_age", math.inf, minimum=0, finite=False)
@@ -55,20 +55,20 @@ class TrackController(ModelPlugin):
             params.diagnostics.note("SK-PLUGIN-100", "<debug> of a track draws nothing here", params.where)
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self.before_step_rate = NEVER
         self._wanted, self._told_tick = 0.0, -1
         self._speed, self._history = 0.0, (0.0, 0.0)  # now, and at the two steps before
         self._centre: tuple[float, float, float] | None = None
-        self._run: Run | None = Run(0.0) if self._is_directed else None
+        self._run: BeltMotion | None = BeltMotion(0.0) if self._is_directed else None
         self._tick, self._place = self.sim.tick, (self.sim.tick, 0.0)
         prefix = f"/model/{parent.name}/link/{self._name}"
-        self.listen(given_topic(params, "velocity_topic", f"{prefix}/track_cmd_vel"), SPEED, self._on_speed)
-        centre = given_topic(params, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
+        self.listen(read_topic(params, "velocity_topic", f"{prefix}/track_cmd_vel"), SPEED, self._on_speed)
+        centre = read_topic(params, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
         self.listen(centre, CENTRE, self._on_centre)
-        odometry = given_topic(params, "odometry_topic", f"{prefix}/odometry")
+        odometry = read_topic(params, "odometry_topic", f"{prefix}/odometry")
         self._odometry = self.advertise(odometry, ODOMETRY)
-        publish_while_heard(self, self._odometry, self._odometry_rate, "publish")
+        publish_while_subscribed(self, self._odometry, self._odometry_rate, "publish")
         if self._link:
             self.sim.friction.add_belts(self, self._belts)
 
@@ -118,7 +118,7 @@ class TrackController(ModelPlugin):
 
     def _apply(self) -> None:
         stands = self._speed == 0.0 and not self._is_directed
-        run = None if stands else Run(self._speed, self._centre)
+        run = None if stands else BeltMotion(self._speed, self._centre)
         if run != self._run:
             self._run = run
             self.sim.physics.changed_surface()

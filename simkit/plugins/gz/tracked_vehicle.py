@@ -18,11 +18,11 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
-from simkit.plugins.drives.track_odometry import TrackOdometry
+from simkit.plugins.drives.tracks import TrackOdometry
 from simkit.plugins.gz.track_controller import CENTRE, SPEED, read_limiter
-from simkit.plugins.heard import publish_while_heard
-from simkit.plugins.lookups import find_link, given_topic, named_link
-from simkit.plugins.once import Once
+from simkit.plugins.lookups import find_link, find_named_link, read_topic
+from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -56,7 +56,7 @@ class TrackedVehicle(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         own = params.has("body_link")
-        self._body = named_link(scene, "body_link", params) if own else scene.canonical_link
+        self._body = find_named_link(scene, "body_link", params) if own else scene.canonical_link
         self._sides = [self._read_side(f"{side}_track", scene, params) for side in _SIDES]
         self._separation = params.number("tracks_separation", 1.0, minimum=1e-6)
         self._efficiency = params.number("steering_efficiency", 0.5, minimum=1e-6)
@@ -77,13 +77,13 @@ class TrackedVehicle(ModelPlugin):
             if named is not None and name:
                 find_link(scene, name, named)
             prefix = f"/model/{scene.name}/link/{name}"
-            velocity = given_topic(one, "velocity_topic", f"{prefix}/track_cmd_vel")
-            centre = given_topic(one, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
+            velocity = read_topic(one, "velocity_topic", f"{prefix}/track_cmd_vel")
+            centre = read_topic(one, "center_of_rotation_topic", f"{prefix}/track_cmd_center_of_rotation")
             tracks.append(_Track(name, velocity, centre))
         return tracks
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self.after_step_rate = NEVER
         model = parent.name
         link = self._body.rsplit("::", 1)[-1]
@@ -97,13 +97,13 @@ class TrackedVehicle(ModelPlugin):
             for side in self._sides
         ]
         own = f"/model/{model}"
-        self.listen(given_topic(params, "topic", f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
-        efficiency = given_topic(params, "steering_efficiency_topic", f"{own}/steering_efficiency")
+        self.listen(read_topic(params, "topic", f"{own}/cmd_vel"), COMMAND_TYPES, self._on_command)
+        efficiency = read_topic(params, "steering_efficiency_topic", f"{own}/steering_efficiency")
         self.listen(efficiency, SPEED, self._on_efficiency)
-        self._odom = self.advertise(given_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
-        self._tf = self.advertise(given_topic(params, "tf_topic", f"{own}/tf"), TRANSFORMS)
+        self._odom = self.advertise(read_topic(params, "odom_topic", f"{own}/odometry"), ODOMETRY)
+        self._tf = self.advertise(read_topic(params, "tf_topic", f"{own}/tf"), TRANSFORMS)
         for publisher, method in ((self._odom, "publish_odometry"), (self._tf, "publish_transform")):
-            publish_while_heard(self, publisher, self._odometry_rate, method)
+            publish_while_subscribed(self, publisher, self._odometry_rate, method)
 
     # ------------------------------------------------------------------ commands
 

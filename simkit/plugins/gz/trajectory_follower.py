@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
-from simkit.plugins.lookups import given_topic, named_link
-from simkit.plugins.once import Once
+from simkit.plugins.lookups import find_named_link, read_topic
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -42,9 +42,9 @@ class TrajectoryFollower(ModelPlugin):
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._scoped = named_link(scene, "link_name", params)
+        self._scoped = find_named_link(scene, "link_name", params)
         start = next((one.pose_world for one in scene.all_links() if one.scoped == self._scoped), scene.pose_world)
-        self._points = _points(params, start, self.name)
+        self._points = _waypoints(params, start, self.name)
         self._loops = params.boolean("loop", False)
         self._force = params.number("force", 60.0)
         self._torque = params.number("torque", 50.0)
@@ -53,7 +53,7 @@ class TrajectoryFollower(ModelPlugin):
         self._stops_turning = params.boolean("zero_vel_on_bearing_reached", False)
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._is_paused, self._is_held = False, False
         self._way = list(self._points)
         self._link = self.sim.link(self._scoped)
@@ -62,7 +62,7 @@ class TrajectoryFollower(ModelPlugin):
             self.once.warn("SK-PLUGIN-131", "held", message, "name the link that carries the model")
         self._set_pace()
         own = f"/model/{parent.name}/trajectory_follower/pause"
-        self.listen(given_topic(params, "topic", own), BOOL, self._on_pause)
+        self.listen(read_topic(params, "topic", own), BOOL, self._on_pause)
 
     def _on_pause(self, message: Any) -> None:
         self._is_paused = bool(message.data)
@@ -105,7 +105,7 @@ class TrajectoryFollower(ModelPlugin):
             self._way = [*rest, reached] if self._loops else rest
 
 
-def _points(params: Params, start: Pose, name: str) -> list[Point]:
+def _waypoints(params: Params, start: Pose, name: str) -> list[Point]:
     """The waypoints in the world [m]: those of `<waypoints>`, else of `<circle>`, else of `<line>`."""
     given = [kind for kind in _KINDS if params.has(kind)]
     if not given:
@@ -117,21 +117,21 @@ def _points(params: Params, start: Pose, name: str) -> list[Point]:
         message = f"plugin {name!r} follows <{given[0]}>, and not its {others}"
         params.diagnostics.warning("SK-PLUGIN-130", message, params.where, "leave one of them")
     found = {
-        "waypoints": _listed(params.block("waypoints"), given[0] == "waypoints"),
-        "circle": _round(params.block("circle"), start, given[0] == "circle"),
-        "line": _along(params.block("line"), start, given[0] == "line"),
+        "waypoints": _listed_waypoints(params.block("waypoints"), given[0] == "waypoints"),
+        "circle": _circle_waypoints(params.block("circle"), start, given[0] == "circle"),
+        "line": _line_waypoints(params.block("line"), start, given[0] == "line"),
     }
     return found[given[0]]
 
 
-def _listed(block: Params, is_followed: bool) -> list[Point]:
+def _listed_waypoints(block: Params, is_followed: bool) -> list[Point]:
     found = [(x, y) for x, y in (one.vector("waypoint", 2) for one in block.each("waypoint"))]
     if is_followed and not found:
         block.error("SK-PARAM-001", "<waypoints> needs <waypoint>: x and y [m] in the world")
     return found
 
 
-def _round(block: Params, start: Pose, is_followed: bool) -> list[Point]:
+def _circle_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Point]:
     """Eight points of a circle about the start."""
     radius = block.number("radius", 0.0, required=is_followed, minimum=0.0, maximum=_FARTHEST)
     x, y = start.position[:2].tolist()
@@ -139,7 +139,7 @@ def _round(block: Params, start: Pose, is_followed: bool) -> list[Point]:
     return [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles]
 
 
-def _along(block: Params, start: Pose, is_followed: bool) -> list[Point]:
+def _line_waypoints(block: Params, start: Pose, is_followed: bool) -> list[Point]:
     """The start, and the end of a line from there; its direction [rad] counts from the link's."""
     angle = block.number("direction", 0.0, required=is_followed)
     length = block.number("length", 0.0, required=is_followed, minimum=-_FARTHEST, maximum=_FARTHEST)

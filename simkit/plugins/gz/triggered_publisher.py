@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.gzpython.msgs import message_class
-from simkit.gzpython.msgs.matching import TOLERANCE, Matcher
-from simkit.gzpython.msgs.message import CLASSES, Message
-from simkit.gzpython.msgs.ros import from_ros, to_ros, twins_of
-from simkit.gzpython.msgs.services import TAKEN, call
-from simkit.gzpython.msgs.text_form import parse
 from simkit.msgs.monitors import STATUS
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.gz.performer_detector import DETAILS, pose_of_status
-from simkit.plugins.once import Once
+from simkit.plugins.gz_python.msgs import message_class
+from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
+from simkit.plugins.gz_python.msgs.message_matcher import TOLERANCE, MessageMatcher
+from simkit.plugins.gz_python.msgs.ros_conversion import SERVICE_REQUEST_TYPES, call_service, from_ros, to_ros, twins_of
+from simkit.plugins.gz_python.msgs.text_format import parse_message
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -56,7 +55,7 @@ class TriggeredPublisher(WorldPlugin):
     names = ("gz::sim::systems::TriggeredPublisher",)
 
     def load(self, parent: Simulation, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._due: deque[int] = deque()  # [ns]
         self.before_step_rate = NEVER
         self._delay = max(0, params.integer("delay_ms", 0, maximum=10**12)) * _MS
@@ -88,14 +87,16 @@ class TriggeredPublisher(WorldPlugin):
         if matchers and not any(one.value for one in matchers):
             element.error("SK-PARAM-002", "found no <match> with a text, allowed is one, or none at all")
             return
-        if kind is CLASSES["Pose"] and any(one.attributes.get("field", "").startswith("header.") for one in matchers):
+        if kind is MESSAGE_CLASSES["Pose"] and any(
+            one.attributes.get("field", "").startswith("header.") for one in matchers
+        ):
             # a stamped pose has no place for what gz has in the header beside the frame
             self.listen(topic + DETAILS, STATUS, self._on_status)
             return
         known, twins = self.sim.topics().get(topic), [twin.ros for twin in twins_of(kind)]
         self.listen(topic, sorted(twins, key=lambda ros: ros != known), self._on_message)
 
-    def _read_match(self, kind: type[Message], element: Params) -> Matcher | None:
+    def _read_match(self, kind: type[Message], element: Params) -> MessageMatcher | None:
         field, logic = element.attribute("field"), element.attribute("logic_type", "positive")
         tolerance = _tolerance(element)
         if logic not in ("positive", "negative"):
@@ -107,9 +108,9 @@ class TriggeredPublisher(WorldPlugin):
             element.diagnostics.warning("SK-PLUGIN-124", message, element.where)
             return None
         try:
-            return Matcher(kind, element.value, field, tolerance, logic == "positive")
+            return MessageMatcher(kind, element.value, field, tolerance, logic == "positive")
         except MessageError as error:
-            element.error("SK-PLUGIN-121", f"<match>{_short(element.value)}</match>: {error}")
+            element.error("SK-PLUGIN-121", f"<match>{_shortened(element.value)}</match>: {error}")
             return None
 
     def _read_output(self, element: Params) -> _Output | None:
@@ -126,7 +127,10 @@ class TriggeredPublisher(WorldPlugin):
     def _read_request(self, element: Params) -> _Request | None:
         name, text = element.attribute("name"), element.attribute("reqMsg")
         element.attribute("timeout")  # [ms]; a service answers at once
-        kind, answer = self._kind(element, "reqType", TAKEN), self._kind(element, "repType", CLASSES)
+        kind, answer = (
+            self._kind(element, "reqType", SERVICE_REQUEST_TYPES),
+            self._kind(element, "repType", MESSAGE_CLASSES),
+        )
         if not name:
             element.error("SK-PARAM-001", "<service> needs a name=: the service's")
         if kind is None or answer is None or not name:
@@ -141,7 +145,7 @@ class TriggeredPublisher(WorldPlugin):
             element.error("SK-PARAM-001", f'<{element.name}> needs {attribute}=: a type such as "gz.msgs.Boolean"')
             return None
         package, _, name = written.rpartition(".")
-        listed = [one for one in CLASSES if _has_twin(one)] if known is None else list(known)
+        listed = [one for one in MESSAGE_CLASSES if _has_ros_type(one)] if known is None else list(known)
         if name in listed and package in ("gz.msgs", "ignition.msgs"):
             return message_class(name)
         hint = did_you_mean(name, listed) or f"allowed are {', '.join(sorted(listed))} of gz.msgs"
@@ -191,7 +195,7 @@ class TriggeredPublisher(WorldPlugin):
             if out.publisher.wanted:
                 out.publisher.publish(to_ros(out.message, out.ros))
         for request in self._requests:
-            was_taken, answer = call(self.sim, request.service, request.message, request.answer)
+            was_taken, answer = call_service(self.sim, request.service, request.message, request.answer)
             if not was_taken:
                 hint = did_you_mean(request.service, self.sim.services())
                 message = f"there is no service {request.service!r} that takes its request"
@@ -201,9 +205,9 @@ class TriggeredPublisher(WorldPlugin):
                 self.once.warn("SK-PLUGIN-122", f"{request.service} failed", message)
 
 
-def _has_twin(name: str) -> bool:
+def _has_ros_type(name: str) -> bool:
     try:
-        return bool(twins_of(CLASSES[name]))
+        return bool(twins_of(MESSAGE_CLASSES[name]))
     except MessageError:
         return False
 
@@ -232,15 +236,15 @@ def _tolerance(element: Params) -> float:
 
 def _message(kind: type[Message], text: str, element: Params, what: str) -> Message | None:
     try:
-        message = parse(kind, text)
-        for twin in twins_of(kind)[:1] if _has_twin(kind.__name__) else ():
+        message = parse_message(kind, text)
+        for twin in twins_of(kind)[:1] if _has_ros_type(kind.__name__) else ():
             to_ros(message, twin.ros)  # what the type cannot hold is said now
     except MessageError as error:
-        element.error("SK-PLUGIN-121", f"{what} {_short(text)}: {error}")
+        element.error("SK-PLUGIN-121", f"{what} {_shortened(text)}: {error}")
         return None
     return message
 
 
-def _short(text: str) -> str:
+def _shortened(text: str) -> str:
     text = " ".join(text.split())
     return text if len(text) <= 80 else text[:77] + "..."

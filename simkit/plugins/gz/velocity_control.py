@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.held_motion import HeldMotion, Move, Mover, Triple
+from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMover, Triple, VelocityTarget
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.lookups import find_link
-from simkit.plugins.once import Once
+from simkit.plugins.one_time_warnings import OneTimeWarnings
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -38,7 +38,10 @@ class VelocityControl(ModelPlugin):
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         zero = (0.0, 0.0, 0.0)
-        self._first = _triple(params.vector3("initial_linear", zero)), _triple(params.vector3("initial_angular", zero))
+        self._first = (
+            _float_triple(params.vector3("initial_linear", zero)),
+            _float_triple(params.vector3("initial_angular", zero)),
+        )
         self._topic = params.text("topic", "")
         found = [(element.value, find_link(scene, element.value, params)) for element in params.all("link_name")]
         self._link_names = {name: link.scoped for name, link in found if link is not None}
@@ -46,16 +49,16 @@ class VelocityControl(ModelPlugin):
         self._canonical, self._pose = scene.canonical_link, scene.pose_world
 
     def load(self, parent: Any, params: Params) -> None:
-        self.once = Once(self)
+        self.once = OneTimeWarnings(self)
         self._target: Motion = self._first
         self._link_targets: dict[str, Motion] = {}
-        self._mover = Mover(self.sim)
-        trees = _trees(self.sim, list(self._links))
+        self._mover = KinematicMover(self.sim)
+        trees = _links_by_tree(self.sim, list(self._links))
         self._whole = self._held(self._links)
         # of each link that may be commanded, the tree of links that goes with it
-        self._parts = {name: HeldMotion(self.sim, trees[link], link) for name, link in self._link_names.items()}
+        self._parts = {name: KinematicMotion(self.sim, trees[link], link) for name, link in self._link_names.items()}
         # and the rest of the model, which its own command moves
-        self._rests: dict[frozenset[str], HeldMotion] = {}
+        self._rests: dict[frozenset[str], KinematicMotion] = {}
         for name in [name for name, part in self._parts.items() if not part] + ([] if self._whole else [""]):
             self._report_fixed(name)
         own = f"/model/{parent.name}"
@@ -96,28 +99,28 @@ class VelocityControl(ModelPlugin):
     @classmethod
     def before_step_together(cls, plugins: Sequence[VelocityControl]) -> Callable[[Iterable[VelocityControl]], None]:
         """The same of many: what they share is worked out once."""
-        mover = Mover(plugins[0].sim)
+        mover = KinematicMover(plugins[0].sim)
 
         def run(rota: Iterable[VelocityControl]) -> None:
             mover.move([move for plugin in rota for move in plugin._moves()])
 
         return run
 
-    def _moves(self) -> list[Move]:
+    def _moves(self) -> list[VelocityTarget]:
         """What is to be moved now."""
         if not self._link_targets:
-            return [Move(self._whole, self._whole.frame, *self._target)] if self._whole else []
+            return [VelocityTarget(self._whole, self._whole.frame, *self._target)] if self._whole else []
         rest = self._rest()
-        moves = [Move(rest, rest.frame, *self._target)] if rest else []
+        moves = [VelocityTarget(rest, rest.frame, *self._target)] if rest else []
         trees = {self._parts[name].links: name for name in self._link_targets}  # of one tree the last command counts
         parts = [(self._parts[name], self._link_targets[name]) for name in trees.values()]
-        return moves + [Move(part, part.frame, *motion) for part, motion in parts if part]
+        return moves + [VelocityTarget(part, part.frame, *motion) for part, motion in parts if part]
 
-    def _held(self, links: Iterable[str]) -> HeldMotion:
+    def _held(self, links: Iterable[str]) -> KinematicMotion:
         """Links of the model, to be moved with its frame."""
-        return HeldMotion(self.sim, links, self._canonical, self._links[self._canonical].inverse() @ self._pose)
+        return KinematicMotion(self.sim, links, self._canonical, self._links[self._canonical].inverse() @ self._pose)
 
-    def _rest(self) -> HeldMotion:
+    def _rest(self) -> KinematicMotion:
         """What of the model no link's command moves."""
         commanded = frozenset(self._link_targets)
         if commanded not in self._rests:
@@ -126,12 +129,12 @@ class VelocityControl(ModelPlugin):
         return self._rests[commanded]
 
 
-def _triple(vector: Any) -> Triple:
+def _float_triple(vector: Any) -> Triple:
     x, y, z = map(float, vector)
     return x, y, z
 
 
-def _trees(sim: Simulation, links: list[str]) -> dict[str, list[str]]:
+def _links_by_tree(sim: Simulation, links: list[str]) -> dict[str, list[str]]:
     """Of each link, the links that hang together with it by joints, itself among them."""
     model, names = sim.mj_model, sim.names
     root = {link: int(model.body_rootid[names.link(link).body]) for link in links}

@@ -58,7 +58,7 @@ class Pid:
     integral: float = 0.0
     last: float = 0.0
     command: float = 0.0
-    swings: Swings = field(default_factory=lambda: Swings())
+    swings: DivergenceDetector = field(default_factory=lambda: DivergenceDetector())
 
     @classmethod
     def of(cls, numbers: Mapping[str, float]) -> Pid:
@@ -89,11 +89,11 @@ class Pid:
     def restart(self) -> None:
         """Forgets what was: as before the first call."""
         self.integral = self.last = self.command = 0.0
-        self.swings = Swings()
+        self.swings = DivergenceDetector()
 
 
 @dataclass(slots=True)
-class Swings:
+class DivergenceDetector:
     """Tells a loop that runs away from one that settles, by the peaks between two zeros of its error.
 
     Each of `GROWING` peaks in a row higher by `GROWTH` than the last one on the same side, or `SATURATED` in a row at

@@ -20,11 +20,11 @@ KINDS: Final = ("none", "light", "model", "link", "visual", "collision", "sensor
 _WORLD: Final = ("", "world", "map", "/map")
 
 
-class Refused(Exception):
+class RequestRefused(Exception):
     """What was asked for cannot be done; the text says why."""
 
 
-def answering(
+def answer_handler(
     sim: Simulation, name: str, does: Callable[[Any], dict[str, Any] | str | None], says_why: bool = True
 ) -> Callable[[Any], dict[str, Any]]:
     """A handler that answers `success` and says why not, where something cannot be done.
@@ -37,11 +37,11 @@ def answering(
     """
 
     def handle(request: Any) -> dict[str, Any]:
-        from simkit.runtime.handles import Unknown
+        from simkit.runtime.handles.handle import UnknownName
 
         try:
             found = does(request)
-        except (Refused, InputError, Unknown) as error:
+        except (RequestRefused, InputError, UnknownName) as error:
             why = str(error)
             sim.log.warning("%s: %s", name, why)
             return {"success": False, "status_message": why} if says_why else {"success": False}
@@ -56,9 +56,9 @@ def answering(
     return handle
 
 
-def heeding(sim: Simulation, name: str, does: Callable[[Any], Any]) -> Callable[[Any], None]:
+def command_handler(sim: Simulation, name: str, does: Callable[[Any], Any]) -> Callable[[Any], None]:
     """The same for what has no answer, a command by topic or an empty response: what cannot be done is logged."""
-    answer = answering(sim, name, does, says_why=False)
+    answer = answer_handler(sim, name, does, says_why=False)
 
     def handle(message: Any) -> None:
         answer(message)
@@ -66,7 +66,7 @@ def heeding(sim: Simulation, name: str, does: Callable[[Any], Any]) -> Callable[
     return handle
 
 
-def spawned(make: Callable[..., Any], *values: Any) -> Any:
+def spawn_entities(make: Callable[..., Any], *values: Any) -> Any:
     """What `sim.spawn`, `sim.spawn_all` or `sim.clone` adds.
 
     Raises:
@@ -75,7 +75,7 @@ def spawned(make: Callable[..., Any], *values: Any) -> Any:
     try:
         return make(*values)
     except PluginError as error:
-        raise Refused(str(error)) from error
+        raise RequestRefused(str(error)) from error
 
 
 # ---------------------------------------------------------------------- entities
@@ -96,7 +96,7 @@ def entity_id(kind: str, scoped: str) -> int:
     return int.from_bytes(hashlib.blake2b(f"{kind} {scoped}".encode(), digest_size=8).digest(), "big") >> 1
 
 
-def find(sim: Simulation, name: str, kinds: Sequence[str], what: str = "") -> tuple[str, str]:
+def find_entity(sim: Simulation, name: str, kinds: Sequence[str], what: str = "") -> tuple[str, str]:
     """Kind and scoped name of the entity that a name means.
 
     It is looked for as a scoped name, with or without the world's before it, then as a plain name, the first in
@@ -117,7 +117,7 @@ def find(sim: Simulation, name: str, kinds: Sequence[str], what: str = "") -> tu
     what = what or " or ".join(kinds)
     near = did_you_mean(own, list(dict.fromkeys([*there, *(scoped.rpartition("::")[2] for scoped in there)])))
     listed = ", ".join(there[:10]) + (", …" if len(there) > 10 else "")
-    raise Refused(f"there is no {what} {name!r}; {near or 'there is ' + (listed or 'none')}")
+    raise RequestRefused(f"there is no {what} {name!r}; {near or 'there is ' + (listed or 'none')}")
 
 
 def entity_of(sim: Simulation, message: Any, kinds: Sequence[str]) -> tuple[str, str]:
@@ -129,17 +129,17 @@ def entity_of(sim: Simulation, message: Any, kinds: Sequence[str]) -> tuple[str,
     number = int(message.type)
     kind = KINDS[number] if 0 <= number < len(KINDS) else "none"
     if kind != "none" and kind not in kinds:
-        raise Refused(f"found an entity of type {kind}, allowed is {' or '.join(kinds)}")
+        raise RequestRefused(f"found an entity of type {kind}, allowed is {' or '.join(kinds)}")
     wanted = (kind,) if kind != "none" else tuple(kinds)
     if message.name:
-        return find(sim, message.name, wanted)
+        return find_entity(sim, message.name, wanted)
     if not message.id:
-        raise Refused("the entity has neither a name nor an id")
+        raise RequestRefused("the entity has neither a name nor an id")
     for one in wanted:
         for scoped in scoped_names(sim, one):
             if entity_id(one, scoped) == int(message.id):
                 return one, scoped
-    raise Refused(f"there is no {' or '.join(wanted)} with the id {int(message.id)}; scene/info lists them")
+    raise RequestRefused(f"there is no {' or '.join(wanted)} with the id {int(message.id)}; scene/info lists them")
 
 
 def frame_of(sim: Simulation, name: str) -> Pose:
@@ -150,7 +150,7 @@ def frame_of(sim: Simulation, name: str) -> Pose:
     """
     if name in _WORLD or name == sim.world.name:
         return IDENTITY
-    found: Pose = handle_of(sim, *find(sim, name, ("model", "link", "light", "visual"), "reference frame")).pose
+    found: Pose = handle_of(sim, *find_entity(sim, name, ("model", "link", "light", "visual"), "reference frame")).pose
     return found
 
 
@@ -162,7 +162,7 @@ def handle_of(sim: Simulation, kind: str, scoped: str) -> Any:
 # ---------------------------------------------------------------------- numbers
 
 
-def finite(value: float, what: str, minimum: float | None = None) -> float:
+def require_finite(value: float, what: str, minimum: float | None = None) -> float:
     """A number that can be used.
 
     Raises:
@@ -171,13 +171,13 @@ def finite(value: float, what: str, minimum: float | None = None) -> float:
     number = float(value)
     if not math.isfinite(number) or (minimum is not None and number < minimum):
         allowed = "a finite number" + (f" of at least {minimum:g}" if minimum is not None else "")
-        raise Refused(f"found {what} {value!r}, allowed is {allowed}")
+        raise RequestRefused(f"found {what} {value!r}, allowed is {allowed}")
     return number
 
 
 def vector_of(message: Any, what: str) -> tuple[float, float, float]:
     """The numbers of a Vector3 or a Point message; raises Refused."""
-    x, y, z = (finite(getattr(message, axis), f"{what}.{axis}") for axis in "xyz")
+    x, y, z = (require_finite(getattr(message, axis), f"{what}.{axis}") for axis in "xyz")
     return x, y, z
 
 
@@ -187,7 +187,7 @@ def pose_of(message: Any, what: str = "pose") -> Pose:
     Raises:
         Refused: it has numbers that are none.
     """
-    q = [finite(getattr(message.orientation, axis), f"{what}.orientation.{axis}") for axis in "wxyz"]
+    q = [require_finite(getattr(message.orientation, axis), f"{what}.orientation.{axis}") for axis in "wxyz"]
     most = max(map(abs, q)) or 1.0  # divided by that first: the squares of numbers that are huge or tiny are none
     q = [part / most for part in q]
     size = math.hypot(*q)
@@ -210,5 +210,5 @@ def vector_fields(vector: Sequence[float]) -> dict[str, float]:
 
 def colour_of(message: Any, what: str) -> tuple[float, float, float, float] | None:
     """A colour RGBA from 0 to 1; None where all four are zero, which says nothing. Raises Refused."""
-    r, g, b, a = (finite(getattr(message, part), f"{what}.{part}", 0.0) for part in "rgba")
+    r, g, b, a = (require_finite(getattr(message, part), f"{what}.{part}", 0.0) for part in "rgba")
     return None if r == g == b == a == 0.0 else (r, g, b, a)

@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from simkit.sensors.presets.preset import Preset
 
-__all__ = ["Preset", "find", "folded", "presets"]
+__all__ = ["Preset", "find", "normalise_name", "presets"]
 
 
 @functools.cache
@@ -37,7 +37,7 @@ def _by_name() -> Mapping[str, Mapping[str, Preset]]:
     table: dict[str, dict[str, Preset]] = {}
     for preset in presets():
         for name in (preset.name, *preset.aliases):
-            of_name = table.setdefault(folded(name), {})
+            of_name = table.setdefault(normalise_name(name), {})
             if of_name.setdefault(preset.kind, preset) is not preset:
                 raise RuntimeError(f"{name!r} is {preset.name!r} and {of_name[preset.kind].name!r}")
     return MappingProxyType(table)
@@ -48,9 +48,9 @@ def find(name: str) -> Mapping[str, Preset]:
 
     Capitals, spaces and dashes do not count: `tim571` is `TiM571`.
     """
-    return _by_name().get(folded(name), {})
+    return _by_name().get(normalise_name(name), {})
 
 
-def folded(name: str) -> str:
+def normalise_name(name: str) -> str:
     """A name as it is compared with others."""
     return re.sub(r"[^0-9a-z]", "", name.lower())

@@ -6,19 +6,19 @@ import sys
 
 from simkit.diagnostics import did_you_mean
 from simkit.sensors.presets import find, presets
-from simkit.sensors.presets.page import in_words, page
+from simkit.sensors.presets.preset_page import describe_preset, presets_page
 
 
 def main(name: str | None) -> int:
     """Prints; 2 where there is no such preset."""
     if name is None:
-        sys.stdout.write(page())
+        sys.stdout.write(presets_page())
         return 0
     found = find(name)
     if not found:
         sys.stderr.write(f"there is no preset {name!r}; {did_you_mean(name, [p.name for p in presets()])}\n")
         return 2
-    sys.stdout.write("\n\n".join(map(in_words, found.values())) + "\n")
+    sys.stdout.write("\n\n".join(map(describe_preset, found.values())) + "\n")
     return 0
 
 

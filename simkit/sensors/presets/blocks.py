@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from simkit.sensors.bias_drift import ALLAN_FLOOR
 from simkit.sensors.presets.preset import Settings
-from simkit.sensors.wander import FLOOR
 
 DEGREE = math.pi / 180.0  # rad
 DEGREE_PER_HOUR = DEGREE / 3600.0  # rad/s
@@ -70,9 +70,9 @@ def inertial(gyro: float, accelerometer: float, gyro_floor: float = 0.0, acceler
     rate = {"noise_density": gyro * DEGREE}
     force = {"noise_density": accelerometer * MICRO_G}
     if gyro_floor:
-        rate["bias_instability"] = gyro_floor * DEGREE_PER_HOUR / FLOOR
+        rate["bias_instability"] = gyro_floor * DEGREE_PER_HOUR / ALLAN_FLOOR
     if accelerometer_floor:
-        force["bias_instability"] = accelerometer_floor * MICRO_G / FLOOR
+        force["bias_instability"] = accelerometer_floor * MICRO_G / ALLAN_FLOOR
     return imu(axes(gaussian(**rate)), axes(gaussian(**force)))
 
 

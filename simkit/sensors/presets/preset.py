@@ -63,22 +63,22 @@ class Preset:
 
 def outline(settings: Settings) -> str:
     """The settings on one line; neighbours that say the same (the axes of an IMU, mostly) are said once."""
-    return ", ".join(_parts(settings))
+    return ", ".join(_outline_items(settings))
 
 
-def _parts(settings: Settings) -> list[str]:
+def _outline_items(settings: Settings) -> list[str]:
     names: dict[str, list[str]] = {}
     said = {name: value for name, value in settings.items() if not str(value).startswith("gaussian")} or settings
     for name, value in said.items():
         if isinstance(value, Mapping):
-            within = _parts(value)
+            within = _outline_items(value)
             names.setdefault(f" ({', '.join(within)})" if len(within) > 1 else f" {within[0]}", []).append(name)
         else:
-            names[f"{name} {text_of(value)}".removeprefix("@")] = []
+            names[f"{name} {format_value(value)}".removeprefix("@")] = []
     return ["/".join(of_these) + text for text, of_these in names.items()]
 
 
-def text_of(value: Any) -> str:
+def format_value(value: Any) -> str:
     """A value as a file would have it: a number with all its digits, `true` or `false`."""
     if isinstance(value, bool):
         return str(value).lower()

@@ -1,5 +1,5 @@
 """Rays from one point: against the engine's own geoms where they are few, by NumPy and Embree where they are many."""
 
-from simkit.sensors.rays.fan import MANY_RAYS, RayFan, fan_directions
+from simkit.sensors.rays.ray_fan import MANY_RAYS, RayFan, fan_directions
 
 __all__ = ["MANY_RAYS", "RayFan", "fan_directions"]

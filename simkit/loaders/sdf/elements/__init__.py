@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from simkit.loaders.sdf.elements.bodies import AXIS, COLLISION, INERTIAL, JOINT, LINK, MODEL, SURFACE
 from simkit.loaders.sdf.elements.looks import GEOMETRY, LIGHT, MATERIAL, VISUAL
-from simkit.loaders.sdf.elements.parts import FRAME, INCLUDE, PLUGIN, POSE, SENSOR
 from simkit.loaders.sdf.elements.rows import Row, Schema, Table, Use
+from simkit.loaders.sdf.elements.sensors_and_plugins import FRAME, INCLUDE, PLUGIN, POSE, SENSOR
 from simkit.loaders.sdf.elements.worlds import ACTOR, PHYSICS, POPULATION, SAVED_LINK, SAVED_MODEL, SDF, STATE, WORLD
 
 __all__ = ["ELEMENTS", "TABLES", "Row", "Schema", "Table", "Use"]

@@ -1,0 +1,200 @@
+"""What a client has open: subscriptions, publishers, goals."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from simkit import msgs
+from simkit.bridges.live.protocol import LiveClosed, LiveError, message_frame
+
+if TYPE_CHECKING:
+    from simkit.bridges.live.client import Client
+    from simkit.runtime.communication.action_server import GoalStatus
+
+
+def _goal_statuses() -> type[GoalStatus]:
+    from simkit.runtime.communication.action_server import (
+        GoalStatus,  # the runtime loads the engine, which nobody else here needs
+    )
+
+    return GoalStatus
+
+
+class Received(NamedTuple):
+    """One message as it came.
+
+    Attributes:
+        time_ns: simulated time at which it was published [ns].
+        type_name: such as `sensor_msgs/msg/Imu`.
+        data: CDR.
+    """
+
+    time_ns: int
+    type_name: str
+    data: bytes
+
+    @property
+    def message(self) -> Any:
+        """The message itself."""
+        return msgs.deserialize(self.data, self.type_name)
+
+
+class LiveSubscription:
+    """What arrives on a topic: `for time_ns, type_name, cdr in subscription` waits for each, until the simulation ends.
+
+    Attributes:
+        topic: its absolute name.
+        waiting: what has come and nobody has looked at yet.
+        lost: how many messages were dropped, since more came than were looked at.
+    """
+
+    def __init__(self, client: Client, number: int, topic: str, depth: int) -> None:
+        self._client, self.number, self.topic = client, number, topic
+        self.waiting: deque[Received] = deque()
+        self._depth, self._lost_there, self._lost_here = max(1, depth), 0, 0
+        self._closed = False
+
+    @property
+    def lost(self) -> int:
+        return self._lost_there + self._lost_here
+
+    def get(self, timeout: float | None = None) -> Received | None:
+        """The next message; None where none comes in time [s]; None waits for as long as it takes.
+
+        Raises:
+            LiveClosed: the simulation has ended.
+        """
+        if not self.waiting and not self._closed:
+            if timeout is not None:
+                try:
+                    self._client._wait(lambda: bool(self.waiting), timeout)
+                except LiveClosed:
+                    raise
+                except LiveError:
+                    return None
+            else:
+                self._client._wait(lambda: bool(self.waiting), None)
+        return self.waiting.popleft() if self.waiting else None
+
+    def __iter__(self) -> Iterator[Received]:
+        return self
+
+    def __next__(self) -> Received:
+        try:
+            found = self.get()
+        except LiveClosed:
+            found = None
+        if found is None:
+            raise StopIteration
+        return found
+
+    def close(self) -> None:
+        """Receives no more."""
+        if not self._closed:
+            self._closed = True
+            self._client._subscriptions.pop(self.number, None)
+            if not self._client.is_closed:
+                self._client.ask("unsubscribe", number=self.number)
+
+    def _take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
+        self._lost_there = lost
+        if len(self.waiting) >= self._depth:
+            self.waiting.popleft()
+            self._lost_here += 1
+        self.waiting.append(Received(time_ns, type_name, data))
+
+
+class LivePublisher:
+    """Sends messages on a topic; `client.flush()` returns once they have been taken.
+
+    Attributes:
+        topic: its absolute name.
+        type_name: such as `geometry_msgs/msg/Twist`.
+    """
+
+    def __init__(self, client: Client, number: int, topic: str, type_name: str) -> None:
+        self._client, self.number, self.topic, self.type_name = client, number, topic, type_name
+
+    def publish(self, message: Any) -> None:
+        """Sends a message, a dict of its fields, or its CDR.
+
+        Raises:
+            MessageError: it does not fit the type.
+            LiveClosed: the simulation has ended.
+        """
+        if isinstance(message, (bytes, bytearray, memoryview)):
+            data = bytes(message)
+        else:
+            data = msgs.serialize(
+                msgs.from_dict([self.type_name], message) if isinstance(message, Mapping) else message
+            )
+        self._client._send(message_frame(self.number, data))
+
+    def close(self) -> None:
+        """Publishes no more."""
+        if not self._client.is_closed:
+            self._client.ask("unadvertise", number=self.number)
+
+
+class LiveGoal:
+    """A goal that was sent to an action.
+
+    Attributes:
+        action: the name of the action.
+        id: the number that the simulation gave it.
+        status: how far it is.
+        result: the result message, once there is one.
+        feedback: the newest feedback message.
+        reason: why it was rejected, or what else was said with its end.
+    """
+
+    def __init__(self, client: Client, number: int, on_feedback: Callable[[Any], None] | None) -> None:
+        self._client, self.number, self._on_feedback = client, number, on_feedback
+        self.action, self.id = "", 0
+        self.status: GoalStatus = _goal_statuses().UNKNOWN
+        self.result: Any = None
+        self.feedback: Any = None
+        self.reason = ""
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it was rejected, succeeded, was cancelled or aborted."""
+        return self.status.name in ("REJECTED", "SUCCEEDED", "CANCELED", "ABORTED")
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether the action has taken it, though it may have ended since."""
+        return self.status.name not in ("UNKNOWN", "REJECTED")
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Waits for its end; False where it does not come in time [s, wall time]."""
+        return self._wait_for(lambda: self.is_done, timeout)
+
+    def wait_accepted(self, timeout: float | None = None) -> bool:
+        """Waits until it is accepted or rejected; False where that does not come in time [s, wall time]."""
+        return self._wait_for(lambda: self.status.name != "UNKNOWN", timeout)
+
+    def cancel(self) -> None:
+        """Asks for it to be called off; the action may go on."""
+        self._client.ask("cancel", number=self.number)
+
+    def _wait_for(self, condition: Callable[[], bool], timeout: float | None) -> bool:
+        try:
+            return self._client._wait(condition, timeout)
+        except LiveClosed:
+            raise
+        except LiveError:
+            return False
+
+    def _take(self, words: Mapping[str, Any], data: bytes) -> None:
+        message = msgs.deserialize(data, str(words["type"])) if "type" in words else None
+        if "status" not in words:
+            self.feedback = message
+            if self._on_feedback is not None:
+                self._on_feedback(message)
+            return
+        self.status, self.reason = _goal_statuses()(int(words["status"])), str(words.get("reason", ""))
+        if message is not None:
+            self.result = message

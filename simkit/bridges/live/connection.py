@@ -1,0 +1,200 @@
+"""A client, as the simulation sees it: what it sends, what waits to be sent to it."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections import OrderedDict, deque
+from typing import TYPE_CHECKING, Any
+
+from simkit.bridges.live.protocol import (
+    ASK,
+    HEAD,
+    LARGEST_IN,
+    LARGEST_OUT,
+    MESSAGE,
+    MESSAGE_HEAD,
+    TELL,
+    BadFrame,
+    FrameReader,
+    json_frame,
+)
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.runtime.communication.topic_bus import Publisher
+
+MOST_BYTES = 32 << 20  # of messages that wait for one client
+MOST_DEPTH = 100_000  # messages that wait for one subscription
+MOST_OPEN = 1000  # subscriptions, publishers or goals under way of one client
+_ANSWERS_FULL = 1 << 18  # [bytes] of answers that wait, beyond which no more questions are taken
+_UNREAD_TIMEOUT = 10.0  # [s] of wall time after which a client that reads none of its answers is hung up on
+_PIECE = 1 << 16  # [bytes] read or written at once
+
+
+class ClientSubscription:
+    """A subscription of a client.
+
+    Attributes:
+        number: by which the client knows it.
+        depth: how many messages wait at most.
+        lost: how many were dropped.
+        waiting: keys of its messages in the client's queue, the oldest first.
+    """
+
+    __slots__ = ("depth", "lost", "number", "peer", "topic", "waiting")
+
+    def __init__(self, peer: ClientConnection, number: int, topic: str, depth: int) -> None:
+        self.peer, self.number, self.topic = peer, number, topic
+        self.depth = max(1, min(depth, MOST_DEPTH))
+        self.lost = 0
+        self.waiting: deque[int] = deque()
+
+
+class ClientConnection:
+    """One client.
+
+    Attributes:
+        node: what lists call it.
+        subscriptions, publishers, goals: what it has open, by the client's numbers.
+        is_held: whether nothing is taken from it for now, since more of its commands would be dropped.
+        why: for which it is to be hung up on, once that has been said to it; None for nothing.
+    """
+
+    def __init__(self, connection: socket.socket, number: int) -> None:
+        self.socket, self.node = connection, f"/client_{number}"
+        self.subscriptions: dict[int, ClientSubscription] = {}
+        self.publishers: dict[int, Publisher] = {}
+        self.goals: dict[int, tuple[GoalHandle, int]] = {}
+        self.is_held = False
+        self.why: str | None = None
+        self.is_gone = False
+        self.reader = FrameReader(LARGEST_IN, (ASK, MESSAGE))
+        self._answers: deque[bytes] = deque()
+        self._answer_bytes = 0
+        self._queue: OrderedDict[int, tuple[ClientSubscription, int, int, bytes]] = OrderedDict()
+        self._queue_bytes = 0
+        self._next = 0
+        self._types: dict[str, int] = {}
+        self._rest: memoryview | None = None  # of what the socket took only a part of
+        self._sent = time.monotonic()
+
+    # ------------------------------------------------------------------ from the client
+
+    def read(self) -> bool:
+        """Takes in what has arrived; False where nothing has."""
+        try:
+            data = self.socket.recv(_PIECE)
+        except (BlockingIOError, InterruptedError):
+            return False
+        except OSError:
+            data = b""
+        if not data:
+            self.is_gone = True
+            return False
+        self.reader.feed(data)
+        return True
+
+    @property
+    def is_clogged(self) -> bool:
+        """Whether so many answers wait that no more questions are taken."""
+        return self._answer_bytes > _ANSWERS_FULL
+
+    # ------------------------------------------------------------------ to the client
+
+    def say(self, kind: int, content: dict[str, Any], data: bytes = b"") -> None:
+        """An answer, or something that is told: nothing of it is ever dropped."""
+        try:
+            frame = json_frame(kind, content, data)
+        except (TypeError, ValueError) as error:
+            frame = json_frame(kind, {**content, "ok": None, "error": f"the answer cannot be sent: {error}"})
+        if len(frame) > LARGEST_OUT:
+            raise BadFrame("an answer is too large to be sent")
+        if not self.is_waiting:
+            self._sent = time.monotonic()
+        self._answers.append(frame)
+        self._answer_bytes += len(frame)
+
+    def push(self, subscribed: ClientSubscription, time_ns: int, type_name: str, data: bytes) -> None:
+        """A message; the oldest of its subscription are dropped where there are too many."""
+        size = len(data)
+        if size > MOST_BYTES:
+            subscribed.lost += 1
+            return
+        type_number = self._types.get(type_name)
+        if type_number is None:
+            type_number = self._types[type_name] = len(self._types)
+            self.say(TELL, {"tell": "type", "number": type_number, "type": type_name})
+        waiting, key = subscribed.waiting, self._next
+        if not self._queue and not self._answers and self._rest is None:
+            self._sent = time.monotonic()
+        self._next = key + 1
+        if len(waiting) >= subscribed.depth:
+            self._drop(waiting.popleft())
+        waiting.append(key)
+        self._queue[key] = subscribed, time_ns, type_number, data
+        self._queue_bytes += size
+        while self._queue_bytes > MOST_BYTES:
+            oldest = next(iter(self._queue))
+            self._queue[oldest][0].waiting.popleft()
+            self._drop(oldest)
+
+    def _drop(self, key: int) -> None:
+        subscribed, _, _, data = self._queue.pop(key)
+        subscribed.lost += 1
+        self._queue_bytes -= len(data)
+
+    def forget(self, subscribed: ClientSubscription) -> None:
+        """Drops what waits for a subscription that is closed."""
+        for key in subscribed.waiting:
+            self._queue_bytes -= len(self._queue.pop(key)[3])
+        subscribed.waiting.clear()
+
+    def clear(self) -> None:
+        """Lets go of all that it has open and that waits for it."""
+        for table in (self.subscriptions, self.publishers, self.goals, self._queue):
+            table.clear()
+        self._answers.clear()
+        self._rest = None
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether something is to be sent."""
+        return bool(self._answers or self._queue or self._rest is not None)
+
+    def write(self) -> None:
+        """Sends as much as the socket takes."""
+        try:
+            while True:
+                if self._rest is None:
+                    piece = self._piece()
+                    if not piece:
+                        return
+                    self._rest = memoryview(piece)
+                sent = self.socket.send(self._rest)
+                self._sent = time.monotonic()
+                self._rest = self._rest[sent:] if sent < len(self._rest) else None
+        except (BlockingIOError, InterruptedError):
+            if (self._answers or self.why is not None) and time.monotonic() - self._sent > _UNREAD_TIMEOUT:
+                self.is_gone = True
+        except OSError:
+            self.is_gone = True
+
+    def _piece(self) -> bytes:
+        """What is to be sent next: answers first, then messages in the order in which they were published."""
+        found: list[bytes] = []
+        size = 0
+        while self._answers and size < _PIECE:
+            frame = self._answers.popleft()
+            self._answer_bytes -= len(frame)
+            found.append(frame)
+            size += len(frame)
+        while not self._answers and self._queue and size < _PIECE:
+            _, (subscribed, time_ns, type_number, data) = self._queue.popitem(last=False)
+            subscribed.waiting.popleft()
+            self._queue_bytes -= len(data)
+            found.append(HEAD.pack(MESSAGE_HEAD.size + len(data), MESSAGE))
+            found.append(MESSAGE_HEAD.pack(subscribed.number, type_number, time_ns, subscribed.lost))
+            found.append(data)
+            size += len(data) + 29
+        return b"".join(found)

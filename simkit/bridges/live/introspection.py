@@ -1,0 +1,160 @@
+"""What there is in a simulation, as plain data."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from simkit.bridges.live.server import Server
+    from simkit.pose import Pose
+    from simkit.runtime.simulation import Simulation
+
+
+def topic_list(server: Server) -> list[dict[str, Any]]:
+    """Every topic with who publishes and who takes it, clients among them, sorted by name."""
+    sim, names = server.sim, NodeNames(server)
+    listed = sim.topics()
+    found: dict[str, dict[str, Any]] = {}
+    for topic in listed:
+        found[topic] = {"name": topic, "types": [], "publishers": [], "subscribers": []}
+    for topic, end, types, what in sim.bus.ends():
+        if topic not in found or not end.active:
+            continue
+        row, who = found[topic], names.of_end(end)
+        row["types"] += [t for t in types[:1] if t not in row["types"]]
+        if what == "publishes":
+            latched = bool(getattr(end, "latched", False))
+            row["publishers"].append({"node": who, "type": types[0], "latched": latched})
+        else:
+            row["subscribers"].append({"node": who, "types": list(types), "kind": "input"})
+    for peer in server.peers.values():
+        for subscribed in peer.subscriptions.values():
+            row = found.get(subscribed.topic, {})
+            if row:
+                row["subscribers"].append({"node": peer.node, "types": row["types"][:1], "kind": "client"})
+    return list(found.values())
+
+
+def node_list(server: Server) -> dict[str, dict[str, Any]]:
+    """Node -> its `publishers`, `subscribers`, `services`, `actions` (name -> types) and `parameters` (names)."""
+    sim, names = server.sim, NodeNames(server)
+    found: dict[str, dict[str, Any]] = {}
+
+    def entry(node: str) -> dict[str, Any]:
+        fresh: dict[str, Any] = {"publishers": {}, "subscribers": {}, "services": {}, "actions": {}, "parameters": []}
+        return found.setdefault(node, fresh)
+
+    for row in topic_list(server):
+        for end in row["publishers"]:
+            entry(end["node"])["publishers"][row["name"]] = [end["type"]]
+        for end in row["subscribers"]:
+            entry(end["node"])["subscribers"][row["name"]] = list(end["types"])
+    for name in sim.services():
+        service = sim.service_table._find(name)
+        if service is not None:
+            entry(names.of(service.owner))["services"][name] = [service.type_name]
+    for name in sim.actions():
+        action = sim.action_table._find(name)
+        if action is not None:
+            entry(names.of(action.owner))["actions"][name] = [action.type_name]
+    for node, parameters in sim.parameters.items():
+        entry(node)["parameters"] = list(parameters)
+    for peer in server.peers.values():
+        entry(peer.node)
+    return dict(sorted(found.items()))
+
+
+def parameter_list(sim: Simulation) -> dict[str, dict[str, Any]]:
+    """Node -> name -> `value`, `type`, `minimum`, `maximum`, `choices`, `allowed` and `description`."""
+    return {
+        node: {
+            name: {
+                "value": list(p.value) if isinstance(p.value, tuple) else p.value,
+                "type": type(p.value).__name__,
+                "minimum": p.minimum,
+                "maximum": p.maximum,
+                "choices": list(p.choices),
+                "allowed": p.allowed,
+                "description": p.description,
+            }
+            for name, p in found.items()
+        }
+        for node, found in sim.parameters.items()
+    }
+
+
+def model_state(sim: Simulation, name: str) -> dict[str, Any]:
+    """Where a model is, and its links and joints.
+
+    Raises:
+        KeyError: there is none of that name; names the closest.
+    """
+    model = sim.model(name)
+    return {
+        "name": model.scoped,
+        "static": model.static,
+        "pose": _pose_dict(model.pose),
+        "links": {
+            link_name: {
+                "pose": _pose_dict(link.pose),
+                "linear_velocity": link.linear_velocity,
+                "angular_velocity": link.angular_velocity,
+            }
+            for link_name, link in model.links.items()
+        },
+        "joints": {
+            joint_name: {
+                "type": joint.type,
+                "position": joint.position,
+                "velocity": joint.velocity,
+                "effort": joint.effort,
+            }
+            for joint_name, joint in model.joints.items()
+        },
+        "models": list(model.models),
+    }
+
+
+def _pose_dict(pose: Pose) -> dict[str, Any]:
+    rpy = np.asarray(pose.rpy)
+    return {"position": pose.position, "quaternion": pose.quaternion, "rpy": rpy}
+
+
+class NodeNames:
+    """What the nodes are called that ends of topics, services and actions belong to."""
+
+    def __init__(self, server: Server) -> None:
+        self._world = "/" + _name_part(server.sim.world.name)
+        self._nodes = {
+            id(p.owner): node
+            for node, found in server.sim.parameters.items()
+            for p in found.values()
+            if p.owner is not None
+        }
+        self._clients = {id(end): peer.node for peer in server.peers.values() for end in peer.publishers.values()}
+
+    def of_end(self, end: Any) -> str:
+        """The node of an end of a topic."""
+        return self._clients.get(id(end)) or self.of(end.owner)
+
+    def of(self, owner: Any) -> str:
+        """The node of a plugin or a sensor; that of the world where nobody owns something."""
+        if owner is None:
+            return self._world
+        known = self._nodes.get(id(owner))
+        if known is not None:
+            return known
+        scoped, name = str(getattr(owner, "scoped", "")), str(getattr(owner, "name", ""))
+        parts = scoped.split("::") if scoped else []
+        if not parts or parts[-1] != name:
+            parts.append(name)
+        words = [_name_part(part) for part in parts if part]
+        return "/" + "/".join(words) if words else self._world
+
+
+def _name_part(text: str) -> str:
+    """A text as a part of a ROS name."""
+    return re.sub(r"[^A-Za-z0-9_]+", "_", text).strip("_") or "_"

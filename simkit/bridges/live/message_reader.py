@@ -1,0 +1,100 @@
+"""What reads the messages that clients send: of types of a fixed size at one go, of all others as rosbags does."""
+
+from __future__ import annotations
+
+import itertools
+import struct
+from collections.abc import Callable, Iterator
+from functools import cache
+from typing import Any
+
+from simkit.msgs import type_store
+from simkit.msgs.text import NUMBER_CODES
+
+_CODES = {**NUMBER_CODES, "bool": "?"}
+_BASE, _NAME = 1, 2  # kinds of field, as rosbags counts them
+Reader = Callable[[bytes, int], Any]
+
+
+@cache
+def reader_of(type_name: str) -> Reader:
+    """What makes a message of the CDR that stands in some bytes from a place on.
+
+    Whatever it raises means that it is none of this type, and messages are those that `simkit.msgs.deserialize` makes.
+
+    Args:
+        type_name: the full name of a message type.
+    """
+    store = type_store()
+
+    def usual(data: bytes, begin: int) -> Any:
+        return store.deserialize_cdr(data[begin:], type_name)
+
+    try:
+        formats, classes = _layout(type_name)
+    except _VariableSizeError:
+        return usual
+    little, big = (struct.Struct(end + formats) for end in "<>")
+    unpack, size = little.unpack_from, little.size
+    make = _maker(classes)
+
+    def read(data: bytes, begin: int) -> Any:
+        if not 4 <= len(data) - begin - size <= 7 or data[begin] or data[begin + 1] > 1:
+            return usual(data, begin)  # says what is wrong
+        return make((unpack if data[begin + 1] else big.unpack_from)(data, begin + 4))
+
+    return read
+
+
+class _VariableSizeError(Exception):
+    """A type has messages of other sizes than one, or arrays."""
+
+
+Classes = tuple[Any, tuple[Any, ...]]
+
+
+def _layout(type_name: str) -> tuple[str, Classes]:
+    """The numbers of a message one after another with the gaps between them, and the classes they are for."""
+    place = 0
+    formats: list[str] = []
+    store: Any = type_store()
+
+    def walk(name: str) -> Classes:
+        nonlocal place
+        parts: list[Any] = []
+        for _, (kind, about) in store.fielddefs[name][1]:
+            code = _CODES.get(about[0]) if int(kind) == _BASE else None
+            if code is not None:
+                width = struct.calcsize(f"<{code}")
+                gap = -place % width
+                formats.append(f"{gap}x{code}" if gap else code)
+                place += gap + width
+                parts.append(None)
+            elif int(kind) == _NAME:
+                parts.append(walk(about))
+            else:
+                raise _VariableSizeError
+        return store.types[name], tuple(parts)
+
+    classes = walk(type_name)
+    return "".join(formats), classes
+
+
+def _maker(classes: Classes) -> Callable[[tuple[Any, ...]], Any]:
+    """What makes a message of its numbers."""
+    cls, parts = classes
+    if all(part is None for part in parts):
+        return lambda values: cls(*values)
+    if all(part is not None and all(p is None for p in part[1]) for part in parts):
+        lengths = [len(part[1]) for part in parts]
+        starts = [0, *itertools.accumulate(lengths)]
+        pieces = [(part[0], slice(*ends)) for part, ends in zip(parts, itertools.pairwise(starts), strict=True)]
+        if len(pieces) == 2:  # a twist, a wrench, an acceleration: what commands mostly are
+            (first, one), (second, two) = pieces
+            return lambda values: cls(first(*values[one]), second(*values[two]))
+        return lambda values: cls(*[inner(*values[piece]) for inner, piece in pieces])
+
+    def build(each: Classes, values: Iterator[Any]) -> Any:
+        return each[0](*[next(values) if part is None else build(part, values) for part in each[1]])
+
+    return lambda values: build(classes, iter(values))

@@ -1,0 +1,132 @@
+"""Frames that go over the socket of a running simulation, and the errors of the two ends."""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any, Final
+
+from simkit.errors import InputError
+
+
+class LiveError(InputError):
+    """No simulation answers, or it answered that it cannot do what was asked.
+
+    Attributes:
+        code: of the other side's error where it is one of theirs (`SK-SERVICE-001`), else one of `SK-LIVE-001` to 009.
+    """
+
+    def __init__(self, message: str, code: str) -> None:
+        super().__init__(message if code in message else f"{code} {message}", code)
+
+
+class LiveClosed(LiveError):
+    """The simulation has ended, or has closed the connection; says why where that is known."""
+
+    def __init__(self, message: str, code: str = "SK-LIVE-005") -> None:
+        super().__init__(message, code)
+
+
+class BadFrame(Exception):
+    """What came from the other side is no frame of the protocol."""
+
+
+PROTOCOL: Final = 1
+ASK, ANSWER, TELL, MESSAGE = 1, 2, 3, 4
+HEAD: Final = struct.Struct("<IB")
+MESSAGE_HEAD: Final = struct.Struct("<IIqQ")
+NUMBER: Final = struct.Struct("<I")
+LARGEST_IN: Final = 16 << 20  # [bytes] of a frame to the simulation
+_COPY_BYTES: Final = 2048  # [bytes] of which a copy is made sooner than a view
+LARGEST_OUT: Final = 256 << 20  # [bytes] of a frame from it
+
+
+def json_default(value: Any) -> Any:
+    """What JSON does not know, as something that it does."""
+    if hasattr(value, "tolist"):  # of NumPy, arrays and numbers
+        return value.tolist()
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        return list(value)
+    if isinstance(value, (set, frozenset)):
+        return sorted(value)
+    raise TypeError(f"{type(value).__name__} cannot be sent")
+
+
+def json_frame(kind: int, content: dict[str, Any], data: bytes = b"") -> bytes:
+    """A frame of JSON, with or without CDR behind it."""
+    text = json.dumps(content, default=json_default, separators=(",", ":")).encode()
+    return b"".join((HEAD.pack(4 + len(text) + len(data), kind), NUMBER.pack(len(text)), text, data))
+
+
+def message_frame(number: int, data: bytes) -> bytes:
+    """A message to the simulation."""
+    return b"".join((HEAD.pack(4 + len(data), MESSAGE), NUMBER.pack(number), data))
+
+
+def read_json_frame(body: bytes) -> tuple[dict[str, Any], bytes]:
+    """The JSON of a frame's body, and what stands behind it.
+
+    Raises:
+        BadFrame: it is none.
+    """
+    if len(body) < 4:
+        raise BadFrame("a frame of JSON is shorter than the length of its text")
+    end = 4 + NUMBER.unpack_from(body)[0]
+    if end > len(body):
+        raise BadFrame("the JSON text of a frame is longer than the frame")
+    try:
+        content = json.loads(body[4:end])
+    except (ValueError, RecursionError) as error:
+        raise BadFrame(f"a frame is not JSON: {error}") from None
+    if not isinstance(content, dict):
+        raise BadFrame("the JSON of a frame is no object")
+    return content, body[end:]
+
+
+class FrameReader:
+    """Cuts what arrives into frames.
+
+    Args:
+        largest: [bytes] of a body that is accepted.
+        kinds: of frame that are accepted.
+    """
+
+    def __init__(self, largest: int, kinds: tuple[int, ...]) -> None:
+        self._largest, self._kinds = largest, kinds
+        self._buffer = bytearray()
+        self._begin = 0
+
+    def feed(self, data: bytes | memoryview) -> None:
+        """Takes in what has arrived."""
+        if self._begin:
+            del self._buffer[: self._begin]
+            self._begin = 0
+        self._buffer += data
+
+    @property
+    def is_in_frame(self) -> bool:
+        """Whether a part of a frame is there, or a whole one."""
+        return len(self._buffer) > self._begin
+
+    def next(self) -> tuple[int, bytes] | None:
+        """The kind and the body of the next whole frame; None before it is there.
+
+        Raises:
+            BadFrame: it is of an unknown kind, or larger than allowed.
+        """
+        buffer, begin = self._buffer, self._begin
+        there = len(buffer)
+        if there - begin < 5:
+            return None
+        length, kind = HEAD.unpack_from(buffer, begin)
+        if kind not in self._kinds:
+            raise BadFrame(f"a frame of kind {kind}, allowed is {' or '.join(map(str, self._kinds))}")
+        if length > self._largest:
+            raise BadFrame(f"a frame of {length} bytes, allowed are {self._largest}")
+        end = begin + 5 + length
+        if there < end:
+            return None
+        self._begin = end
+        if length < _COPY_BYTES:
+            return kind, bytes(buffer[begin + 5 : end])
+        return kind, bytes(memoryview(buffer)[begin + 5 : end])

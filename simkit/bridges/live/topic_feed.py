@@ -1,0 +1,122 @@
+"""Topics on their way to clients: each message is written once, whoever hears it."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from simkit import msgs
+from simkit.bridges.live.connection import ClientSubscription
+from simkit.errors import MessageError
+from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.topic_bus import Subscription
+    from simkit.runtime.simulation import Simulation
+
+_MOST_WAITING = 100  # messages of a topic that are still being made
+
+
+class TopicFeed:
+    """One topic that clients subscribe to."""
+
+    def __init__(self, sim: Simulation, topic: str) -> None:
+        self._sim, self.topic = sim, topic
+        self._readers: list[ClientSubscription] = []
+        self._waiting: deque[tuple[int, Any]] = deque()
+        self._tap: Subscription | None = None
+
+    def add(self, reader: ClientSubscription) -> None:
+        """One more who hears the topic; the last message of a latched one goes to them alone."""
+        if self._tap is None:
+            self._readers.append(reader)
+            self._tap = self._sim.bus.tap(self.topic, self._take, takes_later=True)
+            return
+        if self.topic in self._sim.bus.latched():
+            only = TopicFeed(self._sim, self.topic)
+            only.add(reader)
+            only.remove(reader)
+        self._readers.append(reader)
+
+    def remove(self, reader: ClientSubscription) -> None:
+        """One less."""
+        if reader in self._readers:
+            self._readers.remove(reader)
+        if not self._readers and self._tap is not None:
+            self._tap.close()
+            self._tap = None
+            self._waiting.clear()
+
+    @property
+    def is_heard(self) -> bool:
+        return bool(self._readers)
+
+    def settle(self) -> bool:
+        """Hands on what is made by now, in order; whether anything still waits."""
+        waiting = self._waiting
+        while waiting:
+            time_ns, kept = waiting[0]
+            if type(kept) is LazyMessage:
+                if not kept.is_ready:
+                    return True
+                kept = _serialise(kept.get())
+            waiting.popleft()
+            self._hand_on(time_ns, kept)
+        return False
+
+    def _take(self, message: Any) -> None:
+        """A message that was published now."""
+        time_ns = self._sim.time_ns
+        if self._waiting or (type(message) is LazyMessage and not message.is_ready):
+            # what is a message now may be written to after this
+            self._waiting.append((time_ns, message if type(message) is LazyMessage else _serialise(message)))
+            if len(self._waiting) > _MOST_WAITING:
+                self._waiting.popleft()
+                for reader in self._readers:
+                    reader.lost += 1
+            return
+        self._hand_on(time_ns, _serialise(message.get() if type(message) is LazyMessage else message))
+
+    def _hand_on(self, time_ns: int, written: tuple[str, bytes] | None) -> None:
+        if written is not None:
+            for reader in self._readers:
+                reader.peer.push(reader, time_ns, *written)
+
+
+def _serialise(message: Any) -> tuple[str, bytes] | None:
+    """Type and CDR; None where there is no message, or one that cannot be written, which concerns its publisher."""
+    if message is NO_MESSAGE:
+        return None
+    try:
+        return msgs.type_name(message), msgs.serialize(message)
+    except MessageError:
+        return None
+
+
+class TopicFeeds:
+    """All topics that clients subscribe to."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._feeds: dict[str, TopicFeed] = {}
+
+    def add(self, reader: ClientSubscription) -> None:
+        """One more who hears a topic."""
+        feed = self._feeds.get(reader.topic)
+        if feed is None:
+            feed = self._feeds[reader.topic] = TopicFeed(self._sim, reader.topic)
+        feed.add(reader)
+
+    def remove(self, reader: ClientSubscription) -> None:
+        """One less."""
+        feed = self._feeds.get(reader.topic)
+        if feed is not None:
+            feed.remove(reader)
+            if not feed.is_heard:
+                del self._feeds[reader.topic]
+
+    def settle(self) -> None:
+        """Hands on what had still to be made when it was published."""
+        for feed in self._feeds.values():
+            if feed._waiting:
+                feed.settle()

@@ -1,0 +1,213 @@
+"""`simkit bag record`: a bag of a simulation that runs in another terminal."""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli.run_loop import Interrupts
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Sim
+from simkit.cli.terminal.message_arguments import compile_pattern
+from simkit.cli.terminal.options import Force, Json
+from simkit.cli.terminal.output import absolute_name, is_hidden, print_json, print_note, report_errors_quietly
+from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.cli.terminal.topic_sources import LiveFeed
+    from simkit.recording.bags.writer import McapBag
+
+_DEPTH = 20_000  # messages of a topic that wait while the disk is busy
+_LOOK = 0.2  # [s] of wall time between two looks at Ctrl-C
+_NEW = 1.0  # [s] of wall time between two looks for new topics
+
+
+@report_errors_quietly
+def record(
+    topics: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Topics to record.", metavar="[TOPIC]...", show_default=False, autocompletion=completion.topics
+        ),
+    ] = None,
+    all_: Annotated[bool, typer.Option("--all", "-a", help="All topics, those that come later too.")] = False,
+    regex: Annotated[
+        str | None, typer.Option("--regex", "-e", help="Topics that this fits.", metavar="REGEX", show_default=False)
+    ] = None,
+    exclude: Annotated[
+        str | None,
+        typer.Option("--exclude-regex", "--exclude", "-x", help="But not these.", metavar="REGEX", show_default=False),
+    ] = None,
+    topics_too: Annotated[
+        list[str], typer.Option("--topics", help="The same as arguments; repeatable.", metavar="TOPIC")
+    ] = [],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="x.mcap one file, else a rosbag2 folder.", metavar="OUT", show_default=False
+        ),
+    ] = None,
+    duration: Annotated[
+        float | None, typer.Option("--duration", "-d", help="Ends after so long (simulated).", metavar="S", min=0)
+    ] = None,
+    hidden: Annotated[bool, typer.Option("--include-hidden-topics", help="Hidden ones too.")] = False,
+    storage: Annotated[str, typer.Option("--storage", "-s", help="mcap is all there is.", metavar="mcap")] = "mcap",
+    force: Force = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Records topics of a running simulation until Ctrl-C; `simkit run --record` loses nothing at any speed."""
+    from simkit.recording.bags.recorder import open_bag
+
+    named = [absolute_name(t) for t in (*(topics or ()), *topics_too)]
+    wanted = _TopicSelection(
+        named, all_, compile_pattern(regex, "--regex"), compile_pattern(exclude, "--exclude-regex"), hidden
+    )
+    if storage != "mcap":
+        raise InputError(f"SK-CLI-018 --storage: found {storage!r}, allowed is mcap", "SK-CLI-018")
+    target = output or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
+    with connect_to_simulation(sim) as client:
+        recording = _Recording(LiveSource(client), wanted, duration)
+        with Interrupts() as stop:
+            bag = open_bag(target, overwrite=force)
+            try:
+                recording.run(bag, stop)
+            finally:
+                bag.close()
+    summary = {"path": str(target), "messages": bag.span.count, "topics": len(bag.channels), "lost": recording.lost}
+    if json_:
+        print_json(summary)
+    else:
+        print_note(f"{target}: {bag.span.count} messages on {len(bag.channels)} topics")
+        if recording.lost:
+            print_note(
+                f"note: {recording.lost} messages came faster than they were written; simkit run --record loses none"
+            )
+    return stop.exit_code
+
+
+class _TopicSelection:
+    """Which topics are recorded."""
+
+    def __init__(
+        self,
+        named: list[str],
+        all_: bool,
+        regex: re.Pattern[str] | None,
+        exclude: re.Pattern[str] | None,
+        hidden: bool,
+    ) -> None:
+        if not named and not all_ and regex is None:
+            text = "no topics to record; name them, or --all, or --regex"
+            raise InputError(f"SK-CLI-018 {text}", "SK-CLI-018")
+        self._named, self._all, self._regex, self._exclude, self._hidden = set(named), all_, regex, exclude, hidden
+        self.named = named
+
+    def __contains__(self, topic: str) -> bool:
+        if self._exclude is not None and self._exclude.search(topic):
+            return False
+        if topic in self._named:
+            return True
+        if is_hidden(topic) and not self._hidden:
+            return False
+        return self._all or (self._regex is not None and bool(self._regex.search(topic)))
+
+
+class _Recording:
+    """Writes what comes on the wanted topics."""
+
+    def __init__(self, source: LiveSource, wanted: _TopicSelection, duration: float | None) -> None:
+        self._source, self._wanted, self._duration = source, wanted, duration
+        self._feeds: list[LiveFeed] = []
+        self._known: set[str] = set()
+        self._latched: set[str] = set()
+        self._looked = -_NEW
+        self._begun_ns: int | None = None
+        there = source.topics()
+        for name in wanted.named:
+            if name not in there:
+                from simkit.diagnostics import did_you_mean
+
+                hint = did_you_mean(name, there)
+                print_note(f"note: {name} is not there yet{'; ' + hint if hint else ''}")
+
+    @property
+    def lost(self) -> int:
+        """How many messages were dropped."""
+        return sum(feed.lost for feed in self._feeds)
+
+    def run(self, bag: McapBag, stop: Interrupts) -> None:
+        """Records to the end of the simulation, or until asked to stop."""
+        from simkit.live import LiveClosed
+
+        try:
+            started_ns = self._now_ns()
+            while not stop.exit_code:
+                self._subscribe(bag)
+                came = self._source_pump()
+                if self._write(bag, came) or (not came and any(feed.is_over for feed in self._feeds)):
+                    return
+                if self._duration is not None and not came:
+                    begun_ns = started_ns if self._begun_ns is None else self._begun_ns
+                    if self._now_ns() - begun_ns > self._duration * 1e9:
+                        return
+        except LiveClosed as closed:
+            if closed.code != "SK-LIVE-005":
+                raise
+            if not any(feed.is_over for feed in self._feeds):
+                print_note(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
+        self._write(bag, self._source_pump(wait=0.0))
+
+    def _now_ns(self) -> int:
+        return int(self._source.client.state()["time_ns"])
+
+    def _write(self, bag: McapBag, came: list[Any]) -> bool:
+        """Writes messages; whether one is behind the end of what was asked for."""
+        for received in came:
+            time_ns = int(received.time_ns)
+            self._begun_ns = time_ns if self._begun_ns is None else min(self._begun_ns, time_ns)
+            if self._duration is not None and time_ns - self._begun_ns > self._duration * 1e9:
+                return True
+            channel = bag.channel(received.topic, received.type_name, received.topic in self._latched)
+            bag.write_raw(channel, received.data, time_ns)
+        return False
+
+    def _source_pump(self, wait: float = _LOOK) -> list[Any]:
+        """What has come, in the order of times; waited for where nothing has [s, wall time]."""
+        if not self._feeds:
+            time.sleep(wait)
+            return []
+        found: list[Any] = []
+        for number, feed in enumerate(self._feeds):
+            while (received := feed.take(wait if number == 0 and not found else 0.0)) is not None:
+                found.append(received)
+            if feed.is_over:
+                break
+        for feed in self._feeds if any(f.is_over for f in self._feeds) else ():
+            feed.is_over = True
+            while (received := feed.take(0.0)) is not None:
+                found.append(received)
+        return sorted(found, key=lambda r: int(r.time_ns))
+
+    def _subscribe(self, bag: McapBag) -> None:
+        """Looks for topics that are wanted and new."""
+        if time.monotonic() - self._looked < _NEW:
+            return
+        self._looked = time.monotonic()
+        fresh = {n: e for n, e in self._source.topics().items() if n in self._wanted and n not in self._known}
+        if not fresh:
+            return
+        for name, entry in fresh.items():
+            if any(end.latched for end in entry.publishers):
+                self._latched.add(name)
+        self._feeds.append(self._source.feed(list(fresh), _DEPTH))
+        self._known |= set(fresh)
+        for name, entry in fresh.items():
+            print_note(f"[INFO] [rosbag2_recorder]: Subscribed to topic '{name}'")
+            for end in entry.publishers[:1] or entry.subscribers[:1]:
+                bag.channel(name, end.types[0], end.latched)  # listed though nothing may come

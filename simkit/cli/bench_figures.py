@@ -1,0 +1,280 @@
+"""Measure the speed of simkit and of bare MuJoCo on the same compiled model, in turn; report medians."""
+
+from __future__ import annotations
+
+import functools
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from simkit import build
+from simkit.cli.bench_bare_mujoco import BareEngine, BarePass, HandWrittenLoop, cast_bare_scan
+from simkit.plugins import WorldPlugin
+from simkit.runtime.engine.scheduler import Phase
+from simkit.runtime.engine.step_loop import guarded_hook
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.rays.lidar import Lidar
+
+_CHUNK = 500  # steps a round
+_CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One comparison; times in seconds.
+
+    Attributes:
+        ours, bare: median time of one unit; `bare` is None where there is nothing to compare with.
+        aim: highest ratio aimed at, or None.
+        most: longest time aimed at, or None.
+    """
+
+    name: str
+    unit: str
+    ours: float
+    bare: float | None = None
+    aim: float | None = None
+    most: float | None = None
+
+    @property
+    def ratio(self) -> float | None:
+        return None if not self.bare else self.ours / self.bare
+
+
+class EveryStepPlugin(WorldPlugin):
+    """The least that a plugin can do: it is called after every step."""
+
+    def load(self, parent: Any, params: Any) -> None:
+        self.calls = 0
+
+    def after_step(self) -> None:
+        self.calls += 1
+
+
+def time_interleaved(
+    sides: Sequence[Callable[[], object]], rounds: int, clock: Callable[[], float] = time.process_time
+) -> list[float]:
+    """Median time of one call of each side [s]; the sides alternate, so that a busy machine hits all alike.
+
+    Args:
+        sides: what is timed.
+        rounds: how often.
+        clock: CPU time of all threads by default.
+    """
+    taken: list[list[float]] = [[] for _ in sides]
+    for side in sides:
+        side()
+    for _ in range(rounds):
+        for side, times in zip(sides, taken, strict=True):
+            start = clock()
+            side()
+            times.append(clock() - start)
+    return [statistics.median(times) for times in taken]
+
+
+def measure(
+    source: str,
+    *,
+    rounds: int = 9,
+    what: str = "all",
+    how: Mapping[str, Any] | None = None,
+) -> Iterator[Figure]:
+    """Each figure of a world as soon as it is known.
+
+    Args:
+        source: the world.
+        rounds: timings of each side.
+        what: "steps", "sensors" or "all".
+        how: further arguments of `simkit.load`: resource_paths, package_paths, base, ...
+    """
+
+    def load(*plugins: Any) -> Any:
+        return build.load(source, plugins=plugins, **(how or {}))
+
+    if what != "sensors":
+        yield from _steps(load, rounds)
+    if what != "steps":
+        with load() as sim:
+            sim.run(1.0)
+            for sensor in sim.sensors.values():
+                if sensor.topic:
+                    yield sensor_cost(sim, sensor, rounds)
+
+
+def _steps(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
+    with load() as sim:
+        yield stepping(sim, rounds)
+    plugin = EveryStepPlugin()
+    with load(plugin) as sim:
+        _schedule_only(sim, None, guarded_hook(sim, plugin, "after_step"), "after")
+        yield _compare_step(sim, rounds, "step, only a Python plugin after each", 1.20)
+    with load() as sim:
+        imu = next((s for s in sim.sensors.values() if s.kind == "imu" and s.topic), None)
+        if imu:
+            _schedule_only(sim, imu.update_rate, imu.sample, "sense")
+            latest = sim.bus.subscribe(imu.topic, keep=1)
+            yield _compare_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, looked at later", 1.10)
+            latest.close()
+            sim.bus.tap(imu.topic, _ignore)
+            yield _compare_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, each message made", 1.10)
+    for how in ("looked at later", "each message made"):
+        with load() as sim:
+            kinds = [s for s in sim.sensors.values() if s.topic and (s.kind == "imu" or isinstance(s, Lidar))]
+            if len(kinds) > 1:
+                yield motion_and_scans(sim, {s.topic for s in kinds}, rounds, how)
+    with load() as sim:
+        yield everything_read(sim, rounds)
+
+
+def import_time(rounds: int) -> float:
+    """What `import simkit` adds to a fresh interpreter [s], wall time."""
+    # the same simkit as this one, wherever it was imported from
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    taken: dict[str, list[float]] = {"pass": [], "import simkit": []}
+    for _ in range(rounds):
+        for statement, times in taken.items():
+            start = time.perf_counter()
+            subprocess.run([sys.executable, "-c", statement], check=True, env=environment)
+            times.append(time.perf_counter() - start)
+    empty, ours = (statistics.median(times) for times in taken.values())
+    return ours - empty
+
+
+def memory_growth(sim: Any, duration: float) -> float:
+    """Bytes a simulated second adds to the process with all but images read; the first half is left to settle."""
+    _count_messages(sim, _without_pictures(sim))
+    sim.run(duration / 2)
+    before = _resident_memory()
+    sim.run(duration / 2)
+    return (_resident_memory() - before) / (duration / 2)
+
+
+def _without_pictures(sim: Any) -> set[str]:
+    """The topics for which nothing is drawn; boxes around what is seen are for example not among them."""
+    drawn = {t for s in sim.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
+    return {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS} - drawn
+
+
+def stepping(sim: Any, rounds: int) -> Figure:
+    """Steps with nothing due beside `mj_step` on a copy of the same model and state."""
+    sim.step(100)
+    sim.scheduler.clear()
+    sim.scheduler.rewind(sim.tick)
+    return _compare_step(sim, rounds, "step, nothing due", 1.05)
+
+
+def _schedule_only(sim: Any, rate: float | None, task: Callable[[int], None], phase: Phase) -> None:
+    """Nothing but `task` is due in this simulation from now on."""
+    sim.scheduler.clear()
+    sim.scheduler.every(rate, task, phase)
+    sim.scheduler.rewind(sim.tick)
+
+
+def _compare_step(sim: Any, rounds: int, name: str, aim: float) -> Figure:
+    sim.step(100)
+    bare = BareEngine(sim)
+    ours, theirs = time_interleaved([lambda: sim.step(_CHUNK), lambda: bare.step(_CHUNK)], rounds)
+    return Figure(name, "step", ours / _CHUNK, theirs / _CHUNK, aim)
+
+
+def motion_and_scans(sim: Any, topics: set[str], rounds: int, how: str) -> Figure:
+    """The world with its plugins, IMUs and lidars read, beside a hand-written loop that takes these readings alone.
+
+    Args:
+        topics: of the sensors.
+        how: "looked at later" keeps the newest message of each, "each message made" is called back with it.
+    """
+    name = f"step, all plugins, imu and lidar read, {how}"
+    if how == "looked at later":
+        for topic in topics:
+            sim.bus.subscribe(topic, keep=1)
+    return _compare_hand_written(sim, topics, rounds, name, 1 / 0.9, keeps_counting=how != "looked at later")
+
+
+def everything_read(sim: Any, rounds: int) -> Figure:
+    """The world with its plugins and every topic but images read, beside a hand-written loop of the same readings."""
+    topics = _without_pictures(sim)
+    return _compare_hand_written(sim, topics, rounds, "step, all plugins, all sensors read but images", 1 / 0.85)
+
+
+def _compare_hand_written(
+    sim: Any, topics: set[str], rounds: int, name: str, aim: float, *, keeps_counting: bool = True
+) -> Figure:
+    """Each topic's messages are counted to learn its period; where asked for, that goes on while it is timed."""
+    second = round(1.0 / sim.timestep)
+    sim.step(second)  # the first sample of all comes early
+    counts, taps = _count_messages(sim, topics)
+    sim.step(second)
+    periods = {topic: max(1, round(second / n)) for topic, n in counts.items() if n > 1}
+    if not keeps_counting:
+        for tap in taps:
+            tap.close()
+    bare = HandWrittenLoop(sim, periods)
+    ours, theirs = time_interleaved([lambda: sim.step(second), lambda: bare.step(second)], rounds)
+    return Figure(name, "step", ours / second, theirs / second, aim)
+
+
+def sensor_cost(sim: Any, sensor: Any, rounds: int) -> Figure:
+    """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
+    bare pass. Pictures are without noise, and clouds are not made."""
+    clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
+    taps = [sim.bus.tap(t, _ignore) for p, t in sensor._topics.items() if p not in clouds]
+    sim.fresh_acceleration()
+    name, aim = f"{sensor.kind} {sensor.scoped}", None
+    bare: Callable[[], object] | None = None
+    one_pass: BarePass | None = None
+    count = 200
+    if isinstance(sensor, RenderedCamera):
+        count = 5
+        vars(sensor)["perturb"] = lambda reading, _index: reading  # of this one sensor
+        if len(sensor.shots()) == 1 and not sensor.shots()[0].ids:
+            one_pass, aim = BarePass(sim, sensor), 1.15
+        name += ", no noise"
+    elif isinstance(sensor, Lidar):
+        bare, aim = cast_bare_scan(sensor, sim.mj_model, sim.mj_data), 1.15
+    tick = sim.tick
+    sides: list[Callable[[], object]] = [lambda: [sensor.sample(tick) for _ in range(count)]]
+    if one_pass is not None:
+        bare = functools.partial(one_pass.draw_many, count)
+        sides.append(bare)
+    elif bare is not None:
+        one = bare
+        sides.append(lambda: [one() for _ in range(count)])
+    times = time_interleaved(sides, max(3, rounds))
+    if one_pass is not None:
+        one_pass.free()
+    for tap in taps:
+        tap.close()
+    most = 12e-6 if sensor.kind == "imu" else None
+    return Figure(name, "sample", times[0] / count, times[1] / count if bare is not None else None, aim, most)
+
+
+def _count_messages(sim: Any, topics: set[str]) -> tuple[dict[str, int], list[Any]]:
+    """Reads these topics; gives how many messages came, by topic, and the subscriptions."""
+    counts: dict[str, int] = {}
+
+    def count(topic: str) -> Callable[[Any], None]:
+        def one_more(_: Any) -> None:
+            counts[topic] = counts.get(topic, 0) + 1
+
+        return one_more
+
+    return counts, [sim.bus.tap(topic, count(topic)) for topic in sorted(topics)]
+
+
+def _ignore(_: Any) -> None:
+    return None
+
+
+def _resident_memory() -> int:
+    """Memory of this process in use now [B]; an estimate from Python's blocks where the system does not say."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        return sys.getallocatedblocks() * 64

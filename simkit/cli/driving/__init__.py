@@ -1,1 +1,0 @@
-"""A driver at the keyboard."""

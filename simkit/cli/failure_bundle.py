@@ -1,0 +1,87 @@
+"""`simkit run --bundle-on-failure`: a run that fails leaves one file with which it is repeated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.cli.terminal.output import print_status
+from simkit.errors import InputError, SimkitError
+
+if TYPE_CHECKING:
+    from simkit.cli.run_verdict import RunVerdict
+    from simkit.testing.bundles import BundleRecorder
+    from simkit.testing.bundles.manifest import Failure
+
+DEFAULT_FOLDER: Final = "bundles"
+"""Where bundles go when no folder is said."""
+_FAILED: Final = (1, 3, 4, 5)
+
+
+class FailureBundle:
+    """Keeps what a bundle needs, and writes it where a run fails; a context manager around loading and running.
+
+    Args:
+        folder: where bundles go; None where none is wanted.
+        verdict: knows what became of the run.
+        given: `simkit.load`'s arguments, for a world that fails while it is loaded.
+
+    Raises:
+        InputError: SK-CLI-016 nothing can be written there.
+    """
+
+    def __init__(self, folder: Path | None, verdict: RunVerdict, given: Mapping[str, Any]) -> None:
+        self._folder, self._verdict, self._given = folder, verdict, given
+        self._keeper: BundleRecorder | None = None
+        if folder is not None:
+            from simkit.writers.atomic_output import check_folder
+
+            check_folder(folder)
+
+    def keep(self, sim: Any) -> None:
+        """Begins to keep what a bundle needs; to be called right after loading."""
+        if self._folder is not None:
+            from simkit.testing.bundles import BundleRecorder
+
+            self._keeper = BundleRecorder(sim)
+
+    def __enter__(self) -> FailureBundle:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._folder is None:
+            return
+        failure = self._failure(error)
+        if failure is not None:
+            self._write(self._folder, failure)
+
+    def _failure(self, error: BaseException | None) -> Failure | None:
+        from simkit.cli.wall_time_limit import WallTimeExceeded
+        from simkit.testing.bundles.bundle_recorder import failure_from_checks, failure_from_error
+
+        if isinstance(error, Exception) and not isinstance(error, InputError):
+            code = error.exit_code if isinstance(error, SimkitError) else getattr(error, "exit_code", 1)
+            return failure_from_error(error) if code in _FAILED else None
+        verdict = self._verdict
+        if isinstance(error, WallTimeExceeded) or (error is None and verdict.code in _FAILED):
+            return failure_from_checks(verdict.results, was_given_up=True)
+        return None
+
+    def _write(self, folder: Path, failure: Failure) -> None:
+        """Says where the bundle is; that there is none changes nothing of what the run ends with."""
+        from simkit.testing.bundles.bundle_recorder import write_failed
+        from simkit.testing.bundles.bundle_writer import pack_load_failure
+
+        try:
+            if self._keeper is not None:
+                path = write_failed(self._keeper, folder, failure)
+            else:
+                path = pack_load_failure(self._given, folder, failure)
+        except (SimkitError, OSError) as error:
+            print_status(f"no bundle was written: {error}")
+        else:
+            print_status(f"bundle {path}; simkit replay {path} repeats the run")

@@ -1,0 +1,272 @@
+"""Run a loaded world from its first slice to its summary."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from simkit.cli.run_loop import Interrupts, RunLoop
+from simkit.cli.run_options import RunOptions
+from simkit.cli.run_verdict import RunVerdict
+from simkit.cli.terminal.blocked_plugins import BlockedPlugins
+from simkit.cli.terminal.output import print_status, stderr_console, stdout_console
+from simkit.errors import InputError, RenderError
+from simkit.runtime.engine.snapshot import state_hash
+
+if TYPE_CHECKING:
+    from simkit.cli.terminal.keyboard import Keyboard, WindowsKeyboard
+    from simkit.cli.terminal.progress import Progress
+    from simkit.cli.terminal.teleop import Teleop
+    from simkit.recording.bags.playback import Playback
+    from simkit.recording.bags.recorder import Recorder
+    from simkit.recording.topic_counts import TopicCounter
+
+
+def print_summary(sim: Any, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool) -> None:
+    """Topics with their true rates, then one line, then the hash of the physics state.
+
+    Args:
+        sim: the simulation.
+        counter: of its topics.
+        recording: what was recorded.
+        elapsed: wall time of the run [s].
+        quiet: whether the topics are left out.
+    """
+    from simkit.cli.terminal.progress import rate_text
+
+    if not quiet and counter.rows:
+        width = max(len(row.topic) for row in counter.rows)
+        for row in counter.rows:
+            stdout_console().print(f"{row.topic:<{width}}  {row.count:>8}  {rate_text(row):>12}  {row.type_name}")
+    factor = sim.time / max(elapsed, 1e-9)
+    line = f"simulated {sim.time:.3f} s in {elapsed:.2f} s ({factor:.2f} × real time), {counter.total} messages read"
+    if recording is not None:
+        line += f"; {recording.message_count} in {recording.path}"
+    stdout_console().print(line)
+    stdout_console().print(f"state {state_hash(sim)}")
+
+
+def draw_picture(sim: Any, path: Path, driven: Any) -> None:
+    """The scene at the end, with the path that was driven."""
+    from simkit.build import render_view
+    from simkit.recording.run_picture import save_picture
+
+    try:
+        save_picture(sim, path, render_view, driven)
+    except RenderError as error:
+        stderr_console().print(f"warning: no picture: {error}", style="yellow")
+    else:
+        stdout_console().print(f"picture {path}")
+
+
+def check_keyboard(request: RunOptions) -> None:
+    """Says before a run why nobody can drive.
+
+    Raises:
+        InputError: SK-CLI-050 there is no terminal.
+    """
+    from simkit.cli.terminal.keyboard import open_keyboard
+
+    if request.teleop is not None and open_keyboard(sys.stdin) is None:
+        raise InputError(
+            "SK-CLI-050 --teleop reads keys, and standard input is no terminal\n"
+            "    help: --cmd-vel V,W or --script FILE.yaml drive without one, simkit topic pub from another terminal",
+            "SK-CLI-050",
+        )
+
+
+def _endless_text(request: RunOptions) -> str:
+    """What is said of a run that has no end of its own."""
+    if request.until:
+        return "running until the condition holds, or Ctrl-C (--timeout S gives up then)"
+    return "running until Ctrl-C (--duration S stops by itself)"
+
+
+def _interrupt_text(interrupts: Interrupts, loop: RunLoop) -> str:
+    """Who ended a run before its time; empty for nobody."""
+    if interrupts.exit_code:
+        return "an interrupt"
+    return "" if loop.keep_going() else "the viewer's"
+
+
+class Session:
+    """One run of a loaded world.
+
+    Args:
+        request: what it is to do.
+        sim: the simulation.
+        blocked: tells of plugins that keep it waiting.
+        verdict: what is asked of it.
+    """
+
+    def __init__(self, request: RunOptions, sim: Any, blocked: BlockedPlugins, verdict: RunVerdict) -> None:
+        self.request, self.sim, self.blocked, self.verdict = request, sim, blocked, verdict
+        self._teleop: Teleop | None = None
+
+    def execute(self) -> int:
+        """Runs it to its end; the exit code."""
+        from simkit.cli.terminal.progress import Stopwatch
+        from simkit.recording.bags.recorder import Recorder
+        from simkit.recording.commands import Commands
+        from simkit.recording.run_picture import DrivenPath
+        from simkit.recording.topic_counts import RENDERED, TopicCounter
+
+        request, sim = self.request, self.sim
+        commands, self._teleop = Commands(sim, self._commands()), self._driver()
+        played = self._played()
+        duration = request.longest(played.duration if played is not None else None)
+        if duration is None:
+            print_status(_endless_text(request))
+        conditions = self.verdict.watch(sim, duration)
+        driven = DrivenPath(sim) if request.picture is not None else None
+        with ExitStack() as stack:
+            if played is not None:
+                stack.enter_context(played)
+            interrupts = stack.enter_context(Interrupts(self.blocked.ask))
+            recording = None
+            if request.record is not None:
+                recording = stack.enter_context(
+                    Recorder(sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip)
+                )
+            counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
+            keyboard = self._keyboard()
+            watch = Stopwatch()
+            progress = stack.enter_context(self._progress(counter, duration))
+            watchers: list[Any] = [progress.update]
+            if recording is not None:
+                watchers.append(recording.check)
+            if driven is not None:
+                watchers.append(driven.sample)
+            loop = RunLoop(sim, commands, interrupts, watchers, rtf=request.pace, follow=driven is not None)
+            if played is not None:
+                loop.senders.append(played)
+            if request.view:
+                self._open_viewer(stack, loop, watchers)
+            if keyboard is not None:
+                stack.enter_context(keyboard)
+                self._listen_to(keyboard, loop)
+            self._serve(stack, loop)
+            self._hold()
+            stack.enter_context(conditions)
+            loop.is_over = self.verdict.is_over
+            advance = self._watched(loop, interrupts, watchers) if request.watch else loop.run
+            try:
+                advance(duration)
+            except BaseException as error:
+                self.verdict.end(error, "")
+                raise
+            else:
+                self.verdict.end(None, _interrupt_text(interrupts, loop))
+            finally:
+                elapsed = watch.elapsed
+                progress.__exit__(None, None, None)
+                if recording is not None:
+                    recording.close()
+                print_summary(sim, counter, recording, elapsed, quiet=request.quiet)
+                self.verdict.tell()
+        if driven is not None and request.picture is not None:
+            draw_picture(sim, request.picture, driven)
+        return interrupts.exit_code or self.verdict.code
+
+    # ------------------------------------------------------------------ who drives
+
+    def _commands(self) -> list[Any]:
+        from simkit.recording.commands import read_script, steady_velocity
+
+        topics = self.sim.topics()
+        found = []
+        if self.request.cmd_vel is not None:
+            found.append(steady_velocity(self.request.cmd_vel, topics))
+        if self.request.script is not None:
+            found += read_script(self.request.script, topics)
+        return found
+
+    def _played(self) -> Playback | None:
+        """The commands of the recording that is named, where one is."""
+        from simkit.recording.bags.playback import Playback
+
+        if self.request.play is None:
+            if self.request.play_topics:
+                raise InputError("SK-CLI-018 --play-topic: found no --play BAG beside it", "SK-CLI-018")
+            return None
+        played = Playback(self.sim, self.request.play, self.request.play_topics)
+        for note in played.notes:
+            print_status(f"note: {note}")
+        said = [old if old == new else f"{old} on {new}" for old, new in played.names.items()]
+        print_status(f"playing {', '.join(said)} of {self.request.play}")
+        return played
+
+    def _driver(self) -> Teleop | None:
+        from simkit.cli.terminal.teleop import Teleop, find_target
+
+        if self.request.teleop is None:
+            return None
+        return Teleop(self.sim, find_target(self.sim, self.request.teleop), self.request.key_timeout)
+
+    def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
+        """The terminal's, where somebody drives or sees what keys do: a pager that shows our output has its own."""
+        from simkit.cli.terminal.keyboard import open_keyboard
+
+        if self._teleop is None and (sys.stdout is None or sys.stdout.closed or not sys.stdout.isatty()):
+            return None
+        return open_keyboard(sys.stdin)
+
+    def _listen_to(self, keyboard: Keyboard | WindowsKeyboard, loop: RunLoop) -> None:
+        """Lets keys pause, step and drive the run."""
+        from simkit.cli.run_keys import RunKeys
+
+        keys = RunKeys(self.sim, keyboard, self._teleop)
+        loop.poll_keys, loop.on_pause = keys.poll, keys.say_paused
+        if self._teleop is not None:
+            loop.senders.append(self._teleop)
+
+    def _progress(self, counter: TopicCounter, duration: float | None) -> Progress:
+        from simkit.cli.terminal.progress import Progress
+        from simkit.cli.terminal.teleop_display import DriverLine
+
+        if self._teleop is None:
+            return Progress(self.sim, counter, duration, stdout_console())
+        console = stdout_console() if stdout_console().is_terminal else stderr_console()
+        return Progress(self.sim, counter, duration, console, DriverLine(self.sim, self._teleop).lines)
+
+    def _hold(self) -> None:
+        """Has the run begin paused, or be so after some steps."""
+        if self.request.step is not None:
+            self.sim.pausing.step(self.request.step)
+        elif self.request.paused:
+            self.sim.paused = True
+
+    # ------------------------------------------------------------------ who looks on
+
+    def _open_viewer(self, stack: ExitStack, loop: RunLoop, watchers: list[Any]) -> None:
+        from simkit.bridges.viewer import Viewer
+
+        viewer = stack.enter_context(Viewer(self.sim))
+        watchers.append(viewer.update)
+        loop.keep_going = viewer.is_open
+
+    def _serve(self, stack: ExitStack, loop: RunLoop) -> None:
+        """Lets other terminals talk to the run."""
+        from simkit.bridges.live.server import serve
+
+        name = self.request.name
+        if name is None and self.sim.world.name == "default":  # a bare model's, and many a world's
+            name = Path(self.request.world).name.partition(".")[0] or None
+        loop.server, note = serve(self.sim, name)
+        if loop.server is None:
+            print_status(note)
+        else:
+            stack.enter_context(loop.server)
+
+    def _watched(self, loop: RunLoop, interrupts: Interrupts, watchers: list[Any]) -> Callable[[float | None], Any]:
+        """The same loop, which reloads plugins that are edited."""
+        from simkit.cli.plugin_watch import PluginWatch
+
+        watch = PluginWatch(self.sim, self.request.plugin_paths, interrupts, waits=self.request.record is None)
+        watchers.append(watch.poll)
+        loop.before_slice = watch.keep
+        return partial(watch.run, loop)

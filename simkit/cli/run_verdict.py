@@ -1,0 +1,167 @@
+"""Whether a run did what was asked of it: its conditions, its time, and a file that says so to a CI."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.cli.run_options import RunOptions
+from simkit.cli.terminal.output import print_status, stdout_console
+from simkit.cli.wall_time_limit import WallTimeExceeded, WallTimeLimit
+from simkit.errors import RegressionError, SimkitError
+
+if TYPE_CHECKING:
+    from simkit.testing.conditions import CheckResult, Watch
+    from simkit.testing.junit import JunitCase
+
+FAILED: Final = RegressionError.exit_code
+
+
+class RunVerdict:
+    """What is asked of a run, and what became of it; a context manager around the run, loading included.
+
+    Args:
+        request: what the run is to do.
+
+    Attributes:
+        code: the exit code.
+        reason: how the run ended, as `Watch.results` has it; empty before.
+        results: of what was asked.
+    """
+
+    def __init__(self, request: RunOptions) -> None:
+        self.code = 0
+        self.reason = ""
+        self.results: tuple[CheckResult, ...] = ()
+        self._request = request
+        self._name = request.world if "<" not in request.world else "world"
+        self._watch: Watch | None = None
+        self._has_end = False
+        self._begun = time.perf_counter()
+        self._wall = WallTimeLimit(request.wall_timeout, print_status, self._give_up)
+
+    def __enter__(self) -> RunVerdict:
+        from simkit.recording.atomic_output import check_writable
+
+        check_writable(self._request.junit)
+        self._wall.__enter__()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        """Writes the file for the CI; a run that was interrupted for its wall time has failed, no more."""
+        self._wall.__exit__(kind, error, trace)
+        if error is not None and not self.reason:
+            self._conclude(error)
+        if isinstance(error, WallTimeExceeded):
+            self.code = FAILED
+            if self._watch is None:
+                print_status(self._gave_up())
+        if error is None or isinstance(error, (SimkitError, KeyboardInterrupt)):
+            self._write(error)
+        return isinstance(error, WallTimeExceeded)
+
+    # ------------------------------------------------------------------ the run
+
+    def watch(self, sim: Any, longest: float | None) -> Watch:
+        """What looks at the conditions, to be entered around the run.
+
+        Args:
+            sim: the simulation.
+            longest: the simulated time [s] after which the run ends at the latest; None for until Ctrl-C.
+
+        Raises:
+            InputError: an expression cannot be read, or names what the world does not have.
+        """
+        from simkit.run_spec import Check
+        from simkit.testing.conditions import Watch
+
+        request, self._has_end = self._request, longest is not None
+        checks = [Check("final", expression=expression, where="--assert") for expression in request.asserts]
+        self._watch = Watch(sim, checks, until=request.until, timeout=longest)
+        return self._watch
+
+    def is_over(self) -> bool:
+        """Whether the run is to end: the condition holds, or the wall time is over."""
+        return self._wall.is_over or (self._watch is not None and self._watch.ended)
+
+    def end(self, error: BaseException | None, interrupted_by: str) -> None:
+        """Says what became of the run, as soon as it has ended.
+
+        Args:
+            error: that ended it.
+            interrupted_by: who, where somebody ended it before its time; empty for nobody.
+        """
+        self._wall.end()
+        self._conclude(error, interrupted_by)
+        if error is None and not interrupted_by and not self._has_passed:
+            self.code = FAILED
+
+    def tell(self) -> None:
+        """Prints a line a condition."""
+        if self.reason == "wall_timeout":
+            stdout_console().print(f"FAILED  {self._gave_up()}", style="red")
+        for result in self.results:
+            word, style = ("passed", None) if result.passed else ("FAILED", "red")
+            stdout_console().print(f"{word}  {result.check.title}: {result.message}", style=style)
+
+    @property
+    def _has_passed(self) -> bool:
+        return self.reason != "wall_timeout" and all(result.passed for result in self.results)
+
+    def _conclude(self, error: BaseException | None, interrupted_by: str = "") -> None:
+        self.reason = self._reason(error, interrupted_by)
+        if self._watch is not None:
+            self.results = self._watch.results(self.reason)
+
+    def _reason(self, error: BaseException | None, interrupted_by: str) -> str:
+        if isinstance(error, WallTimeExceeded):
+            return "wall_timeout"
+        if error is not None:
+            return str(error).splitlines()[0] if str(error) else type(error).__name__
+        if self._watch is not None and self._watch.ended:
+            return "until"
+        if self._wall.is_over:
+            return "wall_timeout"
+        if interrupted_by and self._has_end:
+            return interrupted_by
+        return "timeout" if self._request.until else "duration"
+
+    def _gave_up(self) -> str:
+        blocked = f", where it waited for {self._wall.blocked_by}" if self._wall.blocked_by else ""
+        return f"the run was given up after {self._wall.seconds:g} s of wall time (--wall-timeout){blocked}"
+
+    # ------------------------------------------------------------------ the file
+
+    def _write(self, error: BaseException | None) -> None:
+        if self._request.junit is not None:
+            from simkit.testing.junit import write_junit
+
+            write_junit(self._request.junit, f"simkit run {self._name}", self._cases(error))
+
+    def _cases(self, error: BaseException | None) -> Sequence[JunitCase]:
+        from simkit.testing.junit import JunitCase
+
+        seconds, group = time.perf_counter() - self._begun, f"simkit.{self._name.replace('.', '_')}"
+        text = self._gave_up() if self.reason == "wall_timeout" else ""
+        failed = (text, text) if text else None
+        met = None
+        if error is not None and not text:
+            lines = str(error).splitlines() or [type(error).__name__]
+            met = (lines[0], "\n".join(lines))
+        cases = [JunitCase("run", group, seconds, failure=failed, error=met)]
+        for result in self.results:
+            told = None if result.passed else (result.message, f"{result.check.title}: {result.message}")
+            cases.append(
+                JunitCase(result.check.title, group, failure=told, output=result.message if result.passed else "")
+            )
+        return cases
+
+    def _give_up(self) -> int:
+        """The run cannot be ended: what is known is written, by another thread than its own."""
+        self.reason = "wall_timeout"
+        self._write(None)
+        return FAILED

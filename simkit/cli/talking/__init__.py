@@ -1,1 +1,0 @@
-"""What the commands share that talk to a running simulation or read a bag."""

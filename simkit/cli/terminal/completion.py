@@ -1,0 +1,265 @@
+"""What a shell completes names with: asked of the running simulation or the bag, quickly, and silent when none answers.
+
+Each function is given the half-written command by typer; what was written before is in its parameters.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from simkit.cli.terminal.output import absolute_name
+
+if TYPE_CHECKING:
+    from simkit.cli.terminal.topic_sources import Source
+
+_PATIENCE = 1.0  # [s] of wall time that a shell is kept waiting
+_BEGUN = __name__  # what was written of the word so far, in the meta of the context
+
+
+def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Callable[[typer.Context, str], list[str]]:
+    """Nothing is offered where something goes wrong: an error in the middle of a prompt helps nobody."""
+
+    def offered(ctx: typer.Context, incomplete: str) -> list[str]:
+        try:
+            ctx.meta[_BEGUN] = incomplete
+            return [name for name in complete(ctx) if name.startswith(incomplete)]
+        except Exception:  # noqa: BLE001
+            return []
+
+    return offered
+
+
+@contextmanager
+def _source(ctx: typer.Context) -> Iterator[Source]:
+    from simkit.cli.terminal.topic_sources import BagSource, LiveSource
+    from simkit.live import connect
+    from simkit.recording.bags.reader import open_bag_to_read
+
+    bag = ctx.params.get("bag")
+    if bag is not None:
+        with open_bag_to_read(Path(bag)) as reader:
+            yield BagSource(reader)
+        return
+    with connect(_named(ctx), timeout=_PATIENCE) as client:
+        yield LiveSource(client)
+
+
+def _topic(ctx: typer.Context) -> str:
+    """The topic that was written before; click leaves it aside while the value of an option is being written."""
+    found = ctx.params.get("topic") or next((word for word in ctx.args if not word.startswith("-")), "")
+    return absolute_name(found) if found else ""
+
+
+def _named(ctx: typer.Context) -> str | None:
+    return ctx.params.get("sim") or os.environ.get("SIMKIT_SIM")
+
+
+@contextmanager
+def _client(ctx: typer.Context) -> Iterator[Any]:
+    from simkit.live import connect
+
+    with connect(_named(ctx), timeout=_PATIENCE) as client:
+        yield client
+
+
+@_silent
+def simulations(_: typer.Context) -> Iterable[str]:
+    """Names of the runs there are."""
+    from simkit.live import simulations as running
+
+    return [found.name for found in running()]
+
+
+@_silent
+def topics(ctx: typer.Context) -> Iterable[str]:
+    """Topics; a name may be begun without its slash."""
+    with _source(ctx) as source:
+        names = list(source.topics())
+    begun = ctx.meta[_BEGUN]
+    return names if begun.startswith("/") or not begun else [n.removeprefix("/") for n in names]
+
+
+@_silent
+def topic_types(ctx: typer.Context) -> Iterable[str]:
+    """Types of the topic named before; all message types where it has none yet."""
+    from simkit.msgs.written import names
+
+    topic = _topic(ctx)
+    if topic:
+        with _source(ctx) as source:
+            found = source.topics().get(topic)
+        if found is not None:
+            ends = [t for end in found.subscribers for t in end.types]
+            return dict.fromkeys([*found.types, *ends])
+    return names("msg")
+
+
+@_silent
+def message_types(_: typer.Context) -> Iterable[str]:
+    """All message types."""
+    from simkit.msgs.written import names
+
+    return names("msg")
+
+
+@_silent
+def interfaces(_: typer.Context) -> Iterable[str]:
+    """All message, service and action types."""
+    from simkit.msgs.written import names
+
+    return [name for kind in ("msg", "srv", "action") for name in names(kind)]
+
+
+@_silent
+def fields(ctx: typer.Context) -> Iterable[str]:
+    """Paths of fields of the topic named before, one level at a time."""
+    from simkit.msgs.text import fields_of
+
+    with _source(ctx) as source:
+        entry = source.topics()[_topic(ctx)]
+        type_name = entry.types[0]
+        store = source.store(type_name)
+        before, _, _ = ctx.meta[_BEGUN].rpartition(".")
+        for name in before.split(".") if before else ():
+            node = dict(fields_of(_full(type_name, store), store))[name.partition("[")[0]]
+            while int(node[0]) in (3, 4):
+                node = node[1][0]
+            type_name = node[1]
+        found = fields_of(_full(type_name, store), store)
+    return [f"{before}.{name}" if before else name for name, _ in found]
+
+
+def _full(type_name: str, store: Any) -> str:
+    from simkit.msgs import full_name
+
+    return type_name if store is not None else full_name(type_name)
+
+
+@_silent
+def message_values(ctx: typer.Context) -> Iterable[str]:
+    """A message of the type named before, to be filled in."""
+    return _prototype(str(ctx.params.get("message_type") or ""))
+
+
+@_silent
+def service_values(ctx: typer.Context) -> Iterable[str]:
+    """A request of the type named before."""
+    return _prototype(str(ctx.params.get("service_type") or ""))
+
+
+@_silent
+def goal_values(ctx: typer.Context) -> Iterable[str]:
+    """A goal of the type named before."""
+    return _prototype(str(ctx.params.get("action_type") or ""))
+
+
+def _prototype(type_name: str) -> list[str]:
+    from simkit.msgs.text import dump
+    from simkit.msgs.written import prototype
+
+    return [dump(prototype(type_name), flow=True).strip()] if type_name else []
+
+
+@_silent
+def services(ctx: typer.Context) -> Iterable[str]:
+    """Services."""
+    with _client(ctx) as client:
+        return list(client.services())
+
+
+@_silent
+def service_types(ctx: typer.Context) -> Iterable[str]:
+    """The type of the service named before; all service types where there is none."""
+    return _types_of(ctx, "service", "srv")
+
+
+@_silent
+def actions(ctx: typer.Context) -> Iterable[str]:
+    """Actions."""
+    with _client(ctx) as client:
+        return list(client.actions())
+
+
+@_silent
+def action_types(ctx: typer.Context) -> Iterable[str]:
+    """The type of the action named before; all action types where there is none."""
+    return _types_of(ctx, "action", "action")
+
+
+def _types_of(ctx: typer.Context, what: str, kind: str) -> list[str]:
+    """The type of the service or action that was written before; where there is none, all types of that kind."""
+    from simkit.msgs.written import names
+
+    name = ctx.params.get(what)
+    if name:
+        with _client(ctx) as client:
+            there = client.services() if what == "service" else client.actions()
+        if absolute_name(name) in there:
+            return [there[absolute_name(name)]]
+    return names(kind)
+
+
+@_silent
+def nodes(ctx: typer.Context) -> Iterable[str]:
+    """Nodes with parameters."""
+    from simkit.cli.param import parameter_nodes
+
+    with _client(ctx) as client:
+        return parameter_nodes(client)
+
+
+@_silent
+def all_nodes(ctx: typer.Context) -> Iterable[str]:
+    """All nodes."""
+    from simkit.cli.node import node_names
+
+    with _client(ctx) as client:
+        return node_names(client)
+
+
+@_silent
+def parameters(ctx: typer.Context) -> Iterable[str]:
+    """Parameters of the node named before."""
+    node = str(ctx.params.get("node") or "")
+    with _client(ctx) as client:
+        found = client.call(f"{absolute_name(node)}/list_parameters", {})
+    return list(found.result.names)
+
+
+@_silent
+def models(ctx: typer.Context) -> Iterable[str]:
+    """Models."""
+    with _client(ctx) as client:
+        return [m if isinstance(m, str) else m["name"] for m in client.models()]
+
+
+@_silent
+def links(ctx: typer.Context) -> Iterable[str]:
+    """Links of the model named before."""
+    with _client(ctx) as client:
+        return list(client.model(str(ctx.params["model"]))["links"])
+
+
+@_silent
+def joints(ctx: typer.Context) -> Iterable[str]:
+    """Joints of the model named before."""
+    with _client(ctx) as client:
+        return list(client.model(str(ctx.params["model"]))["joints"])
+
+
+@_silent
+def frames(ctx: typer.Context) -> Iterable[str]:
+    """Frames that come over /tf within a moment."""
+    from simkit.cli.tf import Frames, listen
+
+    with _source(ctx) as source:
+        found = Frames()
+        for _ in listen(source, found, lasting=_PATIENCE / 2):
+            pass
+    return found.names()

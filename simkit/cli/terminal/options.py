@@ -1,0 +1,121 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, TypedDict
+
+import typer
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+
+World = Annotated[
+    str, typer.Argument(help="A file, or the bare name of a world or model that comes with simkit.", show_default=False)
+]
+File = Annotated[str, typer.Argument(help="A world or model file, or a bare name.", show_default=False)]
+ResourcePaths = Annotated[
+    list[Path],
+    typer.Option(
+        "--resource-path", help="One more folder for model://, package:// and relative URIs; repeatable.", metavar="DIR"
+    ),
+]
+PackagePaths = Annotated[
+    list[str],
+    typer.Option("--package-path", help="Where the ROS package NAME lies; repeatable.", metavar="NAME=DIR"),
+]
+XacroArgs = Annotated[
+    list[str],
+    typer.Option("--xacro-arg", help="An argument of a xacro file; repeatable.", metavar="NAME=VALUE"),
+]
+Base = Annotated[
+    str,
+    typer.Option(
+        "--base",
+        help="A bare model stands: fixed, floating, or auto (floating unless joined to the world).",
+        metavar="BASE",
+    ),
+]
+PluginPaths = Annotated[
+    list[Path],
+    typer.Option("--plugin-path", help="Allows the Python plugins in that folder; repeatable.", metavar="DIR"),
+]
+ParamsFiles = Annotated[
+    list[str],
+    typer.Option(
+        "--params-file",
+        help="Controllers and their parameters, for all control plugins or for those of one model; repeatable.",
+        metavar="[MODEL=]FILE.yaml",
+    ),
+]
+Overrides = Annotated[
+    list[str],
+    typer.Option("--set", help="Changes one value: scoped::name.element=VALUE; repeatable.", metavar="PATH=VALUE"),
+]
+Spawns = Annotated[
+    list[str],
+    typer.Option(
+        "--spawn", help="Puts a model into the world, by name or file; repeatable.", metavar="MODEL:x,y,yaw[:name]"
+    ),
+]
+CmdVel = Annotated[
+    str | None,
+    typer.Option("--cmd-vel", help="Sends one velocity: m/s forward, rad/s to the left.", metavar="V,W"),
+]
+Script = Annotated[Path | None, typer.Option("--script", help="Commands over time.", metavar="FILE.yaml")]
+Seed = Annotated[int | None, typer.Option("--seed", help="Seed of all noise.", metavar="N", min=0)]
+Strict = Annotated[bool, typer.Option("--strict", help="Warnings are errors.")]
+Json = Annotated[bool, typer.Option("--json", help="For programs: one JSON value.")]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Shows every note, not only how many there are.")]
+Force = Annotated[bool, typer.Option("--force", help="Replaces what is there already.")]
+_BASES = ("auto", "fixed", "floating")
+
+
+def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
+    """`NAME=VALUE` texts as a mapping.
+
+    Raises:
+        InputError: SK-CLI-018 a text is of another form.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise InputError(f"SK-CLI-018 {option}: found {text!r}, allowed is NAME=VALUE", "SK-CLI-018")
+        found[name.strip()] = value
+    return found
+
+
+def validate_base(base: str) -> str:
+    """One of auto, fixed, floating.
+
+    Raises:
+        InputError: SK-CLI-018 it is something else.
+    """
+    if base not in _BASES:
+        hint = did_you_mean(base, _BASES)
+        text = f"SK-CLI-018 --base: found {base!r}, allowed is {', '.join(_BASES)}"
+        raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
+    return base
+
+
+class SourceArguments(TypedDict):
+    """The keyword arguments of `load`, `check` and `describe` that say how a file is read."""
+
+    resource_paths: Sequence[Path]
+    package_paths: Mapping[str, str]
+    xacro_args: Mapping[str, str]
+    base: str
+
+
+def source_arguments(
+    resource_paths: Sequence[Path], package_paths: Sequence[str], xacro_args: Sequence[str], base: str = "auto"
+) -> SourceArguments:
+    """The options that say how a file is read, as keyword arguments."""
+    return {
+        "resource_paths": resource_paths,
+        "package_paths": parse_pairs(package_paths, "--package-path"),
+        "xacro_args": parse_pairs(xacro_args, "--xacro-arg"),
+        "base": validate_base(base),
+    }

@@ -1,0 +1,246 @@
+"""Print results on standard output and everything about them on standard error; turn errors into exit codes."""
+
+from __future__ import annotations
+
+import errno
+import functools
+import json
+import math
+import signal
+import sys
+import traceback
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ParamSpec
+
+import typer
+
+from simkit.errors import InputError, LoadError, PluginError, SimkitError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from simkit.diagnostics import Diagnostic
+
+
+P = ParamSpec("P")
+INTERRUPTED = 130
+_MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # entries of one code that are listed
+_PLACES = 8  # further places of equal ones that are listed
+_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
+
+
+@functools.cache
+def stdout_console() -> Console:
+    """Standard output."""
+    from rich.console import Console
+
+    return Console(highlight=False, markup=False, emoji=False, soft_wrap=True)
+
+
+@functools.cache
+def stderr_console() -> Console:
+    """Standard error."""
+    from rich.console import Console
+
+    return Console(stderr=True, highlight=False, markup=False, emoji=False, soft_wrap=True)
+
+
+def print_status(text: str) -> None:
+    """One line about what is going on; above what a run shows on a terminal, which listens to `sys.stderr` alone."""
+    if sys.stderr is not None:
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
+
+
+def print_diagnostics(
+    found: Iterable[Diagnostic], *, verbose: bool, console: Console | None = None, every: bool = False
+) -> None:
+    """Errors and warnings one by one; notes too where `verbose`, else how many there are.
+
+    Equal ones are one entry with all its places, and of one code no more than some are listed, unless `every`.
+    """
+    target = console or stderr_console()
+    notes: Counter[str] = Counter()
+    shown: dict[tuple[str, str, str], list[Diagnostic]] = {}
+    for d in found:
+        if d.severity == "note" and not verbose:
+            notes[d.code] += 1
+        else:
+            key = (d.code, d.message, str(len(shown)) if every else d.hint)
+            shown.setdefault(key, []).append(d)
+    listed, left_out = Counter[tuple[str, str]](), Counter[tuple[str, str]]()
+    for equal in shown.values():
+        kind = (equal[0].severity, equal[0].code)
+        if listed[kind] >= (_MOST_ERRORS_LISTED if kind[0] == "error" else _MOST_LISTED) and not every:
+            left_out[kind] += len(equal)
+            continue
+        listed[kind] += 1
+        _print_entry(equal, target)
+    for (severity, code), count in left_out.items():
+        target.print(
+            f"{count} more {severity}{'s' if count > 1 else ''} {code}; simkit check --all lists them", style="dim"
+        )
+    if notes:
+        names = ", ".join(f"{code} × {count}" if count > 1 else code for code, count in sorted(notes.items()))
+        total = sum(notes.values())
+        say = f"{total} notes ({names}); --verbose shows them" if total > 1 else f"1 note ({names}); --verbose shows it"
+        target.print(say, style="dim")
+
+
+def _print_entry(equal: list[Diagnostic], target: Console) -> None:
+    """One problem with the places it was found at."""
+    from rich.text import Text
+
+    d = equal[0]
+    place = _place(d)
+    line = Text(f"{place}: " if place else "")
+    line.append(d.severity, style=_STYLES[d.severity])
+    line.append(f" {d.code}: {d.message}")
+    if d.hint:
+        line.append(f"\n    help: {d.hint}", style="dim")
+    if len(equal) > 1:
+        others = [f":{o.line}" if o.file == d.file and o.line else _place(o) for o in equal[1 : _PLACES + 1]]
+        rest = len(equal) - 1 - len(others)
+        more = f" and {rest} more" if rest else ""
+        line.append(f"\n    the same at {', '.join(others)}{more}", style="dim")
+    target.print(line)
+
+
+def _place(d: Diagnostic) -> str:
+    return f"{d.file or '<text>'}:{d.line}" if d.line else (d.file or "")
+
+
+def print_error(error: SimkitError) -> None:
+    """What went wrong, in the words of the error; a traceback only for a plugin, of the plugin's own code."""
+    if isinstance(error, LoadError):
+        print_diagnostics(error.diagnostics, verbose=False)
+        count = sum(d.severity == "error" for d in error.diagnostics)
+        if count:
+            stderr_console().print(f"{count} error{'s' if count > 1 else ''}; nothing was run", style="bold")
+        else:
+            stderr_console().print("warnings are errors here (--strict); nothing was run", style="bold")
+        return
+    if isinstance(error, PluginError) and error.__cause__ is not None:
+        sys.stderr.write("".join(traceback.format_exception(error.__cause__)))
+    message = str(error)
+    if error.code not in message:
+        message = f"{error.code} {message}"
+    stderr_console().print(f"error: {message}", style="red")
+
+
+def report_errors(command: Callable[P, Any]) -> Callable[P, None]:
+    """Maps what a command raises to the exit codes: no traceback for what the user can mend."""
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        try:
+            code = command(*args, **kwargs)
+        except SimkitError as error:
+            print_error(error)
+            raise typer.Exit(error.exit_code) from None
+        except KeyboardInterrupt as stopped:
+            print_status(f"interrupted {stopped}".rstrip())
+            raise typer.Exit(INTERRUPTED) from None
+        except BrokenPipeError:
+            # Whoever read our output has gone; closing standard output again would complain a second time.
+            sys.stdout = None
+            raise typer.Exit(0) from None
+        except OSError as error:
+            if error.errno == errno.EIO:  # a terminal that is gone, which may be seen before its signal comes
+                sys.stdout = sys.stderr = None
+                raise typer.Exit(_hang_up_exit_code()) from None
+            if error.errno not in (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)):
+                raise
+            sys.stdout = None
+            print_status(f"error: what was to be written found no room: {error.strerror}")
+            raise typer.Exit(1) from None
+        if code:
+            raise typer.Exit(int(code))
+
+    return run
+
+
+def _hang_up_exit_code() -> int:
+    """The exit code of who has lost its terminal: none of an error where that is not to matter (`nohup`)."""
+    hang_up = getattr(signal, "SIGHUP", None)
+    return 0 if hang_up is None or signal.getsignal(hang_up) is signal.SIG_IGN else 128 + hang_up
+
+
+CommandParameters = ParamSpec("CommandParameters")
+
+
+def print_line(text: str = "") -> None:
+    """One line on standard output, at once."""
+    typer.echo(text)
+
+
+def print_note(text: str) -> None:
+    """One line on standard error."""
+    typer.echo(text, err=True)
+
+
+def print_json(value: Any) -> None:
+    """One JSON value on one line; what JSON has no number for is a text: `"inf"`, `"-inf"`, `"nan"`."""
+    typer.echo(json.dumps(_json_value(value), allow_nan=False, ensure_ascii=False))
+
+
+def _json_value(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    if isinstance(value, Mapping):
+        return {str(k): _json_value(v) for k, v in value.items()}
+    return [_json_value(v) for v in value] if isinstance(value, (list, tuple)) else value
+
+
+def report_errors_quietly(command: Callable[CommandParameters, Any]) -> Callable[CommandParameters, None]:
+    """`report_errors`, and an interrupt is the way to end it: no word about that, exit code 130."""
+
+    @functools.wraps(command)
+    def run(*args: CommandParameters.args, **kwargs: CommandParameters.kwargs) -> int:
+        try:
+            return int(command(*args, **kwargs) or 0)
+        except KeyboardInterrupt:
+            return INTERRUPTED
+
+    return report_errors(run)
+
+
+def print_names(names: Sequence[str], *, count: bool, json_: bool) -> None:
+    """Names, one a line, or how many there are."""
+    if json_:
+        print_json(len(names) if count else list(names))
+    else:
+        for text in [str(len(names))] if count else names:
+            print_line(text)
+
+
+def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: bool, json_: bool) -> None:
+    """Names, with their types where asked for, one a line, or how many there are."""
+    if json_ and not count:
+        print_json([{"name": name, "types": [type_name]} for name, type_name in types.items()])
+    else:
+        names = [f"{n} [{t}]" for n, t in types.items()] if show_types else list(types)
+        print_names(names, count=count, json_=json_)
+
+
+def not_found_error(
+    what: str, name: str, there: Sequence[str] | Mapping[str, Any], code: str, where: str
+) -> InputError:
+    """That something is not there, with the closest name or all there are."""
+    from simkit.diagnostics import did_you_mean
+
+    names = list(there)
+    listed = ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")
+    hint = did_you_mean(name, names) or ("there is " + listed if names else "there is none")
+    return InputError(f"{code} no {what} {name!r} in {where}; {hint}", code)
+
+
+def absolute_name(name: str) -> str:
+    """The name with its leading slash."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def is_hidden(name: str) -> bool:
+    """Whether a part of a topic's or service's name begins with `_`, which ROS 2 leaves out of lists."""
+    return any(part.startswith("_") for part in name.split("/"))

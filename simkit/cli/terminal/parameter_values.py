@@ -1,0 +1,113 @@
+"""Values of parameters: as text on the command line, as YAML in a file, as `rcl_interfaces/msg/ParameterValue`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.errors import InputError
+
+KINDS: Final = (
+    "not set",
+    "boolean",
+    "integer",
+    "double",
+    "string",
+    "byte array",
+    "boolean array",
+    "integer array",
+    "double array",
+    "string array",
+)
+_FIELDS = (
+    "",
+    "bool_value",
+    "integer_value",
+    "double_value",
+    "string_value",
+    "byte_array_value",
+    "bool_array_value",
+    "integer_array_value",
+    "double_array_value",
+    "string_array_value",
+)
+_KIND_BY_TYPE: Final[dict[type, int]] = {bool: 1, int: 2, float: 3, str: 4}
+
+
+def plain_value(parameter: Any) -> Any:
+    """The value in a ParameterValue, as plain Python."""
+    field = _FIELDS[int(parameter.type)]
+    found: Any = getattr(parameter, field, None)
+    return found.tolist() if hasattr(found, "tolist") else found
+
+
+def parse_parameter_value(text: str) -> dict[str, Any]:
+    """A text on the command line as a ParameterValue, of the type that YAML reads it as; else it is a text."""
+    from simkit.yaml_reader import NotYaml, read_yaml
+
+    try:
+        found = read_yaml(text)
+    except NotYaml:
+        found = text
+    value = parameter_value(found)
+    return value if value is not None else {"type": 4, "string_value": text}
+
+
+def parameter_value(found: Any) -> dict[str, Any] | None:
+    """Plain Python as a ParameterValue; None where no type of parameter is like it."""
+    if isinstance(found, list):
+        kinds = {type(item) for item in found}
+        if kinds == {int, float}:
+            kinds = {float}
+        if len(kinds) == 1 and (kind := kinds.pop()) in _KIND_BY_TYPE:
+            return {"type": _KIND_BY_TYPE[kind] + 5, _FIELDS[_KIND_BY_TYPE[kind] + 5]: [kind(item) for item in found]}
+        return None
+    code = _KIND_BY_TYPE.get(type(found))
+    if code == 2 and not -(2**63) <= found < 2**63:
+        return None
+    return None if code is None else {"type": code, _FIELDS[code]: found}
+
+
+def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[str, dict[str, Any]]]:
+    """What a parameter file says of a node: names and ParameterValues, those that stand for all nodes first.
+
+    Raises:
+        InputError: SK-CLI-041 it cannot be read, or says nothing of this node.
+    """
+    from simkit.yaml_reader import NotYaml, read_yaml
+
+    try:
+        root = read_yaml(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise _file_error(path, f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except NotYaml as error:
+        raise _file_error(path, f"is not YAML: {error}") from None
+    if not isinstance(root, dict):
+        raise _file_error(path, "holds no mapping of nodes to their ros__parameters")
+    found: dict[str, Any] = {}
+    for key in ("/**", node.rpartition("/")[2], node):
+        block = root.get(key) if key != "/**" or wildcard else None
+        if block is None:
+            continue
+        if not isinstance(block, dict) or not isinstance(block.get("ros__parameters"), dict):
+            raise _file_error(path, f"{key}: has no ros__parameters")
+        found |= _flatten(block["ros__parameters"], "")
+    if not found:
+        raise _file_error(path, f"says nothing of {node}; it has {', '.join(map(str, root)) or 'nothing'}")
+    values = {name: parameter_value(value) for name, value in found.items()}
+    for name, value in values.items():
+        if value is None:
+            raise _file_error(path, f"{name}: found {found[name]!r}, which no parameter can be")
+    return [(name, value) for name, value in values.items() if value is not None]
+
+
+def _flatten(block: dict[Any, Any], above: str) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in block.items():
+        name = f"{above}{key}"
+        found |= _flatten(value, f"{name}.") if isinstance(value, dict) else {name: value}
+    return found
+
+
+def _file_error(path: Path, text: str) -> InputError:
+    return InputError(f"SK-CLI-041 {path} {text}", "SK-CLI-041")

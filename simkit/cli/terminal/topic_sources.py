@@ -1,0 +1,367 @@
+"""Read topics from a running simulation or from a bag, and wait for times of its clock."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from simkit.cli.terminal.output import absolute_name, is_hidden, not_found_error, print_note
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+    from simkit.recording.bags.reader import BagReader
+
+
+LONGEST_WAIT = 1e6  # [s] of wall time for which a command sleeps at most
+_POLL_PERIOD = 0.05  # [s] of wall time between two looks at its clock, at most
+_SLOWEST = 1e-3  # real-time factor below which it counts as standing still
+
+
+class SimClock:
+    """The clock of a running simulation; a reset takes it back.
+
+    Args:
+        client: the connection.
+        by_wall: goes by the clock on the wall instead.
+    """
+
+    def __init__(self, client: Any, *, by_wall: bool = False) -> None:
+        self._client, self._by_wall = client, by_wall
+        self._seen: tuple[float, int] | None = None
+        self._speed = 1.0
+
+    def now_ns(self) -> int:
+        """The time now [ns]."""
+        if self._by_wall:
+            return time.monotonic_ns()
+        now_ns, wall = self.sim_ns(), time.monotonic()
+        if self._seen is not None and wall > self._seen[0]:
+            self._speed = max((now_ns - self._seen[1]) * 1e-9 / (wall - self._seen[0]), 0.0)
+        self._seen = wall, now_ns
+        return now_ns
+
+    def sim_ns(self) -> int:
+        """The simulated time now [ns]."""
+        return int(self._client.state()["time_ns"])
+
+    def wait_until(self, due_ns: int, since_ns: int) -> bool:
+        """Waits for a time [ns]; False where the clock was taken back behind `since_ns` before."""
+        while True:
+            now = self.now_ns()
+            if now < since_ns:
+                return False
+            if now >= due_ns:
+                return True
+            speed = 1.0 if self._by_wall else max(self._speed, _SLOWEST)
+            time.sleep(min(_POLL_PERIOD, (due_ns - now) * 1e-9 / speed))
+
+
+_DEPTH = 100  # messages that wait for a slow terminal; the oldest go first
+
+
+class ReceivedMessage(NamedTuple):
+    """A message on its way to the terminal; the time is simulated, of a bag that of recording [ns]."""
+
+    time_ns: int
+    topic: str
+    type_name: str
+    data: bytes
+
+
+@dataclass(frozen=True)
+class TopicEndpoint:
+    """Who publishes or takes messages on a topic."""
+
+    node: str
+    types: tuple[str, ...]
+    latched: bool = False
+
+
+@dataclass(frozen=True)
+class TopicEntry:
+    """A topic, with those at its ends."""
+
+    name: str
+    types: tuple[str, ...]
+    publishers: tuple[TopicEndpoint, ...] = ()
+    subscribers: tuple[TopicEndpoint, ...] = ()
+
+
+class LiveSource:
+    """A running simulation.
+
+    Attributes:
+        client: the connection.
+    """
+
+    is_live = True
+
+    def __init__(self, client: Any) -> None:
+        self.client = client
+
+    @property
+    def where(self) -> str:
+        return connection_name(self.client)
+
+    def topics(self) -> dict[str, TopicEntry]:
+        """Topics by name, sorted."""
+        found = {}
+        for row in sorted(self.client.topics(), key=lambda r: str(r["name"])):
+            publishers = tuple(
+                TopicEndpoint(p["node"], (p["type"],), bool(p.get("latched"))) for p in row["publishers"]
+            )
+            subscribers = tuple(TopicEndpoint(s["node"], tuple(s["types"])) for s in row["subscribers"])
+            found[row["name"]] = TopicEntry(row["name"], tuple(row["types"]), publishers, subscribers)
+        return found
+
+    def feed(self, topics: Sequence[str], depth: int = _DEPTH) -> LiveFeed:
+        """What comes on some topics from now on."""
+        return LiveFeed(self.client, topics, depth)
+
+    def prepare(self, entry: TopicEntry) -> None:
+        """Reads the definitions of a topic's types, which takes a moment, before the first message waits for that."""
+        from simkit import msgs
+        from simkit.errors import MessageError
+
+        for type_name in entry.types:
+            with suppress(MessageError):
+                msgs.type_of(type_name)
+
+    def decode(self, received: ReceivedMessage) -> Any:
+        """The message itself."""
+        from simkit import msgs
+
+        return msgs.deserialize(received.data, received.type_name)
+
+    def store(self, type_name: str) -> Typestore | None:
+        """The types that messages are of; None for simkit's own."""
+        return None
+
+
+class LiveFeed:
+    """Messages of some topics of a running simulation, in the order in which they come.
+
+    Attributes:
+        is_over: whether the simulation has ended.
+    """
+
+    is_live = True
+
+    def __init__(self, client: Any, topics: Sequence[str], depth: int) -> None:
+        self._client = client
+        self._subscriptions = dict(zip(topics, client.subscribe_all(topics, depth=depth), strict=True))
+        self._ready: deque[ReceivedMessage] = deque()
+        self.is_over = False
+
+    @property
+    def lost(self) -> int:
+        """How many were dropped because they came faster than they were read."""
+        return sum(s.lost for s in self._subscriptions.values())
+
+    def take(self, timeout: float | None = None) -> ReceivedMessage | None:
+        """The next message; None where none comes within so many seconds of wall time, or the simulation has ended."""
+        from simkit.live import LiveClosed
+
+        end = None if timeout is None else time.monotonic() + timeout
+        while not self._ready:
+            self._drain()
+            if self._ready:
+                break
+            left = None if end is None else end - time.monotonic()
+            if self.is_over or (left is not None and left <= 0):
+                return None
+            try:
+                self._client.receive(left)
+            except LiveClosed as closed:
+                self.is_over = True
+                if closed.code != "SK-LIVE-005":
+                    raise
+                print_note(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
+        return self._ready.popleft()
+
+    def _drain(self) -> None:
+        found: list[ReceivedMessage] = []
+        for topic, subscription in self._subscriptions.items():
+            while subscription.waiting:
+                time_ns, type_name, data = subscription.waiting.popleft()
+                found.append(ReceivedMessage(time_ns, topic, type_name, data))
+        if len(self._subscriptions) > 1:
+            found.sort(key=lambda r: r.time_ns)
+        self._ready.extend(found)
+
+    def close(self) -> None:
+        """Ends the subscriptions."""
+        for subscription in self._subscriptions.values():
+            subscription.close()
+
+
+class BagSource:
+    """A bag.
+
+    Attributes:
+        bag: the open bag.
+    """
+
+    is_live = False
+
+    def __init__(self, bag: BagReader) -> None:
+        self.bag = bag
+
+    @property
+    def where(self) -> str:
+        return f"the bag {self.bag.path}"
+
+    def topics(self) -> dict[str, TopicEntry]:
+        """Topics by name, sorted; one that was recorded had a publisher."""
+        rows: dict[str, list[Any]] = {}
+        for topic in self.bag.topics:
+            rows.setdefault(topic.name, []).append(topic)
+        return {
+            name: TopicEntry(
+                name,
+                tuple(dict.fromkeys(t.type_name for t in found)),
+                tuple(TopicEndpoint("", (t.type_name,), t.latched) for t in found),
+            )
+            for name, found in rows.items()
+        }
+
+    def feed(self, topics: Sequence[str], depth: int = _DEPTH) -> BagFeed:
+        """All that was recorded of some topics."""
+        return BagFeed(self.bag, topics)
+
+    def prepare(self, entry: TopicEntry) -> None:
+        """Nothing waits."""
+
+    def decode(self, received: ReceivedMessage) -> Any:
+        """The message itself."""
+        return self.bag.decode(received)  # type: ignore[arg-type]
+
+    def store(self, type_name: str) -> Typestore | None:
+        """The types that messages are of."""
+        return self.bag.store_of(type_name)
+
+
+class BagFeed:
+    """Messages of some topics of a bag, in the order of their times."""
+
+    is_live, lost = False, 0
+
+    def __init__(self, bag: BagReader, topics: Sequence[str]) -> None:
+        self._messages = bag.messages(topics)
+        self.is_over = False
+
+    def take(self, timeout: float | None = None) -> ReceivedMessage | None:
+        """The next message; None behind the last one."""
+        found = next(self._messages, None)
+        self.is_over = found is None
+        return None if found is None else ReceivedMessage(*found)
+
+    def close(self) -> None:
+        """Reads no further."""
+        self._messages.close()  # type: ignore[attr-defined]
+
+
+Source = LiveSource | BagSource
+Feed = LiveFeed | BagFeed
+
+
+@contextmanager
+def open_source(sim: str | None, bag: Path | None) -> Iterator[Source]:
+    """The bag where one is named, else the running simulation.
+
+    Raises:
+        InputError: SK-CLI-018 both are named; SK-CLI-035 the bag cannot be read; SK-LIVE-00x no simulation answers.
+    """
+    if bag is not None:
+        if sim is not None and sim != os.environ.get("SIMKIT_SIM"):  # what the environment says is no wish of now
+            raise InputError("SK-CLI-018 --sim and --bag: found both, allowed is one of them", "SK-CLI-018")
+        from simkit.recording.bags.reader import open_bag_to_read
+
+        with open_bag_to_read(bag) as reader:
+            if reader.broken:
+                print_note(f"note: {bag}: {reader.broken}")
+            yield BagSource(reader)
+        return
+    with connect_to_simulation(sim) as client:
+        yield LiveSource(client)
+
+
+@contextmanager
+def connect_to_simulation(sim: str | None) -> Iterator[Any]:
+    """A connection to a running simulation.
+
+    Raises:
+        LiveError: SK-LIVE-00x none answers, or there are several and none is named.
+    """
+    from simkit.live import connect
+
+    with connect(sim, node=f"_simkit_{os.getpid()}") as client:
+        yield client
+
+
+def connection_name(client: Any) -> str:
+    """What a client is connected to, in words."""
+    return f"the simulation {client.info.get('name', '')!r}"
+
+
+def interface_type(client: Any, what: str, types: Mapping[str, str], name: str) -> str:
+    """The type of a service or an action.
+
+    Args:
+        client: the connection.
+        what: `service` or `action`.
+        types: of all there are.
+        name: which one; its leading slash may be left out.
+
+    Raises:
+        InputError: SK-CLI-037 there is none of that name; names the closest.
+    """
+    wanted = absolute_name(name)
+    if wanted not in types:
+        raise not_found_error(what, wanted, types, "SK-CLI-037", connection_name(client))
+    return str(types[wanted])
+
+
+def wait_for_topic(source: Source, name: str, until: float | None = None) -> TopicEntry:
+    """A topic, waited for where the simulation has none of that name yet.
+
+    Args:
+        source: where it is.
+        name: the topic's.
+        until: wall time at which waiting ends [s of `time.monotonic`]; None for never.
+
+    Raises:
+        InputError: SK-CLI-030 a bag has none, or none came in time.
+    """
+    wanted, told = absolute_name(name), False
+    while source.is_live and (until is None or time.monotonic() < until):
+        found = source.topics().get(wanted)
+        if found is not None:
+            return found
+        if not told:
+            print_note(f"WARNING: topic [{name}] does not appear to be published yet")
+            told = True
+        time.sleep(0.1)
+    return find_topic(source, name)
+
+
+def find_topic(source: Source, name: str) -> TopicEntry:
+    """A topic by its name, hidden ones too.
+
+    Raises:
+        InputError: SK-CLI-030 there is none; names the closest.
+    """
+    topics = source.topics()
+    wanted = absolute_name(name)
+    if wanted not in topics:
+        there = [t for t in topics if not is_hidden(t)]
+        raise not_found_error("topic", wanted, there, "SK-CLI-030", source.where)
+    return topics[wanted]

@@ -1,0 +1,185 @@
+"""`simkit topic echo`: messages as they come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Bag, Sim, Topic
+from simkit.cli.terminal.message_arguments import check_type
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source, wait_for_topic
+from simkit.errors import InputError, MessageError
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+    from simkit.msgs.text import Style
+
+TRUNCATE = 128
+_SEPARATOR = "---"
+
+
+@report_errors_quietly
+def echo(
+    topic: Topic,
+    message_type: Annotated[
+        str | None,
+        typer.Argument(
+            help="The topic's type, which need not be said.",
+            metavar="[TYPE]",
+            show_default=False,
+            autocompletion=completion.topic_types,
+        ),
+    ] = None,
+    once: Annotated[bool, typer.Option("--once", help="Ends behind the first message.")] = False,
+    field: Annotated[
+        str | None,
+        typer.Option(
+            "--field",
+            help="Only this part: pose.pose.position, ranges[0].",
+            metavar="FIELD",
+            autocompletion=completion.fields,
+        ),
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="All numbers with commas between, a message a line.")] = False,
+    no_arr: Annotated[bool, typer.Option("--no-arr", help="Arrays by type and length only.")] = False,
+    no_str: Annotated[bool, typer.Option("--no-str", help="Texts by length only.")] = False,
+    flow_style: Annotated[bool, typer.Option("--flow-style", help="A message a line.")] = False,
+    full_length: Annotated[bool, typer.Option("--full-length", "-f", help="Cuts no long arrays and texts.")] = False,
+    truncate_length: Annotated[
+        int, typer.Option("--truncate-length", "-l", help="Cuts longer ones.", metavar="N", min=0)
+    ] = TRUNCATE,
+    raw: Annotated[bool, typer.Option("--raw", help="The bytes.")] = False,
+    filter_: Annotated[
+        str | None,
+        typer.Option("--filter", help="Only those m for which this Python is true: m.data > 2.", metavar="EXPR"),
+    ] = None,
+    info: Annotated[bool, typer.Option("--include-message-info", help="With the time of each.")] = False,
+    no_lost: Annotated[bool, typer.Option("--no-lost-messages", help="Does not tell of lost messages.")] = False,
+    timeout: Annotated[
+        float | None, typer.Option("--timeout", help="Ends after so long (wall time).", metavar="S", min=0)
+    ] = None,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Prints the messages of a topic; of a bag, all that were recorded."""
+    from simkit.msgs.text import Style
+
+    style = Style(None if full_length or json_ else truncate_length, no_arr, no_str, flow_style)
+    until = None if timeout is None else time.monotonic() + timeout
+    with open_source(sim, bag) as source:
+        entry = find_topic(source, topic) if message_type is None else wait_for_topic(source, topic, until)
+        check_type(message_type, entry.types, entry.name)
+        show = _MessagePrinter(source, style, field, csv, raw, json_, info, compile_filter(filter_))
+        source.prepare(entry)
+        return _echo_field(source.feed([entry.name]), show, once=once, until=until, tells_lost=not no_lost)
+
+
+def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float | None, tells_lost: bool) -> int:
+    lost = 0
+    while True:
+        received = feed.take(None if until is None else max(0.0, until - time.monotonic()))
+        if received is None:
+            return 0
+        if show(received) and once:
+            return 0
+        if tells_lost and feed.lost > lost:
+            print_note(f"A message was lost!!!\n\ttotal count change:{feed.lost - lost}\n\ttotal count: {feed.lost}")
+            lost = feed.lost
+
+
+def compile_filter(expression: str | None) -> Callable[[Any], bool] | None:
+    """Whether a message `m` is one of those that are wanted; the expression is Python, as with ROS 2.
+
+    Raises:
+        InputError: SK-CLI-033 it is none.
+    """
+    if expression is None:
+        return None
+    try:
+        code = compile(expression, "--filter", "eval")
+    except (SyntaxError, ValueError) as error:
+        raise InputError(
+            f"SK-CLI-033 --filter: {expression!r} is no Python expression: {error}", "SK-CLI-033"
+        ) from None
+
+    def wanted(message: Any) -> bool:
+        try:
+            return bool(eval(code, {"m": message}))
+        except Exception as error:  # noqa: BLE001 (the user's own)
+            text = f"SK-CLI-033 --filter: {expression!r} fails with this message: {error!r}"
+            raise InputError(text, "SK-CLI-033") from None
+
+    return wanted
+
+
+class _MessagePrinter:
+    """Prints one message after the other; whether it did."""
+
+    def __init__(
+        self,
+        source: Source,
+        style: Style,
+        field: str | None,
+        csv: bool,
+        raw: bool,
+        json_: bool,
+        info: bool,
+        wanted: Callable[[Any], bool] | None,
+    ) -> None:
+        self._source, self._style, self._field, self._wanted = source, style, field, wanted
+        self._csv, self._raw, self._json, self._info = csv, raw, json_, info
+
+    def __call__(self, received: ReceivedMessage) -> bool:
+        from simkit.msgs.text import part
+
+        if self._raw:
+            if self._json:
+                print_json(list(received.data))
+            else:
+                print_line(str(received.data))
+                print_line(_SEPARATOR)
+            return True
+        store = self._source.store(received.type_name)
+        message, node = self._source.decode(received), None
+        if self._field is not None:
+            try:
+                message, node = part(message, self._field, store)
+            except MessageError as error:
+                raise InputError(f"SK-CLI-033 --field: {error}", "SK-CLI-033") from None
+        if self._wanted is not None and not self._wanted(message):
+            return False
+        self._print(received, message, node, store)
+        return True
+
+    def _print(self, received: ReceivedMessage, message: Any, node: Any, store: Typestore | None) -> None:
+        from simkit.msgs.text import csv_of, field_text, is_message, plain_value, yaml_of
+
+        style = self._style
+        seconds = received.time_ns * 1e-9
+        if self._json:
+            value = plain_value(message, style, store)
+            print_json({"time": seconds, "message": value} if self._info else value)
+            return
+        if not is_message(message):
+            if self._info:
+                print_line(f"---Got new message, print info:---\n{{'received_timestamp': {received.time_ns}}}")
+                print_line("---Message data:---")
+            print_line(field_text(message, node, store))
+            print_line(_SEPARATOR)
+        elif self._csv:
+            text = csv_of(message, style, store)
+            print_line(f"{received.time_ns},{text}" if self._info else text)
+        else:
+            if self._info:
+                print_line(f"received_timestamp: {received.time_ns}")
+                print_line(_SEPARATOR)
+            print_line(yaml_of(message, style, store).rstrip("\n"))
+            print_line(_SEPARATOR)

@@ -1,0 +1,191 @@
+"""`simkit topic pub`: messages into a running simulation."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+import typer
+
+from simkit.cli.terminal import completion
+from simkit.cli.terminal.live_options import Sim, Topic
+from simkit.cli.terminal.message_arguments import make_message, parse_fields, split_type_and_values
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import absolute_name, print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.topic_sources import LONGEST_WAIT, SimClock, connect_to_simulation
+from simkit.errors import InputError, MessageError
+
+
+@report_errors_quietly
+def pub(
+    topic: Topic,
+    message_type: Annotated[
+        str | None,
+        typer.Argument(
+            help="Such as geometry_msgs/msg/Twist; where it is left out, the topic's.",
+            metavar="[TYPE]",
+            show_default=False,
+            autocompletion=completion.topic_types,
+        ),
+    ] = None,
+    values: Annotated[
+        str | None,
+        typer.Argument(
+            help="YAML: '{linear: {x: 0.2}}'; `header: auto` and `stamp: now` are the time of sending.",
+            metavar="[VALUES]",
+            show_default=False,
+            autocompletion=completion.message_values,
+        ),
+    ] = None,
+    stdin: Annotated[bool, typer.Option("--stdin", help="Reads the values from standard input.")] = False,
+    rate: Annotated[
+        float, typer.Option("--rate", "-r", help="Messages a second of simulated time.", metavar="N", min=1e-3)
+    ] = 1.0,
+    every: Annotated[
+        int, typer.Option("--print", "-p", help="Prints every Nth message only; 0 for none.", metavar="N", min=0)
+    ] = 1,
+    once: Annotated[bool, typer.Option("--once", "-1", help="Sends one.")] = False,
+    times: Annotated[
+        int | None, typer.Option("--times", "-t", help="Sends N.", metavar="N", min=0, show_default=False)
+    ] = None,
+    wait: Annotated[
+        int | None,
+        typer.Option(
+            "--wait-matching-subscriptions",
+            "-w",
+            help="Waits until so many take it; 1 with --once and --times, else 0.",
+            metavar="N",
+            min=0,
+            show_default=False,
+        ),
+    ] = None,
+    keep_alive: Annotated[
+        float, typer.Option("--keep-alive", help="Stays so long behind the last one.", metavar="S", min=0)
+    ] = 0.1,
+    wall_time: Annotated[bool, typer.Option("--wall-time", help="The rate is by the clock on the wall.")] = False,
+    sim: Sim = None,
+    json_: Json = False,
+) -> int:
+    """Publishes a message, again and again until Ctrl-C."""
+    from simkit.live import LiveClosed
+
+    message_type, values = split_type_and_values(message_type, values)
+    text = sys.stdin.read() if stdin else values or "{}"
+    fields = parse_fields(text, "the message")
+    number = 1 if once else times or 0
+    if once and times is not None:
+        raise InputError("SK-CLI-018 --once and --times: found both, allowed is one of them", "SK-CLI-018")
+    with connect_to_simulation(sim) as client:
+        publisher = client.advertise(topic, _full_type_name(client, topic, message_type))
+        make = _message_factory(publisher.type_name, fields)
+        make(0)  # what does not fit is told before anything waits
+        _wait_matching(
+            client, topic, (1 if number else 0) if wait is None else wait, print_note if json_ else print_line
+        )
+        if not json_:
+            print_line("publisher: beginning loop")
+        try:
+            for count, now_ns in enumerate(_times(client, rate, number, wall_time), 1):
+                message = make(now_ns)
+                if every and count % every == 0:
+                    _print(message, count, json_)
+                publisher.publish(message)
+        except LiveClosed as closed:
+            if number or closed.code != "SK-LIVE-005":
+                raise  # not all of it has been sent
+            print_note(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
+            return 0
+        client.flush()
+        if keep_alive:
+            time.sleep(min(keep_alive, LONGEST_WAIT))
+    return 0
+
+
+def _full_type_name(client: Any, topic: str, type_name: str | None) -> str:
+    """The type's full name, a known one.
+
+    Raises:
+        InputError: SK-CLI-032 there is no such type; SK-CLI-030 none is said and the topic is not there.
+    """
+    from simkit import msgs
+    from simkit.cli.terminal.topic_sources import LiveSource, find_topic
+
+    if type_name is None:
+        entry = find_topic(LiveSource(client), topic)
+        takes = [t for end in entry.subscribers for t in end.types]
+        return takes[0] if takes else entry.types[0]
+    try:
+        return msgs.full_name(type_name)
+    except MessageError as error:
+        raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
+
+
+def _message_factory(type_name: str, fields: dict[str, Any]) -> Any:
+    """Makes the message of a time [ns]; where nothing in it depends on that, it is always the same."""
+    is_stamped = fields.get("header") == "auto" or _uses_time(fields)
+
+    def at(now_ns: int) -> Any:
+        return make_message(type_name, _with_time(fields, now_ns))
+
+    if is_stamped:
+        return at
+    kept = at(0)
+    return lambda _: kept
+
+
+def _uses_time(value: Any) -> bool:
+    if isinstance(value, dict):
+        return any(v == "now" or _uses_time(v) for v in value.values())
+    return isinstance(value, list) and any(_uses_time(v) for v in value)
+
+
+def _with_time(value: Any, now_ns: int) -> Any:
+    stamp = {"sec": now_ns // 10**9, "nanosec": now_ns % 10**9}
+    if isinstance(value, dict):
+        return {
+            k: {"stamp": stamp}
+            if k == "header" and v == "auto"
+            else stamp
+            if v == "now" and k == "stamp"
+            else _with_time(v, now_ns)
+            for k, v in value.items()
+        }
+    return [_with_time(v, now_ns) for v in value] if isinstance(value, list) else value
+
+
+def _wait_matching(client: Any, topic: str, number: int, tell: Any) -> None:
+    told = False
+    while number and len(_subscribers(client, absolute_name(topic))) < number:
+        if not told:
+            tell(f"Waiting for at least {number} matching subscription(s)...")
+            told = True
+        time.sleep(0.1)
+
+
+def _subscribers(client: Any, topic: str) -> list[Any]:
+    return next((list(row["subscribers"]) for row in client.topics() if row["name"] == topic), [])
+
+
+def _times(client: Any, rate: float, number: int, by_wall: bool) -> Iterator[int]:
+    """Simulated times [ns], as often as messages are to be sent: at once, then every 1/rate seconds."""
+    clock = SimClock(client, by_wall=by_wall)
+    period = round(1e9 / rate)
+    due = clock.now_ns()
+    sent = 0
+    while not number or sent < number:
+        if not clock.wait_until(due, due - period):
+            due = clock.now_ns()  # after a reset
+        yield clock.sim_ns()
+        sent += 1
+        due = max(due + period, clock.now_ns() - period)  # one that came too late is not made up for many times
+
+
+def _print(message: Any, count: int, json_: bool) -> None:
+    from simkit.msgs.text import plain, python_of
+
+    if json_:
+        print_json(plain(message))
+    else:
+        print_line(f"publishing #{count}: {python_of(message)}\n")

@@ -1,0 +1,258 @@
+"""`simkit topic hz`, `bw` and `delay`: how often, how much, how late; by the clock of the simulation.
+
+Where a simulation runs faster or slower than real time, its own clock is the one by which sensors have their rates;
+`--wall-time` counts by the clock on the wall.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable, Collection
+from typing import Annotated, Any
+
+import typer
+
+from simkit.cli.terminal.live_options import Bag, Sim, Topic
+from simkit.cli.terminal.options import Json
+from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source
+from simkit.cli.topic_echo import compile_filter
+from simkit.errors import InputError
+
+_PRINT_PERIOD = 1.0  # [s] of wall time between two lines
+_DEPTH = 10_000  # messages that wait while a line is printed
+Window = Annotated[
+    int | None,
+    typer.Option(
+        "--window", "-w", help="Counts the last N messages.", metavar="N", min=1, max=10**9, show_default=False
+    ),
+]
+WallTime = Annotated[bool, typer.Option("--wall-time", help="By the clock on the wall, not the simulation's.")]
+
+
+class Rates:
+    """Rate of what arrives, over a window of messages.
+
+    Args:
+        window: how many messages it spans at most.
+    """
+
+    def __init__(self, window: int) -> None:
+        self._gaps: deque[float] = deque(maxlen=window)
+        self._last: float | None = None
+
+    def add(self, seconds: float) -> None:
+        """Takes the time of a message [s]; a clock that goes back begins anew."""
+        if self._last is not None and seconds < self._last:
+            self._gaps.clear()
+        elif self._last is not None:
+            self._gaps.append(seconds - self._last)
+        self._last = seconds
+
+    def found(self) -> dict[str, Any] | None:
+        """`rate` [Hz], `min`, `max`, `std_dev` of the gaps [s] and `window`; None before there is a gap."""
+        if not self._gaps:
+            return None
+        mean, spread = _spread(self._gaps)
+        return {"rate": 1.0 / mean if mean > 0.0 else 0.0, **spread}
+
+
+def _spread(seconds: Collection[float]) -> tuple[float, dict[str, Any]]:
+    """The mean of some times [s], and their `min`, `max`, `std_dev` [s] and how many they are: `window`."""
+    mean = sum(seconds) / len(seconds)
+    deviation = math.sqrt(sum((one - mean) ** 2 for one in seconds) / len(seconds))
+    return mean, {"min": min(seconds), "max": max(seconds), "std_dev": deviation, "window": len(seconds)}
+
+
+def _spread_text(found: dict[str, Any]) -> str:
+    ends = f"min: {found['min']:.3f}s max: {found['max']:.3f}s std dev: {found['std_dev']:.5f}s"
+    return f"{ends} window: {found['window']}"
+
+
+class Amounts:
+    """Bytes a second, over a window of messages."""
+
+    def __init__(self, window: int) -> None:
+        self._sizes: deque[tuple[float, int]] = deque(maxlen=window)
+
+    def add(self, seconds: float, size: int) -> None:
+        """Takes the time [s] and the size [bytes] of a message; a clock that goes back begins anew."""
+        if self._sizes and seconds < self._sizes[-1][0]:
+            self._sizes.clear()
+        self._sizes.append((seconds, size))
+
+    def found(self) -> dict[str, Any] | None:
+        """`bytes_per_second`, `messages`, `mean`, `min` and `max` size; None before there are two messages."""
+        if len(self._sizes) < 2 or self._sizes[-1][0] <= self._sizes[0][0]:
+            return None
+        sizes = [size for _, size in self._sizes]
+        per_second = sum(sizes) / (self._sizes[-1][0] - self._sizes[0][0])
+        mean = sum(sizes) / len(sizes)
+        return {
+            "bytes_per_second": per_second,
+            "messages": len(sizes),
+            "mean": mean,
+            "min": min(sizes),
+            "max": max(sizes),
+        }
+
+
+def _print_rates(found: dict[str, Any] | None, text: Callable[[dict[str, Any]], str], json_: bool) -> None:
+    if found is not None:
+        if json_:
+            print_json(found)
+        else:
+            print_line(text(found))
+
+
+def _listen(
+    feed: Feed,
+    take: Callable[[float, ReceivedMessage], None],
+    tell: Callable[[], None],
+    by_wall: bool,
+    duration: float | None,
+) -> int:
+    """Takes what comes and tells of it once a second; of a bag, once at its end."""
+    begun = told = time.monotonic()
+    lost, any_came = 0, False
+    while True:
+        now = time.monotonic()
+        if duration is not None and now - begun >= duration:
+            break
+        wait = max(0.0, told + _PRINT_PERIOD - now)
+        received = feed.take(wait if duration is None else min(wait, begun + duration - now))
+        if received is not None:
+            any_came = True
+            take(time.monotonic() if by_wall else received.time_ns * 1e-9, received)
+        if feed.is_over:
+            break
+        if time.monotonic() - told >= _PRINT_PERIOD and any_came and feed.is_live:
+            told = time.monotonic()
+            tell()
+            any_came = False
+        elif time.monotonic() - told >= _PRINT_PERIOD:
+            told = time.monotonic()
+        if feed.lost > lost:
+            print_note(f"note: {feed.lost - lost} messages came faster than they could be counted")
+            lost = feed.lost
+    if any_came or not feed.is_live:
+        tell()
+    return 0
+
+
+def _check_clock(source: Source, by_wall: bool) -> None:
+    if by_wall and not source.is_live:
+        raise InputError("SK-CLI-018 --wall-time: a bag has the clock of the simulation only", "SK-CLI-018")
+
+
+Duration = Annotated[
+    float | None, typer.Option("--duration", help="Ends after so long (wall time).", metavar="S", min=0)
+]
+
+
+@report_errors_quietly
+def hz(
+    topic: Topic,
+    window: Window = None,
+    filter_: Annotated[
+        str | None, typer.Option("--filter", help="Only those m for which this Python is true.", metavar="EXPR")
+    ] = None,
+    wall_time: WallTime = False,
+    duration: Duration = None,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Prints how often messages come, by the clock of the simulation."""
+    wanted = compile_filter(filter_)
+    with open_source(sim, bag) as source:
+        entry = find_topic(source, topic)
+        _check_clock(source, wall_time)
+        rates = Rates(window or 10_000)
+
+        def take(seconds: float, received: ReceivedMessage) -> None:
+            if wanted is None or wanted(source.decode(received)):
+                rates.add(seconds)
+
+        feed = source.feed([entry.name], _DEPTH)
+        return _listen(feed, take, lambda: _print_rates(rates.found(), rate_text, json_), wall_time, duration)
+
+
+def rate_text(found: dict[str, Any]) -> str:
+    """As `ros2 topic hz` prints it."""
+    return f"average rate: {found['rate']:.3f}\n\t{_spread_text(found)}"
+
+
+@report_errors_quietly
+def bw(
+    topic: Topic,
+    window: Window = None,
+    wall_time: WallTime = False,
+    duration: Duration = None,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Prints how many bytes a second come, by the clock of the simulation."""
+    with open_source(sim, bag) as source:
+        entry = find_topic(source, topic)
+        _check_clock(source, wall_time)
+        amounts = Amounts(window or 100)
+        if not json_:
+            print_line(f"Subscribed to [{entry.name}]")
+        feed = source.feed([entry.name], _DEPTH)
+
+        def take(seconds: float, received: ReceivedMessage) -> None:
+            amounts.add(seconds, len(received.data))
+
+        return _listen(feed, take, lambda: _print_rates(amounts.found(), amount_text, json_), wall_time, duration)
+
+
+def amount_text(found: dict[str, Any]) -> str:
+    """As `ros2 topic bw` prints it: all numbers in the unit that fits the rate."""
+    per_second = found["bytes_per_second"]
+    unit, size, digits = ("B", 1.0, 0) if per_second < 1e3 else ("KB", 1e3, 2) if per_second < 1e6 else ("MB", 1e6, 2)
+    rate, mean, low, high = (f"{n / size:.{digits}f} {unit}" for n in (per_second, *(found[k] for k in _SIZES)))
+    return f"{rate}/s from {found['messages']} messages\n\tMessage size mean: {mean} min: {low} max: {high}"
+
+
+_SIZES = ("mean", "min", "max")
+
+
+@report_errors_quietly
+def delay(
+    topic: Topic,
+    window: Window = None,
+    duration: Duration = None,
+    sim: Sim = None,
+    bag: Bag = None,
+    json_: Json = False,
+) -> int:
+    """Prints how much later than its stamp a message is published, by the clock of the simulation."""
+    from simkit import msgs
+
+    with open_source(sim, bag) as source:
+        entry = find_topic(source, topic)
+        late: deque[float] = deque(maxlen=window or 10_000)
+
+        def take(seconds: float, received: ReceivedMessage) -> None:
+            header = getattr(source.decode(received), "header", None)
+            if header is None:
+                raise InputError(f"SK-CLI-033 {entry.types[0]} has no header, so no stamp", "SK-CLI-033")
+            late.append(seconds - msgs.stamp_ns(header.stamp) * 1e-9)
+
+        def found() -> dict[str, Any] | None:
+            if not late:
+                return None
+            mean, spread = _spread(late)
+            return {"delay": mean, **spread}
+
+        feed = source.feed([entry.name], _DEPTH)
+        return _listen(feed, take, lambda: _print_rates(found(), delay_text, json_), False, duration)
+
+
+def delay_text(found: dict[str, Any]) -> str:
+    """As `ros2 topic delay` prints it."""
+    return f"average delay: {found['delay']:.3f}\n\t{_spread_text(found)}"

@@ -1,0 +1,333 @@
+"""Inertias that MuJoCo's compiler refuses: stand-ins, the repair within a bound, and what is said about both.
+
+A rigid body's principal moments are positive and A + B >= C (the largest). Files break this by rounding, by wrong
+units, or because whoever wrote them never needed it. What counts is the sum of all links that are rigidly one (joined
+by fixed joints), about their common centre of mass:
+
+* The sum is that of a body: nothing is lost and nothing is said. A link whose own tensor is refused hands it to the
+  heaviest of the others, to which it adds up exactly.
+* Its moments are positive but A + B < C: the engine's equations hold for such a tensor too, only its compiler refuses
+  it. It gets the nearest one that a body has, and after the compile the file's own is put back, so that the motion is
+  what the file says. Reported, as a note up to `SLIGHT_VIOLATION` of C, else as a warning.
+* A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: it is raised to what the smallest body of that
+  mass would have, the largest is kept. Reported with old and new numbers.
+* Beyond that it is an error with the moments.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics
+from simkit.scene import Inertial, SceneLink
+
+Matrix = npt.NDArray[np.float64]
+Six = tuple[float, float, float, float, float, float]
+
+SLIGHT_VIOLATION: Final = 0.01
+"""A + B short of C by at most this part of C is rounding in the file: a note."""
+
+REPAIRABLE_VIOLATION: Final = 0.01
+"""A negative moment of at most this part of the largest is repaired; beyond it is an error."""
+
+LEAST_RADIUS: Final = 1e-4
+"""Radius of gyration [m] of the smallest body that a moment is raised to: a robot of point masses keeps its dynamics
+to a millionth."""
+
+LEAST_MASS: Final = 1e-9
+"""[kg]; MuJoCo moves nothing lighter than 1e-15."""
+
+LEAST_MOMENT: Final = 1e-12
+"""[kg·m²]; MuJoCo refuses moments below 1e-14."""
+
+_NONE: Final[Six] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_ROUNDING: Final = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class InertiaRepair:
+    """What becomes of one mass and tensor.
+
+    Attributes:
+        inertial: the nearest that MuJoCo takes; the same object where it takes it as it is.
+        verdict: "sound"; "unbalanced": A + B < C; "mended": a moment was raised; "beyond": outside of the bounds.
+        old, new: principal moments in rising order [kg·m²].
+        lack: by how much A + B falls short of C, as a part of C; 0 where it does not.
+    """
+
+    inertial: Inertial
+    verdict: str
+    old: tuple[float, float, float]
+    new: tuple[float, float, float]
+    lack: float = 0.0
+
+    @property
+    def why(self) -> str:
+        """The fault in words with numbers; empty where there is none."""
+        moments = format_moments(self.old)
+        if self.verdict == "unbalanced":
+            return f"principal moments {moments} kg m2: A + B falls short of C by {100 * self.lack:.3g} % of C"
+        if self.verdict in ("mended", "beyond"):
+            return f"principal moments {moments} kg m2: each must be positive"
+        return ""
+
+
+@dataclass(frozen=True, slots=True)
+class BodyInertia:
+    """What a link's body gets.
+
+    Attributes:
+        inertia: for MuJoCo's compiler; all zeros for a link that hands its tensor to another.
+        exact: what is put into the model after the compile, in link axes; None where the compiler took it.
+    """
+
+    mass: float
+    com: tuple[float, float, float]
+    inertia: Six
+    exact: Six | None = None
+
+
+def repair_inertia(inertial: Inertial, slack: float = 2 * _ROUNDING) -> InertiaRepair:
+    """Judges a mass and tensor, and gives the nearest that a body can have.
+
+    The nearest tensor with A + B >= C moves each moment by a third of what is missing (least squares). Where a moment
+    is not positive the small ones are raised to `LEAST_RADIUS`² · mass and balanced against the largest, which stays.
+
+    Args:
+        slack: by how much A + B exceeds C in what is mended, as a part of C.
+    """
+    if not any(inertial.inertia[3:]):  # as most tensors are; spares thousands of links an eigenvalue problem
+        a, b, c = sorted(float(v) for v in inertial.inertia[:3])
+        if a > 1e-14 and c - b - a <= -_ROUNDING * c:
+            return InertiaRepair(inertial, "sound", (a, b, c), (a, b, c))
+    values, axes = np.linalg.eigh(inertia_matrix(inertial.inertia))
+    old = _as_vector(values)
+    floor = max(LEAST_MOMENT, LEAST_RADIUS**2 * inertial.mass)
+    lack = float(values[2] - values[1] - values[0])
+    part = max(0.0, lack / float(values[2])) if values[2] > 0 else 0.0
+    if values[0] > 1e-14 and values[0] > -_ROUNDING * values[2]:
+        if lack <= -_ROUNDING * values[2]:
+            return InertiaRepair(inertial, "sound", old, old)
+        new = values + (lack + slack * values[2]) / 3.0 * np.array((1.0, 1.0, -1.0))
+        verdict = "unbalanced" if part > 1e-9 else "sound"
+        return InertiaRepair(_with_inertial(inertial, new, axes), verdict, old, _as_vector(new), part)
+    verdict = "mended" if values[0] >= -REPAIRABLE_VIOLATION * max(float(values[2]), floor) else "beyond"
+    new = np.maximum(values, floor)
+    missing = float(new[2] - new[1] - new[0])
+    if missing > 0:
+        new[:2] += (missing + slack * float(new[2])) / 2.0
+    return InertiaRepair(_with_inertial(inertial, new, axes), verdict, old, _as_vector(new), part)
+
+
+def plan_inertials(
+    links: Sequence[SceneLink], rigid: Mapping[str, str], still: frozenset[str], diagnostics: Diagnostics
+) -> dict[str, BodyInertia]:
+    """What each link's body gets, so that MuJoCo takes it and every moving sum is what the file says.
+
+    Args:
+        links: the moving links.
+        rigid: scoped name of each link -> that of the link at the foot of those that are rigidly one with it.
+        still: feet that nothing moves.
+        diagnostics: gets one line for each sum that is not that of a body.
+    """
+    groups: dict[str, list[SceneLink]] = {}
+    for link in links:
+        groups.setdefault(rigid.get(link.scoped, link.scoped), []).append(link)
+    written: dict[str, BodyInertia] = {}
+    for foot, members in groups.items():
+        members.sort(key=lambda link: link.scoped != foot)
+        if not all(_is_finite(link.inertial) for link in members):
+            written |= {link.scoped: _file_inertia(Inertial()) for link in members}
+            for link in members:
+                if not _is_finite(link.inertial):
+                    text = f"link {link.scoped}: mass, centre of mass or inertia is not finite"
+                    diagnostics.error("SK-PHYS-018", text, link.where)
+        else:
+            written |= _rigid_groups(members, foot not in still, diagnostics)
+    return written
+
+
+def _rigid_groups(members: list[SceneLink], moves: bool, diagnostics: Diagnostics) -> dict[str, BodyInertia]:
+    """Links that are rigidly one; the first is their foot."""
+    if moves and sum(m.inertial.mass for m in members) < LEAST_MASS:
+        return _with_some_mass(members, diagnostics)
+    judged = {link.scoped: repair_inertia(link.inertial) for link in members}
+    refused = [m for m in members if judged[m.scoped].inertial is not m.inertial]
+    if not refused:
+        return {m.scoped: _file_inertia(m.inertial) for m in members}
+    if not any(judged[m.scoped].verdict != "sound" for m in refused):
+        return {m.scoped: _file_inertia(judged[m.scoped].inertial) for m in members}
+    if moves and len(members) > 1:
+        handed = _move_to_heaviest(members, refused)
+        if handed is not None:
+            return handed
+    if not moves:
+        return {m.scoped: _file_inertia(judged[m.scoped].inertial if m in refused else m.inertial) for m in members}
+    return _report_stand_ins(members, judged, diagnostics)
+
+
+def _with_some_mass(members: list[SceneLink], diagnostics: Diagnostics) -> dict[str, BodyInertia]:
+    """Links with an inertia and without mass: the foot gets the least that moves."""
+    foot = members[0]
+    diagnostics.warning(
+        "SK-PHYS-011",
+        f"link {foot.scoped}: {foot.inertial.mass:g} kg cannot be moved; {LEAST_MASS:g} kg are used",
+        foot.where,
+    )
+    written = {m.scoped: _file_inertia(repair_inertia(m.inertial).inertial) for m in members}
+    own = written[foot.scoped]
+    written[foot.scoped] = BodyInertia(LEAST_MASS, own.com, own.inertia, own.exact)
+    return written
+
+
+def _move_to_heaviest(members: list[SceneLink], refused: list[SceneLink]) -> dict[str, BodyInertia] | None:
+    """The refused tensors added to that of the heaviest member; None where the sum is refused as well."""
+    taker = max(members, key=lambda m: (m.inertial.mass, m is members[0]))
+    givers = [m for m in refused if m is not taker]
+    inertia = inertia_matrix(taker.inertial.inertia)
+    for giver in givers:
+        inertia = inertia + _rotate_tensor(taker, giver, inertia_matrix(giver.inertial.inertia))
+    total = repair_inertia(_replace_inertials(taker.inertial, inertia))
+    if total.verdict != "sound":
+        return None
+    written = {m.scoped: _file_inertia(m.inertial) for m in members}
+    written |= {m.scoped: BodyInertia(m.inertial.mass, m.inertial.com, _NONE) for m in givers}
+    written[taker.scoped] = _file_inertia(total.inertial)
+    return written
+
+
+def _report_stand_ins(
+    members: list[SceneLink], judged: Mapping[str, InertiaRepair], diagnostics: Diagnostics
+) -> dict[str, BodyInertia]:
+    """Stand-ins for the compiler, the file's own tensors for the engine; the sum is judged and said."""
+    foot = members[0]
+    mass, tensor = rigid_sum(members)
+    total = repair_inertia(Inertial(mass, (0.0, 0.0, 0.0), inertia_moments(tensor)))
+    written = {}
+    for m in members:
+        given, stand_in = m.inertial, judged[m.scoped].inertial
+        exact = None if stand_in is given or judged[m.scoped].verdict == "sound" else given.inertia
+        written[m.scoped] = BodyInertia(stand_in.mass, stand_in.com, stand_in.inertia, exact)
+    others = [m.name for m in members[1:]]
+    what = f"link {foot.scoped}" + (f" (with {', '.join(others)}, fixed to it)" if others else "")
+    hint = "simkit check --fix-inertia shows numbers that a body can have"
+    if mass <= 0:
+        return written  # whoever writes the joints says that nothing without mass can be moved
+    if total.verdict == "unbalanced":
+        say = diagnostics.note if total.lack <= SLIGHT_VIOLATION else diagnostics.warning
+        text = f"{what}: {total.why}; no solid has them, they are simulated as written"
+        say("SK-INERTIA-001", text, foot.where, hint)
+    elif total.verdict == "mended":
+        extra = inertia_matrix(total.inertial.inertia) - tensor
+        own = judged[foot.scoped].inertial
+        exact = inertia_moments(inertia_matrix(foot.inertial.inertia) + _rotate_from_world(foot, extra))
+        written[foot.scoped] = BodyInertia(own.mass, own.com, own.inertia, exact)
+        text = f"{what}: {total.why}; {format_moments(total.new)} are used"
+        diagnostics.warning("SK-PHYS-011", text, foot.where, hint)
+    elif total.verdict == "beyond":
+        text = f"{what} of {mass:g} kg: {total.why}, and this is far from it{_likely_cause(foot.inertial, total)}"
+        diagnostics.error("SK-INERTIA-002", text, foot.where, hint)
+    return written
+
+
+def _likely_cause(inertial: Inertial, found: InertiaRepair) -> str:
+    """What such numbers most often come from."""
+    i = inertial.inertia
+    if min(i[:3]) > 0 and found.old[0] < 0:
+        return "; the products of inertia (ixy, ixz, iyz) are too large: check their signs and units"
+    if found.old[2] <= 0:
+        return "; all are negative: the sign is wrong"
+    return "; check the signs on the diagonal"
+
+
+def restore_file_inertias(model: mujoco.MjModel, exact: Mapping[str, tuple[float, Six]]) -> None:
+    """Gives bodies of a compiled model the tensors that its compiler refused.
+
+    Args:
+        exact: body -> the mass it was written with [kg] and its tensor [kg·m², link axes]. A body that has handed a
+            part of its mass to a twin since then gets that much less of the tensor.
+    """
+    if not exact:
+        return
+    for name, (mass, six) in exact.items():
+        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+        share = float(model.body_mass[body]) / mass if mass > 0 else 1.0
+        values, axes = np.linalg.eigh(inertia_matrix(six))
+        if np.linalg.det(axes) < 0:
+            axes[:, 0] = -axes[:, 0]
+        quaternion = np.empty(4)
+        mujoco.mju_mat2Quat(quaternion, axes.reshape(-1))
+        model.body_inertia[body] = share * values
+        model.body_iquat[body] = quaternion
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
+def rigid_sum(links: Sequence[SceneLink]) -> tuple[float, Matrix]:
+    """Mass [kg] and tensor [kg·m²] of links that are rigidly one, about their centre of mass, in world axes."""
+    mass = sum(m.inertial.mass for m in links)
+    centres = [m.pose_world.transform(m.inertial.com) for m in links]
+    middle = (
+        sum((m.inertial.mass * c for m, c in zip(links, centres, strict=True)), np.zeros(3)) / mass
+        if mass > 0
+        else centres[0]
+    )
+    total = np.zeros((3, 3))
+    for m, centre in zip(links, centres, strict=True):
+        turn, d = m.pose_world.matrix, centre - middle
+        total += turn @ inertia_matrix(m.inertial.inertia) @ turn.T
+        total += m.inertial.mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
+    return mass, total
+
+
+def inertia_matrix(v: Sequence[float]) -> Matrix:
+    """ixx, iyy, izz, ixy, ixz, iyz as a symmetric matrix."""
+    return np.array(((v[0], v[3], v[4]), (v[3], v[1], v[5]), (v[4], v[5], v[2])))
+
+
+def inertia_moments(m: Matrix) -> Six:
+    """A symmetric matrix as ixx, iyy, izz, ixy, ixz, iyz."""
+    return float(m[0, 0]), float(m[1, 1]), float(m[2, 2]), float(m[0, 1]), float(m[0, 2]), float(m[1, 2])
+
+
+def format_moments(values: Sequence[float]) -> str:
+    """Moments as `(1.8e-05, 0.000223, 0.000244)`."""
+    return "(" + ", ".join(f"{v:.4g}" for v in values) + ")"
+
+
+def _file_inertia(inertial: Inertial) -> BodyInertia:
+    return BodyInertia(inertial.mass, inertial.com, inertial.inertia)
+
+
+def _rotate_tensor(taker: SceneLink, giver: SceneLink, tensor: Matrix) -> Matrix:
+    """A tensor in the axes of one link, in those of another."""
+    turn = taker.pose_world.matrix.T @ giver.pose_world.matrix
+    return turn @ tensor @ turn.T
+
+
+def _rotate_from_world(link: SceneLink, tensor: Matrix) -> Matrix:
+    """A tensor in world axes, in those of a link."""
+    turn = link.pose_world.matrix
+    return turn.T @ tensor @ turn
+
+
+def _with_inertial(inertial: Inertial, moments: Matrix, axes: Matrix) -> Inertial:
+    return _replace_inertials(inertial, (axes * moments) @ axes.T)
+
+
+def _replace_inertials(inertial: Inertial, tensor: Matrix) -> Inertial:
+    return Inertial(inertial.mass, inertial.com, inertia_moments(tensor), inertial.given)
+
+
+def _as_vector(values: Matrix) -> tuple[float, float, float]:
+    return float(values[0]), float(values[1]), float(values[2])
+
+
+def _is_finite(inertial: Inertial) -> bool:
+    return all(map(math.isfinite, (inertial.mass, *inertial.com, *inertial.inertia)))

@@ -1,0 +1,159 @@
+"""The joint graph of a model as a tree, and the joints that close loops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Final
+
+from simkit.scene import SceneJoint, SceneLink
+
+WORLD: Final = "world"
+_CONSTRAINTS: Final = {"gearbox"}
+
+
+@dataclass(frozen=True, slots=True)
+class TreeEdge:
+    """How a link hangs in the tree: by `joint` under `parent` (`world` for the world or a static link).
+
+    `is_reversed`: the file's child is the tree's parent.
+    """
+
+    parent: str
+    joint: SceneJoint
+    is_reversed: bool = False
+
+
+@dataclass(slots=True)
+class KinematicTree:
+    """Links in an order where parents come first; a link without an edge is a root.
+
+    Attributes:
+        loops: joints that close a loop.
+        constraints: joints that couple others (gearboxes).
+        floating: joints that bind nothing; they only say how two links stand to each other.
+        roots: the link at the foot of the tree that carries a link.
+        rigid: of each link the one at the foot of those that are rigidly one with it.
+        carriers: of each link the heaviest of those that are rigidly one with it.
+        masses: of the whole tree, by its root [kg].
+        carried: of each link and all that hangs below it [kg].
+        deepest: the link at the end of the longest chain, and how many links that has (`depth`).
+    """
+
+    order: list[SceneLink] = field(default_factory=list)
+    edges: dict[str, TreeEdge] = field(default_factory=dict)
+    loops: list[SceneJoint] = field(default_factory=list)
+    constraints: list[SceneJoint] = field(default_factory=list)
+    floating: list[SceneJoint] = field(default_factory=list)
+    children: dict[str, list[str]] = field(default_factory=dict)
+    roots: dict[str, str] = field(default_factory=dict)
+    rigid: dict[str, str] = field(default_factory=dict)
+    carriers: dict[str, str] = field(default_factory=dict)
+    masses: dict[str, float] = field(default_factory=dict)
+    carried: dict[str, float] = field(default_factory=dict)
+    deepest: str = ""
+    depth: int = 0
+
+    def root_of(self, link: str) -> str:
+        """The link at the foot of the tree that carries `link`."""
+        return self.roots[link]
+
+
+class _Rings:
+    """Which links are connected already (union by halving paths)."""
+
+    def __init__(self) -> None:
+        self._above: dict[str, str] = {}
+
+    def find(self, name: str) -> str:
+        above = self._above
+        while name in above:
+            step = above[name]
+            if step in above:
+                above[name] = above[step]
+            name = step
+        return name
+
+    def join(self, below: str, above: str) -> None:
+        self._above[self.find(below)] = self.find(above)
+
+
+def plan_tree(links: Iterable[SceneLink], joints: Iterable[SceneJoint], static: Iterable[str] = ()) -> KinematicTree:
+    """Chooses for every link the joint it hangs on.
+
+    A joint to the world wins over others. A joint whose child already hangs elsewhere is turned round while its parent
+    is still free (every type turns exactly: its motions in the other order and direction); what is left closes a loop.
+
+    Args:
+        links: the moving links.
+        joints: joints between them, the world and static links.
+        static: scoped names of links that belong to the world.
+    """
+    by_name = {link.scoped: link for link in links}
+    fixed = {WORLD, *static}
+    tree, rings = KinematicTree(), _Rings()
+    ends = fixed | set(by_name)
+    usable = [j for j in joints if j.parent_link in ends and j.child_link in ends]
+    for joint in sorted(usable, key=lambda j: not ({j.parent_link, j.child_link} & fixed)):
+        parent = WORLD if joint.parent_link in fixed else joint.parent_link
+        child = WORLD if joint.child_link in fixed else joint.child_link
+        if joint.type in _CONSTRAINTS:
+            tree.constraints.append(joint)
+        elif joint.type == "floating":
+            tree.floating.append(joint)
+        elif parent == child:
+            continue
+        elif rings.find(parent) == rings.find(child):
+            tree.loops.append(joint)
+        elif child != WORLD and child not in tree.edges:
+            tree.edges[child] = TreeEdge(parent, joint)
+            rings.join(child, parent)
+        elif parent != WORLD and parent not in tree.edges:
+            tree.edges[parent] = TreeEdge(child, joint, True)
+            rings.join(parent, child)
+        else:
+            tree.loops.append(joint)
+    _sort_joints(tree, by_name)
+    _carried_masses(tree)
+    return tree
+
+
+def _sort_joints(tree: KinematicTree, links: dict[str, SceneLink]) -> None:
+    roots = []
+    for name in links:
+        edge = tree.edges.get(name)
+        if edge is None or edge.parent == WORLD:
+            roots.append(name)
+        else:
+            tree.children.setdefault(edge.parent, []).append(name)
+    stack = roots[::-1]
+    level: dict[str, int] = {}
+    while stack:
+        name = stack.pop()
+        edge = tree.edges.get(name)
+        tree.roots[name] = name if edge is None or edge.parent == WORLD else tree.roots[edge.parent]
+        level[name] = 1 if tree.roots[name] == name else level[tree.edges[name].parent] + 1
+        if level[name] > tree.depth:
+            tree.deepest, tree.depth = name, level[name]
+        tree.order.append(links[name])
+        stack += tree.children.get(name, [])[::-1]
+
+
+def _carried_masses(tree: KinematicTree) -> None:
+    """Masses of trees and of what each link carries, and who carries whom rigidly."""
+    group: dict[str, str] = {}
+    heaviest: dict[str, SceneLink] = {}
+    for link in tree.order:
+        edge = tree.edges.get(link.scoped)
+        is_rigid = edge is not None and edge.parent != WORLD and edge.joint.type == "fixed"
+        group[link.scoped] = group[edge.parent] if edge is not None and is_rigid else link.scoped
+        most = heaviest.setdefault(group[link.scoped], link)
+        if link.inertial.mass > most.inertial.mass:
+            heaviest[group[link.scoped]] = link
+        root = tree.roots[link.scoped]
+        tree.masses[root] = tree.masses.get(root, 0.0) + link.inertial.mass
+    tree.rigid = group
+    tree.carriers = {name: heaviest[leader].scoped for name, leader in group.items()}
+    for link in reversed(tree.order):
+        below = sum(tree.carried[child] for child in tree.children.get(link.scoped, ()))
+        tree.carried[link.scoped] = link.inertial.mass + below

@@ -1,0 +1,196 @@
+"""Joints: gains and springs against inertia and step, ranges without room, loads on light links."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.compiler.lint.links import first_state
+from simkit.diagnostics import Diagnostics, Where
+
+if TYPE_CHECKING:
+    from simkit.compiler import JointBinding
+    from simkit.params import Params
+    from simkit.runtime import Simulation
+
+_GAIN_LIMIT: Final = 1.5  # as in simkit.compiler.servos: gains beyond this are capped
+_RINGING_DAMPING: Final = 2.0  # of d·dt/I, for a force that is computed once a step
+_RINGING_STIFFNESS: Final = 4.0  # of k·dt²/I, likewise
+LARGEST_LOAD_RATIO: Final = 1e4
+"""Ratio of the mass that stands on a moving body to its own, beyond which it sinks in by more than 1 mm."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointGains:
+    """What a plugin of the file asks of one joint: gains per error [N·m/rad or N/m] and per its rate."""
+
+    plugin: str
+    joint: str
+    p: float
+    d: float
+    where: Where
+
+
+def look(sim: Simulation, found: Diagnostics) -> None:
+    """Reports gains that ring, springs too stiff for the step, ranges of no width, and heavy loads on light links."""
+    felt = _JointInertia(sim)
+    for joint in sim.names.joints.values():
+        _check_range(joint, found)
+        _check_spring(joint, felt, sim.timestep, found)
+    _check_servos(sim, felt, found)
+    for model in sim.world.models:
+        for nested in model.all_models():
+            for plugin in nested.plugins:
+                for gains in controller_gains(plugin.params, plugin.name or plugin.filename, plugin.where):
+                    _check_gains(gains, _find_joint(sim, nested.scoped, gains.joint), felt, sim.timestep, found)
+    _check_loads(sim, found)
+
+
+class _JointInertia:
+    """Inertia [kg·m² or kg] at a degree of freedom, all else free to move: 1 / (M⁻¹)_jj at the start."""
+
+    def __init__(self, sim: Simulation) -> None:
+        import mujoco
+
+        self._model, self._mujoco = sim.mj_model, mujoco
+        self._data: Any = None
+        self._known: dict[int, float] = {}
+
+    def at(self, dof: int) -> float:
+        if dof not in self._known:
+            model, mujoco = self._model, self._mujoco
+            if self._data is None:
+                self._data = first_state(model)
+                mujoco.mj_makeM(model, self._data)
+                mujoco.mj_factorM(model, self._data)
+            unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
+            unit[0, dof] = 1.0
+            mujoco.mj_solveM(model, self._data, solved, unit)
+            self._known[dof] = 1.0 / max(float(solved[0, dof]), 1e-300)
+        return self._known[dof]
+
+
+def _check_range(joint: JointBinding, found: Diagnostics) -> None:
+    for axis in joint.scene.axes:
+        if joint.type in ("revolute", "prismatic", "universal", "revolute2") and axis.lower == axis.upper:
+            found.note(
+                "SK-LINT-005",
+                f"joint {joint.scoped!r} is {joint.type} and has no room to move: both limits are {axis.lower:g}",
+                joint.scene.where,
+                "a joint of type fixed says the same and costs nothing",
+            )
+
+
+def _check_spring(joint: JointBinding, felt: _JointInertia, step: float, found: Diagnostics) -> None:
+    for axis, dof in zip(joint.scene.axes, joint.dofs, strict=False):
+        if axis.stiffness > 0 and (number := axis.stiffness * step**2 / felt.at(dof)) > 1.0:
+            found.warning(
+                "SK-LINT-004",
+                f"joint {joint.scoped!r}: its spring of {axis.stiffness:g} on an inertia of {felt.at(dof):.3g} swings "
+                f"faster than the step of {step * 1e3:g} ms can follow (k·dt²/I is {number:.3g}, up to 1 is good)",
+                joint.scene.where,
+                f"a spring of at most {felt.at(dof) / step**2:.3g}, or a smaller step",
+            )
+
+
+def _check_servos(sim: Simulation, felt: _JointInertia, found: Diagnostics) -> None:
+    """Gains that a plugin asked for and that its servo does not get."""
+    for record in sim.compiled.builder.records.values():
+        for ref in record.actuators:
+            joint = sim.names.joints.get(ref.joint)
+            if joint is None or ref.axis >= len(joint.dofs) or ref.kv is None:
+                continue
+            inertia = felt.at(joint.dofs[ref.axis])
+            most = _GAIN_LIMIT * inertia / sim.timestep
+            if ref.kv > most:
+                found.warning(
+                    "SK-LINT-003",
+                    f"joint {joint.scoped!r}: the velocity gain {ref.kv:g} that {ref.owner} asks for would ring at a "
+                    f"step of {sim.timestep * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used",
+                    joint.scene.where,
+                    "ask for less, or take a smaller step",
+                )
+
+
+def controller_gains(params: Params, name: str, where: Where) -> Iterator[JointGains]:
+    """The gains of gz's joint controllers: one joint with `p_gain`, or several with `position_p_gain`."""
+    joints = [c.value for c in params.children if c.name == "joint_name"]
+    p = _numbers(params, "p_gain") or _numbers(params, "position_p_gain")
+    d = _numbers(params, "d_gain") or _numbers(params, "position_d_gain")
+    if any(c.name in ("use_force_commands", "velocity_p_gain") for c in params.children):
+        return  # those gains act on a velocity
+    for i, joint in enumerate(joints):
+        yield JointGains(name, joint, _item_or_last(p, i), _item_or_last(d, i), where)
+
+
+def _item_or_last(values: list[float], i: int) -> float:
+    return values[min(i, len(values) - 1)] if values else 0.0
+
+
+def _numbers(params: Params, name: str) -> list[float]:
+    found = []
+    for child in params.children:
+        if child.name == name:
+            try:
+                found.append(float(child.value))
+            except ValueError:
+                continue
+    return found
+
+
+def _find_joint(sim: Simulation, model: str, name: str) -> JointBinding | None:
+    joints = sim.names.joints
+    return joints.get(f"{model}::{name}") or next((j for n, j in joints.items() if n.endswith("::" + name)), None)
+
+
+def _check_gains(
+    gains: JointGains, joint: JointBinding | None, felt: _JointInertia, step: float, found: Diagnostics
+) -> None:
+    if joint is None or not joint.dofs:
+        return
+    inertia = felt.at(joint.dofs[0])
+    d_number, p_number = gains.d * step / inertia, gains.p * step**2 / inertia
+    if d_number > _RINGING_DAMPING or p_number > _RINGING_STIFFNESS:
+        which, value, most = (
+            ("d_gain", gains.d, _RINGING_DAMPING * inertia / step)
+            if d_number > _RINGING_DAMPING
+            else ("p_gain", gains.p, _RINGING_STIFFNESS * inertia / step**2)
+        )
+        found.warning(
+            "SK-LINT-003",
+            f"plugin {gains.plugin!r}: <{which}> {value:g} on joint {joint.scoped!r}, which feels {inertia:.3g} "
+            f"(kg m2 or kg), rings or diverges at a step of {step * 1e3:g} ms",
+            gains.where,
+            f"at most {most:.3g}, or a smaller step",
+        )
+
+
+def _check_loads(sim: Simulation, found: Diagnostics) -> None:
+    """Contacts of the first state between bodies of very different mass."""
+    import mujoco
+
+    model = sim.mj_model
+    data = first_state(model)
+    mujoco.mj_collision(model, data)
+    seen: set[tuple[str, str]] = set()
+    for pair in data.contact.geom[: data.ncon]:
+        owners = [sim.names.geom_owner(int(g))[0] for g in pair]
+        roots = [int(model.body_rootid[model.geom_bodyid[int(g)]]) for g in pair]
+        if roots[0] == roots[1] or any(int(model.body_dofnum[r]) == 0 for r in roots):
+            continue
+        masses = [float(model.body_subtreemass[r]) for r in roots]
+        light, heavy = (0, 1) if masses[0] < masses[1] else (1, 0)
+        is_above = data.subtree_com[roots[heavy], 2] > data.subtree_com[roots[light], 2]
+        key = (owners[light], owners[heavy])
+        if masses[heavy] > LARGEST_LOAD_RATIO * masses[light] and is_above and key not in seen:
+            seen.add(key)
+            found.warning(
+                "SK-LINT-006",
+                f"{owners[heavy]} ({masses[heavy]:.4g} kg) stands on {owners[light]} ({masses[light]:.4g} kg): a ratio "
+                f"of {masses[heavy] / masses[light]:.0f}, above {LARGEST_LOAD_RATIO:g} it sinks in by more than 1 mm",
+                sim.names.link(owners[light]).scene.where,
+                "give the lower one more mass",
+            )

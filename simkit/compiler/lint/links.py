@@ -1,0 +1,161 @@
+"""Links: masses and inertias against the size of what they are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics
+from simkit.scene import SceneModel
+
+if TYPE_CHECKING:
+    from simkit.compiler import LinkBinding
+    from simkit.runtime import Simulation
+
+Floats = npt.NDArray[np.float64]
+
+LARGEST_GYRATION_RATIO: Final = 2.0
+"""Radius of gyration of a link over the distance from its centre of mass to its farthest corner: beyond it is wrong."""
+
+LARGEST_DENSITY: Final = 25_000.0
+"""[kg/m³], of the box around a link's collisions; osmium has 22 600."""
+
+SMALLEST_DENSITY: Final = 0.1
+"""[kg/m³], of the box around a link's collisions; air has 1.2, and cubes of 1 m and 1 kg are common in worlds."""
+
+LARGEST_COLLISION_RATIO: Final = 5.0
+"""Longest edge of the box around a link's collisions over that around its visuals."""
+
+LEAST_VOLUME: Final = 1e-9
+LEAST_EXTENT: Final = 1e-9
+"""[m³]; a density of less is about rounding."""
+
+
+def look(sim: Simulation, found: Diagnostics) -> None:
+    """Reports masses and inertias that do not go with the size of their links."""
+    for model in sim.world.models:
+        _check_default_masses(model, found)
+    groups: dict[int, list[LinkBinding]] = {}
+    for link in sim.names.links.values():
+        if not link.static and int(sim.mj_model.body_weldid[link.body]) != 0:
+            groups.setdefault(int(sim.mj_model.body_weldid[link.body]), []).append(link)
+    state = first_state(sim.mj_model)
+    for links in groups.values():
+        if all(link.scene.inertial.given for link in links):
+            _check_inertia(sim.mj_model, state, links, found)
+    for link in sim.names.links.values():
+        _check_collision_size(sim.mj_model, state, link, found)
+
+
+def first_state(model: Any) -> Any:
+    """Where everything stands at the start."""
+    import mujoco
+
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    return data
+
+
+def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
+    """Kilograms that nobody has written: SDF gives a link without `<inertial>` one."""
+    links = [] if top.static else [link for m in top.all_models() if not m.static for link in m.links]
+    default = [link for link in links if not link.inertial.given and link.inertial.mass > 0]
+    if not default or len(default) == len(links):
+        return
+    kilograms = sum(link.inertial.mass for link in default)
+    total = sum(link.inertial.mass for link in links)
+    names = ", ".join(link.name for link in default[:6]) + (f" and {len(default) - 6} more" if len(default) > 6 else "")
+    found.warning(
+        "SK-LINT-007",
+        f"model {top.name!r}: {kilograms:g} kg of its {total:.4g} kg come from links without <inertial> ({names})",
+        default[0].where,
+        "give them an <inertial>, or make them a <frame>",
+    )
+
+
+def _check_inertia(model: Any, state: Any, links: list[LinkBinding], found: Diagnostics) -> None:
+    """Mass and inertia of links that are rigidly one against the box around them."""
+    foot = min(links, key=lambda link: link.body)
+    mass, centre, tensor = _total_inertia(model, state, [link.body for link in links])
+    corners = _corners(model, state, (g for link in links for g in (*link.geoms, *link.visuals)))
+    if corners is None or mass <= 0:
+        return
+    farthest = max(float(np.linalg.norm(corners - centre, axis=1).max()), LEAST_EXTENT)
+    gyration = float(np.sqrt(max(np.linalg.eigvalsh(tensor)[2], 0.0) / mass))
+    if gyration > LARGEST_GYRATION_RATIO * farthest:
+        found.warning(
+            "SK-LINT-008",
+            f"link {foot.scoped!r}: its inertia is that of {mass:.4g} kg spread over {gyration:.3g} m, but nothing of "
+            f"it is farther than {farthest:.3g} m from its centre of mass: {(gyration / farthest) ** 2:.0f} times too "
+            "much",
+            foot.scene.where,
+            "check the units: a part in mm and g gives an inertia in g·mm², 1e-9 kg·m²",
+        )
+    solid = _corners(model, state, (g for link in links for g in link.geoms))
+    if solid is None:
+        return
+    volume = float(np.prod(np.ptp(solid, axis=0)))
+    if volume > LEAST_VOLUME and not SMALLEST_DENSITY < mass / volume < LARGEST_DENSITY:
+        found.warning(
+            "SK-LINT-009",
+            f"link {foot.scoped!r}: {mass:.4g} kg in a box of {_box_in_words(solid)} m are {mass / volume:.4g} kg/m3; "
+            f"{'no material is so dense' if mass / volume >= LARGEST_DENSITY else 'that is lighter than air'}",
+            foot.scene.where,
+            "check the units of the mass and of the collision's size",
+        )
+
+
+def _check_collision_size(model: Any, state: Any, link: LinkBinding, found: Diagnostics) -> None:
+    """A collision much larger than what is drawn."""
+    solid, drawn = (_corners(model, state, ids) for ids in (link.geoms, link.visuals))
+    if solid is None or drawn is None or any(_is_unbounded(model, g) for g in (*link.geoms, *link.visuals)):
+        return
+    a, b = float(np.ptp(solid, axis=0).max()), float(np.ptp(drawn, axis=0).max())
+    if a > LARGEST_COLLISION_RATIO * b:
+        found.warning(
+            "SK-LINT-010",
+            f"link {link.scoped!r}: its collisions fill {_box_in_words(solid)} m, what is drawn of it {_box_in_words(drawn)} m",
+            link.scene.where,
+            "check the scale of the collision's mesh",
+        )
+
+
+def _total_inertia(model: Any, data: Any, bodies: Iterable[int]) -> tuple[float, Floats, Floats]:
+    """Mass, centre of mass and tensor of bodies as they stand, in world axes, about that centre."""
+    ids = list(bodies)
+    masses = np.array([model.body_mass[b] for b in ids])
+    if masses.sum() <= 0:
+        return 0.0, np.zeros(3), np.zeros((3, 3))
+    centre = masses @ data.xipos[ids] / masses.sum()
+    total = np.zeros((3, 3))
+    for b in ids:
+        turn = data.ximat[b].reshape(3, 3)
+        d = data.xipos[b] - centre
+        total += (turn * model.body_inertia[b]) @ turn.T + model.body_mass[b] * (d @ d * np.eye(3) - np.outer(d, d))
+    return float(masses.sum()), centre, total
+
+
+def _corners(model: Any, data: Any, geoms: Iterable[int]) -> Floats | None:
+    """Corners of the boxes around geoms in the first state, in the world, shape (8 n, 3); None where there is none."""
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    found = []
+    for g in geoms:
+        if _is_unbounded(model, g):
+            continue
+        box = model.geom_aabb[g]
+        found.append(data.geom_xpos[g] + (box[:3] + signs * box[3:]) @ data.geom_xmat[g].reshape(3, 3).T)
+    return np.concatenate(found) if found else None
+
+
+def _is_unbounded(model: Any, geom: int) -> bool:
+    import mujoco
+
+    return int(model.geom_type[geom]) in (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
+
+
+def _box_in_words(corners: Floats) -> str:
+    return " × ".join(f"{v:.3g}" for v in np.ptp(corners, axis=0))

@@ -1,0 +1,66 @@
+"""The step, and the rates of sensors against it."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from typing import TYPE_CHECKING, Final
+
+from simkit.diagnostics import Diagnostics
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+LONGEST_STEP: Final = 0.005
+"""[s]; with a longer one a body falling at 1 m/s enters the ground by more than 5 mm before contact sees it."""
+
+
+def look(sim: Simulation, found: Diagnostics) -> None:
+    """Reports a step too long for contacts, and rates that the step cannot keep."""
+    _check_step(sim, found)
+    for model in sim.world.models:
+        for sensor in model.all_sensors():
+            text = rate_pattern(sensor.rate, sim.timestep)
+            if text and sensor.rate * sim.timestep <= 1:  # a load has told of more
+                found.note("SK-LINT-002", f"sensor {sensor.scoped!r}: {text}", sensor.where, _rate_hint(sensor.rate))
+
+
+def _check_step(sim: Simulation, found: Diagnostics) -> None:
+    step = sim.timestep
+    moving = [b for b in sim.names.links.values() if not b.static and b.geoms and _can_move(sim, b.body)]
+    if step > LONGEST_STEP and moving:
+        found.warning(
+            "SK-LINT-001",
+            f"the step is {step * 1e3:g} ms and {len(moving)} moving links collide: contacts get soft or throw things "
+            f"about beyond {LONGEST_STEP * 1e3:g} ms",
+            sim.world.physics.where,
+            "write <max_step_size>0.001</max_step_size>, or try --set physics.max_step_size=0.001",
+        )
+
+
+def _can_move(sim: Simulation, body: int) -> bool:
+    """Whether anything can move a body: it is not rigidly one with the world."""
+    return int(sim.mj_model.body_weldid[body]) != 0
+
+
+def rate_pattern(rate: float, step: float) -> str:
+    """What becomes of a rate [Hz] at a step [s], in words; empty where the steps divide evenly.
+
+    A sample lies on the first step at or after k / rate.
+    """
+    if rate <= 0 or step <= 0 or not math.isfinite(rate):
+        return ""
+    each = Fraction(rate).limit_denominator(10**6) * Fraction(step).limit_denominator(10**9)
+    if each == 0:  # once in weeks, or at steps of less than a nanosecond
+        return ""
+    steps = 1 / each
+    if steps.denominator == 1:
+        return ""
+    if steps < 1:
+        return f"{rate:g} Hz is more than the {1 / step:g} steps a second: it gives {1 / step:g} Hz"
+    low, high = math.floor(steps), math.ceil(steps)
+    return f"{rate:g} Hz at a step of {step * 1e3:g} ms: stamps every {low * step * 1e3:g} or {high * step * 1e3:g} ms"
+
+
+def _rate_hint(rate: float) -> str:
+    return f"the mean rate is {rate:g} Hz all the same; an even pattern needs a step that divides {1e3 / rate:.6g} ms"

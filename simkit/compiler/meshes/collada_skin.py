@@ -1,0 +1,238 @@
+"""Skins of COLLADA files: what each bone of a skeleton carries, and how the bones move.
+
+A vertex goes with the bone that holds it most; a face goes with every bone that holds one of its corners, so that no
+gaps open where a limb bends. A bone that carries next to nothing (of a finger) leaves it to the bone above.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.compiler.meshes.collada import ColladaFile, node_transform, read_root
+from simkit.compiler.meshes.companion_files import Companions
+from simkit.compiler.meshes.mesh_part import (
+    DEEPEST_NODE,
+    LARGEST_FILE,
+    MOST_NODES,
+    Floats,
+    MeshFileError,
+    MeshPart,
+    integers_of,
+)
+
+_LEAST_SHARE: Final = 0.012
+"""Of all faces: a bone that holds less gives them to the bone above it."""
+
+_MOST_FRAMES: Final = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class Bone:
+    """One joint of the skeleton.
+
+    Attributes:
+        name: of the node, and every other word for it in the file.
+        parent: its place in the list of bones, or -1.
+        rest: its transform in the frame of what is above, shape (4, 4), in the file's unit.
+    """
+
+    name: str
+    words: frozenset[str]
+    parent: int
+    rest: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """A skeleton with what it carries, and its animation.
+
+    Attributes:
+        bones: outermost first.
+        pieces: what a bone carries, in its frame and in the file's unit; by its place in `bones`.
+        times: of the animation's frames [s], shape (f,); empty where there is none.
+        frames: transforms of the bones that move, each shape (f, 4, 4), by place in `bones`.
+        unit: length of the file's unit [m].
+        notes: what could not be read.
+    """
+
+    bones: tuple[Bone, ...]
+    pieces: dict[int, tuple[MeshPart, ...]]
+    times: Floats
+    frames: dict[int, Floats]
+    unit: float
+    notes: tuple[str, ...] = ()
+
+
+def read_skin(file: Path) -> Skin:
+    """The skeleton, its pieces and its animation of a COLLADA file. Raises MeshFileError."""
+    try:
+        stat = file.stat()
+    except (OSError, ValueError) as problem:
+        raise MeshFileError(f"cannot be read: {getattr(problem, 'strerror', problem)}") from None
+    if file.suffix.lower() != ".dae":
+        raise MeshFileError(f"is a {file.suffix or 'nameless'} file; skins and animations are read from .dae")
+    if not file.is_file() or stat.st_size > LARGEST_FILE:
+        raise MeshFileError("is not a file, or too large")
+    return _read(file, (stat.st_mtime_ns, stat.st_size))
+
+
+def bone_parts(file: Path, bone: str) -> list[MeshPart]:
+    """What one bone carries, in its own frame and in the file's unit. Raises MeshFileError."""
+    skin = read_skin(file)
+    for place, parts in skin.pieces.items():
+        if skin.bones[place].name == bone:
+            return list(parts)
+    raise MeshFileError(f"has no bone {bone!r} that carries anything")
+
+
+@lru_cache(maxsize=16)
+def _read(file: Path, _version: tuple[int, int]) -> Skin:
+    try:
+        return _SkinFile(read_root(file.read_bytes()), Companions(file)).skin()
+    except MeshFileError:
+        raise
+    except OSError as problem:
+        raise MeshFileError(f"cannot be read: {problem.strerror}") from None
+    except (ValueError, IndexError, KeyError, TypeError, AttributeError, RecursionError) as problem:
+        raise MeshFileError(f"is not a readable skin: {' '.join(str(problem).split())[:200]}") from None
+
+
+class _SkinFile(ColladaFile):
+    def skin(self) -> Skin:
+        self.bones: list[Bone] = []
+        self.of_node: dict[Any, int] = {}
+        scenes = [self._target(e) for e in self.root.iterfind("{*}scene/{*}instance_visual_scene")]
+        scenes = [s for s in scenes if s is not None] or list(self.root.iterfind(".//{*}visual_scene"))[:1]
+        for scene in scenes:
+            for node in scene.iterfind("{*}node"):
+                self._skeleton(node, np.eye(4), -1, 0)
+        if not self.bones:
+            raise MeshFileError("has no skeleton")
+        times, frames = self._animation()
+        return Skin(tuple(self.bones), self._pieces(), times, frames, self._unit(), tuple(self.companions.notes))
+
+    def _skeleton(self, node: Any, above: Floats, parent: int, depth: int) -> None:
+        self.nodes += 1
+        if depth > DEEPEST_NODE or self.nodes > MOST_NODES:
+            raise MeshFileError("has too many nodes, or nested too deep")
+        matrix = node_transform(node)
+        if node.get("type") == "JOINT":
+            words = [w for w in (node.get("name"), node.get("sid"), node.get("id")) if w]
+            self.of_node[node] = len(self.bones)
+            self.bones.append(Bone(words[0] if words else "", frozenset(words), parent, above @ matrix))
+            above, parent = np.eye(4), len(self.bones) - 1
+        else:
+            above = above @ matrix
+        for child in node.iterfind("{*}node"):
+            self._skeleton(child, above, parent, depth + 1)
+
+    # ------------------------------------------------------------------ what the bones carry
+
+    def _pieces(self) -> dict[int, tuple[MeshPart, ...]]:
+        found: dict[int, list[MeshPart]] = {}
+        for instance in self.root.iterfind(".//{*}instance_controller"):
+            controller = self._target(instance)
+            skin = None if controller is None else controller.find("{*}skin")
+            geometry = None if skin is None else self._target(skin, "source")
+            if geometry is not None and geometry.tag.endswith("geometry"):
+                self._hang(skin, geometry, instance, found)
+        return {place: tuple(parts) for place, parts in found.items()}
+
+    def _hang(self, skin: Any, geometry: Any, instance: Any, found: dict[int, list[MeshPart]]) -> None:
+        places, inverses, held = self._held(skin)
+        shape = skin.find("{*}bind_shape_matrix")
+        bind = np.eye(4) if shape is None else np.array([float(v) for v in shape.text.split()]).reshape(4, 4)
+        bound = {
+            e.get("symbol", ""): e.get("target", "").lstrip("#")
+            for e in instance.iterfind("{*}bind_material/{*}technique_common/{*}instance_material")
+        }
+        mesh = geometry.find("{*}mesh")
+        vertices = self._positions(None if mesh is None else mesh.find("{*}vertices"))
+        at = {row.tobytes(): i for i, row in reversed(list(enumerate(np.ascontiguousarray(vertices))))}
+        for part, symbol in self._geometry(geometry):
+            of = np.array([at[row.tobytes()] for row in np.ascontiguousarray(part.vertices)])
+            holder = held[of]
+            look = self.looks.of(bound.get(symbol, symbol))
+            for local in sorted(set(holder.tolist())):
+                mine = (holder[part.faces] == local).any(axis=1)
+                used, faces = np.unique(part.faces[mine], return_inverse=True)
+                matrix = inverses[local] @ bind
+                points = part.vertices[used] @ matrix[:3, :3].T + matrix[:3, 3]
+                uv = None if part.uv is None else part.uv[used]
+                piece = MeshPart(
+                    part.name, points, faces.reshape(-1, 3).astype(np.int32), uv, look.colour,
+                    look.texture if uv is not None else None, look.specular, look.emission,
+                )  # fmt: skip
+                found.setdefault(places[local], []).append(piece)
+
+    def _held(self, skin: Any) -> tuple[list[int], Floats, Any]:
+        """Places of the skin's joints among the bones, their inverse bind matrices, and who holds each vertex."""
+        inputs = {e.get("semantic"): self._target(e, "source") for e in skin.iterfind("{*}joints/{*}input")}
+        names = next(iter(inputs["JOINT"].iterfind("{*}Name_array")), None)
+        names = inputs["JOINT"].find("{*}IDREF_array") if names is None else names
+        by_word = {word: i for i, bone in reversed(list(enumerate(self.bones))) for word in bone.words}
+        unknown = [n for n in names.text.split() if n not in by_word]
+        if unknown:
+            raise MeshFileError(f"has a skin that hangs on {unknown[0]!r}, which is no bone of its skeleton")
+        places = [by_word[n] for n in names.text.split()]
+        inverses = self._source(inputs["INV_BIND_MATRIX"]).reshape(-1, 4, 4)
+        element = skin.find("{*}vertex_weights")
+        offsets = {e.get("semantic"): int(e.get("offset", 0)) for e in element.iterfind("{*}input")}
+        weights = next(self._target(e, "source") for e in element.iterfind("{*}input") if e.get("semantic") == "WEIGHT")
+        weight = self._source(weights)[:, 0]
+        counts = integers_of(element.find("{*}vcount").text or "", "weights")
+        rows = integers_of(element.find("{*}v").text or "", "weights").reshape(-1, 1 + max(offsets.values()))
+        joint, strong = rows[:, offsets["JOINT"]], weight[rows[:, offsets["WEIGHT"]]]
+        held, start = np.zeros(len(counts), np.int64), 0
+        for i, count in enumerate(counts.tolist()):
+            if count:
+                held[i] = max(0, joint[start + int(np.argmax(strong[start : start + count]))])
+            start += count
+        return places, inverses, self._thinned(places, held)
+
+    def _thinned(self, places: list[int], held: Any) -> Any:
+        """Bones that hold hardly anything give it to the nearest bone above them that the skin knows."""
+        share = np.bincount(held, minlength=len(places)) / max(1, len(held))
+        local = {place: i for i, place in enumerate(places)}
+        for i in sorted(range(len(places)), key=lambda k: -places[k]):
+            above = self.bones[places[i]].parent
+            while above >= 0 and above not in local:
+                above = self.bones[above].parent
+            if 0.0 < share[i] < _LEAST_SHARE and above >= 0:
+                held = np.where(held == i, local[above], held)
+                share[local[above]] += share[i]
+        return held
+
+    # ------------------------------------------------------------------ how they move
+
+    def _animation(self) -> tuple[Floats, dict[int, Floats]]:
+        """Frames of every bone that moves, at the times of all of them."""
+        by_id = {node.get("id"): place for node, place in self.of_node.items() if node.get("id")}
+        found: dict[int, tuple[Floats, Floats]] = {}
+        for channel in self.root.iterfind(".//{*}library_animations//{*}channel"):
+            target = channel.get("target", "").partition("/")[0]
+            sampler = self._target(channel, "source")
+            if target not in by_id or sampler is None:
+                continue
+            inputs = {e.get("semantic"): self._target(e, "source") for e in sampler.iterfind("{*}input")}
+            times, values = self._source(inputs["INPUT"])[:, 0], self._source(inputs["OUTPUT"])
+            if values.shape[1] != 16 or len(times) != len(values) or not 0 < len(times) <= _MOST_FRAMES:
+                self.companions.note(
+                    f"moves {channel.get('target', '')[:80]!r} by other than matrices, which is left out"
+                )
+                continue
+            found[by_id[target]] = times, values.reshape(-1, 4, 4)
+        if not found:
+            return np.zeros(0), {}
+        times = np.unique(np.concatenate([t for t, _ in found.values()]))
+        # the nearest frame: bones of one file share their times
+        frames = {
+            place: matrices[np.clip(np.searchsorted(own, times + 1e-9, side="right") - 1, 0, len(own) - 1)]
+            for place, (own, matrices) in found.items()
+        }
+        return times, frames

@@ -1,0 +1,229 @@
+"""What collides in place of a mesh: convex bodies, worked out once for each content and kept in the cache.
+
+MuJoCo collides a mesh as its convex hull. A convex mesh is that. A moving one that is not becomes the hull of each of
+its connected pieces, or its convex decomposition where the file asks for one. A static one keeps its true surface.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.compiler.meshes.convex_decomposition import THRESHOLD, DecompositionError, decompose, is_available
+from simkit.compiler.meshes.convex_pieces import (
+    PRISMS_MOST,
+    convex_pieces,
+    filled_ratio,
+    hull_volume,
+    is_convex,
+    is_inside_out,
+    mesh_volume,
+    piece_hulls,
+    surface_prisms,
+    thin_mesh,
+)
+from simkit.compiler.meshes.mesh_cache import FORMAT, load_arrays, store_arrays
+from simkit.compiler.meshes.mesh_part import Floats, Ints
+
+LARGEST_RATIO: Final = 1.1
+"""Hulls with more than this share of the mesh's volume are a warning instead of a note."""
+
+LARGEST_ESTIMATE: Final = 1.25
+"""The same for meshes that are not closed, whose volume is an estimate."""
+
+_REPORTS: Final = 2  # counted up when findings change, which are kept with the bodies
+_DECOMPOSE: Final = 'give the collision simple shapes, or <mesh optimization="convex_decomposition">'
+_KEPT: Final = 128
+_memory: OrderedDict[str, ConvexBodies] = OrderedDict()
+
+CollisionFinding = tuple[str, str, str, str]
+"""Severity, code, text without the mesh's name, hint."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexBodies:
+    """Convex bodies that collide for one mesh.
+
+    Attributes:
+        shapes: vertices, shape (n, 3) [m], and faces of each; no faces where MuJoCo is to find them.
+        is_exact: whether rays may be cast at them; else rays need the mesh itself.
+        findings: what a user should hear.
+    """
+
+    shapes: tuple[tuple[Floats, Ints], ...]
+    is_exact: bool = True
+    findings: tuple[CollisionFinding, ...] = ()
+
+
+def convex_bodies(
+    vertices: Floats, faces: Ints, *, fixed: bool, optimization: str = "", most: int = 16
+) -> ConvexBodies:
+    """The bodies for a mesh.
+
+    Args:
+        vertices, faces: equal vertices merged.
+        fixed: nothing moves it but the user.
+        optimization: "", "convex_hull" or "convex_decomposition", as SDF's `<mesh>` says.
+        most: pieces of a decomposition.
+    """
+    settings = (FORMAT, _REPORTS, fixed, optimization, most if optimization == "convex_decomposition" else 0, THRESHOLD)
+    key = _key(vertices, faces, (*settings, is_available() if optimization == "convex_decomposition" else None))
+    if key not in _memory:
+        _memory[key] = _load(key) or _store(key, _compute_bodies(vertices, faces, fixed, optimization, most))
+        while len(_memory) > _KEPT:
+            _memory.popitem(last=False)
+    _memory.move_to_end(key)
+    return _memory[key]
+
+
+def _compute_bodies(vertices: Floats, faces: Ints, fixed: bool, optimization: str, most: int) -> ConvexBodies:
+    if not len(faces):
+        return ConvexBodies(
+            (), True, (("warning", "SK-MESH-003", "has no triangle with area; nothing collides for it", ""),)
+        )
+    whole = hull_volume(vertices)
+    if whole <= 1e-9 * float(np.ptp(vertices, axis=0).max()) ** 3:
+        return _surface_plates(vertices, faces)
+    if optimization == "convex_hull":
+        return ConvexBodies(_hulls([vertices]))
+    if is_convex(vertices, faces) and not (fixed and is_inside_out(vertices, faces)):
+        return ConvexBodies(_hulls([vertices]))
+    if optimization == "convex_decomposition":
+        try:
+            pieces = _hulls(decompose(vertices, faces, most))
+            if not pieces:
+                raise DecompositionError("CoACD gave no piece")
+            return ConvexBodies(pieces, not fixed, (_decompose_mesh(vertices, faces, pieces),))
+        except DecompositionError as problem:
+            rest = _surface(vertices, faces) if fixed else _by_pieces(vertices, faces)
+            said = ("warning", "SK-MESH-014", f"is not decomposed: {problem}", problem.hint)
+            return ConvexBodies(rest.shapes, rest.is_exact, (said, *rest.findings))
+    return _surface(vertices, faces) if fixed else _by_pieces(vertices, faces)
+
+
+def _decompose_mesh(vertices: Floats, faces: Ints, pieces: tuple[tuple[Floats, Ints], ...]) -> CollisionFinding:
+    own = mesh_volume(vertices, faces)
+    total = sum(hull_volume(points) for points, _ in pieces)
+    share = f"together {total / own:.2f} times its volume" if own else "the mesh is not closed"
+    return "note", "SK-MESH-004", f"collides as {len(pieces)} convex pieces ({share})", ""
+
+
+def _by_pieces(vertices: Floats, faces: Ints) -> ConvexBodies:
+    sets = [points for points in piece_hulls(vertices, faces) if hull_volume(points) > 0.0] or [vertices]
+    own = mesh_volume(vertices, faces)
+    whole = sum(hull_volume(points) for points in sets)
+    what = "its convex hull" if len(sets) == 1 else f"the convex hulls of its {len(sets)} pieces"
+    if own:
+        ratio = whole / own
+        severity = "warning" if ratio > LARGEST_RATIO else "note"
+        share = f"{ratio:.2f} times the mesh's volume"
+    else:
+        ratio = filled_ratio(vertices, faces, sets)
+        severity = "warning" if ratio > LARGEST_ESTIMATE else "note"
+        share = f"about {ratio:.1f} times what the mesh encloses (it is not closed)"
+    text = f"collides as {what}, {share}"
+    said = severity, "SK-MESH-004", text, _DECOMPOSE if severity == "warning" else ""
+    findings = (said,) if not own or whole > 1.005 * own else ()
+    return ConvexBodies(_hulls(sets), True, findings)
+
+
+def _surface(vertices: Floats, faces: Ints) -> ConvexBodies:
+    findings: list[CollisionFinding] = []
+    coarse = vertices, faces
+    if len(faces) > PRISMS_MOST:
+        coarse = thin_mesh(vertices, faces, PRISMS_MOST)
+        text = f"for contacts its {len(faces)} triangles become {len(coarse[1])}"
+        findings.append(("warning", "SK-MESH-005", text, "give the collision a coarser mesh"))
+    pieces = convex_pieces(*coarse)
+    thin = sum(not p.exact for p in pieces)
+    text = f"is not convex: it collides as {len(pieces) - thin} convex pieces and {thin} prisms on its surface"
+    findings.append(("note", "SK-MESH-006", text, ""))
+    return ConvexBodies(_hulls([p.points for p in pieces]), False, tuple(findings))
+
+
+def _surface_plates(vertices: Floats, faces: Ints) -> ConvexBodies:
+    said = "note", "SK-MESH-007", "is flat: it collides as a thin plate", ""
+    return ConvexBodies(_hulls(surface_prisms(vertices, faces)), False, (said,))
+
+
+# ---------------------------------------------------------------------- hulls
+
+
+def _hulls(sets: list[Floats]) -> tuple[tuple[Floats, Ints], ...]:
+    return tuple(shape for points in sets if (shape := convex_hull(points)) is not None)
+
+
+def convex_hull(points: Floats) -> tuple[Floats, Ints] | None:
+    """Vertices and outward faces of the convex hull; None for a sliver, which touches nothing."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    if _is_stout_prism(points):
+        return points, np.zeros((0, 3), np.int32)
+    try:
+        hull = ConvexHull(points)
+    except (QhullError, ValueError):
+        return None
+    used, inverse = np.unique(hull.simplices, return_inverse=True)
+    vertices = np.asarray(points, float)[used]
+    faces = np.asarray(inverse).reshape(-1, 3)
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inwards = np.einsum("ij,ij->i", normals, corners[:, 0] - vertices.mean(axis=0)) < 0.0
+    faces[inwards] = faces[inwards][:, ::-1]
+    return vertices, faces.astype(np.int32)
+
+
+def _is_stout_prism(points: Floats) -> bool:
+    """Whether six points are a triangle and its shifted copy, and far from flat: the usual case, quickly told."""
+    if len(points) != 6:
+        return False
+    shift = points[3:] - points[:3]
+    if np.abs(shift - shift[0]).max() > 1e-9:
+        return False
+    u, v = points[1] - points[0], points[2] - points[0]
+    area = float(np.linalg.norm(np.cross(u, v)))
+    edge = float(max(u @ u, v @ v, (u - v) @ (u - v)))
+    return area > 1e-3 * edge and float(shift[0] @ shift[0]) > 1e-8 * edge
+
+
+# ---------------------------------------------------------------------- cache
+
+
+def _key(vertices: Floats, faces: Ints, settings: Any) -> str:
+    digest = hashlib.sha256(repr(settings).encode())
+    digest.update(np.ascontiguousarray(vertices).data)
+    digest.update(np.ascontiguousarray(faces).data)
+    return digest.hexdigest()[:40]
+
+
+def _load(key: str) -> ConvexBodies | None:
+    stored = load_arrays("collisions", key)
+    if stored is None:
+        return None
+    header, arrays = stored
+    try:
+        cuts = [np.cumsum(arrays[name])[:-1] for name in ("vertex_counts", "face_counts")]
+        vertices, faces = np.split(arrays["vertices"], cuts[0]), np.split(arrays["faces"], cuts[1])
+        shapes = tuple(zip(vertices, faces, strict=True)) if len(arrays["vertex_counts"]) else ()
+        findings = tuple((str(a), str(b), str(c), str(d)) for a, b, c, d in header["findings"])
+        return ConvexBodies(shapes, bool(header["is_exact"]), findings)
+    except Exception:  # noqa: BLE001 -- whatever a foreign file does, the bodies are simply worked out again
+        return None
+
+
+def _store(key: str, bodies: ConvexBodies) -> ConvexBodies:
+    shapes = bodies.shapes
+    arrays = {
+        "vertices": np.concatenate([v for v, _ in shapes]) if shapes else np.zeros((0, 3)),
+        "faces": np.concatenate([f for _, f in shapes]) if shapes else np.zeros((0, 3), np.int32),
+        "vertex_counts": np.array([len(v) for v, _ in shapes], np.int64),
+        "face_counts": np.array([len(f) for _, f in shapes], np.int64),
+    }
+    is_passing = any(code == "SK-MESH-014" for _, code, _, _ in bodies.findings)
+    if not is_passing:  # a failed decomposition is tried again the next time
+        store_arrays("collisions", key, {"is_exact": bodies.is_exact, "findings": bodies.findings}, arrays)
+    return bodies

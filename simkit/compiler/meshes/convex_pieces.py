@@ -1,0 +1,254 @@
+"""Convex pieces for the contacts of a mesh that is not convex, and how much a mesh encloses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.compiler.meshes.mesh_part import Floats, Ints
+
+PRISMS_MOST: Final = 10_000
+"""More patches than this are thinned out first (and reported)."""
+
+HULLS_MOST: Final = 64
+THICKNESS: Final = 0.05
+_THINNEST: Final = 0.002
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexPiece:
+    """A convex body: points, shape (n, 3) [m], and whether it is an exact closed piece of the mesh."""
+
+    points: Floats
+    exact: bool
+
+
+def is_convex(vertices: Floats, faces: Ints) -> bool:
+    """Whether a mesh is closed and fills its hull to 0.1 %."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    if not mesh.is_watertight:
+        return False
+    hull = hull_volume(vertices)
+    return hull > 0.0 and bool(abs(mesh.volume) > 0.999 * hull)
+
+
+def hull_volume(vertices: Floats) -> float:
+    """Volume of the convex hull [m³]; 0 for points in a plane."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return float(ConvexHull(vertices).volume)
+    except (QhullError, ValueError):
+        return 0.0
+
+
+def connected_pieces(vertices: Floats, faces: Ints) -> list[tuple[Floats, Ints]]:
+    """The connected pieces of a mesh, in the order of their first face."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    n = len(vertices)
+    row, column = faces[:, [0, 1]].reshape(-1), faces[:, [1, 2]].reshape(-1)
+    _, label = connected_components(coo_matrix((np.ones(len(row), bool), (row, column)), shape=(n, n)), directed=False)
+    of_face = label[faces[:, 0]]
+    pieces = []
+    for one in dict.fromkeys(of_face.tolist()):
+        used, inverse = np.unique(faces[of_face == one], return_inverse=True)
+        pieces.append((vertices[used], np.asarray(inverse).reshape(-1, 3).astype(np.int32)))
+    return pieces
+
+
+def piece_hulls(vertices: Floats, faces: Ints) -> list[Floats]:
+    """Point sets whose hulls collide for a moving mesh: one for each connected piece, or one for all."""
+    pieces = connected_pieces(vertices, faces)
+    if len(pieces) > HULLS_MOST:
+        return [vertices]
+    return [v for v, _ in pieces]
+
+
+def convex_pieces(vertices: Floats, faces: Ints) -> list[ConvexPiece]:
+    """Convex bodies that together have the surface of a static mesh."""
+    pieces: list[ConvexPiece] = []
+    parts = connected_pieces(vertices, faces)
+    low, high = (np.array([end(v, axis=0) for v, _ in parts]) for end in (np.min, np.max))
+    inverted = np.array([is_inside_out(v, f) for v, f in parts])
+    for i, (v, f) in enumerate(parts):
+        hollow = bool((inverted & (low > low[i]).all(axis=1) & (high < high[i]).all(axis=1)).any())
+        if not inverted[i] and not hollow and is_convex(v, f):
+            pieces.append(ConvexPiece(v, True))
+        else:
+            pieces += [ConvexPiece(p, False) for p in surface_prisms(v, f)]
+    return pieces
+
+
+def is_inside_out(vertices: Floats, faces: Ints) -> bool:
+    """Whether a closed piece turns its faces inwards: the walls of a room or of a cavity, not a body."""
+    a, b, c = (np.asarray(vertices, float)[np.asarray(faces)[:, i]] for i in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) < 0.0  # six times the volume
+
+
+def thin_mesh(vertices: Floats, faces: Ints, most: int) -> tuple[Floats, Ints]:
+    """A mesh of at most `most` faces: corners in one cell of an ever coarser grid become their mean."""
+    low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
+    cells = 1024.0
+    while True:
+        cell = np.floor((vertices - low) / size * cells).astype(np.int64)
+        _, inverse, count = np.unique(cell, axis=0, return_inverse=True, return_counts=True)
+        inverse = np.asarray(inverse).reshape(-1)
+        means = np.column_stack([np.bincount(inverse, vertices[:, k]) for k in range(3)]) / count[:, None]
+        f = inverse[faces]
+        f = f[(f[:, 0] != f[:, 1]) & (f[:, 1] != f[:, 2]) & (f[:, 2] != f[:, 0])]
+        f = f[np.sort(np.unique(np.sort(f, axis=1), axis=0, return_index=True)[1])]
+        if len(f) <= most:
+            return means, f.astype(np.int32)
+        cells *= 0.8
+
+
+def surface_prisms(vertices: Floats, faces: Ints) -> list[Floats]:
+    """One prism per flat convex patch: the patch itself and its copy pushed inwards."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    patches = [_patch_outline(mesh, patch) for patch in _patches(mesh)]
+    normals = np.array([n for _, n in patches])
+    inset = [p.mean(axis=0) + 0.9 * (p - p.mean(axis=0)) for p, _ in patches]
+    probes = [np.vstack([p.mean(axis=0), p]) for p in inset]
+    room = _room_inwards(mesh, probes, normals)
+    size = float(np.ptp(vertices, axis=0).max())
+    most = min(THICKNESS, 0.1 * size)
+    least = min(_THINNEST, most)
+    out = []
+    for (points, normal), free in zip(patches, room, strict=True):
+        out.append(np.vstack([points, points - normal * float(np.clip(0.95 * free, least, most))]))
+    return out
+
+
+def _patches(mesh: Any) -> list[Any]:
+    """Groups of face indices that lie in one plane and have a convex outline; other faces stand alone."""
+    patches: list[Any] = []
+    grouped = np.zeros(len(mesh.faces), bool)
+    for facet, boundary in zip(mesh.facets, mesh.facets_boundary, strict=True):
+        if _fills_its_hull(mesh, facet, boundary):
+            patches.append(facet)
+            grouped[facet] = True
+    patches += [np.array([i]) for i in np.flatnonzero(~grouped)]
+    return patches
+
+
+def _fills_its_hull(mesh: Any, facet: Any, boundary: Any) -> bool:
+    from scipy.spatial import ConvexHull, QhullError
+
+    points = mesh.vertices[np.unique(boundary)]
+    if len(points) < 3:  # faces that lie on each other bound nothing
+        return False
+    u, v, normal = _patch_axes(mesh.face_normals[facet[0]])
+    if np.ptp(points @ normal) > 1e-6 * max(1.0, float(mesh.scale)):
+        return False
+    try:
+        area = ConvexHull(np.column_stack([points @ u, points @ v])).volume
+    except (QhullError, ValueError):
+        return False
+    return bool(mesh.area_faces[facet].sum() > (1.0 - 1e-6) * area)
+
+
+def _patch_outline(mesh: Any, patch: Any) -> tuple[Floats, Floats]:
+    """Corner points and outward normal of a patch."""
+    points = mesh.vertices[np.unique(mesh.faces[patch])]
+    return np.asarray(points, float), np.asarray(mesh.face_normals[patch[0]], float)
+
+
+def _patch_axes(normal: Any) -> tuple[Floats, Floats, Floats]:
+    helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
+    u = np.cross(normal, helper)
+    u /= np.linalg.norm(u)
+    return u, np.cross(normal, u), np.asarray(normal, float)
+
+
+def _room_inwards(mesh: Any, probes: list[Floats], normals: Floats) -> Floats:
+    """Distance [m] from each patch, along its inward normal, to the next surface; inf where there is none."""
+    counts = [len(p) for p in probes]
+    inward = -np.repeat(normals, counts, axis=0)
+    skin = 1e-5 * max(1e-3, float(mesh.scale))
+    origins = np.vstack(probes) + skin * inward
+    distance = np.full(len(origins), np.inf)
+    try:
+        points, rays, _ = mesh.ray.intersects_location(origins, inward, multiple_hits=False)
+    except ImportError:  # no ray tracer on this platform: stay thin everywhere
+        return np.full(len(probes), 2.0 * _THINNEST)
+    if len(rays):
+        distance[rays] = np.einsum("ij,ij->i", points - origins[rays], inward[rays]) + skin
+    return np.minimum.reduceat(distance, np.cumsum([0, *counts[:-1]]))
+
+
+_CELLS: Final = 24  # along each axis
+_SAMPLES: Final = 80_000
+
+
+def mesh_volume(vertices: Floats, faces: Ints) -> float:
+    """Volume of a closed mesh [m³]; 0 for an open one."""
+    corners = faces.astype(np.int64)
+    edges = np.sort(corners[:, (0, 1, 1, 2, 2, 0)].reshape(-1, 2), axis=1)
+    counts = np.unique(edges[:, 0] * len(vertices) + edges[:, 1], return_counts=True)[1]
+    if not len(counts) or (counts != 2).any():
+        return 0.0
+    a, b, c = (np.asarray(vertices, np.float64)[corners[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - b)
+    return abs(float((normals[:, 0] * (a + b + c)[:, 0]).sum() / 6.0))
+
+
+def filled_ratio(vertices: Floats, faces: Ints, sets: list[Floats]) -> float:
+    """How many times as large hulls are as what a mesh encloses that need not be closed: an estimate, at least 1.
+
+    A point is enclosed where triangles lie on both of its sides along each axis. Hulls are measured in the same way, so
+    that the coarseness of the cells does not count.
+
+    Args:
+        vertices, faces: the mesh.
+        sets: corners of the hulls that stand for it, shape (n, 3) each.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    low = vertices.min(axis=0)
+    size = np.maximum(np.ptp(vertices, axis=0), 1e-12) / _CELLS
+    own = _enclosed_cells(vertices[faces], low, size)
+    whole = np.zeros_like(own)
+    for points in sets:
+        try:
+            whole |= _enclosed_cells(points[ConvexHull(points).simplices], low, size)
+        except (QhullError, ValueError):
+            continue
+    return max(1.0, float(whole.sum()) / max(1.0, float((own & whole).sum())))
+
+
+def _enclosed_cells(corners: Floats, low: Floats, size: Floats) -> npt.NDArray[np.bool_]:
+    """The cells that triangles enclose, shape (cells, cells, cells)."""
+    cells = np.clip(((_sample_points(corners) - low) / size).astype(int), 0, _CELLS - 1)
+    inside = np.ones((_CELLS,) * 3, bool)
+    along = np.arange(_CELLS)
+    for axis in range(3):
+        i, j = (cells[:, k] for k in range(3) if k != axis)
+        first, last = np.full((_CELLS, _CELLS), _CELLS), np.full((_CELLS, _CELLS), -1)
+        np.minimum.at(first, (i, j), cells[:, axis])
+        np.maximum.at(last, (i, j), cells[:, axis])
+        between = (along >= first[:, :, None]) & (along <= last[:, :, None])
+        inside &= np.moveaxis(between, 2, axis)
+    return inside
+
+
+def _sample_points(corners: Floats) -> Floats:
+    """Points spread evenly over triangles, always the same ones, and their corners."""
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    random = np.random.default_rng(0)
+    chosen = np.searchsorted(np.cumsum(areas), random.random(_SAMPLES) * areas.sum())
+    triangles = corners[np.minimum(chosen, len(corners) - 1)]
+    u, v = random.random((2, _SAMPLES, 1))
+    folded = u + v > 1.0
+    u, v = np.where(folded, 1.0 - u, u), np.where(folded, 1.0 - v, v)
+    origin = triangles[:, 0]
+    points = origin + u * (triangles[:, 1] - origin) + v * (triangles[:, 2] - origin)
+    return np.vstack([points, corners.reshape(-1, 3)])

@@ -1,0 +1,186 @@
+"""Converted meshes on disk, keyed by content. Optional: any failure to read or write only costs time.
+
+A file is written under a name of its own and renamed into place, so that two processes never see half of one; what
+is broken or from another version is made again. A conversion that read further files (materials, textures) lists
+them with size and time, and is made again when one of them has changed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import io
+import json
+import os
+import sys
+import tempfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.compiler.meshes.mesh_part import MeshPart
+
+FORMAT: Final = "simkit mesh 4"
+"""The version of the conversions: change it whenever a reader gives other numbers than before."""
+
+_SELF_CONTAINED: Final = {".stl", ".glb", ".ply"}
+_MAGIC: Final = b"simkit\x004"
+_LARGEST_HEADER: Final = 1 << 22
+
+
+@dataclass(frozen=True)
+class ConvertedMesh:
+    """What became of one mesh file.
+
+    Attributes:
+        notes: one sentence for each thing that was left out.
+        companions: path -> (size, modification time) of each further file that was asked for; None where absent.
+    """
+
+    parts: tuple[MeshPart, ...]
+    notes: tuple[str, ...] = ()
+    companions: Mapping[str, tuple[int, int] | None] = field(default_factory=dict)
+
+
+def cache_directory() -> Path:
+    """`SIMKIT_CACHE_DIR`, else the platform's own place for caches."""
+    return _directory(*map(os.environ.get, ("SIMKIT_CACHE_DIR", "XDG_CACHE_HOME", "LOCALAPPDATA", "HOME")))
+
+
+@lru_cache(maxsize=8)
+def _directory(given: str | None, caches: str | None, windows: str | None, _home: str | None) -> Path:
+    if given:
+        return Path(given)
+    if sys.platform == "win32":
+        return Path(windows or Path.home()) / "simkit"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "simkit"
+    return Path(caches if caches is not None else Path.home() / ".cache") / "simkit"
+
+
+def mesh_key(file: Path, content: bytes) -> str:
+    """A name for the conversion of this content; for formats that name further files the folder counts as well."""
+    suffix = file.suffix.lower()
+    place = "" if suffix in _SELF_CONTAINED else str(file.parent)
+    digest = hashlib.sha256(f"{FORMAT}\n{suffix}\n{place}\n".encode("utf-8", "surrogateescape"))
+    digest.update(content)
+    return digest.hexdigest()[:40]
+
+
+def load_converted(key: str) -> ConvertedMesh | None:
+    """The conversion stored under `key`, or None where there is no whole and current one."""
+    stored = load_arrays("meshes", key)
+    if stored is None:
+        return None
+    header, arrays = stored
+    try:
+        companions = {p: None if v is None else (int(v[0]), int(v[1])) for p, v in header["companions"].items()}
+        if any(_stat(path) != known for path, known in companions.items()):
+            return None
+        parts = tuple(_part_from(arrays, i, entry) for i, entry in enumerate(header["parts"]))
+        return ConvertedMesh(parts, tuple(str(n) for n in header["notes"]), companions)
+    except Exception:  # noqa: BLE001 -- whatever a broken or foreign file does, the mesh is simply converted again
+        return None
+
+
+def store_converted(key: str, converted: ConvertedMesh) -> None:
+    arrays: dict[str, Any] = {}
+    for i, part in enumerate(converted.parts):
+        arrays[f"v{i}"], arrays[f"f{i}"] = part.vertices, part.faces
+        if part.uv is not None:
+            arrays[f"u{i}"] = part.uv
+        if part.texture is not None:
+            arrays[f"t{i}"] = part.texture
+    keep = ("name", "colour", "specular", "emission", "aliases")
+    header = {
+        "parts": [{k: getattr(p, k) for k in keep} for p in converted.parts],
+        "notes": converted.notes,
+        "companions": dict(converted.companions),
+    }
+    store_arrays("meshes", key, header, arrays)
+
+
+def load_arrays(kind: str, key: str) -> tuple[dict[str, Any], dict[str, Any]] | None:
+    """A header and arrays stored under `key`, checked by their digest; None where they are not whole."""
+    try:
+        content = _file_of(kind, key).read_bytes()
+        length = int.from_bytes(content[8:16], "little")
+        start = 24 + length
+        if (
+            content[:8] != _MAGIC
+            or length > _LARGEST_HEADER
+            or content[16:24] != _check_header(memoryview(content)[24:])
+        ):
+            return None
+        header = json.loads(content[24:start])
+        arrays = {}
+        for name, dtype, shape, offset in header["arrays"]:
+            kind_of = np.dtype(dtype)
+            count = int(np.prod(shape, dtype=np.int64))
+            arrays[name] = np.frombuffer(content, kind_of, count, start + offset).reshape(shape)
+        return header["header"], arrays
+    except Exception:  # noqa: BLE001 -- as above
+        return None
+
+
+def store_arrays(kind: str, key: str, header: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
+    """Writes a file of its own and renames it into place."""
+    body, listed, offset = io.BytesIO(), [], 0
+    for name, array in arrays.items():
+        flat = np.ascontiguousarray(array)
+        listed.append((name, flat.dtype.str, flat.shape, offset))
+        offset += body.write(flat.tobytes())
+        offset += body.write(b"\0" * (-offset % 16))
+    text = json.dumps({"header": header, "arrays": listed}).encode()
+    text += b" " * (-len(text) % 16)
+    rest = text + body.getvalue()
+    content = _MAGIC + len(text).to_bytes(8, "little") + _check_header(rest) + rest
+    # RuntimeError: a user without a home folder
+    with contextlib.suppress(OSError, RuntimeError):
+        target = _file_of(kind, key)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=target.parent, suffix=".tmp")
+        try:
+            with os.fdopen(handle, "wb") as stream:
+                stream.write(content)
+            Path(temporary).replace(target)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                Path(temporary).unlink()
+            raise
+
+
+def _check_header(content: bytes | memoryview) -> bytes:
+    return zlib.crc32(content).to_bytes(8, "little")
+
+
+def _file_of(kind: str, key: str) -> Path:
+    return Path(f"{cache_directory()}{os.sep}{kind}{os.sep}{key}.bin")
+
+
+def _stat(path: str) -> tuple[int, int] | None:
+    try:
+        stat = os.stat(path)  # noqa: PTH116 -- thousands of them
+    except (OSError, ValueError):
+        return None
+    return stat.st_size, stat.st_mtime_ns
+
+
+def _part_from(arrays: Mapping[str, Any], i: int, entry: Mapping[str, Any]) -> MeshPart:
+    colour = entry["colour"]
+    return MeshPart(
+        name=entry["name"],
+        vertices=arrays[f"v{i}"],
+        faces=arrays[f"f{i}"],
+        uv=arrays.get(f"u{i}"),
+        colour=None if colour is None else tuple(colour),
+        texture=arrays.get(f"t{i}"),
+        specular=entry["specular"],
+        emission=entry["emission"],
+        aliases=tuple(entry["aliases"]),
+    )

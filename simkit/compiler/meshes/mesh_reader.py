@@ -1,0 +1,174 @@
+"""Mesh files as triangles in metres, as Gazebo reads them.
+
+COLLADA: the file's unit counts, its up axis does not (Gazebo ignores it, and models are made for that). glTF: the
+file's axes stay as they are (y up), as in Gazebo. All other formats are in metres and without axes of their own.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.compiler.meshes.collada import read_collada
+from simkit.compiler.meshes.collada_skin import bone_parts
+from simkit.compiler.meshes.companion_files import Companions
+from simkit.compiler.meshes.gltf import read_gltf
+from simkit.compiler.meshes.mesh_cache import ConvertedMesh, load_converted, mesh_key, store_converted
+from simkit.compiler.meshes.mesh_part import FARTHEST_VERTEX, LARGEST_FACES, LARGEST_FILE, MeshFileError, MeshPart
+from simkit.compiler.meshes.obj import read_obj
+from simkit.compiler.meshes.stl import read_stl
+from simkit.diagnostics import Diagnostics, Where, closest
+from simkit.scene import Mesh
+
+SUFFIXES: Final = (".dae", ".stl", ".obj", ".gltf", ".glb", ".ply", ".off")
+
+
+def load_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> list[MeshPart]:
+    """The mesh of a geometry, scaled; empty (and an error recorded) when the file cannot be used.
+
+    What is wrong with a file is said once, however often it is used.
+    """
+    try:
+        if mesh.bone:
+            return [part.scaled(mesh.scale) for part in bone_parts(mesh.file, mesh.bone)]
+        converted = convert_file(mesh.file)
+        parts = _submesh(list(converted.parts), mesh.submesh) if mesh.submesh else list(converted.parts)
+    except MeshFileError as problem:
+        report_once(diagnostics, "error", "SK-MESH-001", f"{mesh.uri}: {problem}", where)
+        return []
+    for text in converted.notes:
+        report_once(diagnostics, "warning", "SK-MESH-012", f"{mesh.uri}: {text}", where)
+    if not all(math.isfinite(s) and s != 0.0 for s in mesh.scale):
+        report_once(
+            diagnostics, "error", "SK-MESH-002", f"{mesh.uri}: scale {mesh.scale} has a zero or is not finite", where
+        )
+        return []
+    if mesh.center and mesh.submesh:
+        low = np.min([p.vertices.min(axis=0) for p in parts], axis=0)
+        high = np.max([p.vertices.max(axis=0) for p in parts], axis=0)
+        parts = [p.moved(-(low + high) / 2) for p in parts]
+    if mesh.scale != (1.0, 1.0, 1.0):
+        parts = [p.scaled(mesh.scale) for p in parts]
+        if any(float(np.abs(p.vertices).max()) > FARTHEST_VERTEX for p in parts):
+            text = f"{mesh.uri}: scaled by {mesh.scale} it reaches beyond {FARTHEST_VERTEX:g} m"
+            report_once(diagnostics, "error", "SK-MESH-002", text, where)
+            return []
+    return parts
+
+
+def report_once(diagnostics: Diagnostics, severity: Any, code: str, message: str, where: Where, hint: str = "") -> None:
+    """Records a finding about a file where it is met first; further uses of the file say nothing new."""
+    if not any(d.code == code and d.message == message for d in diagnostics):
+        diagnostics.add(severity, code, message, where, hint)
+
+
+def load_file(file: Path, submesh: str = "") -> list[MeshPart]:
+    """All triangles of a file by material, in metres. Raises MeshFileError."""
+    parts = list(convert_file(file).parts)
+    return _submesh(parts, submesh) if submesh else parts
+
+
+def convert_file(file: Path) -> ConvertedMesh:
+    """The content of a mesh file, from the cache where it was converted before. Raises MeshFileError."""
+    try:
+        stat = file.stat()
+    except (OSError, ValueError) as problem:
+        raise MeshFileError(f"cannot be read: {getattr(problem, 'strerror', problem)}") from None
+    if not file.is_file():
+        raise MeshFileError("is not a file")
+    if stat.st_size > LARGEST_FILE:
+        raise MeshFileError(f"is larger than {LARGEST_FILE >> 20} MiB")
+    return _converted(file, (stat.st_mtime_ns, stat.st_size))
+
+
+@lru_cache(maxsize=64)
+def _converted(file: Path, _version: tuple[int, int]) -> ConvertedMesh:
+    try:
+        content = file.read_bytes()
+    except OSError as problem:
+        raise MeshFileError(f"cannot be read: {problem.strerror}") from None
+    key = mesh_key(file, content)
+    converted = load_converted(key)
+    if converted is None:
+        converted = _convert(file, content)
+        store_converted(key, converted)
+    return converted
+
+
+def _convert(file: Path, content: bytes) -> ConvertedMesh:
+    companions = Companions(file)
+    try:
+        parts = _read(file.suffix.lower(), content, companions)
+    except MeshFileError:
+        raise
+    except MemoryError:
+        raise MeshFileError("needs more memory than there is") from None
+    except Exception as problem:  # noqa: BLE001 -- a reader of a broken file raises whatever its format's library does
+        text = " ".join(str(problem).split())[:200]
+        raise MeshFileError(f"is not a readable {file.suffix[1:] or 'mesh'} file: {text}") from None
+    parts = [_check_bounds(part) for part in parts if len(part.faces)]
+    if not parts:
+        raise MeshFileError("holds no triangles")
+    return ConvertedMesh(tuple(parts), tuple(companions.notes), companions.read)
+
+
+def _read(suffix: str, content: bytes, companions: Companions) -> list[MeshPart]:
+    if suffix == ".stl":
+        return read_stl(content, companions)
+    if suffix == ".obj":
+        return read_obj(content, companions)
+    if suffix == ".dae":
+        return read_collada(content, companions)
+    if suffix in (".gltf", ".glb"):
+        return read_gltf(content, companions)
+    if suffix in (".ply", ".off"):
+        return _with_trimesh(suffix, content)
+    near = closest(suffix, SUFFIXES)
+    hint = f"; did you mean {near}?" if near else ""
+    raise MeshFileError(f"is a {suffix or 'nameless'} file; read are {', '.join(SUFFIXES)}{hint}")
+
+
+def _with_trimesh(suffix: str, content: bytes) -> list[MeshPart]:
+    import io
+
+    import trimesh
+
+    header = content[:65536].split(b"end_header")[0] if suffix == ".ply" else content[:200]
+    promised = sum(int(n) for line in header.splitlines() for n in line.split()[-1:] if n.isdigit() and len(n) < 20)
+    if promised > 4 * LARGEST_FACES or promised > 4 * len(content):
+        raise MeshFileError("promises more than it holds")
+    mesh: Any = trimesh.load_mesh(io.BytesIO(content), file_type=suffix[1:], process=False)
+    visual = mesh.visual
+    colour = None
+    if getattr(visual, "defined", False) and visual.kind in ("vertex", "face"):
+        r, g, b, a = (float(v) / 255.0 for v in visual.main_color)
+        colour = (r, g, b, a if a > 0.01 else 1.0)
+    return [MeshPart("", np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int32), colour=colour)]
+
+
+def _check_bounds(part: MeshPart) -> MeshPart:
+    used = part.vertices[part.faces.reshape(-1)] if len(part.vertices) > 3 * len(part.faces) else part.vertices
+    if part.faces.min() < 0 or part.faces.max() >= len(part.vertices):
+        raise MeshFileError("has a face with a vertex that is not there")
+    if not np.isfinite(used).all():
+        raise MeshFileError("has coordinates that are not finite")
+    if np.abs(used).max() > FARTHEST_VERTEX:
+        raise MeshFileError(f"has coordinates beyond {FARTHEST_VERTEX:g} m")
+    if part.uv is not None and not (np.abs(part.uv) < 1e6).all():
+        return MeshPart(part.name, part.vertices, part.faces, None, part.colour, None, part.specular, part.emission)
+    return part
+
+
+def _submesh(parts: list[MeshPart], name: str) -> list[MeshPart]:
+    """The parts of one sub-mesh: by the name of its node or group, else by another name of it."""
+    chosen = [p for p in parts if p.name == name] or [p for p in parts if name in p.aliases]
+    if not chosen:
+        known = list(dict.fromkeys(n for p in parts for n in (p.name, *p.aliases) if n))
+        near = closest(name, known)
+        listed = f"did you mean {near!r}?" if near else ", ".join(known[:20]) or "none has a name"
+        raise MeshFileError(f"has no sub-mesh {name!r} ({listed})")
+    return chosen

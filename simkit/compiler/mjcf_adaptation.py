@@ -1,0 +1,244 @@
+"""What of a file in MuJoCo's own format has to be different in a world that is not its own.
+
+The settings of the engine are the world's; the geoms get the friction ranks of everything else, so that of two
+surfaces the smaller coefficient counts; a static model has no joints; a base is fixed or free as the caller says.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit.compiler.contact_friction import MU_MOST, friction_priority
+from simkit.compiler.kinematic_tree import WORLD
+from simkit.diagnostics import NOWHERE, Diagnostics
+from simkit.scene import SceneModel
+from simkit.scene.mjcf_source import MjcfSource
+
+OPTIONS: Final = (
+    "timestep", "impratio", "tolerance", "ls_tolerance", "noslip_tolerance", "ccd_tolerance", "sleep_tolerance",
+    "gravity", "wind", "magnetic", "density", "viscosity", "o_margin", "o_solref", "o_solimp", "o_friction",
+    "integrator", "cone", "jacobian", "solver", "iterations", "ls_iterations", "noslip_iterations",
+    "ccd_iterations", "sdf_iterations", "sdf_initpoints", "disableflags", "enableflags", "disableactuator",
+)  # fmt: skip
+_GLOBAL: Final = (
+    "nuserdata", "nkey", "memory", "njmax", "nconmax", "nemax", "nstack", "nuser_body", "nuser_jnt", "nuser_geom",
+    "nuser_site", "nuser_cam", "nuser_tendon", "nuser_actuator", "nuser_sensor",
+)  # fmt: skip
+_VISUALS: Final = ("global_", "quality", "headlight", "map", "scale", "rgba")
+_REPORTED_OPTIONS: Final = frozenset(
+    ("gravity", "wind", "density", "viscosity", "o_margin", "o_solref", "o_solimp", "o_friction")
+)
+"""Options without which a model means something else; the rest choose how exactly and how fast it is computed."""
+
+_FIRST: Final = friction_priority(0.0) + 1
+"""Above every rank of a friction coefficient: for geoms whose own file says that they have the last word."""
+
+
+def copy_settings(source: Any, target: Any) -> None:
+    """Sizes and looks of one specification to another."""
+    for name in _GLOBAL:
+        setattr(target, name, getattr(source, name))
+    for group in _VISUALS:
+        theirs, ours = getattr(source.visual, group), getattr(target.visual, group)
+        for name in dir(theirs):
+            if not name.startswith("_"):
+                setattr(ours, name, getattr(theirs, name))
+
+
+def match_settings(child: Any, spec: mujoco.MjSpec) -> None:
+    """Makes the settings of both the same: the world's count, and nothing is left to be merged."""
+    for name in OPTIONS:
+        setattr(child.option, name, getattr(spec.option, name))
+    copy_settings(spec, child)
+    if child.compiler.autolimits:
+        _write_inferred_limits(child)
+
+
+def _write_inferred_limits(child: Any) -> None:
+    """Writes down what the file leaves to be inferred: a written-out world has one rule for all its parts."""
+    said = {
+        "joints": (("limited", "range"), ("actfrclimited", "actfrcrange")),
+        "tendons": (("limited", "range"), ("actfrclimited", "actfrcrange")),
+        "actuators": (("ctrllimited", "ctrlrange"), ("forcelimited", "forcerange"), ("actlimited", "actrange")),
+    }
+    for kind, pairs in said.items():
+        for element in getattr(child, kind):
+            for switch, ends in pairs:
+                if int(getattr(element, switch)) == int(mujoco.mjtLimited.mjLIMITED_AUTO):
+                    low, high = getattr(element, ends)
+                    setattr(element, switch, int(low < high))
+
+
+def report_settings(child: Any, spec: mujoco.MjSpec, model: SceneModel, diagnostics: Diagnostics) -> None:
+    """Says which of the file's own settings give way to the world's."""
+    lost: dict[str, list[str]] = {"warning": [], "note": []}
+    places = {"warning": NOWHERE, "note": NOWHERE}
+    for name, place in model.mjcf.settings.items() if model.mjcf is not None else ():
+        severity = "warning" if name in _REPORTED_OPTIONS or name.startswith("flag ") else "note"
+        if name.startswith("flag "):
+            mask = _flag(name.removeprefix("flag "))
+            if not (int(child.option.disableflags) ^ int(spec.option.disableflags)) & mask:
+                continue
+            lost[severity].append(name)
+        elif name in OPTIONS and not _is_same_value(getattr(child.option, name), getattr(spec.option, name)):
+            theirs, ours = (_text(name, getattr(o, name)) for o in (child.option, spec.option))
+            lost[severity].append(f"{name} {theirs} (here {ours})")
+        else:
+            continue
+        places[severity] = place
+    for severity, what in lost.items():
+        if what:
+            diagnostics.add(
+                "warning" if severity == "warning" else "note",
+                "SK-MJCF-009",
+                f"model {model.scoped}: the world's settings stand, not the file's {', '.join(what)}",
+                places[severity],
+            )
+
+
+def _flag(name: str) -> int:
+    bit = getattr(mujoco.mjtDisableBit, f"mjDSBL_{name.upper()}", None)
+    return 0 if bit is None or name == "autoreset" else int(bit)
+
+
+def _is_same_value(a: Any, b: Any) -> bool:
+    return bool(np.array_equal(np.asarray(a), np.asarray(b)))
+
+
+_OPTION_NAMES: Final[dict[str, Any]] = {
+    "integrator": mujoco.mjtIntegrator,
+    "cone": mujoco.mjtCone,
+    "solver": mujoco.mjtSolver,
+    "jacobian": mujoco.mjtJacobian,
+}
+
+
+def _text(name: str, value: Any) -> str:
+    if name in _OPTION_NAMES:
+        return str(_OPTION_NAMES[name](int(value)).name).split("_", 1)[1].lower()
+    return " ".join(f"{float(v):g}" for v in np.ravel(value))
+
+
+def rank_friction(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None:
+    """Ranks each geom by its friction, as all others in the world are; one with a priority of its own stays first."""
+    first = 0
+    for geom in child.geoms:
+        if int(geom.priority) > 0:
+            first += 1
+            geom.priority = _FIRST + min(int(geom.priority), 1 << 20)
+        elif int(geom.priority) == 0:
+            slides = float(geom.friction[0]) if int(geom.condim) > 1 else 0.0
+            geom.priority = friction_priority(min(slides, MU_MOST))
+    if first:
+        diagnostics.note(
+            "SK-MJCF-013",
+            f"model {model.scoped}: {first} geoms have a priority, so their friction counts against everything",
+            model.where,
+        )
+
+
+def write_masses(child: Any, source: MjcfSource) -> None:
+    """Writes down the masses that the file's geoms, bounds and total come to."""
+    for name, (mass, centre, axes, moments) in source.masses.items():
+        body = child.body(name)
+        body.explicitinertial = True
+        body.mass, body.ipos, body.iquat, body.inertia = mass, centre, axes, moments
+        body.fullinertia = np.full(6, np.nan)
+        body.ialt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+    compiler = child.compiler
+    compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    compiler.settotalmass, compiler.boundmass, compiler.boundinertia = -1.0, 0.0, 0.0
+
+
+def drop_lights(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None:
+    """The light of a file's own world stays there: the world that it comes into has its own."""
+    lights = list(child.worldbody.lights)
+    for light in lights:
+        child.delete(light)
+    if lights:
+        diagnostics.note(
+            "SK-MJCF-011",
+            f"model {model.scoped}: {len(lights)} lights of the file's own world are left out",
+            model.where,
+        )
+
+
+def rename_lights(child: Any, source: MjcfSource, prefix: str = "") -> None:
+    """Lights on bodies get the names by which they are asked for."""
+    for scoped, (name, link) in source.lights.items():
+        if link:
+            child.light(name).name = scoped.removeprefix(prefix)
+
+
+def make_static(child: Any, model: SceneModel, diagnostics: Diagnostics) -> None:
+    """A static model has no joints, and nothing that moves, ties or measures them."""
+    gone = [f"{n} joints"] if (n := len(list(child.joints))) else []
+    for kind in ("keys", "sensors", "actuators", "tendons", "equalities"):
+        elements = list(getattr(child, kind))
+        if elements:
+            gone.append(f"{len(elements)} {kind}")
+        for element in elements:
+            child.delete(element)
+    for joint in list(child.joints):
+        child.delete(joint)
+    for body in list(child.bodies)[1:]:
+        body.mocap = False
+    if gone:
+        diagnostics.note("SK-MJCF-012", f"model {model.scoped} is static: without its {', '.join(gone)}", model.where)
+
+
+def set_base(child: Any, source: MjcfSource, fixed: bool) -> None:
+    """Takes the free joints away, or adds those that are missing."""
+    for root in source.roots if fixed or source.base == "fixed" else ():
+        for joint in list(child.body(root).joints):
+            if joint.type == mujoco.mjtJoint.mjJNT_FREE:
+                _drop_users(child, joint.name)
+                _shorten_keys(child, joint.name)
+                child.delete(joint)
+    for name in source.free.values() if source.base == "floating" and not fixed else ():
+        if child.joint(name) is None:
+            for key in list(child.keys):  # they do not say where the base is
+                child.delete(key)
+            child.body(name.removesuffix("_free")).add_freejoint(name=name)
+
+
+def _shorten_keys(child: Any, joint: str) -> None:
+    """Takes a joint's numbers out of the keyframes."""
+    q = v = 0
+    for other in child.joints:
+        wide = {0: (7, 6), 1: (4, 3)}.get(int(other.type), (1, 1))
+        if other.name == joint:
+            break
+        q, v = q + wide[0], v + wide[1]
+    for key in child.keys:
+        if len(key.qpos):
+            key.qpos = np.delete(key.qpos, slice(q, q + wide[0]))
+        if len(key.qvel):
+            key.qvel = np.delete(key.qvel, slice(v, v + wide[1]))
+
+
+def _drop_users(child: Any, joint: str) -> None:
+    drives = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
+    for actuator in list(child.actuators):
+        if actuator.target == joint and actuator.trntype in drives:
+            child.delete(actuator)
+    for sensor in list(child.sensors):
+        if sensor.objname == joint and sensor.objtype == mujoco.mjtObj.mjOBJ_JOINT:
+            child.delete(sensor)
+
+
+def keep_only_model(child: Any, source: MjcfSource) -> None:
+    """Of a world's file what belongs to one model."""
+    for body in list(child.worldbody.bodies):
+        if body.name not in source.roots:
+            child.delete(body)
+    own = set(source.geoms) if WORLD in source.bodies.values() else set()
+    for kind, kept in (("geoms", own), ("lights", set()), ("sites", set()), ("cameras", set())):
+        for element in list(getattr(child.worldbody, kind)):
+            if element.name not in kept:
+                child.delete(element)
+    for key in list(child.keys):
+        child.delete(key)

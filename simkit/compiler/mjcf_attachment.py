@@ -1,0 +1,290 @@
+"""Models in MuJoCo's own format: the file's specification is attached as it is, under a prefix of its names.
+
+So tendons, actuators, equalities, sensors, keyframes, contact pairs and whatever else the scene has no words for come
+along. What has to be different in another world is changed before, in `mjcf_changes`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any, Final
+
+import mujoco
+
+from simkit.compiler.engine_options import CONTACT_LAW
+from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, DRAWN_COLLISION, VISUAL
+from simkit.compiler.kinematic_tree import WORLD
+from simkit.compiler.mjcf_adaptation import (
+    OPTIONS,
+    copy_settings,
+    drop_lights,
+    keep_only_model,
+    make_static,
+    match_settings,
+    rank_friction,
+    rename_lights,
+    report_settings,
+    set_base,
+    write_masses,
+)
+from simkit.compiler.name_map import GeomOwner, JointBinding, LightBinding, LinkBinding, ModelRecord
+from simkit.diagnostics import Diagnostics
+from simkit.mujoco_import import ignore_warning
+from simkit.pose import IDENTITY
+from simkit.scene import SceneJoint, SceneModel, SceneWorld
+from simkit.scene.mjcf_source import MjcfSource
+
+_HIDDEN: Final = COLLISION_CONTACT
+_MARK: Final = "#mjcf"
+"""Ends the names of the frames and bodies that stand for a file's world; no file can have such a name."""
+
+
+def adopt_settings(spec: mujoco.MjSpec, world: SceneWorld) -> None:
+    """Gives the world's specification the engine settings of its file; step, gravity and field are the scene's."""
+    if world.mjcf is None:
+        return
+    source = world.mjcf()
+    copy_settings(source, spec)
+    option = spec.option
+    for name in OPTIONS:
+        setattr(option, name, getattr(source.option, name))
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # the runtime's business
+    option.timestep, option.gravity, option.magnetic = (
+        world.physics.max_step_size,
+        world.gravity,
+        world.magnetic_field,
+    )
+    if spec.text(CONTACT_LAW) is not None and source.text(CONTACT_LAW) is not None:
+        spec.delete(spec.text(CONTACT_LAW))  # the file's own comes with its bodies
+    for name in ("center", "extent", "meansize", "meanmass", "meaninertia"):
+        setattr(spec.stat, name, getattr(source.stat, name))
+
+
+def models_of_own_file(world: SceneWorld) -> list[SceneModel]:
+    """The models that the world's own file makes."""
+    return [m for m in world.models if m.mjcf is not None and not m.mjcf.prefix]
+
+
+def attach_world(spec: mujoco.MjSpec, records: Iterable[ModelRecord]) -> None:
+    """Attaches the file that is the world itself, once for all models that it makes; its names stay as they are."""
+    records = list(records)
+    child = _mjcf_source(records[0].scene).document()
+    for record in records:
+        source = _mjcf_source(record.scene)
+        rename_lights(child, source)
+        if child.compiler.settotalmass > 0.0:
+            write_masses(child, source)
+        record.root_bodies += source.roots
+        _bind_elements(record, record.scene, "", "")
+    child.compiler.settotalmass = -1.0
+    match_settings(child, spec)
+    with silence_engine_warnings():
+        spec.attach(child, prefix="", frame=spec.worldbody.add_frame(name=f"world{_MARK}"))
+
+
+def attach_model(
+    spec: mujoco.MjSpec,
+    record: ModelRecord,
+    model: SceneModel,
+    diagnostics: Diagnostics,
+    joints: Iterable[SceneJoint] = (),
+) -> list[SceneJoint]:
+    """Attaches one model where its pose says, or under the link that a fixed joint holds it on.
+
+    Args:
+        record: of the top-level model that it is or belongs to.
+        joints: joints of outer models, some of which may end in this one.
+
+    Returns:
+        Those of the joints that are done by the way it was attached.
+    """
+    source = _mjcf_source(model)
+    child = source.document()
+    prefix = source.prefix or f"{model.scoped}::"
+    if not source.prefix:  # a part of the world's own file that was taken out and comes back
+        keep_only_model(child, source)
+    else:
+        report_settings(child, spec, model, diagnostics)
+        drop_lights(child, model, diagnostics)
+        rank_friction(child, model, diagnostics)
+    holder = None if model.static or record.movable else _holding_joint(record, model, source, joints)
+    rename_lights(child, source, prefix)
+    write_masses(child, source)
+    if model.static:
+        make_static(child, model, diagnostics)
+    set_base(child, source, fixed=holder is not None)
+    match_settings(child, spec)
+    wrapper = f"{model.scoped}{_MARK}" if record.movable and WORLD in source.bodies.values() else ""
+    with silence_engine_warnings():
+        spec.attach(child, prefix=prefix, frame=_attachment_frame(spec, record, source, prefix, wrapper, holder))
+    if record.movable and not wrapper:
+        for root in source.roots:
+            spec.body(f"{prefix}{root}").mocap = True
+    _bind_elements(record, model, prefix, wrapper, free=holder is None)
+    if holder is None:
+        return []
+    record.joints[holder.scoped] = _joint_binding(record, holder, "")
+    return [holder]
+
+
+def _mjcf_source(model: SceneModel) -> MjcfSource:
+    if model.mjcf is None:
+        raise ValueError(f"model {model.scoped!r} has no specification of its own")
+    return model.mjcf
+
+
+def _holding_joint(
+    record: ModelRecord, model: SceneModel, source: MjcfSource, joints: Iterable[SceneJoint]
+) -> SceneJoint | None:
+    """The fixed joint that holds a model of one loose root on a link that is there already."""
+    roots = [scoped for scoped, body in source.bodies.items() if body in source.roots]
+    held = {j.child_link for j in model.joints if source.joints.get(j.scoped)}
+    if len(roots) != 1 or roots[0] in held or WORLD in source.bodies.values():
+        return None
+    return next(
+        (j for j in joints if j.type == "fixed" and j.child_link == roots[0] and j.parent_link in record.links), None
+    )
+
+
+def _attachment_frame(
+    spec: mujoco.MjSpec, record: ModelRecord, source: MjcfSource, prefix: str, wrapper: str, holder: SceneJoint | None
+) -> Any:
+    """The frame that stands for the file's world: in the world, in a body that can be moved, or in a link's body."""
+    pose, body = source.place, spec.worldbody
+    if wrapper:
+        body = spec.worldbody.add_body(name=wrapper, pos=pose.position, quat=pose.quaternion, mocap=True)
+        record.root_bodies.append(wrapper)
+        pose = IDENTITY
+    elif holder is not None:
+        link = record.links[holder.parent_link]
+        body = spec.body(link.body_name)
+        pose = link.offset @ link.scene.pose_world.inverse() @ pose
+        if link.body_name == WORLD:
+            record.root_bodies += [f"{prefix}{root}" for root in source.roots]
+    else:
+        record.root_bodies += [f"{prefix}{root}" for root in source.roots]
+    return body.add_frame(name=f"{prefix}{_MARK}", pos=pose.position, quat=pose.quaternion)
+
+
+def detach_model(spec: mujoco.MjSpec, record: ModelRecord) -> None:
+    """Takes out what the files of a model brought beside their bodies, which must be gone already."""
+    for prefix in record.attached.values():
+        if prefix:
+            _delete_elements(spec, prefix)
+
+
+def _delete_elements(spec: mujoco.MjSpec, prefix: str) -> None:
+    for frame in list(spec.frames):
+        if frame.name == f"{prefix}{_MARK}":
+            spec.delete(frame)
+    for kind in (
+        "keys", "sensors", "actuators", "tendons", "equalities", "excludes", "pairs", "tuples", "numerics", "texts",
+        "skins", "flexes", "materials", "textures", "meshes", "hfields",
+    ):  # fmt: skip
+        for element in list(getattr(spec, kind)):
+            if element.name.startswith(prefix):
+                spec.delete(element)
+    default = spec.find_default(f"{prefix}main")
+    if default is not None:
+        spec.delete(default)
+    for name in [n for n in spec.assets if n.startswith(prefix)]:
+        del spec.assets[name]
+
+
+# ---------------------------------------------------------------------- who is who
+
+
+def _bind_elements(record: ModelRecord, model: SceneModel, prefix: str, wrapper: str, free: bool = True) -> None:
+    """Notes whose each body, joint, geom and light is.
+
+    Args:
+        wrapper: body that stands for the file's world body; empty where that is the world's.
+        free: whether the file's free joints are there.
+    """
+    source = _mjcf_source(model)
+    record.attached[model.scoped] = prefix
+    links = {link.scoped: link for link in model.links}
+    for scoped, body in source.bodies.items():
+        is_world = body == WORLD
+        name = source.free.get(scoped, "") if free and not model.static else ""
+        record.links[scoped] = LinkBinding(
+            scoped=scoped,
+            body_name=(wrapper or WORLD) if is_world else f"{prefix}{body}",
+            offset=links[scoped].pose_world if is_world and not wrapper else IDENTITY,
+            scene=links[scoped],
+            model=record.scene.scoped,
+            static=model.static or is_world,
+            free_joint=f"{prefix}{name}" if name else "",
+        )
+    for joint in model.joints:
+        name = "" if model.static else source.joints.get(joint.scoped, "")
+        record.joints[joint.scoped] = _joint_binding(record, joint, f"{prefix}{name}" if name else "")
+    for name, geom in source.geoms.items():
+        if geom.collides or geom.drawn:
+            record.geoms[f"{prefix}{name}"] = GeomOwner(geom.link, geom.shape, not geom.collides)
+    for link in model.links:
+        for light in link.lights:
+            body = record.links[link.scoped].body_name
+            record.lights[light.scoped] = LightBinding(light.scoped, light, record.scene.scoped, body)
+
+
+def _joint_binding(record: ModelRecord, joint: SceneJoint, name: str) -> JointBinding:
+    parent = record.links.get(joint.parent_link)
+    in_child = record.links[joint.child_link].scene.pose_world.inverse() @ joint.pose_world
+    return JointBinding(
+        scoped=joint.scoped,
+        type=joint.type,
+        scene=joint,
+        model=record.scene.scoped,
+        joint_names=(name,) if name else (),
+        pose_child=in_child,
+        pose_parent=parent.scene.pose_world.inverse() @ joint.pose_world if parent else joint.pose_world,
+        carried=joint.child_link,
+        pose_moved=in_child,
+    )
+
+
+def assign_geom_groups(model: mujoco.MjModel, records: Iterable[ModelRecord]) -> None:
+    """Sorts the geoms of attached files into the groups by which cameras and rays know them.
+
+    In the compiled model, not before: a group may decide which geoms weigh something.
+    """
+    for record in records:
+        for one in record.scene.all_models() if record.attached else ():
+            for name, geom in one.mjcf.geoms.items() if one.mjcf is not None else ():
+                full = f"{record.attached[one.scoped]}{name}"
+                number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, full)
+                if geom.collides:
+                    model.geom_group[number] = DRAWN_COLLISION if geom.drawn else COLLISION
+                else:
+                    model.geom_group[number] = VISUAL if geom.drawn else _HIDDEN
+
+
+# ---------------------------------------------------------------------- what the engine says
+
+
+@contextmanager
+def silence_engine_warnings() -> Iterator[None]:
+    """Keeps the engine's warnings of a compile off the terminal and out of a log file; Python's own still come."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(ignore_warning)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def is_expected_warning(text: str) -> bool:
+    """Whether the engine only says that a world's own file keeps its names, which is meant."""
+    return text.startswith("Attaching a spec with an empty prefix")
+
+
+def without_attached(model: SceneModel) -> SceneModel:
+    """A model without those nested in it that have a specification of their own."""
+    if all(nested.mjcf is None for nested in model.all_models()[1:]):
+        return model
+    kept = tuple(without_attached(nested) for nested in model.models if nested.mjcf is None)
+    return replace(model, models=kept)

@@ -1,0 +1,393 @@
+"""The name map: scoped names of the file to what MuJoCo calls them, and after a compile to its ids."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from simkit.diagnostics import did_you_mean
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import SceneJoint, SceneLight, SceneLink, SceneModel
+
+if TYPE_CHECKING:
+    import mujoco
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class LinkBinding:
+    """Where a link lives in MuJoCo.
+
+    Attributes:
+        body_name: MuJoCo body, `world` for a static link.
+        body: its id; 0 for a static link; -1 before the compile.
+        offset: the link frame in the body frame (identity for links that are bodies).
+        model: scoped name of the top-level model.
+        mocap: index among the mocap bodies, or -1.
+        free_joint: name of the free joint of the link's own body, or empty.
+        root_joint_qpos, root_joint_dof: addresses of that free joint, or -1.
+        geoms: ids of the geoms that collide (groups COLLISION and COLLISION_CONTACT).
+        ray_geoms: ids of the geoms that rays against collisions see (COLLISION and COLLISION_RAY).
+        visuals: ids of the drawn geoms.
+    """
+
+    scoped: str
+    body_name: str
+    offset: Pose
+    scene: SceneLink
+    model: str
+    static: bool
+    body: int = -1
+    mocap: int = -1
+    free_joint: str = ""
+    root_joint_qpos: int = -1
+    root_joint_dof: int = -1
+    geoms: tuple[int, ...] = ()
+    ray_geoms: tuple[int, ...] = ()
+    visuals: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Follower:
+    """A degree of freedom that an equality ties to an axis of a joint: value = offset + ratio · leader.
+
+    Whoever sets the leader's state sets this one too, so that the equality starts without an error.
+
+    Attributes:
+        name: MuJoCo joint.
+        axis: which axis of the leader.
+    """
+
+    name: str
+    ratio: float
+    qpos: int = -1
+    dof: int = -1
+    offset: float = 0.0
+    axis: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class JointBinding:
+    """Where a joint lives in MuJoCo.
+
+    Attributes:
+        joint_names, joint_ids: MuJoCo joints, one per axis (one for a ball or floating joint, none for a fixed one).
+        qpos, dofs: addresses of the first coordinate and of every degree of freedom, in axis order.
+        parent_body, child_body: ids of the bodies of the file's parent and child link (0: world).
+        pose_child: the joint frame in the file's child link frame at load.
+        pose_parent: the joint frame in the file's parent link frame at load (in the world for `world`).
+        is_reversed: the tree hangs the parent link under the child; positions and axes keep the file's meaning.
+        is_loop: the joint closes a loop: it moves a twin of its child link, which a weld holds on the link itself.
+        equalities: names of the equality constraints that stand for it.
+        twin: name of that body; empty where the joint is part of the tree.
+        carried: scoped name of the link whose body the joint moves in the tree (or whose twin); it is rigidly one with
+            the file's child link, or with its parent link where the joint is turned round.
+        moved_body: id of the body that the joint moves (the twin's for a loop); 0 where it moves none.
+        pose_moved: the joint frame in that body's frame.
+        free: a floating joint: scoped name of the link whose free joint it reads and sets; empty where none is free.
+    """
+
+    scoped: str
+    type: str
+    scene: SceneJoint
+    model: str
+    joint_names: tuple[str, ...] = ()
+    pose_child: Pose = IDENTITY
+    pose_parent: Pose = IDENTITY
+    is_reversed: bool = False
+    is_loop: bool = False
+    equalities: tuple[str, ...] = ()
+    twin: str = ""
+    carried: str = ""
+    free: str = ""
+    followers: tuple[Follower, ...] = ()
+    pose_moved: Pose = IDENTITY
+    moved_body: int = -1
+    joint_ids: tuple[int, ...] = ()
+    qpos: tuple[int, ...] = ()
+    dofs: tuple[int, ...] = ()
+    parent_body: int = -1
+    child_body: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class LightBinding:
+    """A light: MuJoCo's light has the scoped name of the file's; `id` is -1 before the compile or when it is off."""
+
+    scoped: str
+    scene: SceneLight
+    model: str
+    body_name: str = "world"
+    id: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class ActuatorRef:
+    """An actuator that a plugin asked for; stays valid over every structure change.
+
+    Attributes:
+        name: MuJoCo's name.
+        kind: velocity, position, motor or drive (a motor whose effort goes on by itself, for servos).
+        joint, axis: scoped joint and the index of its axis.
+        max_effort: what the actuator may give at most [N or N·m].
+        kp, kv: wanted gains; None lets the servo rule choose.
+    """
+
+    name: str
+    kind: str
+    joint: str
+    axis: int
+    max_effort: float
+    owner: str
+    kp: float | None = None
+    kv: float | None = None
+
+    def __deepcopy__(self, memo: dict[int, object]) -> ActuatorRef:
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class GeomOwner:
+    """Whose geom it is: (link, collision or visual, drawn or not)."""
+
+    link: str
+    scoped: str
+    is_visual: bool
+
+
+@dataclass(slots=True)
+class ModelRecord:
+    """All that a top-level model put into the spec, by name, so that it can be taken out again.
+
+    Attributes:
+        damped: free joint -> decay rates [1/s] of its linear and angular velocity.
+        exact: link -> the mass it was written with [kg] and the tensor [kg·m²] that the compiled model gets.
+        massless: link without mass on a moving joint -> that joint's scoped name.
+        unladen: those of them that carry nothing with mass either.
+        own_bit: the collision bit by which the model's links know each other; 0 where excludes do that.
+        attached: of models in MuJoCo's own format: scoped name -> prefix of what they brought.
+    """
+
+    scene: SceneModel
+    movable: bool = False
+    root_bodies: list[str] = field(default_factory=list)
+    geoms: dict[str, GeomOwner] = field(default_factory=dict)
+    links: dict[str, LinkBinding] = field(default_factory=dict)
+    joints: dict[str, JointBinding] = field(default_factory=dict)
+    lights: dict[str, LightBinding] = field(default_factory=dict)
+    sites: list[str] = field(default_factory=list)
+    world_sites: list[str] = field(default_factory=list)
+    world_cameras: list[str] = field(default_factory=list)
+    excludes: list[str] = field(default_factory=list)
+    equalities: list[str] = field(default_factory=list)
+    actuators: list[ActuatorRef] = field(default_factory=list)
+    assets: set[tuple[str, str]] = field(default_factory=set)
+    damped: dict[str, tuple[float, float]] = field(default_factory=dict)
+    massless: dict[str, str] = field(default_factory=dict)
+    unladen: set[str] = field(default_factory=set)
+    exact: dict[str, tuple[float, tuple[float, float, float, float, float, float]]] = field(default_factory=dict)
+    own_bit: int = 0
+    attached: dict[str, str] = field(default_factory=dict)
+
+    def copy(self) -> ModelRecord:
+        """A record of its own; the bindings in it are immutable and shared."""
+        return replace(
+            self,
+            root_bodies=list(self.root_bodies),
+            geoms=dict(self.geoms),
+            links=dict(self.links),
+            joints=dict(self.joints),
+            lights=dict(self.lights),
+            sites=list(self.sites),
+            world_sites=list(self.world_sites),
+            world_cameras=list(self.world_cameras),
+            excludes=list(self.excludes),
+            equalities=list(self.equalities),
+            actuators=list(self.actuators),
+            assets=set(self.assets),
+            damped=dict(self.damped),
+            massless=dict(self.massless),
+            unladen=set(self.unladen),
+            exact=dict(self.exact),
+            attached=dict(self.attached),
+        )
+
+
+def lookup(items: Mapping[str, T], name: str, what: str) -> T:
+    """`items[name]`, or a KeyError that names the closest."""
+    try:
+        return items[name]
+    except KeyError:
+        hint = did_you_mean(name, items)
+        raise KeyError(f"no {what} {name!r}" + (f"; {hint}" if hint else "")) from None
+
+
+class NameMap:
+    """Scoped names to bindings. Before a compile the ids in them are -1."""
+
+    def __init__(
+        self, links: dict[str, LinkBinding], joints: dict[str, JointBinding], lights: dict[str, LightBinding]
+    ) -> None:
+        self.links, self.joints, self.lights = links, joints, lights
+        self._owners: dict[int, GeomOwner] = {}
+        self._model: mujoco.MjModel | None = None
+        self._shared: dict[str, Any] = {}
+
+    def shared(self, what: str, make: Callable[[], Any]) -> Any:
+        """What many sensors find out of the compiled model in the same way, made once for all of them."""
+        if what not in self._shared:
+            self._shared[what] = make()
+        return self._shared[what]
+
+    def link(self, scoped: str) -> LinkBinding:
+        """Raises KeyError, which names the closest."""
+        return lookup(self.links, scoped, "link")
+
+    def joint(self, scoped: str) -> JointBinding:
+        """Raises KeyError, which names the closest."""
+        return lookup(self.joints, scoped, "joint")
+
+    def light(self, scoped: str) -> LightBinding:
+        """Raises KeyError, which names the closest."""
+        return lookup(self.lights, scoped, "light")
+
+    def site(self, name: str) -> int:
+        """MuJoCo's id of a site. Raises KeyError."""
+        return self._id("SITE", name)
+
+    def camera(self, name: str) -> int:
+        """MuJoCo's id of a camera. Raises KeyError."""
+        return self._id("CAMERA", name)
+
+    def equality(self, name: str) -> int:
+        """MuJoCo's id of an equality constraint. Raises KeyError."""
+        return self._id("EQUALITY", name)
+
+    def actuator(self, ref: ActuatorRef | str) -> int:
+        """MuJoCo's id of an actuator. Raises KeyError."""
+        return self._id("ACTUATOR", ref if isinstance(ref, str) else ref.name)
+
+    def geom_owner(self, geom_id: int) -> tuple[str, str, bool]:
+        """(link, collision or visual, drawn or not) of a geom; empty names for one that is no model's."""
+        owner = self._owners.get(int(geom_id))
+        return (owner.link, owner.scoped, owner.is_visual) if owner else ("", "", False)
+
+    def geom_owner_link(self, scoped: str) -> str:
+        """The link of a collision or visual by its scoped name; empty where there is none."""
+        return next((o.link for o in self._owners.values() if o.scoped == scoped), "")
+
+    def drawn(self, link: str) -> dict[str, tuple[int, ...]]:
+        """The drawn geoms of a link by the scoped name of their visual; what is not drawn is not in it."""
+        found: dict[str, tuple[int, ...]] = {}
+        for geom in self.link(link).visuals:
+            scoped = self.geom_owner(geom)[1]
+            found[scoped] = (*found.get(scoped, ()), geom)
+        return found
+
+    def model_frame(self, model: SceneModel) -> tuple[int, Pose]:
+        """The body that moves with a model's frame, and the frame in it; in the world for a model without links."""
+        canonical = self.links.get(model.canonical_link)
+        if canonical is None:
+            return 0, model.pose_world
+        return canonical.body, canonical.offset @ canonical.scene.pose_world.inverse() @ model.pose_world
+
+    def _id(self, kind: str, name: str) -> int:
+        import mujoco
+
+        if self._model is None:
+            raise KeyError(f"{name!r} has no id before the compile")
+        number = int(mujoco.mj_name2id(self._model, getattr(mujoco.mjtObj, f"mjOBJ_{kind}"), name))
+        if number < 0:
+            raise KeyError(f"no {kind.lower()} {name!r}")
+        return number
+
+    @classmethod
+    def of(cls, records: Iterable[ModelRecord], model: mujoco.MjModel | None = None) -> NameMap:
+        """The map over all records, bound to the ids of `model` when there is one."""
+        links: dict[str, LinkBinding] = {}
+        joints: dict[str, JointBinding] = {}
+        lights: dict[str, LightBinding] = {}
+        records = list(records)
+        for record in records:
+            links.update(record.links)
+            joints.update(record.joints)
+            lights.update(record.lights)
+        names = cls(links, joints, lights)
+        if model is not None:
+            names._bind(records, model)
+        return names
+
+    def _bind(self, records: list[ModelRecord], model: mujoco.MjModel) -> None:
+        import mujoco
+
+        from simkit.compiler.geom_groups import COLLISION, COLLISION_CONTACT, COLLISION_RAY, DRAWN_COLLISION
+
+        def number(kind: mujoco.mjtObj, name: str) -> int:
+            return int(mujoco.mj_name2id(model, kind, name))
+
+        self._model = model
+        collide: dict[str, list[int]] = {}
+        seen: dict[str, list[int]] = {}
+        drawn: dict[str, list[int]] = {}
+        group = model.geom_group.tolist()
+        for record in records:
+            for name, owner in record.geoms.items():
+                i = number(mujoco.mjtObj.mjOBJ_GEOM, name)
+                self._owners[i] = owner
+                if owner.is_visual:
+                    drawn.setdefault(owner.link, []).append(i)
+                else:
+                    if group[i] == DRAWN_COLLISION:
+                        drawn.setdefault(owner.link, []).append(i)
+                    if group[i] in (COLLISION, COLLISION_CONTACT, DRAWN_COLLISION):
+                        collide.setdefault(owner.link, []).append(i)
+                    if group[i] in (COLLISION, COLLISION_RAY, DRAWN_COLLISION):
+                        seen.setdefault(owner.link, []).append(i)
+        for scoped, link in self.links.items():
+            body = number(mujoco.mjtObj.mjOBJ_BODY, link.body_name)
+            free = number(mujoco.mjtObj.mjOBJ_JOINT, link.free_joint) if link.free_joint else -1
+            self.links[scoped] = replace(
+                link,
+                body=body,
+                mocap=int(model.body_mocapid[body]),
+                root_joint_qpos=int(model.jnt_qposadr[free]) if free >= 0 else -1,
+                root_joint_dof=int(model.jnt_dofadr[free]) if free >= 0 else -1,
+                geoms=tuple(collide.get(scoped, ())),
+                ray_geoms=tuple(seen.get(scoped, ())),
+                visuals=tuple(drawn.get(scoped, ())),
+            )
+        for scoped, joint in self.joints.items():
+            self.joints[scoped] = self._bound_joint(joint, model)
+        for scoped, light in self.lights.items():
+            self.lights[scoped] = replace(light, id=number(mujoco.mjtObj.mjOBJ_LIGHT, scoped))
+
+    def _bound_joint(self, joint: JointBinding, model: mujoco.MjModel) -> JointBinding:
+        import mujoco
+
+        ids = tuple(int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, n)) for n in joint.joint_names)
+        dofs: list[int] = []
+        for i in ids:
+            width = {0: 6, 1: 3}.get(int(model.jnt_type[i]), 1)
+            dofs += range(int(model.jnt_dofadr[i]), int(model.jnt_dofadr[i]) + width)
+        followers = []
+        for f in joint.followers:
+            i = int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f.name))
+            followers.append(replace(f, qpos=int(model.jnt_qposadr[i]), dof=int(model.jnt_dofadr[i])))
+        parent, child = self.links.get(joint.scene.parent_link), self.links.get(joint.scene.child_link)
+        carried = self.links.get(joint.carried)
+
+        def number_of(body: str) -> int:
+            return int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, body))
+
+        return replace(
+            joint,
+            joint_ids=ids,
+            qpos=tuple(int(model.jnt_qposadr[i]) for i in ids),
+            dofs=tuple(dofs),
+            followers=tuple(followers),
+            moved_body=number_of(joint.twin) if joint.twin else (carried.body if carried else 0),
+            parent_body=parent.body if parent else 0,
+            child_body=child.body if child else 0,
+        )

@@ -1,0 +1,269 @@
+"""Actuators and drives of joints: gains that cannot ring, armature, and the inertia that a joint feels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit.compiler.name_map import ActuatorRef
+from simkit.diagnostics import Diagnostics, Where
+from simkit.pose import Vector
+
+FULL_EFFORT_ERROR_ROTARY: Final = 0.01
+"""[rad] off its reference a drive gives all that it may."""
+
+FULL_EFFORT_ERROR_LINEAR: Final = 0.001
+"""[m] for a slider."""
+
+RISE_TIME: Final = 0.01
+"""[s] from standstill to the velocity limit at the effort limit, at least."""
+
+DRIVE_ARMATURE_ROTARY: Final = 2e-3
+"""[kg·m²] at least."""
+
+DRIVE_ARMATURE_LINEAR: Final = 2e-2
+"""[kg] at least."""
+
+DRIVE_ARMATURE_LINEAR_MAX: Final = 1.0
+"""[kg]; a slow slider with much force (a lift) is heavy anyway."""
+
+_POSES: Final = 16
+_STRIDES: Final = np.sqrt(np.array((2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53), float))
+
+
+def add_drive_armature(
+    joint: Any, max_effort: float, max_velocity: float, scoped: str, diagnostics: Diagnostics, where: Where
+) -> None:
+    """Gives a joint the armature that its drive has, and reports it.
+
+    Args:
+        max_effort: [N·m or N]; infinite where there is no limit.
+        max_velocity: [rad/s or m/s]; likewise.
+    """
+    is_slide = joint.type == mujoco.mjtJoint.mjJNT_SLIDE
+    rotor = DRIVE_ARMATURE_LINEAR if is_slide else DRIVE_ARMATURE_ROTARY
+    if math.isfinite(max_effort) and 0.0 < max_velocity < math.inf:
+        rotor = max(rotor, RISE_TIME * max_effort / max_velocity)
+    if is_slide:
+        rotor = min(rotor, DRIVE_ARMATURE_LINEAR_MAX)
+    if joint.armature < rotor:
+        joint.armature = rotor
+        diagnostics.note(
+            "SK-PHYS-010",
+            f"joint {scoped} gets an armature of {rotor:.3g} {'kg' if is_slide else 'kg m²'}, the rotor of its drive",
+            where,
+        )
+
+
+def drive_gains(
+    max_effort: Vector, is_slide: Any, least: Vector, most: Vector, timestep: float
+) -> tuple[Vector, Vector]:
+    """(kp, kv) of position drives on joints that feel inertias from `least` to `most` [kg·m² or kg], armature included.
+
+    Args:
+        max_effort: [N·m or N]; infinite where there is no limit.
+        is_slide: which of the joints slide.
+        timestep: [s].
+    """
+    stable_kv = least / timestep
+    stable_kp = np.minimum(0.25 * least / timestep**2, stable_kv**2 / (4.0 * most))
+    span = np.where(is_slide, FULL_EFFORT_ERROR_LINEAR, FULL_EFFORT_ERROR_ROTARY)
+    kp = np.minimum(max_effort / span, stable_kp)
+    return kp, np.minimum(2.0 * np.sqrt(kp * most), stable_kv)
+
+
+def felt_inertias(model: mujoco.MjModel, joints: Any) -> tuple[Vector, Vector]:
+    """Smallest and largest inertia at each of some one-axis joints, over poses spread through the joints' ranges.
+
+    The smallest is felt with all else free to move, 1 / (M⁻¹)_jj, the largest with all else held, M_jj.
+    """
+    joints = np.asarray(joints, np.intp)
+    data = mujoco.MjData(model)
+    dofs, places = model.jnt_dofadr[joints], model.jnt_qposadr[joints]
+    is_open = ~model.jnt_limited[joints].astype(bool)
+    turn = np.where(model.jnt_type[joints] == mujoco.mjtJoint.mjJNT_HINGE, np.pi, 0.0)
+    low = np.where(is_open, model.qpos0[places] - turn, model.jnt_range[joints, 0])
+    high = np.where(is_open, model.qpos0[places] + turn, model.jnt_range[joints, 1])
+    strides = np.resize(_STRIDES, len(joints)) % 1.0
+    units, solved = np.zeros((len(joints), model.nv)), np.zeros((len(joints), model.nv))
+    units[np.arange(len(joints)), dofs] = 1.0
+    diagonal = model.M_rowadr[dofs] + model.M_rownnz[dofs] - 1
+    least, most = np.full(len(joints), np.inf), np.zeros(len(joints))
+    for pose in range(_POSES):
+        share = (0.5 + pose * strides) % 1.0
+        data.qpos[:] = model.qpos0
+        if pose:  # the first is the file's own
+            data.qpos[places] = low + share * (high - low)
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_makeM(model, data)
+        mujoco.mj_factorM(model, data)
+        mujoco.mj_solveM(model, data, solved, units)
+        least = np.minimum(least, 1.0 / np.einsum("ij,ij->i", solved, units))
+        most = np.maximum(most, data.M[diagonal])
+    return least, most
+
+
+ARMATURE_ROTARY: Final = 2e-3
+"""[kg·m²] at least, on a hinge that a servo drives."""
+
+ARMATURE_LINEAR: Final = 2e-2
+"""[kg] at least, on a slider that a servo drives."""
+
+GAIN: Final = 1.5
+
+_GRAVITY: Final = 9.81
+_FREE: Final = int(mujoco.mjtJoint.mjJNT_FREE)
+_SLIDE: Final = int(mujoco.mjtJoint.mjJNT_SLIDE)
+
+
+@dataclass(frozen=True, slots=True)
+class ServoTraits:
+    """What the integral action of a velocity servo goes by (SI units of a hinge; N and m for a slider).
+
+    Attributes:
+        gain: kv [N·m·s/rad].
+        max_effort: [N·m]; infinite where there is no limit.
+        largest_load: greatest constant load that is worth a correction [N·m].
+        response_time: time constant of the servo when it moves all of the robot [s].
+    """
+
+    gain: float
+    max_effort: float
+    largest_load: float
+    response_time: float
+
+
+def add_actuator(spec: mujoco.MjSpec, ref: ActuatorRef, joint_name: str) -> None:
+    """Adds the actuator; its gains come from `tune_servos` after the compile."""
+    actuator = spec.add_actuator(name=ref.name)
+    actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
+    actuator.target = joint_name
+    actuator.ctrllimited = mujoco.mjtLimited.mjLIMITED_FALSE
+    actuator.gaintype = mujoco.mjtGain.mjGAIN_FIXED
+    actuator.biastype = mujoco.mjtBias.mjBIAS_NONE if ref.kind == "motor" else mujoco.mjtBias.mjBIAS_AFFINE
+    if ref.kind == "drive":
+        actuator.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
+    actuator.gainprm[0] = 1.0 if ref.kind in ("motor", "drive") else 0.0
+    limited = math.isfinite(ref.max_effort)
+    actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE if limited else mujoco.mjtLimited.mjLIMITED_FALSE
+    if limited:
+        most = max(ref.max_effort, 1e-12)
+        actuator.forcerange = (-most, most)
+
+
+def add_armature(joint: Any, scoped: str, diagnostics: Diagnostics, where: Where) -> None:
+    """Gives a driven joint the armature that its servo needs, and reports it."""
+    is_slide = joint.type == mujoco.mjtJoint.mjJNT_SLIDE
+    least = ARMATURE_LINEAR if is_slide else ARMATURE_ROTARY
+    if joint.armature < least:
+        joint.armature = least
+        unit = "kg" if is_slide else "kg m²"
+        diagnostics.note(
+            "SK-PHYS-010", f"joint {scoped} gets an armature of {least:g} {unit}, because a plugin drives it", where
+        )
+
+
+def tune_servos(spec: mujoco.MjSpec, model: mujoco.MjModel, refs: Iterable[ActuatorRef]) -> None:
+    """Sets the gains of all servos in the model and in the spec."""
+    refs = [r for r in refs if r.kind in ("position", "velocity")]
+    if not refs:
+        return
+    inertia = _felt_inertia(model, refs)
+    step = float(model.opt.timestep)
+    for ref, felt in zip(refs, inertia, strict=True):
+        kp, kv = servo_gains(ref, felt, step)
+        i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)
+        actuator = spec.actuator(ref.name)
+        gain, bias = (kv, (0.0, 0.0, -kv)) if ref.kind == "velocity" else (kp, (0.0, -kp, -kv))
+        model.actuator_gainprm[i, 0] = actuator.gainprm[0] = gain
+        model.actuator_biasprm[i, :3] = bias
+        for k, value in enumerate(bias):
+            actuator.biasprm[k] = value
+
+
+def servo_gains(ref: ActuatorRef, inertia: float, timestep: float) -> tuple[float, float]:
+    """(kp, kv) of a servo on a joint that feels `inertia` (armature included): as wanted, but never ringing."""
+    most = GAIN * inertia / timestep
+    kv = most if ref.kv is None else min(ref.kv, most)
+    if ref.kind == "velocity":
+        return 0.0, kv
+    stiffest = kv * kv / (4.0 * inertia) if ref.kv is None else 0.25 * inertia / timestep**2
+    return (stiffest if ref.kp is None else min(ref.kp, 0.25 * inertia / timestep**2)), kv
+
+
+def servo_traits(
+    model: mujoco.MjModel, refs: Sequence[ActuatorRef], compiled: Mapping[str, Any] | None = None
+) -> list[ServoTraits]:
+    """Return the traits of the velocity servos of a model, in its first pose.
+
+    A wheel on the ground moves the robot's mass at its radius, shared with the other servos of the robot. The largest
+    load is twice the robot's weight at that radius: no tyre transmits more. On a fixed base it is ten times the weight
+    of what the joint moves.
+
+    Args:
+        model: of the engine.
+        refs: the servos.
+        compiled: as they were compiled, the fields of the model that were written to since, by name.
+    """
+    names = "actuator_gainprm", "actuator_forcerange", "actuator_forcelimited"
+    strengths, ranges, limited = ((compiled or {}).get(name, getattr(model, name)) for name in names)
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_makeM(model, data)
+    ids = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name) for ref in refs]
+    joints = [int(model.actuator_trnid[i, 0]) for i in ids]
+    trees = [int(model.dof_treeid[model.jnt_dofadr[joint]]) for joint in joints]
+    found = []
+    for i, joint, tree in zip(ids, joints, trees, strict=True):
+        dof, first = int(model.jnt_dofadr[joint]), int(model.tree_dofadr[tree])
+        mass = float(model.body_subtreemass[model.dof_bodyid[first]])
+        reach = 1.0 if model.jnt_type[joint] == _SLIDE else _joint_reach(model, data, joint)
+        locked = float(data.M[model.M_rowadr[dof] + model.M_rownnz[dof] - 1])
+        inertia = max(locked, mass * reach**2 / trees.count(tree))
+        gain = float(strengths[i, 0])
+        weights = 2.0 if model.jnt_type[model.dof_jntid[first]] == _FREE else 10.0
+        most = float(ranges[i, 1]) if limited[i] else math.inf
+        response = inertia / gain if gain > 0.0 else math.inf
+        found.append(ServoTraits(gain, most, min(most, weights * mass * _GRAVITY * reach), response))
+    return found
+
+
+def _joint_reach(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> float:
+    """Return how far what a hinge moves reaches from its axis [m]: the radius of a wheel."""
+    first, axis = int(model.jnt_bodyid[joint]), data.xaxis[joint]
+    moved = {first}
+    for body in range(first + 1, model.nbody):
+        if int(model.body_parentid[body]) in moved:
+            moved.add(body)
+    geoms = [g for g in range(model.ngeom) if int(model.geom_bodyid[g]) in moved]
+    geoms = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]] or geoms
+    if not geoms:
+        return 0.1
+    arms = data.geom_xpos[geoms] - data.xanchor[joint]
+    return float((np.linalg.norm(np.cross(arms, axis), axis=1) + model.geom_rbound[geoms]).max())
+
+
+def _felt_inertia(model: mujoco.MjModel, refs: list[ActuatorRef]) -> list[float]:
+    """Inertia at each driven degree of freedom, all else free to move: 1 / (M⁻¹)_jj at the start."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_makeM(model, data)
+    mujoco.mj_factorM(model, data)
+    felt = []
+    unit, solved = np.zeros((1, model.nv)), np.zeros((1, model.nv))
+    for ref in refs:
+        i = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, ref.name)
+        dof = int(model.jnt_dofadr[model.actuator_trnid[i, 0]])
+        unit[:] = 0.0
+        unit[0, dof] = 1.0
+        mujoco.mj_solveM(model, data, solved, unit)
+        felt.append(float(1.0 / solved[0, dof]))
+    return felt

@@ -1,0 +1,455 @@
+"""The one door to MuJoCo's model specification: scenes go in, sensors and plugins add to it, a model comes out."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import mujoco
+
+from simkit.compiler.assets import Assets
+from simkit.compiler.bodies import remove_split_body
+from simkit.compiler.engine_options import apply_options, apply_size, choose_islands, set_extent
+from simkit.compiler.first_state import (
+    add_idle_armature,
+    apply_velocity_decay,
+    check_derived_numbers,
+    place_followers,
+    report_overlaps,
+)
+from simkit.compiler.inertia_repair import restore_file_inertias
+from simkit.compiler.kinematic_tree import WORLD
+from simkit.compiler.lights import add_light, refine_for_lamps, report_light, report_lights
+from simkit.compiler.mjcf_attachment import (
+    adopt_settings,
+    assign_geom_groups,
+    attach_model,
+    attach_world,
+    detach_model,
+    is_expected_warning,
+    models_of_own_file,
+    silence_engine_warnings,
+    without_attached,
+)
+from simkit.compiler.model_writer import ModelWriter
+from simkit.compiler.name_map import ActuatorRef, JointBinding, LightBinding, ModelRecord, NameMap, lookup
+from simkit.compiler.self_collision import FIRST_OWN_BIT, PAIRS_MOST
+from simkit.compiler.servos import add_actuator, add_armature, add_drive_armature, tune_servos
+from simkit.diagnostics import Diagnostics
+from simkit.pose import Pose
+from simkit.scene import SceneJoint, SceneModel, SceneWorld
+
+FileFinder = Callable[[str, Path | None], Path | None]
+
+MOST_MOVING: Final = 10_000
+"""Links; the engine's compiler takes time in proportion to their square, 7 s for 4000 that are free."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """A compiled model with its state, the names bound to its ids, and the builder it came from."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    names: NameMap
+    builder: SpecBuilder
+
+
+def _existing_file(uri: str, folder: Path | None) -> Path | None:
+    """A file by its path alone."""
+    path = Path(uri) if folder is None else folder / uri
+    return path if path.is_file() else None
+
+
+class SpecBuilder:
+    """Builds and changes the specification of one world.
+
+    Args:
+        world: what to build: options, lights and all models.
+        diagnostics: gets what was approximated, and errors.
+
+    Attributes:
+        spec: MuJoCo's specification. Handles into it die with `copy`; look elements up by name.
+        records: what each top-level model put into it, by scoped name; the world's own under the empty name.
+        find_file: the file that a URI names beside the file in that folder; None where there is none.
+        files_read: what plugins have found so.
+        parameter_files: what the run was given for the control plugins, which alone know what it is.
+    """
+
+    def __init__(self, world: SceneWorld, diagnostics: Diagnostics) -> None:
+        self.world, self.diagnostics = world, diagnostics
+        self.find_file: FileFinder = _existing_file
+        self.files_read: list[Path] = []
+        self.parameter_files: tuple[Any, ...] = ()
+        self.spec = mujoco.MjSpec()
+        self.spec.modelname = world.name
+        self.assets = Assets(self.spec)
+        self.records: dict[str, ModelRecord] = {"": ModelRecord(SceneModel(name="", scoped="", pose_world=Pose()))}
+        self._names: NameMap | None = None
+        self._cut: list[tuple[SceneJoint, bool]] = []
+        apply_options(self.spec, world, diagnostics)
+        own = models_of_own_file(world)
+        adopt_settings(self.spec, world)
+        for light in world.lights:
+            if not own:
+                add_light(self.spec.worldbody, light, light.pose_world, world.surroundings.shadows)
+                report_light(light, world, diagnostics)
+            self.records[""].lights[light.scoped] = LightBinding(light.scoped, light, "")
+        if own:
+            self.records.update({model.scoped: ModelRecord(model) for model in own})
+            attach_world(self.spec, [self.records[model.scoped] for model in own])
+        for model in world.models:
+            if model not in own:
+                self.add_model(model)
+        self._join_models()
+
+    # ------------------------------------------------------------------ models
+
+    def add_model(self, model: SceneModel, *, movable: bool = False) -> None:
+        """Adds a top-level model where its poses say.
+
+        Args:
+            movable: a static model becomes mocap bodies, which can be set elsewhere while it runs.
+        """
+        movable = movable or model.moved_by is not None
+        record = ModelRecord(model, movable)
+        if model.scoped in self.records:
+            raise ValueError(f"there is a model {model.scoped!r} already")
+        self.records[model.scoped] = record
+        self._names = None
+        self.assets.used = record.assets
+        if model.mjcf is not None:
+            attach_model(self.spec, record, model, self.diagnostics)
+        else:
+            links = len(list(model.all_links()))
+            if links * (links - 1) // 2 > PAIRS_MOST:  # else nobody wants it, and there may be thousands of models
+                record.own_bit = self._free_bit()
+            self._write(record)
+        if movable:
+            self._join_again(model)
+
+    def _write(self, record: ModelRecord) -> None:
+        """Writes a model, then those nested in it that have a specification of their own, then what joins them."""
+        model = record.scene
+        joints = self._joints_of(model)
+        attached = [nested for nested in model.all_models() if nested.mjcf is not None]
+        inside = {link.scoped for nested in attached for link in nested.links}
+        own = {joint.scoped for nested in attached for joint in nested.joints}
+        rest = [j for j in joints if j.scoped not in own and {j.parent_link, j.child_link} & inside]
+        record.scene = without_attached(model)
+        writer = ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
+        writer.write([j for j in joints if j.scoped not in own and j not in rest])
+        record.scene = model
+        for nested in attached:
+            done = attach_model(self.spec, record, nested, self.diagnostics, rest)
+            rest = [j for j in rest if j not in done]
+        if rest:
+            links = dict(record.links)
+            ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).join(rest, links)
+            record.links.update(links)
+
+    def remove_model(self, scoped: str) -> None:
+        """Takes a top-level model out again, with all that was added to it. Raises KeyError."""
+        record = lookup(self.records, scoped, "model")
+        self._cut_joints_to(record)
+        spec = self.spec
+        for ref in record.actuators:
+            spec.delete(spec.actuator(ref.name))
+        for name in record.equalities:
+            spec.delete(spec.equality(name))
+        for name in record.excludes:
+            spec.delete(spec.exclude(name))
+        for light in record.lights.values():
+            if light.body_name == WORLD:
+                spec.delete(spec.light(light.scoped))
+        for name in record.world_sites:
+            spec.delete(spec.site(name))
+        for name, owner in record.geoms.items():
+            if record.links[owner.link].body_name == WORLD:
+                spec.delete(spec.geom(name))
+        for name in record.root_bodies:
+            spec.delete(spec.body(name))
+        detach_model(spec, record)
+        del self.records[scoped]
+        still = set().union(*(r.assets for r in self.records.values()))
+        self.assets.drop(record.assets - still)
+        self._names = None
+
+    def _joints_of(self, model: SceneModel) -> list[SceneJoint]:
+        """The model's joints and those joints of the world that tie it to the world alone."""
+        own = {link.scoped for link in model.all_links()} | {WORLD}
+        return [
+            *model.all_joints(),
+            *(
+                j
+                for j in self.world.joints
+                if {j.parent_link, j.child_link} <= own and {j.parent_link, j.child_link} != {WORLD}
+            ),
+        ]
+
+    def _join_models(self, only: set[str] | None = None) -> None:
+        """Joints of the world between two models, as constraints; `only` some of them by name."""
+        record = self.records[""]
+        done = {name for r in self.records.values() for name in r.joints}
+        rest = [j for j in self.world.joints if j.scoped not in done and (only is None or j.scoped in only)]
+        if rest:
+            writer = ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics)
+            writer.join(rest, {n: b for r in self.records.values() for n, b in r.links.items()})
+            self._names = None
+
+    def _join_again(self, model: SceneModel) -> None:
+        """Ties a model that was written anew to the others as before."""
+        own = {link.scoped for link in model.all_links()}
+        cut, self._cut = self._cut, []
+        self._join_models({joint.scoped for joint, _ in cut})
+        known = {j.scoped for j in self.world.joints}
+        for joint, active in cut:
+            if joint.scoped not in known and {joint.parent_link, joint.child_link} & own:
+                self.add_weld(joint.scoped, joint.parent_link, joint.child_link, active=active)
+
+    def _cut_joints_to(self, record: ModelRecord) -> None:
+        world = self.records[""]
+        self._cut = []
+        for scoped, joint in list(world.joints.items()):
+            if {joint.scene.parent_link, joint.scene.child_link} & set(record.links):
+                active = all(bool(self.spec.equality(name).active) for name in joint.equalities)
+                self._cut.append((joint.scene, active))
+                for name in joint.equalities:
+                    self.spec.delete(self.spec.equality(name))
+                    world.equalities.remove(name)
+                if scoped in world.excludes:
+                    self.spec.delete(self.spec.exclude(scoped))
+                    world.excludes.remove(scoped)
+                if joint.twin:
+                    remove_split_body(self.spec, joint.twin, self.names.link(joint.carried).body_name)
+                    world.root_bodies = [b for b in world.root_bodies if b != joint.twin]
+                del world.joints[scoped]
+
+    def _free_bit(self) -> int:
+        """A collision bit that no model has, above those of the files' masks; 0 when they are used up."""
+        taken = {record.own_bit for record in self.records.values()}
+        return next((1 << i for i in range(FIRST_OWN_BIT, 31) if 1 << i not in taken), 0)
+
+    # ------------------------------------------------------------------ what sensors and plugins add
+
+    @property
+    def names(self) -> NameMap:
+        """Names to bindings; without ids (see `Compiled.names` for those)."""
+        if self._names is None:
+            self._names = NameMap.of(self.records.values())
+        return self._names
+
+    def add_site(self, link_scoped: str, pose_link: Pose, name: str) -> str:
+        """Adds a frame to a link; on a static link it lands in the world body. Raises KeyError."""
+        link = self.names.link(link_scoped)
+        record = self.records[link.model]
+        pose = link.offset @ pose_link
+        self.spec.body(link.body_name).add_site(name=name, pos=pose.position, quat=pose.quaternion, group=5)
+        record.sites.append(name)
+        if link.body_name == WORLD:
+            record.world_sites.append(name)
+        return name
+
+    def add_velocity_servo(
+        self, joint_scoped: str, *, axis: int = 0, max_effort: float, owner: str, kv: float | None = None
+    ) -> ActuatorRef:
+        """Adds a servo whose control is a velocity [rad/s or m/s].
+
+        Args:
+            max_effort: [N·m or N]; the joint's own effort limit counts too.
+            owner: who drives it; part of the actuator's name.
+            kv: wanted gain, with which a load slows the joint down; None takes the highest that does not ring, and
+                integral action, so that a constant load does not.
+
+        Raises:
+            KeyError: no such joint or axis.
+        """
+        return self._add_actuator("velocity", joint_scoped, axis, max_effort, owner, None, kv)
+
+    def add_position_servo(
+        self,
+        joint_scoped: str,
+        *,
+        axis: int = 0,
+        max_effort: float,
+        owner: str,
+        kp: float | None = None,
+        kv: float | None = None,
+    ) -> ActuatorRef:
+        """Adds a servo whose control is a position [rad or m]; gains that would ring are capped. Raises KeyError."""
+        return self._add_actuator("position", joint_scoped, axis, max_effort, owner, kp, kv)
+
+    def add_drive(
+        self,
+        joint_scoped: str,
+        *,
+        axis: int = 0,
+        max_effort: float,
+        max_velocity: float = float("inf"),
+        owner: str,
+        has_rotor: bool = True,
+    ) -> ActuatorRef:
+        """Adds a motor or servo by turns: its state is an effort, its control the rate at which that goes on.
+
+        Its force is the state and what `actuator_biasprm` adds (-kp, -kv), within the limit.
+
+        Args:
+            max_effort: [N·m or N]; the joint's own effort limit counts too.
+            max_velocity: [rad/s or m/s]; with the effort it says how heavy the drive's rotor is.
+            owner: who drives it; part of the actuator's name.
+            has_rotor: whether the joint may get an armature, as servos need it.
+
+        Raises:
+            KeyError: no such joint or axis.
+        """
+        ref = self._add_actuator("drive", joint_scoped, axis, max_effort, owner, None, None)
+        if has_rotor:
+            joint = self.names.joint(joint_scoped)
+            made = self.spec.joint(joint.joint_names[axis])
+            add_drive_armature(made, ref.max_effort, max_velocity, joint_scoped, self.diagnostics, joint.scene.where)
+        return ref
+
+    def add_motor(
+        self, joint_scoped: str, axis: int = 0, max_effort: float = float("inf"), owner: str = "motor"
+    ) -> ActuatorRef:
+        """Adds an actuator whose control is an effort [N·m or N]. Raises KeyError."""
+        return self._add_actuator("motor", joint_scoped, axis, max_effort, owner, None, None)
+
+    def _add_actuator(
+        self, kind: str, scoped: str, axis: int, max_effort: float, owner: str, kp: float | None, kv: float | None
+    ) -> ActuatorRef:
+        joint = self.names.joint(scoped)
+        if not 0 <= axis < len(joint.joint_names):
+            raise KeyError(f"joint {scoped!r} ({joint.type}) has no axis {axis} to drive")
+        record = self.records[joint.model]
+        if axis < len(joint.scene.axes):
+            max_effort = min(max_effort, joint.scene.axes[axis].effort)
+        if max_effort == 0.0:
+            self.diagnostics.warning(
+                "SK-JOINT-011",
+                f"joint {scoped} is driven by {owner}, but its effort limit is 0: nothing moves it",
+                joint.scene.where,
+                "leave <effort> out for a joint without a limit",
+            )
+        base, k = f"{owner}/{joint.joint_names[axis]}/{kind}", 1
+        taken = {ref.name for r in self.records.values() for ref in r.actuators}
+        name = base
+        while name in taken:
+            k += 1
+            name = f"{base}#{k}"
+        ref = ActuatorRef(name, kind, scoped, axis, max_effort, owner, kp, kv)
+        if kind in ("position", "velocity"):
+            add_armature(self.spec.joint(joint.joint_names[axis]), scoped, self.diagnostics, joint.scene.where)
+        add_actuator(self.spec, ref, joint.joint_names[axis])
+        record.actuators.append(ref)
+        return ref
+
+    def add_weld(self, name: str, parent_link: str, child_link: str, *, active: bool = True) -> str:
+        """Welds two links as they stand in the file; `active` can be changed while it runs. Raises KeyError."""
+        parent, child = self.names.link(parent_link), self.names.link(child_link)
+        record = self.records[parent.model if parent.model == child.model else ""]
+        links = {n: b for r in self.records.values() for n, b in r.links.items()}
+        ModelWriter(self.spec, self.assets, record, self.world, self.diagnostics).weld(
+            name, parent_link, child_link, links, active
+        )
+        if record is self.records[""]:
+            joint = SceneJoint(name, name, "fixed", parent_link, child_link, child.scene.pose_world)
+            record.joints[name] = JointBinding(name, "fixed", joint, "", is_loop=True, equalities=(name,))
+            self._names = None
+        return name
+
+    # ------------------------------------------------------------------ out
+
+    def compile(self) -> Compiled:
+        """The model with its first state. Raises LoadError when MuJoCo refuses it."""
+        self._before()
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            try:
+                with silence_engine_warnings():
+                    model = self.spec.compile()
+            except ValueError as problem:
+                self._refused(problem)
+            compiled = self._finished(model, None)
+            report_lights(compiled.model, self.diagnostics, self.world.where)
+            report_overlaps(compiled.model, compiled.names, self.diagnostics, self.world.where)
+        for text in dict.fromkeys(str(w.message) for w in said):
+            if not is_expected_warning(text):
+                self.diagnostics.warning("SK-PHYS-025", f"the engine warns: {text}", self.world.where)
+        return compiled
+
+    def recompile(self, compiled: Compiled, data: mujoco.MjData) -> Compiled:
+        """The model after a change; what stays keeps its state bit for bit, in new model and data objects.
+
+        Args:
+            compiled: what this specification (or the one it was copied from) compiled to before.
+            data: the state to keep; it stays as it is.
+
+        Raises:
+            LoadError: MuJoCo refuses the changed model.
+        """
+        from simkit.compiler.state_transfer import transfer_state
+
+        self._before()
+        try:
+            with silence_engine_warnings():
+                model = self.spec.compile()
+        except ValueError as problem:
+            self._refused(problem)
+        fresh = mujoco.MjData(model)
+        transfer_state(compiled.model, data, model, fresh)
+        model.opt.gravity[:] = compiled.model.opt.gravity
+        return self._finished(model, fresh)
+
+    def copy(self) -> SpecBuilder:
+        """An independent builder with the same content: change it, and this one stays what it was."""
+        other = SpecBuilder.__new__(SpecBuilder)
+        other.world, other.diagnostics = self.world, self.diagnostics
+        other.find_file, other.parameter_files = self.find_file, self.parameter_files
+        other.files_read = self.files_read
+        other.spec = self.spec.copy()
+        other.assets = Assets(other.spec, self.assets.known)
+        other.records = {name: record.copy() for name, record in self.records.items()}
+        other._names = None
+        other._cut = list(self._cut)
+        return other
+
+    def _before(self) -> None:
+        moving = sum(not link.static for r in self.records.values() for link in r.links.values())
+        if moving > MOST_MOVING:
+            self.diagnostics.error(
+                "SK-PHYS-029",
+                f"there are {moving} moving links; at most {MOST_MOVING} are compiled, which takes the engine a minute",
+                self.world.where,
+                "make what never moves <static>",
+            )
+            self.diagnostics.raise_if_errors()
+        colliding = sum(not o.is_visual for r in self.records.values() for o in r.geoms.values())
+        apply_size(self.spec, colliding)
+        if self.world.mjcf is None:
+            choose_islands(self.spec, sum(len(r.root_bodies) for r in self.records.values()))
+
+    def _refused(self, problem: ValueError) -> Any:
+        self.diagnostics.error("SK-PHYS-023", f"MuJoCo refuses the model: {problem}", self.world.where)
+        self.diagnostics.raise_if_errors()
+        raise AssertionError("unreachable")
+
+    def _finished(self, model: mujoco.MjModel, data: mujoco.MjData | None) -> Compiled:
+        restore_file_inertias(model, {name: exact for r in self.records.values() for name, exact in r.exact.items()})
+        check_derived_numbers(model, self.diagnostics, self.world.where)
+        set_extent(model)
+        if self.world.mjcf is None:
+            refine_for_lamps(model)
+        records = list(self.records.values())
+        assign_geom_groups(model, records)
+        apply_velocity_decay(model, records)
+        add_idle_armature(self.spec, model, records, self.diagnostics)
+        tune_servos(self.spec, model, [ref for r in records for ref in r.actuators])
+        names = NameMap.of(records, model)
+        if data is None:
+            data = mujoco.MjData(model)
+            place_followers(data, names.joints.values())
+        return Compiled(model, data, names, self)

@@ -1,0 +1,40 @@
+"""A running simulation and those who talk to it from other processes of the same user.
+
+from simkit.live import connect
+with connect() as client:
+    client.advertise("/cmd_vel").publish({"linear": {"x": 0.2}})
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from simkit.bridges.live.client import Client, connect
+from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription, Received
+from simkit.bridges.live.discovery import RunningSim, simulations
+from simkit.bridges.live.protocol import LiveClosed, LiveError
+
+if TYPE_CHECKING:
+    from simkit.bridges.live.server import Server
+
+__all__ = [
+    "Client",
+    "LiveClosed",
+    "LiveError",
+    "LiveGoal",
+    "LivePublisher",
+    "LiveSubscription",
+    "Received",
+    "RunningSim",
+    "Server",
+    "connect",
+    "simulations",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "Server":  # a client needs nothing of what a simulation is made of
+        from simkit.bridges.live.server import Server
+
+        return Server
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

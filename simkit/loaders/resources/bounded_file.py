@@ -1,0 +1,53 @@
+"""Reading a file that somebody else wrote: never more than asked for, and never waiting for ever."""
+
+from __future__ import annotations
+
+import errno
+import os
+import select
+import stat
+from pathlib import Path
+from typing import BinaryIO, cast
+
+PIPE_TIMEOUT = 10.0  # [s] for whoever writes into a pipe
+
+
+def read_bounded(path: Path, most: int) -> bytes:
+    """The content of a file, or of a pipe somebody writes into; one byte more than `most` where it has more.
+
+    Sizes are not believed, because a file may grow or be sparse. A device (`/dev/zero`) is no file.
+
+    Raises:
+        OSError: it cannot be read, is a folder or a device, or a pipe stays silent for 10 s.
+    """
+    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    with os.fdopen(handle, "rb", buffering=0) as stream:
+        mode = os.fstat(handle).st_mode
+        if stat.S_ISREG(mode):
+            return _read_file(cast(BinaryIO, stream), most)
+        if stat.S_ISFIFO(mode):
+            return _read_pipe(handle, most)
+        if stat.S_ISDIR(mode):
+            raise OSError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        raise OSError(errno.EINVAL, "it is a device, not a file", str(path))
+
+
+def _read_file(stream: BinaryIO, most: int) -> bytes:
+    pieces, left = [], most + 1
+    while left > 0 and (piece := stream.read(min(left, 1 << 24))):
+        pieces.append(piece)
+        left -= len(piece)
+    return b"".join(pieces)
+
+
+def _read_pipe(handle: int, most: int) -> bytes:
+    pieces, left = [], most + 1
+    while left > 0:
+        if not select.select([handle], [], [], PIPE_TIMEOUT)[0]:
+            raise OSError(errno.ETIMEDOUT, f"nothing came through the pipe for {PIPE_TIMEOUT:g} s")
+        piece = os.read(handle, min(left, 1 << 20))
+        if not piece:
+            break
+        pieces.append(piece)
+        left -= len(piece)
+    return b"".join(pieces)

@@ -1,0 +1,68 @@
+"""Models that every world may name without a file: the ground plane, the sun, and the chosen TurtleBot3."""
+
+from __future__ import annotations
+
+import os
+from urllib.parse import unquote
+
+from simkit.diagnostics import Diagnostics, Where, did_you_mean
+
+MODELS = ("burger", "waffle", "waffle_pi")
+_URI = "model://turtlebot3"
+_DEFAULT = "waffle"
+
+
+def turtlebot3_uri(uri: str, where: Where, diagnostics: Diagnostics) -> str | None:
+    """The URI, with `model://turtlebot3` made the robot that `TURTLEBOT3_MODEL` names.
+
+    An unset variable means the waffle, with a note; an unknown robot is an error that lists the known ones.
+    """
+    if uri != _URI:
+        return uri
+    name = os.environ.get("TURTLEBOT3_MODEL", "").strip()
+    if not name:
+        diagnostics.note("SK-URI-008", f"TURTLEBOT3_MODEL is not set: the robot is the {_DEFAULT}", where)
+        name = _DEFAULT
+    if name not in MODELS:
+        message = f"TURTLEBOT3_MODEL={name}: this robot is not here, allowed is {', '.join(MODELS)}"
+        diagnostics.error("SK-URI-007", message, where, did_you_mean(name, MODELS) or "unset it")
+        return None
+    return f"{_URI}_{name}"
+
+
+def turtlebot3_name(name: str, diagnostics: Diagnostics) -> str | None:
+    """The bare name of a bundled model, with `turtlebot3` made the robot that `TURTLEBOT3_MODEL` names."""
+    if name != "turtlebot3":
+        return name
+    uri = turtlebot3_uri(_URI, Where(name), diagnostics)
+    return None if uri is None else uri.removeprefix("model://")
+
+
+_GROUND_PLANE = """<sdf version="1.7"><model name="ground_plane"><static>true</static><link name="link">
+<collision name="collision"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
+<surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface></collision>
+<visual name="visual"><cast_shadows>false</cast_shadows>
+<geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
+<material><ambient>0.8 0.8 0.8 1</ambient><diffuse>0.8 0.8 0.8 1</diffuse><specular>0.8 0.8 0.8 1</specular></material>
+</visual></link></model></sdf>"""
+
+_SUN = """<sdf version="1.7"><light type="directional" name="sun"><cast_shadows>true</cast_shadows>
+<pose>0 0 10 0 0 0</pose><diffuse>0.8 0.8 0.8 1</diffuse><specular>0.2 0.2 0.2 1</specular>
+<attenuation><range>1000</range><constant>0.9</constant><linear>0.01</linear><quadratic>0.001</quadratic></attenuation>
+<direction>-0.5 0.1 -0.9</direction></light></sdf>"""
+
+_MODELS = {"ground_plane": _GROUND_PLANE, "ground plane": _GROUND_PLANE, "sun": _SUN}
+
+
+def builtin_model(uri: str) -> str | None:
+    """The text of the built-in model that a `model://` or Fuel URI names, or None."""
+    scheme, separator, rest = unquote(uri).partition("://")
+    if not separator or scheme not in ("model", "http", "https"):
+        return None
+    parts = [p for p in rest.lower().split("/") if p]
+    if scheme == "model":
+        return _MODELS.get(parts[0]) if len(parts) == 1 else None
+    if "models" not in parts or "fuel" not in parts[0]:
+        return None
+    inside = parts[parts.index("models") + 1 :]
+    return _MODELS.get(inside[0]) if inside and len(inside) <= 2 else None

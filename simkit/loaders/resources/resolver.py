@@ -1,0 +1,417 @@
+"""Where a URI of an input file lies on this machine. Nothing is ever fetched from a network."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import replace
+from functools import lru_cache
+from itertools import chain
+from pathlib import Path
+from urllib.parse import unquote
+
+from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
+from simkit.loaders.resources.paths import (
+    absolute_path,
+    first_existing,
+    format_searched,
+    is_existing,
+    is_file,
+    is_folder,
+    is_path_of_other_machine,
+    is_relocated,
+    is_small_integer,
+    leaves_folder,
+    package_uri,
+    sibling_names,
+)
+from simkit.loaders.resources.ros_packages import enclosing_package, package_folders
+from simkit.params import Params
+
+_SEARCH_VARIABLES = (
+    "SIMKIT_RESOURCE_PATH",
+    "GZ_SIM_RESOURCE_PATH",
+    "IGN_GAZEBO_RESOURCE_PATH",
+    "SDF_PATH",
+    "GAZEBO_MODEL_PATH",
+    "ROS_PACKAGE_PATH",
+)
+_CACHE_VARIABLES = ("GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH")
+_NOT_HERE = frozenset(("SK-URI-001", "SK-URI-002", "SK-URI-009"))
+_PATH_HINT = "name the folder that holds it with --resource-path or SIMKIT_RESOURCE_PATH"
+NEWEST_SDF = (1, 12)
+
+
+class Resolver:
+    """Finds files and folders by URI.
+
+    Args:
+        paths: folders for `model://`, `package://` and relative URIs, searched before those of the environment.
+        base: the folder of the file being loaded; searched last.
+        missing_meshes: whether any mesh that cannot be had is only a warning (to inspect a file without its meshes),
+            also one whose URI is refused.
+        anywhere: lets absolute paths and `..` leave the folders named above.
+        package_paths: the folder of each ROS package that the caller knows; they come before every other place.
+    """
+
+    def __init__(
+        self,
+        paths: Sequence[str | os.PathLike[str]] = (),
+        *,
+        base: Path | None = None,
+        missing_meshes: bool = False,
+        anywhere: bool = False,
+        package_paths: Mapping[str, str | os.PathLike[str]] | None = None,
+    ) -> None:
+        self.base, self.missing_meshes, self.anywhere = base, missing_meshes, anywhere
+        self.packages = {name: absolute_path(Path(p).expanduser()) for name, p in (package_paths or {}).items()}
+        self._found: dict[str, Path] = {}
+        self._below: dict[Path, dict[str, Path]] = {}
+        self._near: dict[tuple[str, Path], tuple[Path, ...]] = {}
+        found = [Path(p).expanduser() for p in paths]
+        for variable in _SEARCH_VARIABLES:
+            found += [Path(p) for p in os.environ.get(variable, "").split(os.pathsep) if p]
+        found += [Path(p) / "share" for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
+        self.paths: tuple[Path, ...] = tuple(dict.fromkeys(absolute_path(p) for p in found))
+
+    def around(self, folder: Path | None) -> Resolver:
+        """The same, with the folder of the file being loaded where none was given."""
+        if self.base is not None or folder is None:
+            return self
+        near = copy(self)
+        near.base = folder
+        return near
+
+    # ------------------------------------------------------------------ URIs
+
+    def mesh(self, uri: str, where: Where, relative_to: Path | None) -> tuple[Path | None, list[Diagnostic]]:
+        """The mesh file that `uri` names, and what is to be said of it.
+
+        As in Gazebo a world goes on without a mesh that is not there, but that is a warning and so an error where
+        warnings are; a URI that is refused, because it leaves the resource folders or has an unknown scheme, is one
+        always. An absolute path of another machine, which leads nowhere on this one, is just not there.
+        """
+        found = Diagnostics()
+        path = self.resolve(uri, where, found, relative_to)
+        if path is not None and path.is_dir():
+            found.error("SK-URI-001", f"{uri} is a folder ({path}), a mesh file is needed", where)
+            path = None
+        said = []
+        for problem in found:
+            is_missing = self.missing_meshes or problem.code in _NOT_HERE or is_path_of_other_machine(uri)
+            if problem.severity == "error" and is_missing:
+                lost = "; what has this shape is neither drawn nor touched"
+                problem = replace(problem, severity="warning", message=problem.message + lost)
+            said.append(problem)
+        return path, said
+
+    def resolve(self, uri: str, where: Where, diagnostics: Diagnostics, relative_to: Path | None) -> Path | None:
+        """The existing file or folder that `uri` names; None, with one error recorded, when there is none.
+
+        Args:
+            uri: `model://`, `package://`, `file://`, `https://` (local caches only), or a path.
+            where: the place in the input file, for the report.
+            diagnostics: where problems go.
+            relative_to: the folder of the file that names it.
+        """
+        found, places = self.search(uri, relative_to)
+        if found is not None:
+            if is_relocated(uri, found):
+                message = f"{uri} is not here under that name; {found} is used"
+                diagnostics.note("SK-URI-010", message, where)
+            return found
+        uri = package_uri(uri)
+        scheme, _, rest = uri.partition("://")
+        if uri.startswith(("http://", "https://")):
+            looked = format_searched(places)
+            diagnostics.error(
+                "SK-URI-002",
+                f"{uri} is not on this machine and nothing is downloaded{looked}",
+                where,
+                f"fetch it once with Gazebo (its cache is read), or {_PATH_HINT}",
+            )
+        elif places is None:
+            diagnostics.error("SK-URI-003", f"{uri} leaves the folders it may use", where, _PATH_HINT)
+        elif "://" in uri and scheme not in ("model", "package", "file"):
+            diagnostics.error(
+                "SK-URI-004",
+                f"{uri}: schemes known are model, package, file, https",
+                where,
+                did_you_mean(scheme, ("model", "package", "file", "https")),
+            )
+        else:
+            self._not_found(uri, scheme, rest.split("/")[0], places, where, diagnostics, relative_to)
+        return None
+
+    def _not_found(
+        self,
+        uri: str,
+        scheme: str,
+        name: str,
+        places: list[Path] | None,
+        where: Where,
+        diagnostics: Diagnostics,
+        relative_to: Path | None,
+    ) -> None:
+        near = did_you_mean(name, self._siblings(relative_to)) if scheme in ("model", "package") else ""
+        if scheme == "package":
+            folder, tried = self.find_package(name, relative_to)
+            if folder is None:
+                message = f"{uri}: the package {name!r} is not found{format_searched(tried)}"
+                hint = f"name its folder: --package-path {name}=DIR"
+                diagnostics.error("SK-URI-009", message, where, f"{near} or {hint}" if near else hint)
+                return
+        diagnostics.error("SK-URI-001", f"{uri} is not found{format_searched(places)}", where, near or _PATH_HINT)
+
+    def find_package(self, name: str, relative_to: Path | None) -> tuple[Path | None, list[Path]]:
+        """The folder of a ROS package, and every place looked in; what is found may be read from then on."""
+        if not _bare(name):
+            return None, []
+        around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
+        tried = list(package_folders(name, self.packages, around, self.paths, self._below, self._near))
+        for bundle in bundled_folders("assets"):
+            tried += [bundle / name, *sorted(bundle.glob(f"*/{name}"))]
+        folder, unique = first_existing([t for t in tried if is_folder(t)] or tried)
+        if folder is not None:
+            self._found[name] = folder
+        return folder, unique
+
+    def search(self, uri: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
+        """What `resolve` finds, and every place looked in (None where the URI leaves its folders)."""
+        if len(uri) > 4096 or "\0" in uri or any(len(part.encode(errors="replace")) > 255 for part in uri.split("/")):
+            return None, []  # no file has such a name
+        if uri.startswith(("http://", "https://")):
+            return first_existing(self._fuel(uri))
+        uri = package_uri(uri)
+        scheme, separator, rest = uri.partition("://")
+        if not separator:
+            return self._path(unquote(uri) if not self._exists(uri, relative_to) else uri, relative_to)
+        rest = unquote(rest)
+        if scheme == "file":
+            return self._path(rest, relative_to)
+        if scheme not in ("model", "package"):
+            return None, []
+        if leaves_folder(rest):
+            return None, None
+        named = self._named(rest, relative_to)
+        if scheme == "model":
+            return first_existing(chain(named, self._packaged(rest, relative_to)))
+        return first_existing(chain(self._packaged(rest, relative_to), named, self._renamed(rest, relative_to)))
+
+    def _exists(self, text: str, relative_to: Path | None) -> bool:
+        return relative_to is not None and is_existing(relative_to / text)
+
+    def _named(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+        """Candidates for `model://name/...`: in each folder, and a folder that itself has that name."""
+        name, _, inside = rest.strip("/").partition("/")
+        for root in self.paths:
+            yield root / name / inside
+        for root in self.paths:
+            if root.name == name:
+                yield root / inside
+        for folder in (relative_to, self.base):
+            if folder is None:
+                continue
+            folder = absolute_path(folder)
+            for ancestor in (folder, *folder.parents[:3]):
+                if ancestor.name == name:
+                    yield ancestor / inside
+            yield from (folder / name / inside, folder.parent / name / inside, folder.parent / "models" / name / inside)
+        for bundle in bundled_folders("assets"):
+            yield bundle / name / inside
+            yield from sorted(bundle.glob(f"*/{name}/")) if not inside and name.replace("_", "").isalnum() else ()
+
+    def _packaged(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+        """Candidates for `package://name/...` in the package of that name."""
+        name, _, inside = rest.strip("/").partition("/")
+        around = [absolute_path(f) for f in (relative_to, self.base) if f is not None]
+        for place in package_folders(name, self.packages, around, self.paths, self._below, self._near):
+            yield place / inside
+
+    def _renamed(self, rest: str, relative_to: Path | None) -> Iterator[Path]:
+        """`package://name/a/b` below the folders above the file: a checkout whose folder has another name."""
+        inside = rest.strip("/").partition("/")[2]
+        if relative_to is None or "/" not in inside or enclosing_package(absolute_path(relative_to)) is not None:
+            return  # a file that lies in a package has its name from there
+        folder = absolute_path(relative_to)
+        for ancestor in (folder, *folder.parents[:2]):
+            if len(ancestor.parts) > 3 and ancestor != Path.home():
+                yield ancestor / inside
+
+    def _moved(self, path: Path, relative_to: Path | None) -> Path | None:
+        """An absolute path of another machine: its end below a package that is here."""
+        parts = path.parts
+        for position in range(len(parts) - 2, 0, -1):
+            name = parts[position]
+            if name not in ("share", "src", "install", "home", "opt", "meshes", "models"):
+                folder, _ = self.find_package(name, relative_to)
+                if folder is not None and is_file(folder.joinpath(*parts[position + 1 :])):
+                    return folder.joinpath(*parts[position + 1 :])
+        return None
+
+    def _path(self, text: str, relative_to: Path | None) -> tuple[Path | None, list[Path] | None]:
+        """A plain path: absolute, or relative to the file's folder, then to each resource folder.
+
+        An absolute one that is not here, as `$(find pkg)` leaves them on another machine, is looked for in its package.
+        """
+        folders = [f for f in (relative_to, self.base) if f is not None] or [Path.cwd()]
+        roots = [*folders, *self.paths]
+        if Path(text).is_absolute():
+            candidates = [absolute_path(Path(text))]
+        else:
+            candidates = list(dict.fromkeys(absolute_path(root / text) for root in roots))
+        if not self.anywhere:
+            limits = [absolute_path(r) for r in (*roots, *bundled_folders("assets"))]
+            limits += [package for f in folders if (package := enclosing_package(absolute_path(f))) is not None]
+            limits += [*self.packages.values(), *self._found.values()]
+            kept = [c for c in candidates if any(c == limit or limit in c.parents for limit in limits)]
+            if not any(is_existing(c) for c in kept) and Path(text).is_absolute() and ".." not in Path(text).parts:
+                moved = self._moved(Path(text), relative_to)
+                if moved is not None:
+                    return moved, [moved]
+            if candidates and not kept:
+                return None, None
+            candidates = kept
+        return first_existing(candidates)
+
+    def _fuel(self, uri: str) -> Iterator[Path]:
+        """Candidates for a Fuel URL in Gazebo's caches, then a folder of that name in the resource folders."""
+        server, _, rest = unquote(uri).partition("://")[2].partition("/")
+        parts = [p for p in rest.split("/") if p]
+        if parts and parts[0].replace(".", "").isdigit():
+            parts = parts[1:]
+        if len(parts) < 3 or ".." in parts:
+            return
+        owner, kind, name, *tail = parts
+        version = tail[0] if tail else "tip"
+        inside = Path(*tail[2:]) if len(tail) > 2 and tail[1] == "files" else Path()
+        for cache in _fuel_caches():
+            for folder in (cache / server / owner / kind / name, cache / server / owner.lower() / kind / name.lower()):
+                versions = sorted(
+                    (p for p in folder.glob("*") if is_small_integer(p.name)), key=lambda p: int(p.name), reverse=True
+                )
+                yield from (v / inside for v in versions if version in ("tip", v.name))
+                if not versions:
+                    yield folder / version / inside
+        for root in self.paths:
+            yield from (root / spelt / inside for spelt in dict.fromkeys((name, name.replace(" ", "_").lower())))
+
+    def _siblings(self, relative_to: Path | None) -> Iterable[str]:
+        for root in (*self.paths, *([relative_to.parent] if relative_to else [])):
+            yield from (name for name in sibling_names(root / "any") if is_folder(root / name))
+
+    # ------------------------------------------------------------------ models
+
+    def model_file(self, folder: Path, where: Where, diagnostics: Diagnostics) -> Path | None:
+        """The file of a model folder: the highest version up to 1.12 listed in `model.config`, else `model.sdf`.
+
+        In a folder without either: its robot in URDF, or its one model in MuJoCo's own format.
+        """
+        from simkit.loaders.resources.xml_reader import parse_file
+
+        for manifest in (folder / "model.config", folder / "manifest.xml"):
+            if not is_file(manifest):
+                continue
+            document = parse_file(manifest, diagnostics)
+            if document is None:
+                return None
+            listed = _listed_files(document.root)
+            for _, name in sorted(listed, key=lambda item: item[0], reverse=True):
+                if is_file(folder / name) and not leaves_folder(name):
+                    return folder / name
+            names = ", ".join(name for _, name in listed) or "none"
+            if is_file(folder / "model.sdf"):
+                return folder / "model.sdf"
+            diagnostics.error("SK-URI-005", f"{manifest} lists no SDF file that exists (listed: {names})", where)
+            return None
+        for name in ("model.sdf", f"{folder.name}.sdf", "model.urdf", f"{folder.name}.urdf"):
+            if is_file(folder / name):
+                return folder / name
+        models = _mjcf_models(folder)
+        if len(models) == 1:
+            return models[0]
+        held = f"; of {', '.join(m.name for m in models[:8])} none is named {folder.name}.xml" if models else ""
+        diagnostics.error("SK-URI-005", f"the folder {folder} has neither model.config nor model.sdf{held}", where)
+        return None
+
+    def find_model(self, name: str) -> Path | None:
+        """The SDF or URDF file of a bundled model, by its bare name; None when there is none."""
+        if not _bare(name):
+            return None
+        for bundle in bundled_folders("assets"):
+            for folder in (bundle / name, *sorted(bundle.glob(f"*/{name}")), *sorted(bundle.glob(f"*/models/{name}"))):
+                found = self.model_file(folder, Where(str(folder)), Diagnostics()) if folder.is_dir() else None
+                if found is not None:
+                    return found
+            for suffix in ("sdf", "urdf", "xacro"):
+                spelt = name if name.endswith(f".{suffix}") else f"{name}.{suffix}"
+                below = [file for pattern in ("*", "*/urdf") for file in sorted(bundle.glob(f"{pattern}/{spelt}"))]
+                for file in (bundle / spelt, *below):
+                    if file.is_file():
+                        return file
+        return None
+
+    def find_world(self, name: str) -> Path | None:
+        """The file of a bundled world, by its bare name; None when there is none."""
+        if not _bare(name):
+            return None
+        for bundle in bundled_folders("worlds"):
+            for spelt in (name, f"{name}.sdf", f"{name}.world"):
+                if (bundle / spelt).is_file():
+                    return bundle / spelt
+        return None
+
+    def bundled_names(self) -> list[str]:
+        """Bare names of the worlds and models that simkit brings."""
+        worlds = [p.stem for bundle in bundled_folders("worlds") for p in bundle.glob("*.sdf")]
+        models = [p.parent.name for bundle in bundled_folders("assets") for p in bundle.glob("**/model.config")]
+        return sorted({*worlds, *models})
+
+
+def _mjcf_models(folder: Path) -> list[Path]:
+    """What may be the model of a folder in MuJoCo's own format: the one of its name, else all but the scenes."""
+    try:
+        files = sorted(f for f in folder.glob("*.xml") if f.name not in ("package.xml", "manifest.xml") and is_file(f))
+    except OSError:
+        return []
+    named = [f for f in files if f.stem in (folder.name, "model")]
+    return named[:1] or [f for f in files if not f.stem.startswith("scene")] or files
+
+
+@lru_cache(maxsize=1)
+def _package() -> Path:
+    return Path(__file__).resolve().parents[1]
+
+
+def bundled_folders(kind: str) -> list[Path]:
+    """The folders `assets` or `worlds` that travel with simkit, beside or inside the package."""
+    package = _package()
+    return [folder for folder in (package / kind, package.parent / kind) if folder.is_dir()]
+
+
+def sdf_version(text: str) -> tuple[int, int] | None:
+    """`"1.6"` as (1, 6); None where it is no version."""
+    parts = text.strip().split(".")
+    if len(parts) < 2 or not all(is_small_integer(p) for p in parts[:2]):
+        return None
+    return int(parts[0]), int(parts[1])
+
+
+def _listed_files(root: Params) -> list[tuple[tuple[int, int], str]]:
+    found = []
+    for element in root.all("sdf"):
+        version = sdf_version(element.attribute("version", "1.0")) or (1, 0)
+        if version <= NEWEST_SDF and element.value:
+            found.append((version, element.value))
+    return found + [((0, 0), element.value) for element in root.all("urdf") if element.value]
+
+
+def _bare(name: str) -> bool:
+    return 0 < len(name) < 200 and not set(name) & set("/\\*?[]<>:") and not name.startswith(".")
+
+
+def _fuel_caches() -> list[Path]:
+    named = [Path(p) for v in _CACHE_VARIABLES for p in os.environ.get(v, "").split(os.pathsep) if p]
+    home = Path.home()
+    return [*named, home / ".gz" / "fuel", home / ".ignition" / "fuel"]

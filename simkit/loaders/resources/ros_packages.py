@@ -1,0 +1,122 @@
+"""Find a ROS package without ROS: named by the user, around the file, or below a search path."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+from simkit.loaders.resources.bounded_file import read_bounded
+from simkit.loaders.resources.paths import is_file
+
+_PARENT_LEVELS = 6  # folders above a file in which its package.xml is looked for
+_SEARCH_DEPTH = 4  # folders below a search path
+_MAX_FOLDERS = 20_000
+_NAME = re.compile(rb"<name>\s*([A-Za-z0-9_.-]+)\s*</name>")
+
+
+def package_folders(
+    name: str,
+    explicit: Mapping[str, Path],
+    around: Iterable[Path],
+    paths: Iterable[Path],
+    below: dict[Path, dict[str, Path]],
+    near: dict[tuple[str, Path], tuple[Path, ...]],
+) -> Iterator[Path]:
+    """Folders that may be the package, the likeliest first; they need not exist.
+
+    The order: what the user named; the package that the file lies in, its siblings, and packages beside those; the
+    search paths; packages further below the search paths.
+
+    Args:
+        name: of the package.
+        explicit: folders named by the user, by package name.
+        around: folders of the files that name it.
+        paths: folders to search.
+        below: the packages below each path as far as it has been searched; filled here.
+        near: the same of what lies around a folder, by name of the package and folder.
+    """
+    if not name or "/" in name or name in (".", ".."):
+        return
+    if name in explicit:
+        yield explicit[name]
+    for folder in dict.fromkeys(around):
+        if (name, folder) not in near:
+            near[name, folder] = tuple(_nearby_packages(name, folder))
+        yield from near[name, folder]
+    paths = list(dict.fromkeys(paths))
+    for path in paths:
+        yield path / name
+        if path.name == name or package_name(path) == name:
+            yield path
+    for path in paths:
+        if path not in below:
+            below[path] = _packages_below(path)
+        if name in below[path]:
+            yield below[path][name]
+
+
+def enclosing_package(folder: Path) -> Path | None:
+    """The package that a folder lies in: the nearest folder upwards with a `package.xml`."""
+    for ancestor in (folder, *folder.parents[:_PARENT_LEVELS]):
+        if is_file(ancestor / "package.xml"):
+            return ancestor
+    return None
+
+
+def package_name(folder: Path) -> str:
+    """The name that a folder's `package.xml` gives; empty where it has none."""
+    file = folder / "package.xml"
+    try:
+        found = _NAME.search(read_bounded(file, 65536))
+    except OSError:
+        return ""
+    return "" if found is None else found.group(1).decode()
+
+
+def _nearby_packages(name: str, folder: Path) -> Iterator[Path]:
+    """The package around a file, its siblings, and (only real packages) what lies beside those and further up."""
+    home = enclosing_package(folder)
+    if home is None:
+        return
+    if home.name == name or package_name(home) == name:
+        yield home
+    yield home.parent / name
+    for above in home.parents[:3]:
+        if len(above.parts) < 3:
+            return
+        direct = above / name
+        if is_file(direct / "package.xml"):
+            yield direct
+        try:
+            repositories = sorted(p for p in above.iterdir() if not p.name.startswith("."))[:500]
+        except OSError:
+            continue
+        yield from (r / name for r in repositories if is_file(r / name / "package.xml"))
+
+
+def _packages_below(path: Path) -> dict[str, Path]:
+    """Every package below a folder by its name, as ROS itself searches `ROS_PACKAGE_PATH`; the nearest one counts."""
+    found: dict[str, Path] = {}
+    level, seen = [path], 0
+    for _ in range(_SEARCH_DEPTH):
+        below: list[Path] = []
+        for folder in level:
+            try:
+                with os.scandir(folder) as entries:
+                    children = sorted(e.path for e in entries if e.is_dir() and not e.name.startswith("."))
+            except OSError:
+                continue
+            for child in map(Path, children):
+                seen += 1
+                if seen > _MAX_FOLDERS:
+                    return found
+                if is_file(child / "package.xml"):
+                    for called in (package_name(child), child.name):
+                        if called:
+                            found.setdefault(called, child)
+                else:
+                    below.append(child)
+        level = below
+    return found

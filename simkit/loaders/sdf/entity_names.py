@@ -1,0 +1,62 @@
+"""Names of entities: required, unique among siblings, and not of a reserved form."""
+
+from __future__ import annotations
+
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+
+LONGEST_NAME = 1000
+MOST_SIBLINGS = 100_000
+
+
+def scoped(*parts: str) -> str:
+    """Names joined with `::`; empty ones are left out."""
+    return "::".join(p for p in parts if p)
+
+
+def read_name(element: Params, diagnostics: Diagnostics, version: tuple[int, int] = (1, 12)) -> str:
+    """The `name` attribute; a missing or reserved one is an error."""
+    name = element.attribute("name").strip()
+    if not name:
+        diagnostics.error("SK-SDF-001", f"<{element.name}> needs a name", element.where)
+        return ""
+    if len(name) > LONGEST_NAME:
+        text = f"<{element.name}> has a name of {len(name)} characters, allowed are {LONGEST_NAME}"
+        diagnostics.error("SK-SDF-003", text, element.where)
+        return name[:LONGEST_NAME]
+    if name.startswith("__") and name.endswith("__"):
+        diagnostics.error(
+            "SK-SDF-003", f"<{element.name} name={name!r}>: names __like_this__ are reserved", element.where
+        )
+    elif name == "world" and element.name != "world":
+        say = diagnostics.error if version >= (1, 7) else diagnostics.warning
+        say("SK-SDF-003", f"<{element.name} name='world'>: this name is reserved for the world", element.where)
+    elif "::" in name and version >= (1, 8):
+        diagnostics.error(
+            "SK-SDF-003", f"<{element.name} name={name!r}>: '::' separates names and cannot be in one", element.where
+        )
+    return name
+
+
+def named_elements(
+    elements: list[Params], owner: str, diagnostics: Diagnostics, version: tuple[int, int] = (1, 12)
+) -> list[tuple[str, Params]]:
+    """Elements with their names, without those that have none; two of one name are an error."""
+    found: dict[str, Params] = {}
+    if len(elements) > MOST_SIBLINGS:
+        text = f"{owner} has {len(elements)} of <{elements[0].name}>, allowed are {MOST_SIBLINGS}"
+        diagnostics.error("SK-XML-002", text, elements[MOST_SIBLINGS].where)
+        return []
+    for element in elements:
+        name = read_name(element, diagnostics, version)
+        if not name:
+            continue
+        if name in found:
+            diagnostics.error(
+                "SK-SDF-002",
+                f"{owner} has two <{element.name}> named {name!r} (the other at line {found[name].where.line})",
+                element.where,
+            )
+            continue
+        found[name] = element
+    return list(found.items())

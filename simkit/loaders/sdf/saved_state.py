@@ -1,0 +1,143 @@
+"""`<state>` of a world: what Gazebo Classic saved of where everything stood when somebody stopped it.
+
+Its poses (of models and of links) are in the world. Those of models and lights are applied, and those of links where no
+joint holds them; what a joint's position would have to bring about is reported.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.loaders.sdf.frames import Frame, world_pose
+from simkit.loaders.sdf.workspace import ModelDraft
+from simkit.params import Params
+from simkit.pose import Pose
+
+_CODE = "SK-SDF-034"
+_SAME_POSE = 1e-3  # metres and radians: saved numbers have six digits, and what rests has settled a little
+_UNAPPLIED = ("velocity", "acceleration", "wrench")
+
+
+def saved_states(world: Params, name: str, diagnostics: Diagnostics) -> list[Params]:
+    """The states that speak of this world; another one is reported."""
+    found = []
+    for state in world.all("state"):
+        of = state.attribute("world_name").strip()
+        for quiet in ("sim_time", "wall_time", "real_time", "iterations"):
+            state.child(quiet)
+        if of in ("", name):
+            found.append(state)
+            continue
+        state.mark_all_read()
+        hint = did_you_mean(of, (name,))
+        diagnostics.warning(_CODE, f"the saved state of world {of!r} is not applied to {name!r}", state.where, hint)
+    return found
+
+
+def deleted_names(states: Iterable[Params]) -> set[str]:
+    """Names of models and lights that were gone when the state was saved."""
+    return {name.value for state in states for gone in state.all("deletions") for name in gone.all("name")}
+
+
+def inserted_blocks(states: Iterable[Params]) -> list[Params]:
+    """Blocks with models and lights that had come in."""
+    return [block for state in states for block in state.all("insertions")]
+
+
+def saved_light_poses(states: Iterable[Params]) -> dict[str, Pose]:
+    """Poses of lights in the world by name."""
+    return {
+        light.attribute("name"): light.pose("pose")
+        for state in states
+        for tag in ("light", "light_state")
+        for light in state.all(tag)
+        if light.has("pose")
+    }
+
+
+def apply_saved_poses(states: Iterable[Params], drafts: Iterable[ModelDraft], diagnostics: Diagnostics) -> None:
+    """Moves models to where a state has them, before anything is resolved."""
+    known = {draft.source.name: draft for draft in drafts}
+    for state in states:
+        for tag in ("model", "model_state"):
+            for saved in state.all(tag):
+                _apply_saved_pose(saved, known, Pose(), diagnostics)
+        for joint in state.all("joint_state"):
+            joint.mark_all_read()
+            diagnostics.warning(_CODE, "the saved position of a joint is not applied", joint.where)
+
+
+def _apply_saved_pose(saved: Params, known: dict[str, ModelDraft], outer: Pose, diagnostics: Diagnostics) -> None:
+    name = saved.attribute("name").strip()
+    draft = known.get(name)
+    if draft is None:
+        hint = did_you_mean(name, known)
+        diagnostics.warning(
+            _CODE, f"the saved state speaks of model {name!r}, which is not in the file", saved.where, hint
+        )
+        saved.mark_all_read()
+        return
+    here = saved.pose("pose")
+    if saved.has("pose"):
+        draft.frame.pose, draft.frame.relative_to, draft.frame.placement = outer.inverse() @ here, "", ""
+    else:
+        here = outer @ draft.frame.pose
+    scale = saved.vector3("scale", (1.0, 1.0, 1.0))
+    if any(abs(s - 1) > 1e-9 for s in scale):
+        diagnostics.warning(_CODE, f"the saved scale of model {name!r} is not applied", saved.where)
+    draft.saved_links.extend(link for tag in ("link", "link_state") for link in saved.all(tag))
+    if not draft.joints and not draft.merged:
+        for link, part in _match_elements(draft):
+            if link.has("pose"):
+                part.pose, part.relative_to = here.inverse() @ link.pose("pose"), ""
+    for tag in ("joint", "joint_state"):
+        for joint in saved.all(tag):
+            joint.mark_all_read()
+    saved.child("frame")
+    inside = {nested.source.name: nested for nested in draft.models}
+    for tag in ("model", "model_state"):
+        for nested in saved.all(tag):
+            _apply_saved_pose(nested, inside, here, diagnostics)
+
+
+def _match_elements(draft: ModelDraft) -> list[tuple[Params, Frame]]:
+    frames = {part.name: part.frame for part in draft.links}
+    return [(link, frames[n]) for link in draft.saved_links if (n := link.attribute("name")) in frames]
+
+
+def report_unapplied(draft: ModelDraft, diagnostics: Diagnostics) -> None:
+    """Says what of a placed model's saved state is not applied: joint positions and velocities."""
+    moved = [
+        link
+        for link, frame in _match_elements(draft)
+        if link.has("pose") and _is_different(link.pose("pose"), world_pose(frame))
+    ]
+    if moved:
+        names = ", ".join(link.attribute("name") for link in moved[:5])
+        diagnostics.warning(
+            _CODE,
+            f"model {draft.scoped!r}: the saved poses of {names} need other joint positions; its joints start at zero",
+            moved[0].where,
+        )
+    fast = [link for link, _ in _match_elements(draft) if _has_motion(link)]
+    if fast:
+        diagnostics.warning(
+            _CODE, f"model {draft.scoped!r}: saved velocities are not applied; it starts at rest", fast[0].where
+        )
+    for nested in draft.models:
+        report_unapplied(nested, diagnostics)
+
+
+def _is_different(a: Pose, b: Pose) -> bool:
+    cosine = min(1.0, abs(float(a.quaternion @ b.quaternion)))
+    return math.dist(a.position, b.position) > _SAME_POSE or 2 * math.acos(cosine) > _SAME_POSE
+
+
+def _has_motion(link: Params) -> bool:
+    for name in _UNAPPLIED:
+        link.child(name)
+    for collision in (*link.all("collision"), *link.all("collision_state")):
+        collision.mark_all_read()
+    return any(abs(v) > 1e-3 for v in link.vector("velocity", 6, (0.0,) * 6))

@@ -1,0 +1,166 @@
+"""Settings of a world: physics, gravity, scene, atmosphere, spherical coordinates."""
+
+from __future__ import annotations
+
+import math
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.loaders.sdf.material import read_colour
+from simkit.params import Params
+from simkit.scene import Atmosphere, Physics, SphericalCoordinates, Surroundings
+from simkit.scene.geometry import Vec3
+from simkit.scene.world import CONTACT_LAWS, QUALITIES, Fog
+
+_GRAVITY: Vec3 = (0.0, 0.0, -9.8)
+_SHORTEST = 1e-9  # seconds of one step
+_LONGEST = 100.0  # seconds of one step; nobody means more
+
+
+def read_physics(world: Params, diagnostics: Diagnostics) -> tuple[Physics, Vec3]:
+    """The default physics profile, and gravity [m/s²] from the world or (before 1.6) from that profile."""
+    profiles = world.all("physics")
+    chosen = next((p for p in profiles if p.attribute("default", "false").lower() in ("true", "1")), None)
+    if chosen is None and profiles:
+        chosen = profiles[0]
+    for other in profiles:
+        name = other.attribute("name")
+        if other is not chosen:
+            other.mark_all_read()
+            message = f"physics profile {name!r} is not the default and not used"
+            diagnostics.note("SK-SDF-023", message, other.where)
+    block = chosen or Params("physics", where=world.where, diagnostics=diagnostics)
+    inside = block.vector3("gravity", _GRAVITY)
+    gravity = world.vector3("gravity", inside)
+    step = block.number("max_step_size", _old_step(block), maximum=_LONGEST)
+    if step < _SHORTEST:
+        allowed = "it must be positive" if step <= 0 else f"time is counted in nanoseconds: at least {_SHORTEST:g} s"
+        diagnostics.error("SK-PARAM-002", f"found <max_step_size>{step:g}</max_step_size>, {allowed}", block.where)
+        step = 0.001
+    law = block.choice("contact_law", CONTACT_LAWS, "simkit")
+    factor = max(0.0, _real_time_factor(block, step))
+    return Physics(step, factor, block.where, _contacts(block), contact_law=law), gravity
+
+
+def _contacts(block: Params) -> int:
+    """Contacts of one pair: 20, as Gazebo has it; -1 in a file means no limit of its own."""
+    count = block.integer("max_contacts", 20, minimum=-1)
+    return 20 if count < 0 else count
+
+
+def _real_time_factor(block: Params, step: float) -> float:
+    """The factor asked for; a file that has only the steps per second of wall time says it with those."""
+    rate = block.number("real_time_update_rate", block.number("update_rate", 0.0, minimum=0.0), minimum=0.0)
+    said = block.has("real_time_update_rate") or block.has("update_rate")
+    return block.number("real_time_factor", rate * step if said else 1.0)
+
+
+def _old_step(block: Params) -> float:
+    """The step as it was written before 1.4."""
+    for engine in block.children:
+        for holder in (engine, *engine.children):
+            if engine.name in ("ode", "bullet") and any(c.name == "dt" for c in holder.children):
+                return holder.number("dt", 0.001)
+    return 0.001
+
+
+# Semi-axes [m] of the surfaces that have a name: WGS84 (NIMA TR8350.2) and the Moon's mean sphere.
+SURFACES = {"EARTH_WGS84": (6378137.0, 6356752.314245), "MOON_SCS": (1737400.0, 1737400.0), "CUSTOM_SURFACE": None}
+
+_FOGS = ("linear", "exp", "exp2")
+_FOG_HINT = "Gazebo Classic draws none for the format's own constant and quadratic either"
+
+
+def read_surroundings(world: Params) -> Surroundings:
+    """Colours and shadows of the `<scene>`."""
+    scene = world.block("scene")
+    return Surroundings(
+        ambient=read_colour(scene, "ambient", (0.4, 0.4, 0.4, 1.0)),
+        background=read_colour(scene, "background", (0.7, 0.7, 0.7, 1.0)),
+        shadows=scene.boolean("shadows", True),
+        grid=scene.boolean("grid", True),
+        sky=scene.child("sky") is not None,
+        fog=_fog(scene),
+    )
+
+
+def _fog(scene: Params) -> Fog | None:
+    """`<fog>` as Gazebo Classic draws it, which knows three types by other names than the format lists."""
+    block = scene.child("fog")
+    if block is None:
+        return None
+    kind = block.text("type", "none")
+    fog = Fog(
+        type=kind,
+        colour=read_colour(block, "color", (1.0, 1.0, 1.0, 1.0)),
+        start=block.number("start", 1.0, minimum=0.0),
+        end=block.number("end", 100.0, minimum=0.0),
+        density=block.number("density", 1.0, minimum=0.0),
+    )
+    if kind == "none":
+        return None
+    if kind not in _FOGS:
+        place = block.child("type") or block
+        message = f"found <type>{kind}</type> of a fog, allowed is one of none, {', '.join(_FOGS)}; there is no fog"
+        scene.diagnostics.warning("SK-RENDER-010", message, place.where, did_you_mean(kind, _FOGS) or _FOG_HINT)
+        return None
+    return fog
+
+
+def read_quality(world: Params) -> str:
+    """`<quality>` of the scene, an element of our own: fast, gazebo or high."""
+    return world.block("scene").choice("quality", QUALITIES, "fast")
+
+
+def read_atmosphere(world: Params, diagnostics: Diagnostics) -> Atmosphere:
+    """The air at the origin; only the adiabatic kind is known to the format."""
+    block = world.block("atmosphere")
+    kind = block.attribute("type", "adiabatic") or "adiabatic"
+    if kind != "adiabatic":
+        hint = did_you_mean(kind, ("adiabatic",))
+        diagnostics.error("SK-SDF-036", f"<atmosphere type={kind!r}>: the one type is adiabatic", block.where, hint)
+    return Atmosphere(
+        temperature=block.number("temperature", 288.15, minimum=0.0),
+        temperature_gradient=block.number("temperature_gradient", -0.0065),
+        pressure=block.number("pressure", 101325.0, minimum=0.0),
+        where=block.where,
+    )
+
+
+def read_spherical_coordinates(world: Params, diagnostics: Diagnostics) -> SphericalCoordinates | None:
+    """Where on a planet the origin lies; angles are degrees in the file."""
+    block = world.child("spherical_coordinates")
+    if block is None:
+        return None
+    orientation = block.text("world_frame_orientation", "ENU")
+    if orientation != "ENU":
+        place = block.child("world_frame_orientation") or block
+        message = f"<world_frame_orientation> is {orientation!r}; the one that exists is ENU, which is used"
+        diagnostics.warning("SK-SDF-012", message, place.where)
+    equatorial, polar = _surface(block, diagnostics)
+    return SphericalCoordinates(
+        latitude=math.radians(block.number("latitude_deg", 0.0, minimum=-90, maximum=90)),
+        longitude=math.radians(block.number("longitude_deg", 0.0, minimum=-360, maximum=360)),
+        elevation=block.number("elevation", 0.0, minimum=-1e9, maximum=1e9),
+        heading=math.radians(block.number("heading_deg", 0.0, minimum=-1e6, maximum=1e6)),
+        where=block.where,
+        surface=block.text("surface_model", "EARTH_WGS84"),
+        equatorial=equatorial,
+        polar=polar,
+    )
+
+
+def _surface(block: Params, diagnostics: Diagnostics) -> tuple[float, float]:
+    """Semi-axes [m] of the surface; a custom one says its own."""
+    name = block.text("surface_model", "EARTH_WGS84")
+    custom = name == "CUSTOM_SURFACE"
+    axes = tuple(block.number(f"surface_axis_{a}", 0.0, required=custom) for a in ("equatorial", "polar"))
+    place = block.child("surface_model") or block
+    if name not in SURFACES:
+        message = f"<surface_model> {name!r} is not one of {', '.join(SURFACES)}"
+        diagnostics.error("SK-SDF-036", message, place.where, did_you_mean(name, SURFACES))
+    if not custom:
+        return SURFACES.get(name) or SURFACES["EARTH_WGS84"] or (0.0, 0.0)
+    if min(axes) <= 0:
+        message = f"CUSTOM_SURFACE has the semi-axes {axes[0]:g} and {axes[1]:g} m, both must be positive"
+        diagnostics.error("SK-SDF-036", message, place.where)
+    return axes[0], axes[1]

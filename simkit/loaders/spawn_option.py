@@ -1,0 +1,120 @@
+"""Models that come into a world as it is loaded: `--spawn MODEL:x,y,yaw[:name]`."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.diagnostics import Diagnostics
+from simkit.loaders import Resolver, find_document
+from simkit.pose import Pose
+from simkit.scene import Scene, SceneModel
+
+_NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBERS: Final = rf"\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)*"
+_TEXT: Final = re.compile(rf"(?P<model>.+?):(?P<numbers>{_NUMBERS})(?::(?P<name>[^:/,]+))?")
+_POSED: Final = re.compile(r":\s*[^:/]*,[^:/]*(:[^:/]*)?$")
+_FORM: Final = "MODEL:x,y,yaw[:name], as in tiago:1,0,1.57 or robot.urdf:0,2,0:second; or MODEL alone"
+_COUNTS: Final = {3: "x,y,yaw", 4: "x,y,z,yaw", 6: "x,y,z,roll,pitch,yaw"}
+
+
+@dataclass(frozen=True, slots=True)
+class SpawnedModel:
+    """One model to come.
+
+    Attributes:
+        source: a bare name, a file, or XML text.
+        place: x, y, yaw; or x, y, z, yaw; or x, y, z, roll, pitch, yaw [m, rad]. None leaves it to the file.
+        name: in place of the file's; None keeps that.
+    """
+
+    source: str | os.PathLike[str]
+    place: tuple[float, ...] | None = None
+    name: str | None = None
+
+    def pose(self, own: Pose) -> Pose | None:
+        """Where it is to stand, given where its file puts it; x, y, yaw keep its height and its tilt."""
+        if self.place is None:
+            return None
+        if len(self.place) == 6:
+            return Pose.from_rpy(*self.place)
+        if len(self.place) == 4:
+            x, y, z, yaw = self.place
+        else:
+            (x, y, yaw), z = self.place, float(own.position[2])
+        roll, pitch, _ = (float(v) for v in own.rpy)
+        return Pose.from_rpy(x, y, z, roll, pitch, yaw)
+
+
+def parse_spawn(text: str, diagnostics: Diagnostics) -> SpawnedModel | None:
+    """A text such as `tiago:1,0,1.57:robot`; None with an error recorded where it is none."""
+    found = _TEXT.fullmatch(text.strip())
+    if found is None:
+        if not text.strip() or _POSED.search(text):
+            diagnostics.error("SK-SPAWN-001", f"--spawn: found {text!r}, allowed is {_FORM}")
+            return None
+        return SpawnedModel(text.strip())
+    numbers = tuple(float(v) for v in found["numbers"].split(","))
+    if len(numbers) not in _COUNTS:
+        what = f"--spawn: {text!r} has {len(numbers)} number{'s' if len(numbers) > 1 else ''}"
+        forms = "; ".join(f"{count}: {form}" for count, form in _COUNTS.items())
+        diagnostics.error("SK-SPAWN-001", what, hint=f"what is allowed is {forms}")
+        return None
+    return SpawnedModel(found["model"], numbers, found["name"])
+
+
+def add_spawned_models(
+    scene: Scene,
+    wanted: Sequence[str | SpawnedModel],
+    resolver: Resolver,
+    diagnostics: Diagnostics,
+    load_model: Callable[..., SceneModel | None],
+    xacro_args: Mapping[str, str] | None = None,
+) -> Scene:
+    """The scene with more models in its world; every problem is recorded.
+
+    Args:
+        scene: what was loaded.
+        wanted: what is to come, in this order.
+        resolver: finds files.
+        diagnostics: gets every problem.
+        load_model: reads a model, given source, diagnostics, name and pose.
+        xacro_args: arguments of xacro files.
+    """
+    world = scene.world
+    models = list(world.models)
+    for one in wanted:
+        spawn = parse_spawn(one, diagnostics) if isinstance(one, str) else one
+        if spawn is None:
+            continue
+        found = Diagnostics()
+        own = _file_pose(spawn.source, resolver, xacro_args)
+        model = load_model(spawn.source, found, name=spawn.name, pose=spawn.pose(own), xacro_args=xacro_args)
+        found.pass_on(diagnostics)  # also what its plugins find in their own parameters later
+        if model is None:
+            continue
+        if model.name in {*(m.name for m in models), *(a.name for a in world.actors)}:
+            text = f"--spawn: the world has something named {model.name!r} already"
+            diagnostics.error("SK-SPAWN-002", text, model.where, "give it another name: MODEL:x,y,yaw:NAME")
+            continue
+        models.append(model)
+    world = replace(world, models=tuple(models))
+    return replace(scene, worlds=(world, *scene.worlds[1:]), model=None, light=None)
+
+
+def _file_pose(source: Any, resolver: Resolver, xacro_args: Mapping[str, str] | None) -> Pose:
+    """Where a model's own file puts it; the origin where it says nothing."""
+    if not (isinstance(source, str) and "<" in source) and Path(source).suffix in (".urdf", ".xacro", ".xml"):
+        return Pose()
+    document, _ = find_document(source, resolver, Diagnostics(), xacro_args)
+    if document is None or document.root.name != "sdf":
+        return Pose()
+    for kind in ("model", "include"):
+        first = next(iter(document.root.all(kind)), None)
+        if first is not None:
+            return first.pose("pose")
+    return Pose()

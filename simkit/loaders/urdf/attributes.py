@@ -1,0 +1,159 @@
+"""Attributes of URDF elements: numbers, vectors, texts and poses, each bad one an error with its place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import LARGEST, Params
+from simkit.pose import IDENTITY, Pose
+from simkit.scene.geometry import Vec3
+
+FARTHEST = 1e15  # metres; beyond it sums of poses would leave the numbers
+_XACRO_HINT = "the file looks like xacro that was not expanded: load the .xacro file itself"
+
+
+def report_bad_value(element: Params, attribute: str, allowed: str) -> None:
+    """Records a value that cannot be used."""
+    text = element.attributes.get(attribute, "")
+    shown = text if len(text) <= 60 else text[:57] + "..."
+    hint = _XACRO_HINT if "${" in text or "$(" in text else ""
+    message = f'<{element.name} {attribute}="{shown}">: allowed is {allowed}'
+    element.diagnostics.error("SK-URDF-013", message, element.where, hint)
+
+
+def report_missing(element: Params, attribute: str, allowed: str, owner: str = "") -> None:
+    """Records an attribute that is not there."""
+    near = did_you_mean(attribute, element.attributes)
+    what = f"{owner}: " if owner else ""
+    message = f"{what}<{element.name}> needs {attribute}= ({allowed})"
+    element.diagnostics.error("SK-URDF-001", message, element.where, near)
+
+
+def report_substitute(element: Params, found: str, instead: str, hint: str = "") -> None:
+    """Records what urdfdom leaves out with a message of its own, and what stands for it here."""
+    element.diagnostics.warning("SK-URDF-031", f"{found}; {instead}", element.where, hint)
+
+
+def skip_element(element: Params) -> None:
+    """Leaves out an element whose fault is said: of what is in it nothing more is."""
+    element.mark_all_read()
+    stack = [element]
+    while stack:
+        below = stack.pop()
+        for name in below.attributes:
+            below.attribute(name)
+        stack += below.children
+
+
+def text_attribute(element: Params, attribute: str) -> str:
+    """An attribute without surrounding white space; empty where absent."""
+    return element.attribute(attribute).strip()
+
+
+def number_attribute(
+    element: Params,
+    attribute: str,
+    default: float | None = None,
+    minimum: float | None = None,
+    finite: bool = True,
+    owner: str = "",
+) -> float:
+    """A number; without a default it must be there. Too small, NaN, or infinite where `finite`, is an error."""
+    allowed = "a number" + ("" if minimum is None else f" of at least {minimum:g}")
+    found = text_attribute(element, attribute)
+    if attribute not in element.attributes:
+        if default is None:
+            report_missing(element, attribute, allowed, owner)
+        return 0.0 if default is None else default
+    value = parse_number(found)
+    if value is None or (finite and math.isinf(value)) or (minimum is not None and value < minimum):
+        report_bad_value(element, attribute, allowed)
+        return 0.0 if default is None else default
+    return value
+
+
+def parse_number(found: str) -> float | None:
+    """The number that a text is; None where it is none or NaN."""
+    if "_" in found or not found.isascii():
+        return None
+    try:
+        value = float(found)
+    except ValueError:
+        return None
+    return None if math.isnan(value) else value
+
+
+def numbers_attribute(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
+    """`count` finite numbers separated by white space; None, with an error recorded where it is there but bad."""
+    if attribute not in element.attributes:
+        element.attribute(attribute)
+        return None
+    parts = [parse_number(part) for part in text_attribute(element, attribute).split()]
+    if len(parts) != count or any(p is None or not abs(p) <= LARGEST for p in parts):
+        report_bad_value(element, attribute, allowed or f"{count} numbers")
+        return None
+    return tuple(p for p in parts if p is not None)
+
+
+def vector3_attribute(element: Params, attribute: str, default: Vec3 = (0.0, 0.0, 0.0)) -> Vec3:
+    """Three finite numbers."""
+    found = numbers_attribute(element, attribute, 3)
+    return default if found is None else (found[0], found[1], found[2])
+
+
+def leading_numbers(element: Params, attribute: str, count: int, allowed: str = "") -> tuple[float, ...] | None:
+    """As `numbers_attribute`; of more than `count` numbers the first are used, with a warning."""
+    parts = text_attribute(element, attribute).split()
+    if len(parts) > count and all(parse_number(part) is not None for part in parts):
+        said = f'<{element.name} {attribute}="{" ".join(parts[:8])}"> has {len(parts)} numbers'
+        report_substitute(element, said, f"the first {count} are used", f"allowed is {allowed or f'{count} numbers'}")
+        element.attributes[attribute] = " ".join(parts[:count])
+    return numbers_attribute(element, attribute, count, allowed)
+
+
+def read_origin(owner: Params) -> Pose:
+    """The `<origin>` of an element: `xyz` [m] and `rpy` [rad], or `quat_xyzw` (URDF 1.2)."""
+    element = owner.child("origin")
+    if element is None:
+        return IDENTITY
+    xyz = vector3_attribute(element, "xyz")
+    if any(abs(v) > FARTHEST for v in xyz):
+        report_bad_value(element, "xyz", "numbers that are a place in a world")
+        xyz = (0.0, 0.0, 0.0)
+    if "quat_xyzw" in element.attributes:
+        quat = numbers_attribute(element, "quat_xyzw", 4)
+        element.attribute("rpy")
+        if quat is not None and 1e-6 < math.hypot(*quat) < FARTHEST:
+            return Pose(xyz, (quat[3], quat[0], quat[1], quat[2]))
+        if quat is not None:
+            report_bad_value(element, "quat_xyzw", "a quaternion, which has a length of 1")
+    return Pose.from_rpy(*xyz, *vector3_attribute(element, "rpy"))
+
+
+def extension_text(element: Params) -> str:
+    """The value of a Gazebo extension: its text, or its `value=`."""
+    return element.value or text_attribute(element, "value")
+
+
+def extension_boolean(element: Params) -> bool:
+    """true, yes, 1 or false, no, 0; anything else is an error."""
+    found = extension_text(element).lower()
+    if found not in ("true", "yes", "1", "false", "no", "0"):
+        message = f"<{element.name}> is {extension_text(element)!r}, allowed is true or false"
+        element.diagnostics.error("SK-URDF-013", message, element.where)
+    return found in ("true", "yes", "1")
+
+
+def extension_numbers(element: Params, count: int) -> Sequence[float] | None:
+    """The numbers of a Gazebo extension; None, with an error recorded, where they are not `count` finite ones."""
+    parts = [parse_number(part) for part in extension_text(element).split()]
+    kept = [p for p in parts if p is not None and math.isfinite(p)]
+    if len(kept) == len(parts) == count:
+        return kept
+    what = "a number" if count == 1 else f"{count} numbers"
+    hint = _XACRO_HINT if "${" in extension_text(element) else ""
+    message = f"<{element.name}> is {extension_text(element)!r}, allowed is {what}"
+    element.diagnostics.error("SK-URDF-013", message, element.where, hint)
+    return None

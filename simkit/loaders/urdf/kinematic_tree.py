@@ -1,0 +1,168 @@
+"""Links and joints of a robot: their names, that they make one tree, and where each link stands."""
+
+from __future__ import annotations
+
+from simkit.diagnostics import did_you_mean
+from simkit.loaders.sdf.frames import Frame
+from simkit.loaders.urdf.attributes import read_origin, report_missing, skip_element, text_attribute
+from simkit.loaders.urdf.robot_draft import JointDraft, RobotDraft
+from simkit.params import Params
+from simkit.pose import IDENTITY
+
+TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+
+
+def declare_tree(draft: RobotDraft) -> None:
+    """Enters every link and joint by name and checks that they make one tree; fills `links`, `joints` and `root`."""
+    draft.links = _elements_by_name(draft, "link")
+    if not draft.links:
+        near = ", ".join(f"<{name}>" for name in dict.fromkeys(c.name for c in draft.element.children))
+        hint = f"it has only {near}" if near else "give it a <link>"
+        draft.diagnostics.error("SK-URDF-008", f"robot {draft.name!r} has no link", draft.element.where, hint)
+    for name, element in _elements_by_name(draft, "joint").items():
+        joint = _joint(draft, name, element)
+        if joint is not None:
+            draft.joints[name] = joint
+    _check_tree(draft)
+
+
+def place_links(draft: RobotDraft) -> None:
+    """Where each link stands, joints at zero; enters links and joints in the scope of the extensions."""
+    below: dict[str, list[JointDraft]] = {}
+    for joint in draft.joints.values():
+        below.setdefault(joint.parent, []).append(joint)
+    in_model = {draft.root: IDENTITY} if draft.root else {}
+    stack = list(in_model)
+    while stack:
+        parent = stack.pop()
+        for joint in below.get(parent, ()):
+            if joint.child not in in_model:
+                in_model[joint.child] = in_model[parent] @ joint.origin
+                stack.append(joint.child)
+    scope = draft.scope
+    for name, element in draft.links.items():
+        pose = in_model.get(name, IDENTITY)
+        draft.links_world[name] = draft.pose @ pose
+        scope.names[name] = Frame(name, "link", draft.own(name), scope, pose, where=element.where, resolved=pose)
+    for name, joint in draft.joints.items():
+        pose = in_model.get(joint.child, IDENTITY)
+        frame = Frame(
+            name,
+            "joint",
+            draft.own(name),
+            scope,
+            pose,
+            attached_to=joint.child,
+            where=joint.element.where,
+            resolved=pose,
+        )
+        scope.names.setdefault(name, frame)
+    scope.canonical = draft.root
+
+
+def _elements_by_name(draft: RobotDraft, kind: str) -> dict[str, Params]:
+    """Elements by name; one without a name, with a bad one, or with that of another is an error."""
+    found: dict[str, Params] = {}
+    for element in draft.element.all(kind):
+        name = text_attribute(element, "name")
+        if not name:
+            report_missing(element, "name", "a text")
+            element.mark_all_read()
+        elif name in found:
+            line = found[name].where.line
+            message = f"two {kind}s are named {name!r}: the other is at line {line}"
+            draft.diagnostics.error("SK-URDF-002", message, element.where, "give one of them another name")
+            skip_element(element)
+        else:
+            if "::" in name:
+                message = f"{kind} {name!r}: '::' separates names and cannot be in one"
+                draft.diagnostics.error("SK-URDF-002", message, element.where)
+            found[name] = element
+    return found
+
+
+def _joint(draft: RobotDraft, name: str, element: Params) -> JointDraft | None:
+    """A joint with both ends; None, with every error of its recorded, where it joins nothing."""
+    kind = text_attribute(element, "type")
+    if kind not in TYPES:
+        hint = did_you_mean(kind, TYPES)
+        said = f"has type {kind!r}" if kind else "needs type="
+        message = f"joint {name!r} {said}, known are {', '.join(TYPES)}"
+        draft.diagnostics.error("SK-URDF-004", message, element.where, hint)
+    parent, child = _joint_link(draft, name, element, "parent"), _joint_link(draft, name, element, "child")
+    pose = read_origin(element)
+    if parent and parent == child:
+        message = f"joint {name!r} joins link {parent!r} with itself"
+        draft.diagnostics.error("SK-URDF-007", message, element.where)
+        return None
+    if kind not in TYPES or not parent or not child:
+        element.mark_all_read()
+        return None
+    return JointDraft(name, element, kind, parent, child, pose)
+
+
+def _joint_link(draft: RobotDraft, name: str, joint: Params, which: str) -> str:
+    """The link at one end of a joint; empty, with an error recorded, where there is none."""
+    element = joint.child(which)
+    if element is None:
+        near = did_you_mean(which, [c.name for c in joint.children])
+        message = f"joint {name!r} needs <{which} link=...>"
+        draft.diagnostics.error("SK-URDF-001", message, joint.where, near)
+        return ""
+    link = text_attribute(element, "link")
+    if not link:
+        report_missing(element, "link", "the name of a link", f"joint {name!r}")
+        return ""
+    if link in draft.links:
+        return link
+    hint = did_you_mean(link, draft.links)
+    if link == "world" and not hint:
+        hint = "to fix the robot to the world, add <link name='world'/>"
+    message = f"joint {name!r}: the {which} link {link!r} does not exist"
+    draft.diagnostics.error("SK-URDF-003", message, element.where, hint)
+    return ""
+
+
+def _check_tree(draft: RobotDraft) -> None:
+    """One root, one way to each link; anything else is an error. Chooses the root."""
+    above: dict[str, JointDraft] = {}
+    for joint in list(draft.joints.values()):
+        other = above.get(joint.child)
+        if other is None:
+            above[joint.child] = joint
+            continue
+        message = (
+            f"link {joint.child!r} hangs on two joints, {other.name!r} (line {other.element.where.line}) "
+            f"and {joint.name!r}; a URDF is a tree"
+        )
+        hint = "close a loop with <gazebo><joint ...> in SDF's words"
+        draft.diagnostics.error("SK-URDF-005", message, joint.element.where, hint)
+    joined_badly = {
+        text_attribute(e, "link") for j in draft.element.all("joint") for e in (j.child("child"),) if e is not None
+    } - set(above)
+    roots = [name for name in draft.links if name not in above]
+    draft.root = next(iter(roots), next(iter(draft.links), ""))
+    lonely = [name for name in roots if name not in joined_badly]
+    if len(lonely) > 1:
+        listed = ", ".join(f"{name!r} (line {draft.links[name].where.line})" for name in lonely[:8])
+        more = f" and {len(lonely) - 8} more" if len(lonely) > 8 else ""
+        message = f"robot {draft.name!r} has {len(lonely)} root links: {listed}{more}; each but one must be a child"
+        draft.diagnostics.error("SK-URDF-006", message, draft.links[lonely[1]].where, "join them with a <joint>")
+    _report_rings(draft, above)
+
+
+def _report_rings(draft: RobotDraft, above: dict[str, JointDraft]) -> None:
+    """Reports links that hang below themselves, each ring once."""
+    done: set[str] = set()
+    for start in draft.links:
+        way: list[str] = []
+        name = start
+        while name in above and name not in done:
+            done.add(name)
+            way.append(name)
+            name = above[name].parent
+        if name in way:
+            ring = way[way.index(name) :]
+            trail = " <- ".join([*ring[:8], ring[0]])
+            message = f"joints go round in a circle: {trail}"
+            draft.diagnostics.error("SK-URDF-007", message, above[ring[0]].element.where)

@@ -1,0 +1,117 @@
+"""State that the reading of one robot shares: its names, frames and files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from simkit.diagnostics import Diagnostic, Diagnostics
+from simkit.loaders.resources.resolver import Resolver
+from simkit.loaders.sdf.entity_names import scoped
+from simkit.loaders.sdf.frames import Frame, Scope
+from simkit.loaders.sdf.workspace import SdfFile, Workspace
+from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+
+
+@dataclass
+class RobotFiles:
+    """Finds files for one robot.
+
+    Attributes:
+        folder: of the robot's file.
+    """
+
+    resolver: Resolver
+    folder: Path | None
+    diagnostics: Diagnostics
+    _found: dict[str, Path | None] = field(default_factory=dict)
+    _packages: dict[str, list[Diagnostic]] = field(default_factory=dict)
+
+    def mesh(self, uri: str, place: Params) -> Path | None:
+        """A mesh file; one that is missing is a warning."""
+        if uri in self._found:
+            return self._found[uri]
+        path, said = self.resolver.mesh(uri, place.where, self.folder)
+        self._found[uri] = path = path if path is None else path.absolute()
+        for problem in said:
+            if problem.code == "SK-URI-009":
+                package = uri.partition("://")[2].split("/")[0]
+                self._packages.setdefault(package, []).append(problem)
+            else:
+                self.diagnostics.extend([problem])
+        return path
+
+    def texture(self, uri: str, place: Params) -> Path | None:
+        """An image file; a missing one is a warning."""
+        key = f"texture {uri}"
+        if key not in self._found:
+            found = Diagnostics()
+            path = self.resolver.resolve(uri, place.where, found, self.folder)
+            self._found[key] = path if path is None else path.absolute()
+            for problem in found:
+                message = f"texture: {problem.message}; drawn without it"
+                self.diagnostics.warning("SK-URI-006", message, place.where, problem.hint)
+        return self._found[key]
+
+    def report_packages(self) -> None:
+        """Each package that is not here, once, with the lines that need it."""
+        for problems in self._packages.values():
+            first = problems[0]
+            if len(problems) > 1:
+                lines = ", ".join(str(p.line) for p in problems[:12]) + (", ..." if len(problems) > 12 else "")
+                more = f"; {len(problems)} files of it are needed (lines {lines})"
+                first = replace(first, message=first.message + more)
+            self.diagnostics.extend([first])
+
+
+@dataclass(frozen=True, slots=True)
+class JointDraft:
+    """A joint whose ends are known: plain link names, and its origin in the parent link's frame."""
+
+    name: str
+    element: Params
+    type: str
+    parent: str
+    child: str
+    origin: Pose
+
+
+@dataclass
+class RobotDraft:
+    """A robot while it is read.
+
+    Attributes:
+        scoped: name from the world down.
+        pose: of the robot (its root link) in the world.
+        scope: names that the SDF readers of the extensions look up: links, joints, frames.
+        links, joints: by plain name, in document order.
+        links_world: pose of each link in the world.
+    """
+
+    name: str
+    scoped: str
+    element: Params
+    file: SdfFile
+    workspace: Workspace
+    assets: RobotFiles
+    scope: Scope
+    extensions: GazeboExtensions
+    pose: Pose = IDENTITY
+    root: str = ""
+    links: dict[str, Params] = field(default_factory=dict)
+    joints: dict[str, JointDraft] = field(default_factory=dict)
+    links_world: dict[str, Pose] = field(default_factory=dict)
+
+    @property
+    def diagnostics(self) -> Diagnostics:
+        return self.workspace.diagnostics
+
+    def own(self, *names: str) -> str:
+        """A scoped name inside the robot."""
+        return scoped(self.scoped, *names)
+
+    def frame(self, name: str) -> Frame:
+        """The frame of a link or joint, for the SDF readers."""
+        return self.scope.names[name]

@@ -1,0 +1,74 @@
+"""Between `Params` and the document tree that xacro rewrites; every element keeps its file and line, copied or not."""
+
+from __future__ import annotations
+
+from typing import Any
+from xml.dom import minidom
+
+from simkit.diagnostics import NOWHERE, Diagnostics, Where
+from simkit.params import Params
+
+_KEY = "where"
+
+
+class _PlaceKeeper:
+    """Hands an element's place on to its copies."""
+
+    def handle(self, _operation: int, key: str, data: Any, _source: Any, copy: Any) -> None:
+        if copy is not None:
+            copy.setUserData(key, data, self)
+
+
+_KEEP = _PlaceKeeper()
+
+
+def to_document(root: Params) -> minidom.Document:
+    """A document tree with the place of every element."""
+    document = minidom.Document()
+    top = _element(document, root)
+    document.appendChild(top)
+    stack = [(root, top)]
+    while stack:
+        params, node = stack.pop()
+        for child in params.children:
+            made = _element(document, child)
+            node.appendChild(made)
+            stack.append((child, made))
+    return document
+
+
+def _element(document: minidom.Document, params: Params) -> minidom.Element:
+    node = document.createElement(params.name)
+    for name, value in params.attributes.items():
+        node.setAttribute(name, value)
+    if params.value:
+        node.appendChild(document.createTextNode(params.value))
+    node.setUserData(_KEY, params.where, _KEEP)
+    return node
+
+
+def place_of(node: Any) -> Where:
+    """Where an element stands in its file."""
+    found = node.getUserData(_KEY) if node is not None else None
+    return found if isinstance(found, Where) else NOWHERE
+
+
+def to_params(top: Any, diagnostics: Diagnostics) -> Params:
+    """The tree as `Params`; an element without a place of its own has that of its parent."""
+    root = _params(top, place_of(top), diagnostics)
+    stack: list[tuple[Any, Params]] = [(top, root)]
+    while stack:
+        node, params = stack.pop()
+        for child in node.childNodes:
+            if child.nodeType == child.ELEMENT_NODE:
+                where = place_of(child)
+                made = _params(child, params.where if where is NOWHERE else where, diagnostics)
+                params.children.append(made)
+                stack.append((child, made))
+    return root
+
+
+def _params(node: Any, where: Where, diagnostics: Diagnostics) -> Params:
+    text = "".join(c.data for c in node.childNodes if c.nodeType in (c.TEXT_NODE, c.CDATA_SECTION_NODE)).strip()
+    attributes = {name: str(value) for name, value in node.attributes.items() if not name.startswith("xmlns:xacro")}
+    return Params(node.tagName, text, attributes, (), where, diagnostics)

@@ -1,0 +1,100 @@
+"""The functions that expressions of xacro may call, as xacro names them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from typing import Any
+
+from simkit.loaders.xacro.budget import MAX_ITEMS, BoundError, ExpansionError
+from simkit.loaders.xacro.expression import Evaluator, Function
+
+_DIRECT = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
+_LARGEST_FACTORIAL = 1000
+
+
+def python_functions(evaluator: Evaluator) -> dict[str, Function]:
+    """Python's own functions by name: those of xacro's name space `python`."""
+
+    def plain(function: Any) -> Any:
+        return evaluator._callable(function) if isinstance(function, Function) else function
+
+    def over(function: Any) -> Callable[..., Any]:
+        return lambda *args: function(*(plain(a) for a in args))
+
+    def mapped(function: Any, *lists: Any) -> list[Any]:
+        return [evaluator.call(function, *items) for items in zip(*lists, strict=False)]
+
+    def filtered(function: Any, items: Any) -> list[Any]:
+        return [i for i in items if (i if function is None else evaluator.call(function, i))]
+
+    def is_instance(value: Any, kinds: Any) -> bool:
+        wanted = kinds if isinstance(kinds, (tuple, list)) else (kinds,)
+        return isinstance(value, tuple(k.kind for k in wanted if isinstance(k, Function) and k.kind))
+
+    table: dict[str, Function] = {
+        kind.__name__: Function(kind, kind)
+        for kind in (list, dict, str, float, int, bool, complex, set, tuple, frozenset)
+    }
+    for function in (len, min, max, abs, all, any, divmod, hash, ord, repr, slice):
+        table[function.__name__] = Function(function)
+    for lazy in (enumerate, reversed, zip):
+        table[lazy.__name__] = Function(lambda *args, _lazy=lazy: list(_lazy(*args)))
+    table |= {
+        "map": Function(mapped),
+        "filter": Function(filtered),
+        "range": Function(_range),
+        "round": Function(_round),
+        "sorted": Function(sorted),
+        "sum": Function(lambda items, start=0: sum(items, start)),
+        "type": Function(lambda value: type(value).__name__),
+        "isinstance": Function(is_instance),
+    }
+    table["chr"] = Function(over(chr))
+    return table
+
+
+def math_functions() -> dict[str, Any]:
+    """Everything in the module `math`."""
+    table: dict[str, Any] = {}
+    for name, value in vars(math).items():
+        if name.startswith("_"):
+            continue
+        table[name] = Function(value) if callable(value) else value
+    for name in ("factorial", "comb", "perm"):
+        table[name] = Function(_check_size(getattr(math, name)))
+    return table
+
+
+def direct_names() -> tuple[str, ...]:
+    """The functions that need no `python.` before them."""
+    return _DIRECT
+
+
+def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
+    """The parts of a text between any of the characters of `sep`."""
+    parts = re.split("[" + re.escape(str(sep)) + "]", str(text)) if sep else [str(text)]
+    return [p for p in parts if p] if skip_empty else parts
+
+
+def _range(*args: int) -> list[int]:
+    wanted = range(*args)
+    if len(wanted) > MAX_ITEMS:
+        raise BoundError(f"a range has more than {MAX_ITEMS} items")
+    return list(wanted)
+
+
+def _round(value: Any, digits: int | None = None) -> Any:
+    if digits is not None and abs(digits) > 300:
+        raise ExpansionError("round to at most 300 digits")
+    return round(value) if digits is None else round(value, digits)
+
+
+def _check_size(function: Callable[..., int]) -> Callable[..., int]:
+    def call(*args: int) -> int:
+        if any(abs(a) > _LARGEST_FACTORIAL for a in args):
+            raise BoundError("a number is too large")
+        return function(*args)
+
+    return call

@@ -1,0 +1,87 @@
+"""Move every actor of a world along its script."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.plugins.actors.actor_model import AnimatedActor
+from simkit.plugins.base import WorldPlugin
+from simkit.runtime.engine.physics import STALE
+
+if TYPE_CHECKING:
+    from simkit.params import Params
+    from simkit.runtime import Simulation
+
+_SERVICE: Final = "std_srvs/srv/SetBool"
+_Moving = tuple[AnimatedActor, slice | npt.NDArray[np.intp]]
+
+
+class ActorMover(WorldPlugin):
+    """Puts actors where their scripts say: 50 times a second of simulated time, and whenever a sensor looks.
+
+    Comes with every world that has actors. Where an actor is follows from the time alone, so nothing piles up over
+    resets and restores. The service `/<actor>/play` (std_srvs/srv/SetBool) starts one anew, or stops it where it is.
+    """
+
+    scenery_rate = 50.0
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self._began: dict[str, float] = {}
+        self._stopped: dict[str, float] = {}
+        self._known: tuple[Any, tuple[_Moving, ...]] = (None, ())
+        for cast, _ in self._moving():
+            self._began |= {cast.name: 0.0} if cast.script.starts_by_itself else {}
+            self.offer(f"/{cast.name}/play", _SERVICE, partial(self._play, cast.name))
+
+    def get_state(self) -> dict[str, Any]:
+        return {"_began": dict(self._began), "_stopped": dict(self._stopped)}
+
+    def set_state(self, state: Any) -> None:
+        self._began, self._stopped = dict(state["_began"]), dict(state["_stopped"])
+
+    def reset(self) -> None:
+        self.move_scenery()
+
+    def move_scenery(self) -> None:
+        """Puts every moving actor where it is at the time of the simulation."""
+        sim = self.sim
+        data, moving = sim.mj_data, self._moving()
+        positions, quaternions, now = data.mocap_pos, data.mocap_quat, float(sim.time)
+        for cast, places in moving:
+            poses = cast.poses(self._time_of(cast.name, now))
+            positions[places], quaternions[places] = poses[:, :3], poses[:, 3:]
+        if moving:
+            sim.physics.changed(STALE)
+
+    def _moving(self) -> tuple[_Moving, ...]:
+        """The actors that go anywhere, with the indices of their bodies in the engine."""
+        structure = self.sim.structure
+        if self._known[0] is not structure:
+            found = []
+            for model in structure.models.values():
+                cast = model.moved_by
+                if isinstance(cast, AnimatedActor) and cast.moves and not cast.is_led:
+                    places = [structure.compiled.names.link(link.scoped).mocap for link in model.links]
+                    in_a_row = places == list(range(places[0], places[0] + len(places)))
+                    at = slice(places[0], places[0] + len(places)) if in_a_row else np.array(places, dtype=np.intp)
+                    found.append((cast, at))
+            self._known = structure, tuple(found)
+        return self._known[1]
+
+    def _time_of(self, name: str, now: float) -> float:
+        """How long a script has been going at a time [s]; 0 where it waits for its start."""
+        if name in self._stopped:
+            return self._stopped[name]
+        return now - self._began[name] if name in self._began else 0.0
+
+    def _play(self, name: str, request: Any) -> dict[str, Any]:
+        if request.data:
+            self._stopped.pop(name, None)
+            self._began[name] = float(self.sim.time)
+        else:
+            self._stopped[name] = self._time_of(name, float(self.sim.time))
+        return {"success": True, "message": f"{name} {'goes' if request.data else 'stops'}"}

@@ -1,0 +1,76 @@
+"""Poses of an actor's links over one cycle of its walk, while a plugin leads it."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from simkit.plugins.actors import person
+from simkit.plugins.actors.actor_model import AnimatedActor, WalkingPerson, link_poses_in_world
+from simkit.plugins.actors.script import Floats, Stride
+from simkit.plugins.actors.skin import SkinRig
+
+_ROWS: Final = 256
+"""Of the table of a cycle; straight lines in between, within a millimetre."""
+
+
+class Gait:
+    """A cycle of the walk of an actor; it never changes.
+
+    Args:
+        cast: who walks.
+        animation: the one that plays, of a skin that has several.
+        speed: [m/s]
+        seconds: by which a skin's animation goes on for each metre.
+    """
+
+    def __init__(self, cast: AnimatedActor, animation: str, speed: float, seconds: float) -> None:
+        self._cycle = _cycle(cast, animation, seconds)
+        self._going = _table(cast, animation, self._cycle, speed, seconds)
+        # who has a skin stands in the middle of a step, as in gz; a person of our own puts the feet together
+        self._standing = None if isinstance(cast.rig, SkinRig) else _table(cast, animation, 0.0, 0.0, seconds)[0]
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Gait:
+        return self
+
+    def poses(self, place: tuple[float, float, float], yaw: float, distance: float, goes: bool) -> Floats:
+        """Where its links are in the world: the origin, then the parts; position and quaternion, shape (n, 7).
+
+        Args:
+            place: of its origin [m].
+            yaw: that it looks at [rad].
+            distance: the way behind it [m].
+            goes: whether it walks now, or stands.
+        """
+        if self._standing is not None and not goes:
+            own: Floats = self._standing
+        else:
+            row = math.fmod(distance, self._cycle) / self._cycle * (_ROWS - 1) if self._cycle > 0.0 else 0.0
+            before = min(int(row), _ROWS - 2)
+            own = self._going[before] * (before + 1 - row) + self._going[before + 1] * (row - before)
+        found: Floats = np.empty_like(own)
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        found[:, 0] = place[0] + cos * own[:, 0] - sin * own[:, 1]
+        found[:, 1] = place[1] + sin * own[:, 0] + cos * own[:, 1]
+        found[:, 2] = place[2] + own[:, 2]
+        cos, sin = math.cos(yaw / 2), math.sin(yaw / 2)
+        found[:, 3:] = cos * own[:, 3:] + sin * own[:, (6, 5, 4, 3)] * (-1.0, -1.0, 1.0, 1.0)
+        return found
+
+
+def _cycle(cast: AnimatedActor, animation: str, seconds: float) -> float:
+    """Metres after which the parts lie as before; 0 where they never move."""
+    rig = cast.rig
+    if isinstance(rig, WalkingPerson):
+        return person.STRIDE * rig.scale
+    if not isinstance(rig, SkinRig) or seconds <= 0.0:
+        return 0.0
+    clip = rig.clips.get(animation) or next(iter(rig.clips.values()))
+    return clip.length / seconds
+
+
+def _table(cast: AnimatedActor, animation: str, cycle: float, speed: float, seconds: float) -> Floats:
+    distances = np.linspace(0.0, cycle, _ROWS if cycle > 0.0 else 2)
+    return link_poses_in_world(Stride(animation, distances, speed, seconds), cast.rig, False)

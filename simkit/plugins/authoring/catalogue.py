@@ -1,0 +1,176 @@
+"""Which plugins there are, under which names, and what each does with its file."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import Any
+
+from simkit.diagnostics import Diagnostics, closest
+from simkit.errors import InputError
+from simkit.params import Params
+from simkit.plugins import GROUP, Plugin, find_plugin, normalise, plugin_kinds
+from simkit.plugins.authoring.abstract_values import Block, Hole
+from simkit.plugins.authoring.plugin_facts import Facts
+from simkit.plugins.authoring.source_interpreter import Interpreter
+from simkit.scene import ScenePlugin
+
+_UNKNOWN = "SK-PLUGIN-070"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A plugin class.
+
+    Attributes:
+        cls: the class.
+        names: every spelling that a file may use, but for versions, folders and endings of libraries.
+        parents: what it may hang on: "world", "model", "visual", "sensor" or "any".
+        origin: where it comes from: "simkit", an entry point, or a file.
+    """
+
+    cls: type[Plugin]
+    names: tuple[str, ...]
+    parents: tuple[str, ...]
+    origin: str
+
+    @property
+    def summary(self) -> str:
+        """The first sentence of what the class says of itself."""
+        paragraph = (inspect.getdoc(self.code) or "").split("\n\n")[0]
+        return " ".join(paragraph.split())
+
+    @property
+    def source(self) -> str:
+        """File and line of the class; empty where there is no source."""
+        try:
+            file, (_, line) = inspect.getsourcefile(self.code), inspect.getsourcelines(self.code)
+        except (OSError, TypeError):
+            return ""
+        return f"{file}:{max(1, line)}"
+
+    @property
+    def code(self) -> Any:
+        """What its author wrote: the class, or what the class stands for."""
+        return getattr(self.cls, "stands_for", None) or self.cls
+
+
+def spellings(name: str) -> tuple[str, ...]:
+    """The ways to write a plugin's name: gz's with Ignition's before it, a library with `lib` and its ending."""
+    plain = normalise(name)
+    if "::" in plain:
+        return tuple(dict.fromkeys((plain, plain.replace("gz::sim::", "ignition::gazebo::", 1))))
+    if name.endswith(".py") or ":" in name:
+        return (name,)
+    stems = [plain, plain.replace("gz-sim", "ignition-gazebo", 1)] if plain.startswith("gz-sim") else [plain]
+    return tuple(dict.fromkeys(spelled for stem in stems for spelled in (stem, f"lib{stem}.so")))
+
+
+def entry_of(cls: type[Plugin], more: Iterable[str] = ()) -> Entry:
+    """What there is to say of a class without reading its code."""
+    kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
+    names = dict.fromkeys(s for name in (*more, *cls.filenames, *cls.names) for s in spellings(name))
+    return Entry(cls, tuple(names), tuple(kinds), _origin(cls))
+
+
+def known_plugins(plugin_paths: Sequence[Path] = (), problems: Diagnostics | None = None) -> list[Entry]:
+    """Every plugin that a file could name, in the order of their first names.
+
+    Args:
+        plugin_paths: folders whose modules the user allows; those are imported.
+        problems: is told which of those cannot be.
+    """
+    classes: dict[type[Plugin], list[str]] = {cls: [] for cls in plugin_kinds().values()}
+    for point in entry_points(group=GROUP):
+        for cls, names in classes.items():
+            if f"{cls.__module__}:{cls.__qualname__}" == point.value.replace(" ", ""):
+                names.append(point.value)
+    entries = [entry_of(cls, names) for cls, names in classes.items()]
+    for folder in plugin_paths:
+        for file in sorted(folder.glob("*.py")):
+            found = _find_class(file.name, "", (folder,), problems if problems is not None else Diagnostics())
+            if found is not None:
+                entries.append(entry_of(found, (file.name, f"{file.stem}:{found.__name__}")))
+    return sorted(entries, key=lambda e: (e.names or (e.cls.__name__,))[0].casefold())
+
+
+def find_entry(name: str, plugin_paths: Sequence[Path] = ()) -> Entry:
+    """The plugin of a name in any spelling, of a class's own name, of `module:Class` or of a file.
+
+    Raises:
+        InputError: SK-PLUGIN-070 there is none; the closest name is told.
+    """
+    by_class = {cls.__name__: cls for cls in plugin_kinds().values()}
+    said = Diagnostics()
+    found = by_class.get(name) or _find_class(name, name, plugin_paths, said)
+    said.raise_if_errors()
+    if found is not None:
+        return entry_of(found, (name,) if name.endswith(".py") or ":" in name.replace("::", "") else ())
+    if name.endswith(".py") and Path(name).is_file():
+        hint = f"allow its folder with --plugin-path {Path(name).parent}, and name the file alone"
+    else:
+        near = closest(normalise(name), [*plugin_kinds(), *by_class])
+        hint = f"did you mean {near!r}?" if near else "simkit plugin list names them all"
+    raise InputError(f"{_UNKNOWN} there is no plugin {name!r}; {hint}", _UNKNOWN)
+
+
+def _find_class(filename: str, name: str, plugin_paths: Sequence[Path], problems: Diagnostics) -> type[Plugin] | None:
+    """The class behind a name; what is wrong with a file of that name goes to `problems`."""
+    said = Diagnostics()
+    found = find_plugin(ScenePlugin(name, filename, "anything", Params("plugin")), plugin_paths, said)
+    problems.extend(d for d in said if d.severity == "error")
+    return found
+
+
+def _origin(cls: type[Plugin]) -> str:
+    package = cls.__module__.split(".")[0]
+    if package == "simkit":
+        return "simkit"
+    if package == "simkit_user_plugins":
+        return str(inspect.getsourcefile(getattr(cls, "stands_for", cls)))
+    return f"entry point, module {cls.__module__}"
+
+
+@functools.cache
+def facts_of(cls: type[Any]) -> Facts:
+    """What a plugin's code reads and opens; found by reading it, so nothing of it runs.
+
+    Args:
+        cls: the class; its module is imported.
+    """
+    of_gz = getattr(cls, "stands_for", None)
+    if of_gz is not None:
+        return _facts_of_gz(of_gz)
+    kinds = getattr(cls, "parent_kind", "any")
+    parent = Hole(kinds if isinstance(kinds, str) and kinds != "any" else "model")
+    reader = Interpreter(cls)
+    reader.method("prepare", parent, Block(), Hole("builder"))
+    reader.method("load", parent, Block())
+    found, common = reader.facts(), {p.path[0] for p in common_facts().parameters}
+    return replace(found, parameters=tuple(p for p in found.parameters if p.path[0] not in common))
+
+
+def _facts_of_gz(system: Any) -> Facts:
+    """What a class, or a module, with the hooks of gz reads in its `configure`."""
+    arguments = (Hole("entity"), Block(), Hole("ecm"), Hole("event_manager"))
+    if inspect.isclass(system):
+        reader = Interpreter(system)
+        reader.method("configure", *arguments)
+    else:
+        reader = Interpreter(type(system))
+        reader.module = system.__name__
+        reader.function(getattr(system, "configure", None), *arguments)
+    return reader.facts()
+
+
+@functools.cache
+def common_facts() -> Facts:
+    """What every plugin's file may have besides: names as of a ROS node, what becomes of it when it raises."""
+    reader = Interpreter(Plugin)
+    setter: Any = inspect.getattr_static(Plugin, "source").fset
+    reader.call(setter, [reader.me, Hole("plugin")], {})
+    return reader.facts()

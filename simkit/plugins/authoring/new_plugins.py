@@ -1,0 +1,175 @@
+"""Which new plugins are wanted: one by its name, or one for each library of a world that nothing stands for."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.errors import InputError
+from simkit.params import Params
+from simkit.plugins import find_plugin, normalise, plugin_kinds
+from simkit.plugins.authoring.element_types import Element, elements_of
+from simkit.plugins.base import ParentKind
+from simkit.plugins.ros_names import RosNames
+from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin
+
+PARENTS: tuple[ParentKind, ...] = ("world", "model", "visual", "sensor")
+_CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
+_BAD = "SK-PLUGIN-073"
+
+
+@dataclass(frozen=True)
+class NewPlugin:
+    """A plugin to be written.
+
+    Attributes:
+        module: its file without the ending, folders with dots.
+        class_name: its class.
+        filename: what a world calls its library.
+        gz_names: the class names that gz worlds give it.
+        parent: what it hangs on.
+        elements: its parameters.
+        plugins: where it is named, in document order.
+        sensor: the type of the sensor that it hangs on.
+    """
+
+    module: str
+    class_name: str
+    filename: str
+    parent: ParentKind
+    gz_names: tuple[str, ...] = ()
+    elements: tuple[Element, ...] = ()
+    plugins: tuple[ScenePlugin, ...] = ()
+    sensor: str = "imu"
+
+
+def plugin_named(name: str, parent: str) -> NewPlugin:
+    """A plugin by its name: `wheel_brake`, `WheelBrake` or `libwheel_brake.so`.
+
+    Raises:
+        InputError: SK-PLUGIN-073 no file or class can be called so, simkit has a plugin of that name, or there is no
+            such kind of parent.
+    """
+    if parent not in PARENTS:
+        hint = did_you_mean(parent, PARENTS)
+        text = f"{_BAD} --on: found {parent!r}, allowed is {', '.join(PARENTS)}"
+        raise InputError(text + (f"; {hint}" if hint else ""), _BAD)
+    if normalise(name) in plugin_kinds():
+        raise InputError(f"{_BAD} {name!r} comes with simkit: simkit plugin info {name}", _BAD)
+    module, class_name = _python_names(name)
+    filename = name if name.endswith(".so") else f"lib{module}.so"
+    kind: ParentKind = next(kind for kind in PARENTS if kind == parent)
+    sample = Params.from_dict({"gain": 1.0})
+    return NewPlugin(module, class_name, filename, kind, elements=elements_of([sample]))
+
+
+def plugins_missing_in(scene: Scene, plugin_paths: Sequence[Path] = ()) -> list[NewPlugin]:
+    """A plugin for each library that nothing stands for, with the parameters that it is given.
+
+    Args:
+        scene: a file that was read.
+        plugin_paths: folders whose modules stand for libraries already.
+    """
+    found: dict[str, list[tuple[ScenePlugin, ParentKind, str]]] = {}
+    for plugin, parent, sensor in _plugins_of_scene(scene):
+        if _is_unmapped(plugin, plugin_paths):
+            key = _library_name(plugin)
+            found.setdefault(key, []).append((plugin, parent, sensor))
+    taken: set[str] = set()
+    return [_new_plugin_of_uses(uses, taken) for uses in found.values()]
+
+
+def _library_name(plugin: ScenePlugin) -> str:
+    return normalise(plugin.filename) or normalise(plugin.name)
+
+
+def _new_plugin_of_uses(uses: Sequence[tuple[ScenePlugin, ParentKind, str]], taken: set[str]) -> NewPlugin:
+    plugins = tuple(plugin for plugin, _, _ in uses)
+    first, parent, sensor = uses[0]
+    as_class = _CLASS.match(first.filename)
+    if as_class:
+        module, class_name = as_class["module"], as_class["name"]
+    elif first.filename.endswith(".py"):
+        module = first.filename.removesuffix(".py").replace("/", ".")
+        class_name = first.name if first.name.isidentifier() else _python_names(module)[1]
+    else:
+        of_gz = next((p.name for p in plugins if "::" in p.name), "")
+        module, class_name = _python_names(of_gz or first.filename or first.name)
+    base, count = module, 1
+    while module in taken:
+        count += 1
+        module = f"{base}_{count}"
+    taken.add(module)
+    gz_names = tuple(dict.fromkeys(p.name for p in plugins if "::" in p.name))
+    blocks = [p.params for p in plugins]
+    names = _common_elements(blocks)
+    return NewPlugin(module, class_name, first.filename, parent, gz_names, elements_of(blocks, names), plugins, sensor)
+
+
+def _common_elements(blocks: Sequence[Params]) -> frozenset[str]:
+    """What every plugin's names are read from: `<ros>`, `<robotNamespace>`."""
+    asked: set[str] = set()
+    for block in blocks:
+        copy = block.copied()
+        copy.diagnostics = Diagnostics()
+        RosNames.from_params(copy, "plugin")
+        asked |= copy.asked
+    return frozenset(asked)
+
+
+def _is_unmapped(plugin: ScenePlugin, plugin_paths: Sequence[Path]) -> bool:
+    said = Diagnostics()
+    return find_plugin(plugin, plugin_paths, said, "any") is None and {"SK-PLUGIN-001", "SK-PLUGIN-002"} >= {
+        d.code for d in said
+    }
+
+
+def _plugins_of_scene(scene: Scene) -> Iterator[tuple[ScenePlugin, ParentKind, str]]:
+    """Every plugin with what it hangs on and, of a sensor, the sensor's type."""
+    models = [scene.model] if scene.model else []
+    for world in scene.worlds:
+        for plugin in world.plugins:
+            yield plugin, "world", ""
+        models += world.models
+    for model in models:
+        yield from _plugins_of_model(model)
+
+
+def _plugins_of_model(model: SceneModel) -> Iterator[tuple[ScenePlugin, ParentKind, str]]:
+    for sensor in model.all_sensors():
+        for plugin in sensor.plugins:
+            yield plugin, "sensor", sensor.kind
+    for nested in model.all_models():
+        owners: list[SceneLink | SceneJoint] = [*nested.links, *nested.joints]
+        below = [p for owner in owners for p in owner.plugins]
+        for plugin in (*below, *nested.plugins):
+            yield plugin, "model", ""
+    for link in model.all_links():
+        for visual in link.visuals:
+            for plugin in visual.plugins:
+                yield plugin, "visual", ""
+
+
+def _python_names(name: str) -> tuple[str, str]:
+    """Module and class for a library: `libMyThing.so` is my_thing and MyThing.
+
+    Raises:
+        InputError: SK-PLUGIN-073 nothing can be called so.
+    """
+    stem = normalise(name).rsplit("::", 1)[-1].removeprefix("gz-sim-")
+    words = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", re.sub(r"[^A-Za-z0-9]+", " ", stem))
+    module = "_".join(word.lower() for word in words)
+    class_name = "".join(word[0].upper() + word[1:] for word in words)
+    if module and module[0].isdigit():
+        module, class_name = f"plugin_{module}", f"Plugin{class_name}"
+    if module in sys.stdlib_module_names or keyword.iskeyword(module):
+        module, class_name = f"{module}_plugin", f"{class_name}Plugin"
+    if not module.isidentifier():
+        allowed = "allowed are names such as wheel_brake, WheelBrake or libwheel_brake.so"
+        raise InputError(f"{_BAD} nothing can be called {name!r}; {allowed}", _BAD)
+    return module, class_name

@@ -1,0 +1,173 @@
+"""What a plugin class reads, publishes, listens to and offers, as its code says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from simkit.plugins.authoring.abstract_values import Either, Given, Hole, alternatives, text_of
+from simkit.plugins.authoring.parameter_units import unit_of
+
+_NARROWER = ("", "block", "text")  # any other kind is narrower still
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One element (or attribute, `@name`) that a plugin reads.
+
+    Attributes:
+        path: names of the elements, from the plugin down.
+        kind: "number", "integer", "boolean", "text", "vector", "pose", "choice", "block", or empty where the element
+            is taken without a value.
+        default: what holds where the file says nothing; a text may have holes such as `{model}`.
+        instead: elements that are taken where this one is not there.
+        required: whether the file must have it.
+        minimum, maximum: bounds of a number.
+        choices: the words allowed.
+        size: how many numbers a vector has.
+        repeated: whether every element of that name counts.
+        live: whether it may be changed while the simulation runs.
+        says: what its author says of it.
+        line: the source line it is read at.
+    """
+
+    path: tuple[str, ...]
+    kind: str
+    default: Any = None
+    instead: tuple[str, ...] = ()
+    required: bool = False
+    minimum: float | None = None
+    maximum: float | None = None
+    choices: tuple[Any, ...] = ()
+    size: int | None = None
+    repeated: bool = False
+    live: bool = False
+    says: str = ""
+    line: str = ""
+
+    @property
+    def name(self) -> str:
+        """`odometry_noise/radius`."""
+        return "/".join(self.path)
+
+    @property
+    def unit(self) -> str:
+        """SI unit; empty where it has none or nothing tells it."""
+        return unit_of(self.path[-1], self.kind, self.says, self.line)
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic of a plugin.
+
+    Attributes:
+        name: as the code names it; `~` is the plugin's own name, holes are in braces.
+        types: ROS types; the first is the listed one.
+        published: whether it goes out; else it is listened to.
+        latched: whether a later subscriber gets the last message.
+        elements: the parameters that change the name.
+    """
+
+    name: str
+    types: tuple[str, ...]
+    published: bool
+    latched: bool = False
+    elements: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Service:
+    """A service or an action of a plugin; see `Topic`."""
+
+    name: str
+    type: str
+    elements: tuple[str, ...] = ()
+    is_action: bool = False
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What the code of a plugin class says."""
+
+    parameters: tuple[Parameter, ...] = ()
+    topics: tuple[Topic, ...] = ()
+    services: tuple[Service, ...] = ()
+
+
+def plain_default(value: Any) -> tuple[Any, tuple[str, ...]]:
+    """A default as plain data, and the elements that are read in its place."""
+    instead: list[str] = []
+    while isinstance(value, (Given, Either)):
+        if isinstance(value, Given):
+            instead.append("/".join(value.path))
+            value = value.default
+        else:
+            instead += ["/".join(v.path) for v in value.values if isinstance(v, Given)]
+            value = next((v for v in value.values if not isinstance(v, Given)), value.values[0])
+    if isinstance(value, Hole):
+        return text_of(value), tuple(dict.fromkeys(instead))
+    if isinstance(value, (list, tuple)):
+        value = tuple(v if isinstance(v, (int, float, str, bool)) else text_of(v) for v in value)
+    elif value is not None and not isinstance(value, (int, float, str, bool)):
+        value = text_of(value)
+    return value, tuple(dict.fromkeys(instead))
+
+
+def merged(read: Iterable[Parameter]) -> tuple[Parameter, ...]:
+    """One entry for each element, in the order of reading: what is read twice is known by its narrower type."""
+    found: dict[tuple[str, ...], Parameter] = {}
+    for parameter in read:
+        if not parameter.path or "*" in parameter.path:  # whatever is there: no name to be told
+            continue
+        before = found.get(parameter.path)
+        found[parameter.path] = parameter if before is None else _both(before, parameter)
+    for path in list(found):
+        for depth in range(1, len(path)):
+            above = found.get(path[:depth])
+            if above is None or not above.kind:
+                repeated = above.repeated if above else False
+                found[path[:depth]] = Parameter(path[:depth], "block", repeated=repeated)
+    order = sorted(found, key=lambda p: [list(found).index(p[: d + 1]) for d in range(len(p))])
+    return tuple(found[path] for path in order)
+
+
+def _both(one: Parameter, other: Parameter) -> Parameter:
+    first, second = (one, other) if _rank(one.kind) >= _rank(other.kind) else (other, one)
+    same_kind = first.kind == second.kind
+    return replace(
+        first,
+        default=first.default if first.default is not None or not same_kind else second.default,
+        instead=tuple(dict.fromkeys((*first.instead, *(second.instead if same_kind else ())))),
+        # asked for once more where it turned out to be missing, it is required either way
+        required=first.required or second.required,
+        repeated=first.repeated or second.repeated,
+        live=first.live or second.live,
+        says=first.says or second.says,
+        choices=tuple(dict.fromkeys((*first.choices, *second.choices))),
+    )
+
+
+def merged_topics(found: Iterable[Topic]) -> tuple[Topic, ...]:
+    """Each topic once, with all the parameters that may name it."""
+    table: dict[tuple[Any, ...], Topic] = {}
+    for topic in found:
+        key = (topic.name, topic.types, topic.published)
+        before = table.get(key, topic)
+        elements = tuple(dict.fromkeys((*before.elements, *topic.elements)))
+        table[key] = replace(before, elements=elements, latched=before.latched or topic.latched)
+    return tuple(table.values())
+
+
+def _rank(kind: str) -> int:
+    return _NARROWER.index(kind) if kind in _NARROWER else len(_NARROWER)
+
+
+def topic_name(value: Any) -> tuple[str, tuple[str, ...]]:
+    """A topic's name as the code has it, and the elements that may change it."""
+    named: list[str] = []
+    for one in alternatives(value):
+        while isinstance(one, Given):
+            named.append("/".join(one.path))
+            one = one.default
+    return text_of(value), tuple(dict.fromkeys(named))

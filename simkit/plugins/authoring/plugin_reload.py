@@ -1,0 +1,255 @@
+"""Reloads plugins whose file was changed, between two steps of a run that goes on."""
+
+from __future__ import annotations
+
+import inspect
+import linecache
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from simkit.diagnostics import Diagnostics
+from simkit.errors import LoadError, SimkitError
+from simkit.params import Params
+from simkit.plugins import find_plugin
+from simkit.plugins.gz_python.import_hook import importable
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_BROKEN, _REFUSED = "SK-PLUGIN-071", "SK-PLUGIN-076"
+
+
+@dataclass
+class _WatchedFile:
+    """A file that is watched, as it was when it was last looked at."""
+
+    path: Path
+    stamp: tuple[int, int]
+    content: bytes
+
+
+class PluginReloader:
+    """Looks between steps whether the file of a plugin was changed, and then goes on with the new code.
+
+    Looking is a `stat` of each file; no thread is needed, and a run whose files stay as they are is not changed by it.
+
+    Args:
+        sim: the simulation.
+        plugin_paths: folders whose modules may be plugins; whatever else of them was imported is watched as well.
+        say: is told each thing that happens, a line or several.
+    """
+
+    def __init__(self, sim: Simulation, plugin_paths: Sequence[Path], say: Callable[[str], None]) -> None:
+        self._sim, self._paths, self._say = sim, [p.resolve() for p in plugin_paths], say
+        self._files: dict[Path, _WatchedFile] = {}
+        self._look_for_files()
+
+    @property
+    def files(self) -> list[Path]:
+        """What is watched."""
+        return sorted(self._files)
+
+    def poll(self) -> bool:
+        """Reloads what was changed since the last call; whether anything was."""
+        changed = [file for file in self._files.values() if _has_changed(file)]
+        if not changed:
+            return False
+        done = self._reload(changed)
+        self._look_for_files()
+        return done
+
+    # ------------------------------------------------------------------ files
+
+    def _modules(self) -> dict[Path, list[str]]:
+        """Names of the modules that a user wrote, by their files."""
+        found: dict[Path, list[str]] = {}
+        of_plugins = self._of_plugins()
+        for name, module in list(sys.modules.items()):
+            file = getattr(module, "__file__", None)
+            if not file or not file.endswith(".py") or name.split(".")[0] == "simkit":
+                continue
+            path = Path(file).resolve()
+            if name in of_plugins or any(path.is_relative_to(folder) for folder in self._paths):
+                found.setdefault(path, []).append(name)
+        return found
+
+    def _of_plugins(self) -> set[str]:
+        return {name for plugin in self._sim.structure.all_plugins() for name in modules_of(plugin)}
+
+    def _look_for_files(self) -> None:
+        for path in self._modules():
+            if path not in self._files:
+                stamp = _file_stamp(path)
+                if stamp is not None:
+                    self._files[path] = _WatchedFile(path, stamp, path.read_bytes())
+
+    # ------------------------------------------------------------------ reloading
+
+    def _reload(self, changed: Sequence[_WatchedFile]) -> bool:
+        names = self._modules()
+        of_plugins = self._of_plugins()
+        paths = [file.path for file in changed]
+        if any(not of_plugins.intersection(names.get(path, ())) for path in paths):
+            # something that plugins import: they are to see the new one
+            paths += [p for p, own in names.items() if p not in paths and of_plugins.intersection(own)]
+            paths.sort(key=lambda path: bool(of_plugins.intersection(names.get(path, ()))))
+        before = {name: sys.modules[name] for path in paths for name in names.get(path, ())}
+        for path in paths:
+            for name in names.get(path, ()):
+                if not self._import(name, path):
+                    sys.modules.update(before)
+                    return False
+        replaced = [p for p in self._sim.structure.all_plugins() if before.keys() & modules_of(p)]
+        done = [self._exchange(plugin, before) for plugin in replaced]
+        if not all(done):
+            sys.modules.update(before)
+        return any(done)
+
+    def _import(self, name: str, path: Path) -> bool:
+        """Runs a file anew as the module it was; where it cannot be run it is told why."""
+        old = sys.modules[name]
+        new = ModuleType(name)
+        vars(new).update({k: v for k, v in vars(old).items() if k in _MODULE_ATTRIBUTES})
+        linecache.checkcache(str(path))
+        try:
+            code = compile(path.read_bytes(), str(path), "exec")
+            sys.modules[name] = new
+            with importable():  # a system of gz may import gz
+                exec(code, vars(new))
+        except SyntaxError as error:
+            self._say(
+                f"{error.filename}:{error.lineno}: error {_BROKEN}: {error.msg}; the run goes on with the old code"
+            )
+        except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
+            what = f"{type(error).__name__}: {error}"
+            self._say(f"{_user_file_line(error, path)}: error {_BROKEN}: {what}; the run goes on with the old code")
+        else:
+            return True
+        sys.modules[name] = old
+        return False
+
+    def _exchange(self, old: Any, before: dict[str, ModuleType]) -> bool:
+        """Puts the new code's plugin in the place of the old one's."""
+        from simkit.runtime.plugin_replacement import replace_plugin
+
+        sim = self._sim
+        file = Path(str(next(before[name].__file__ for name in modules_of(old) if name in before)))
+        try:
+            found = Diagnostics()
+            new = self._made_anew(old, found)
+            if new is None:
+                self._say_all(found)
+                self._say(f"{old.where}: error {_REFUSED}: {old.name!r} is not in {file} any more")
+                return False
+            replace_plugin(sim, old, new, scene_of(sim, old.scoped))
+        except LoadError as error:
+            self._say_all(error.diagnostics)
+            self._say(f"{old.name!r} is not reloaded; the run goes on with the old code")
+            return False
+        except SimkitError as error:
+            cause = error.__cause__
+            where = f"{_user_file_line(cause, file)}: " if cause is not None else ""
+            self._say(f"{where}error: {error}; the run goes on with the old code")
+            return False
+        except Exception as error:  # noqa: BLE001 - `prepare` of a user's class may raise anything
+            what = f"{type(error).__name__}: {error}"
+            place = _user_file_line(error, file)
+            self._say(f"{place}: error {_REFUSED}: {old.name!r} cannot be reloaded: {what}")
+            return False
+        new.report_unread()
+        self._say_all(d for d in new.params.diagnostics if d.severity == "warning")
+        self._say(f"{file.name}: {new.name!r} reloaded at {sim.time:.6g} s")
+        return True
+
+    def _made_anew(self, old: Any, found: Diagnostics) -> Any:
+        """An instance of the new class, with the parameters that the file gives it."""
+        new: Any
+        if old.source is None:
+            cls = getattr(sys.modules[type(old).__module__], type(old).__name__, None)
+            new = cls(**vars(old).get("_values", {})) if inspect.isclass(cls) else None
+            if new is not None:
+                new.hand_over(found, old.scoped)
+        else:
+            source = replace(old.source, params=with_diagnostics(old.source.params, found))
+            named = find_plugin(source, self._paths, found, "any")
+            new = named() if named is not None else None
+            if new is not None:
+                new.source = source
+        if new is not None:
+            new._order, new.plugin_paths = old._order, old.plugin_paths
+        return new
+
+    def _say_all(self, found: Any) -> None:
+        for diagnostic in found:
+            self._say(str(diagnostic))
+
+
+_MODULE_ATTRIBUTES = {"__name__", "__file__", "__spec__", "__loader__", "__package__", "__path__", "__cached__"}
+
+
+def modules_of(plugin: Any) -> set[str]:
+    """Names of the modules that hold a plugin's code: its class's, and of what stands behind a system of gz."""
+    system = getattr(plugin, "system", None)
+    behind = [system] if system is not None else []
+    behind.append(getattr(plugin, "_module", None))
+    names = {thing.__name__ if isinstance(thing, ModuleType) else type(thing).__module__ for thing in behind}
+    return {
+        name
+        for name in {type(plugin).__module__, *names}
+        if name.split(".")[0] not in {"simkit", *sys.stdlib_module_names}
+    }
+
+
+def _file_stamp(path: Path) -> tuple[int, int] | None:
+    """When a file was last written, and how long it is; None while it is not there."""
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_mtime_ns, status.st_size
+
+
+def _has_changed(file: _WatchedFile) -> bool:
+    """Whether there is other text in a file than before; one that is being replaced is waited for."""
+    stamp = _file_stamp(file.path)
+    if stamp is None or stamp == file.stamp:
+        return False
+    try:
+        content = file.path.read_bytes()
+    except OSError:
+        return False
+    file.stamp = stamp
+    if content == file.content:
+        return False
+    file.content = content
+    return True
+
+
+def _user_file_line(error: BaseException | None, path: Path) -> str:
+    """file:line of the innermost frame in a user's file."""
+    frames = traceback.extract_tb(error.__traceback__) if error is not None else []
+    own = [frame for frame in frames if Path(frame.filename).resolve() == path.resolve()] or frames
+    return f"{own[-1].filename}:{own[-1].lineno}" if own else str(path)
+
+
+def with_diagnostics(params: Params, diagnostics: Diagnostics) -> Params:
+    """The same tree, unread, whose problems go elsewhere."""
+    children = [with_diagnostics(child, diagnostics) for child in params.children]
+    return Params(params.name, params.value, params.attributes, children, params.where, diagnostics)
+
+
+def scene_of(sim: Simulation, scoped: str) -> Any:
+    """What a plugin hangs on, as the file has it: the world, a model, a visual or a sensor."""
+    for top in sim.structure.models.values():
+        if scoped != top.scoped and not scoped.startswith(f"{top.scoped}::"):
+            continue
+        things: list[Any] = [*top.all_models(), *top.all_sensors(), *(v for k in top.all_links() for v in k.visuals)]
+        found = next((thing for thing in things if thing.scoped == scoped), None)
+        if found is not None:
+            return found
+    return sim.world

@@ -1,0 +1,331 @@
+"""Services of Gazebo Classic's server for ROS 2, and for worlds of ROS 1 those under `/gazebo`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.classic import property_services as properties
+from simkit.plugins.classic import state_services as states
+from simkit.plugins.classic.state_services import LINK_STATES, MODEL_STATES, STATES_RATE
+from simkit.plugins.classic.wrench_services import TimedWrench, apply_wrenches, joint_effort, link_wrench
+from simkit.plugins.world.entities import RequestRefused, answer_handler, command_handler, find_entity, pose_fields
+from simkit.plugins.world.physics_settings import physics_fields, set_physics
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Simulation
+    from simkit.scene import ScenePlugin, SceneWorld
+
+Table = Mapping[str, tuple[str, Callable[[Any], Any]]]
+"""Short name -> type, and what it does with a request."""
+
+_ROS_1: Final = re.compile(r"libgazebo_ros_(api|paths)_plugin\.so$")
+_LIBRARY: Final = re.compile(r"libgazebo_ros_\w+\.so$")
+_CAMEL: Final = re.compile(r"^[a-z]+[A-Z]")
+_EMPTY: Final = "std_srvs/srv/Empty"
+
+
+class ClassicServices(WorldPlugin):
+    """Offers what Gazebo Classic's server does; part of every world.
+
+    Spawning, deleting, listing, pausing, resetting, wrenches and efforts, as `gazebo.launch.py` of ROS 2 loads them
+    into every server, and states and properties besides, for which Classic wants a plugin in the world: they cost
+    nothing. ROS 1's own names, under `/gazebo`, are there for a world with plugins in ROS 1's spelling (camelCase) or
+    with `libgazebo_ros_api_plugin.so`. `docs/services.md` says what each takes and does.
+    """
+
+    on_error = "stop"
+
+    def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
+        self._is_ros_1 = any(_is_of_ros_1(plugin) for plugin in _plugins(scene))
+
+    def load(self, parent: Any, params: Params) -> None:
+        sim = self.sim
+        self.pushes: list[TimedWrench] = []
+        tables = [_server_services(sim), _wrench_services(self), state_services(sim), property_services(sim)]
+        offer_table("", sim, *tables)
+        _broadcast_states("", sim, STATES_RATE)
+        if self._is_ros_1:
+            offer_table("/gazebo", sim, _server_services(sim), _ros_1_services(self), property_services(sim))
+            _broadcast_states("/gazebo", sim, STATES_RATE)
+            listen_to_states("/gazebo", sim)
+        sim.on_demand.add(lambda: bool(self.pushes), None, self._push, "before")
+
+    def push(self, push: TimedWrench | None) -> None:
+        """Takes on what pushes a link or drives a joint for a while."""
+        if push is not None:
+            self.pushes.append(push)
+            self.sim.on_demand.look()
+
+    def clear(self, link: str = "", joint: str = "") -> None:
+        """Ends what pushes a link or drives a joint."""
+        self.pushes = [p for p in self.pushes if not (link and p.link == link) and not (joint and p.joint == joint)]
+        self.sim.on_demand.look()
+
+    def _push(self, _: int) -> None:
+        left = apply_wrenches(self.sim, self.pushes)
+        if len(left) != len(self.pushes):
+            self.pushes = left
+            self.sim.on_demand.look()
+
+
+def offer_table(prefix: str, sim: Simulation, *tables: Table, named: Callable[[str], str] | None = None) -> None:
+    """Offers services under a prefix, or under the names that `named` makes of the short ones.
+
+    What a file's plugin names is offered for good; all else yields to whatever has the same name.
+    """
+    for table in tables:
+        for short, (type_name, does) in table.items():
+            name = f"{prefix}/{short}" if named is None else named(short)
+            if type_name == _EMPTY or type_name.endswith(("LinkRequest", "BodyRequest", "JointRequest")):
+                handler: Callable[[Any], Any] = command_handler(sim, name, does)
+            else:
+                says_why = not type_name.endswith(("GetModelList", "GetEntityState", "SetEntityState"))
+                handler = answer_handler(sim, name, does, says_why)
+            if named is None:
+                sim.service_table.offer_by_default(name, type_name, handler)
+            else:
+                sim.service_table.offer(name, type_name, handler)
+
+
+# ---------------------------------------------------------------------- what the server has
+
+
+def _server_services(sim: Simulation) -> Table:
+    """gazebo_ros_init and gazebo_ros_factory."""
+    return {
+        "spawn_entity": ("gazebo_msgs/srv/SpawnEntity", partial(_spawn_entity, sim)),
+        "delete_entity": ("gazebo_msgs/srv/DeleteEntity", partial(_delete_entity, sim)),
+        "get_model_list": ("gazebo_msgs/srv/GetModelList", partial(_model_list, sim)),
+        "pause_physics": (_EMPTY, lambda _: setattr(sim, "paused", True)),
+        "unpause_physics": (_EMPTY, lambda _: setattr(sim, "paused", False)),
+        "reset_simulation": (_EMPTY, lambda _: _reset_simulation(sim)),
+        "reset_world": (_EMPTY, lambda _: sim.reset_models()),
+    }
+
+
+def _spawn_entity(sim: Simulation, request: Any) -> str:
+    pose, frame = request.initial_pose, request.reference_frame
+    name = states.spawn_model(sim, request.xml, request.name, request.robot_namespace, pose, frame)
+    return f"SpawnEntity: Successfully spawned entity [{name}]"
+
+
+def _delete_entity(sim: Simulation, request: Any) -> str:
+    states.delete_model(sim, request.name)
+    return f"Successfully deleted entity [{request.name}]"
+
+
+def _model_list(sim: Simulation, _: Any) -> dict[str, Any]:
+    return {"header": msgs.header(sim.time_ns, ""), "model_names": list(sim.models)}
+
+
+def _reset_simulation(sim: Simulation) -> None:
+    """Time, models and plugins start anew; a world that is paused stays so, as in Classic."""
+    is_paused = sim.paused
+    sim.reset()
+    sim.paused = is_paused
+
+
+def _wrench_services(plugin: ClassicServices) -> Table:
+    """gazebo_ros_force_system."""
+    return {
+        "apply_link_wrench": ("gazebo_msgs/srv/ApplyLinkWrench", lambda r: _push_link(plugin, r, r.link_name)),
+        "clear_link_wrenches": ("gazebo_msgs/srv/LinkRequest", lambda r: _clear_link(plugin, r.link_name)),
+        "apply_joint_effort": ("gazebo_msgs/srv/ApplyJointEffort", lambda r: _push_joint(plugin, r)),
+        "clear_joint_efforts": ("gazebo_msgs/srv/JointRequest", lambda r: _clear_joint(plugin, r.joint_name)),
+    }
+
+
+def _push_link(plugin: ClassicServices, request: Any, link: str) -> str:
+    plugin.push(link_wrench(plugin.sim, link, request))
+    return ""
+
+
+def _push_joint(plugin: ClassicServices, request: Any) -> str:
+    plugin.push(joint_effort(plugin.sim, request))
+    return f"Effort on joint [{request.joint_name}] set"
+
+
+def _clear_link(plugin: ClassicServices, name: str) -> None:
+    link = find_entity(plugin.sim, name, ("link",))[1]
+    if not any(push.link == link for push in plugin.pushes):
+        raise RequestRefused(f"no applied wrenches on {link!r}")
+    plugin.clear(link=link)
+
+
+def _clear_joint(plugin: ClassicServices, name: str) -> None:
+    joint = properties.joint_of(plugin.sim, name).scoped
+    if not any(push.joint == joint for push in plugin.pushes):
+        raise RequestRefused(f"no applied efforts on {joint!r}")
+    plugin.clear(joint=joint)
+
+
+# ---------------------------------------------------------------------- what Classic has plugins for
+
+
+def state_services(sim: Simulation) -> Table:
+    """gazebo_ros_state."""
+    return {
+        "get_entity_state": ("gazebo_msgs/srv/GetEntityState", partial(_get_state, sim)),
+        "set_entity_state": ("gazebo_msgs/srv/SetEntityState", partial(_set_state, sim)),
+        "set_joint_positions": ("gazebo_msgs/srv/SetModelConfiguration", partial(_set_joints, sim)),
+    }
+
+
+def _get_state(sim: Simulation, request: Any) -> dict[str, Any]:
+    pose, linear, angular = states.state_of(sim, request.name, request.reference_frame)
+    frame, twist = request.reference_frame, states.twist_fields(linear, angular)
+    state = {"name": request.name, "pose": pose_fields(pose), "twist": twist, "reference_frame": frame}
+    return {"header": msgs.header(sim.time_ns, frame), "state": state}
+
+
+def _set_state(sim: Simulation, request: Any) -> None:
+    state = request.state
+    states.set_state(sim, state.name, state.pose, state.twist, state.reference_frame)
+
+
+def _set_joints(sim: Simulation, request: Any) -> str:
+    states.set_joints(sim, request.model_name, list(request.joint_names), request.joint_positions)
+    return "set_joint_positions: success"
+
+
+def property_services(sim: Simulation) -> Table:
+    """gazebo_ros_properties; masses and inertias are compiled, so there is no `set_link_properties`."""
+    return {
+        "get_world_properties": ("gazebo_msgs/srv/GetWorldProperties", partial(_world_properties, sim)),
+        "get_model_properties": ("gazebo_msgs/srv/GetModelProperties", partial(properties.model_properties, sim)),
+        "get_joint_properties": ("gazebo_msgs/srv/GetJointProperties", partial(properties.joint_properties, sim)),
+        "set_joint_properties": ("gazebo_msgs/srv/SetJointProperties", partial(properties.set_joint_properties, sim)),
+        "get_link_properties": ("gazebo_msgs/srv/GetLinkProperties", partial(properties.link_properties, sim)),
+        "get_light_properties": ("gazebo_msgs/srv/GetLightProperties", partial(properties.light_properties, sim)),
+        "set_light_properties": ("gazebo_msgs/srv/SetLightProperties", partial(properties.set_light_properties, sim)),
+        "get_physics_properties": ("gazebo_msgs/srv/GetPhysicsProperties", lambda _: physics_fields(sim)),
+        "set_physics_properties": ("gazebo_msgs/srv/SetPhysicsProperties", partial(_set_physics, sim)),
+    }
+
+
+def _set_physics(sim: Simulation, request: Any) -> str:
+    return set_physics(sim, request) or "physics engine updated"
+
+
+def _world_properties(sim: Simulation, _: Any) -> dict[str, Any]:
+    found = {"sim_time": sim.time, "model_names": list(sim.models), "rendering_enabled": True}
+    return {**found, "status_message": "GetWorldProperties: got properties"}
+
+
+# ---------------------------------------------------------------------- ROS 1
+
+
+def _ros_1_services(plugin: ClassicServices) -> Table:
+    """gazebo_ros_api_plugin, but for what it has in common with ROS 2's."""
+    sim = plugin.sim
+    spawn_model = ("gazebo_msgs/srv/SpawnModel", partial(_spawn_model, sim))
+    return {
+        "spawn_sdf_model": spawn_model,
+        "spawn_urdf_model": spawn_model,
+        "delete_model": ("gazebo_msgs/srv/DeleteModel", lambda r: _delete_model(sim, r)),
+        "get_model_state": ("gazebo_msgs/srv/GetModelState", partial(_get_model_state, sim)),
+        "set_model_state": ("gazebo_msgs/srv/SetModelState", lambda r: _set_model_state(sim, r.model_state)),
+        "get_link_state": ("gazebo_msgs/srv/GetLinkState", partial(_get_link_state, sim)),
+        "set_link_state": ("gazebo_msgs/srv/SetLinkState", lambda r: _set_link_state(sim, r.link_state)),
+        "set_model_configuration": ("gazebo_msgs/srv/SetModelConfiguration", partial(_configure_model, sim)),
+        "apply_body_wrench": ("gazebo_msgs/srv/ApplyBodyWrench", lambda r: _push_link(plugin, r, r.body_name)),
+        "clear_body_wrenches": ("gazebo_msgs/srv/BodyRequest", lambda r: _clear_link(plugin, r.body_name)),
+        "apply_joint_effort": ("gazebo_msgs/srv/ApplyJointEffort", lambda r: _push_joint(plugin, r)),
+        "clear_joint_forces": ("gazebo_msgs/srv/JointRequest", lambda r: _clear_joint(plugin, r.joint_name)),
+    }
+
+
+def _spawn_model(sim: Simulation, request: Any) -> str:
+    pose, frame = request.initial_pose, request.reference_frame
+    states.spawn_model(sim, request.model_xml, request.model_name, request.robot_namespace, pose, frame)
+    return "SpawnModel: Successfully spawned entity"
+
+
+def _delete_model(sim: Simulation, request: Any) -> str:
+    states.delete_model(sim, request.model_name)
+    return "DeleteModel: successfully deleted model"
+
+
+def _get_model_state(sim: Simulation, request: Any) -> dict[str, Any]:
+    frame = request.relative_entity_name
+    pose, linear, angular = states.state_of(sim, request.model_name, frame, ("model",))
+    found = {"pose": pose_fields(pose), "twist": states.twist_fields(linear, angular)}
+    message = "GetModelState: got properties"
+    return {"header": msgs.header(sim.time_ns, frame), **found, "status_message": message}
+
+
+def _set_model_state(sim: Simulation, state: Any) -> str:
+    states.set_state(sim, state.model_name, state.pose, state.twist, state.reference_frame, ("model",))
+    return "SetModelState: set model state done"
+
+
+def _get_link_state(sim: Simulation, request: Any) -> dict[str, Any]:
+    name, frame = request.link_name, request.reference_frame
+    pose, linear, angular = states.state_of(sim, name, frame, ("link",))
+    twist = states.twist_fields(linear, angular)
+    state = {"link_name": name, "pose": pose_fields(pose), "twist": twist, "reference_frame": frame}
+    return {"link_state": state, "status_message": "GetLinkState: got state"}
+
+
+def _set_link_state(sim: Simulation, state: Any) -> str:
+    states.set_state(sim, state.link_name, state.pose, state.twist, state.reference_frame, ("link",))
+    return "SetLinkState: success"
+
+
+def _configure_model(sim: Simulation, request: Any) -> str:
+    _set_joints(sim, request)
+    return "SetModelConfiguration: success"
+
+
+def listen_to_states(prefix: str, sim: Simulation) -> None:
+    """ROS 1's commands by topic."""
+    inputs = {"set_model_state": ("ModelState", _set_model_state), "set_link_state": ("LinkState", _set_link_state)}
+    for short, (kind, does) in inputs.items():
+        topic = f"{prefix}/{short}"
+        sim.bus.aside.add(topic)
+        sim.bus.unlisted.add(topic)
+        take = command_handler(sim, topic, partial(does, sim))
+        sim.bus.listen(topic, (f"gazebo_msgs/msg/{kind}",), take)
+
+
+def broadcast_states(sim: Simulation, models: str, links: str, rate: float, *, is_aside: bool) -> None:
+    """Publishes the states of models and links while somebody listens."""
+    makers = {models: states.model_states, links: states.link_states}
+    topics = {models: MODEL_STATES, links: LINK_STATES}
+    sim.on_demand.broadcast(topics, rate, lambda topic: makers[topic](sim), is_aside=is_aside)
+
+
+def _broadcast_states(prefix: str, sim: Simulation, rate: float) -> None:
+    models, links = f"{prefix}/model_states", f"{prefix}/link_states"
+    if not {models, links} & set(sim.bus.all_topics()):  # a plugin of the file may have them
+        broadcast_states(sim, models, links, rate, is_aside=True)
+
+
+# ---------------------------------------------------------------------- which ROS a world is of
+
+
+def _plugins(world: SceneWorld) -> Iterator[ScenePlugin]:
+    yield from world.plugins
+    for model in (nested for outer in world.models for nested in outer.all_models()):
+        yield from model.plugins
+        for link in model.links:
+            yield from link.plugins
+            for sensor in link.sensors:
+                yield from sensor.plugins
+
+
+def _is_of_ros_1(plugin: ScenePlugin) -> bool:
+    """Whether a plugin is in the spelling of gazebo_ros for ROS 1: parameters in camelCase, and no `<ros>`."""
+    if not _LIBRARY.search(plugin.filename):
+        return False
+    if _ROS_1.search(plugin.filename):
+        return True
+    names = [child.name for child in plugin.params.children]
+    return "ros" not in names and any(_CAMEL.match(name) for name in names)

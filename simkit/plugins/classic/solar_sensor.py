@@ -1,0 +1,189 @@
+"""The robotics course's solar sensor: `libsolar_sensor.so`, a model plugin that tells where a light stands."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import NOWHERE
+from simkit.params import LARGEST, Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_light, find_link
+from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
+from simkit.sensors.environment import solar_irradiance
+from simkit.sensors.environment.solar_irradiance import SolarReading, SolarView
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Light, Simulation
+    from simkit.scene import SceneModel
+
+IMU = "sensor_msgs/msg/Imu"
+_NONE = np.zeros(9)
+
+
+class SolarSensor(ModelPlugin):
+    """Publishes the direction of a light, seen from a link, as the orientation of an `Imu` on `sunloin_imu`.
+
+    The unit vector from the link's origin to the light, in the link's axes, plus `<xyz_offset>`, gives
+    pitch = asin(-z) and yaw = atan2(y, x): the x axis of that orientation points at the light. `<rpy_offset>` turns
+    the result afterwards.
+
+    `<frame_name>` names the link and is the message's frame; `<body_name>` names the link where the frame is another;
+    with neither it is the model's canonical link. `<gaussian_noise>` [rad] is the standard deviation of independent
+    noise on roll, pitch and yaw, and its square stands on the diagonal of the covariance. `<update_rate>` [Hz], 0 is
+    every step.
+
+    Beyond the course, all of them off where the file does not ask: `<simkit:shadow>`, `<simkit:field_of_view>`,
+    `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` as of the `solar_irradiance` sensor, their
+    readings on topics below this one; `<simkit:angular_noise>` [rad], which turns the direction about a random axis at
+    right angles to it; `<simkit:towards>` `direction`, which takes a directional light's rays for parallel.
+    """
+
+    filenames = ("libsolar_sensor.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        frame, body = params.text("frame_name", ""), params.text("body_name", "")
+        wanted = body or frame
+        link = find_link(scene, wanted, params) if wanted else None
+        self._link_name = link.scoped if link else scene.canonical_link
+        self._frame = frame or self._link_name.rsplit("::", 1)[-1]
+        self._xyz = _offset(params, "xyz_offset")
+        self._rpy = _offset(params, "rpy_offset")
+        self._noise = params.number("gaussian_noise", 0.0, minimum=0, maximum=LARGEST)
+        self._angular = params.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
+        self._options = solar_irradiance.read_solar_options(params, "position")
+        self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._light = _find_light(self.sim, params)
+        self._link = self.sim.link(self._link_name)
+        self._turn = quat_from_rpy(*self._rpy)
+        self._turn_matrix = quat_to_matrix(self._turn)
+        self._covariance = np.eye(3).reshape(9) * self._noise**2
+        self._stream = self.random("gaussian_noise", 3) if self._noise > 0 else None
+        self._angular_stream = self.random("angular_noise", 2) if self._angular > 0 else None
+        geometry = ("geometry_msgs/msg/Quaternion", "geometry_msgs/msg/Vector3")
+        self._types = (msgs.type_of(IMU), *(msgs.type_of(name) for name in geometry))
+        self._index = 0
+        self._readings = self.advertise("sunloin_imu", IMU)
+        self._find_view(params)
+
+    def _find_view(self, params: Params) -> None:
+        """What the file asks for beyond the course, and its topics."""
+        options = self._options
+        judges = options.shadow or params.has("field_of_view")
+        self._view: SolarView | None = None
+        self._compiled: Any = None
+        self._more: list[tuple[Any, Any, Callable[[SolarReading], Any]]] = []
+        if self._light is None:
+            return
+        solar_irradiance.report_unused_options(params, options, self._light)
+        if judges or options.measures_irradiance:
+            self._view = SolarView(options, self._light)
+        number, topic = "std_msgs/msg/Float64", self.ros.topic("sunloin_imu")
+        for name, kind, is_asked, value in (
+            ("valid", "std_msgs/msg/Bool", judges, lambda r: r.is_valid),
+            ("irradiance", number, options.measures_irradiance, lambda r: r.irradiance),
+            ("power", number, options.panel is not None, lambda r: r.power),
+            ("shadow", "std_msgs/msg/String", options.shadow, lambda r: r.shadow),
+        ):
+            if is_asked:
+                self._more.append((self.advertise(f"{topic}/{name}", kind), msgs.type_of(kind), value))
+
+    def after_step(self) -> None:
+        self._index += 1  # counted whether read or not, so that who listens does not change the noise
+        if self._light is None:
+            return
+        if self._view is not None:
+            self._look(self._view, self._light)
+        elif self._readings.wanted:
+            self._publish(self._link.pose, self._light.pose, True)
+
+    def _look(self, view: SolarView, light: Light) -> None:
+        wanted = [end for end in self._more if end[0].wanted]
+        if not (wanted or self._readings.wanted):
+            return
+        sim, pose = self.sim, self._link.pose
+        if self._compiled is not sim.compiled:  # the structure changed
+            self._compiled = sim.compiled
+            view.bind(self._compiled, self._link_name)
+        reading = view.measure(sim.mj_model, sim.fresh_data(), light.state, pose.position, pose.matrix)
+        for publisher, make, value in wanted:
+            publisher.publish(make(value(reading)))
+        if self._readings.wanted:
+            self._publish(pose, light.pose, reading.is_valid)
+
+    def _publish(self, pose: Pose, light: Pose, is_valid: bool) -> None:
+        time_ns, index = self.sim.time_ns, self._index
+        self._readings.publish_later(partial(self._message, time_ns, index, pose, light, is_valid))
+
+    def _message(self, time_ns: int, index: int, pose: Pose, light: Pose, is_valid: bool) -> Any:
+        imu, quaternion, vector = self._types
+        orientation, covariance = np.array((1.0, 0.0, 0.0, 0.0)), np.zeros(9)
+        if is_valid:
+            orientation, covariance = self._measured(index, pose, light)
+        else:
+            covariance[0] = -1.0
+        w, x, y, z = orientation.tolist()
+        header = msgs.header(time_ns, self._frame)
+        rest = covariance, vector(0.0, 0.0, 0.0), _NONE.copy(), vector(0.0, 0.0, 0.0), _NONE.copy()
+        return imu(header, quaternion(x, y, z, w), *rest)
+
+    def _measured(self, index: int, pose: Pose, light: Pose) -> tuple[Vector, Vector]:
+        """The orientation (w, x, y, z) with its noise, and its covariance, shape (9,)."""
+        roll, (pitch, yaw) = 0.0, self._angles(pose, light)
+        covariance = self._covariance.copy()
+        if self._stream is not None:
+            roll, pitch, yaw = (np.array((roll, pitch, yaw)) + self._noise * self._stream.normal(index)).tolist()
+        orientation = quat_from_rpy(roll, pitch, yaw)
+        if self._angular_stream is not None:
+            orientation = solar_irradiance.deflect_orientation(
+                orientation, self._angular * self._angular_stream.normal(index)
+            )
+            covariance += solar_irradiance.covariance_across(
+                quat_rotate(orientation, (1.0, 0.0, 0.0)), self._angular**2
+            )
+        if any(self._rpy):
+            orientation = quat_multiply(self._turn, orientation)
+            turned = self._turn_matrix @ covariance.reshape(3, 3) @ self._turn_matrix.T
+            covariance = turned.reshape(9) if self._angular > 0 else covariance
+        return orientation, covariance
+
+    def _angles(self, pose: Pose, light: Pose) -> tuple[float, float]:
+        """Pitch and yaw [rad] of the light in the link's axes."""
+        assert self._light is not None
+        is_parallel = self._options.towards == "direction" and self._light.scene.type == "directional"
+        towards = -light.rotate(self._light.scene.direction) if is_parallel else light.position - pose.position
+        distance = math.sqrt(towards @ towards)
+        seen = quat_rotate(quat_conjugate(pose.quaternion), towards / distance if distance > 0 else towards)
+        x, y, z = (a + b for a, b in zip(seen.tolist(), self._xyz, strict=True))
+        return math.asin(-max(-1.0, min(1.0, z))), math.atan2(y, x)
+
+
+def _find_light(sim: Simulation, params: Params) -> Light | None:
+    """The light that `<light_name>` names; None after an error that lists the lights, or a note for a bare model."""
+    name = params.text("light_name", "")
+    if name and not sim.lights and sim.world.where == NOWHERE:
+        message = f"a bare model has no light {name!r}: no reading is published until it stands in a world that has it"
+        params.diagnostics.note("SK-PLUGIN-009", message, params.where)
+        return None
+    if name:
+        return find_light(sim, name, params)
+    listed = ", ".join(repr(n) for n in sorted(sim.lights)) or "none"
+    params.error("SK-PARAM-001", f"<{params.name}> needs <light_name>: the name of a light", f"lights are: {listed}")
+    return None
+
+
+def _offset(params: Params, name: str) -> tuple[float, float, float]:
+    """`name`, or its older spelling with an s, which is said."""
+    older = params.child(name + "s")
+    if older is None or params.has(name):
+        return params.vector3(name, (0.0, 0.0, 0.0))
+    params.diagnostics.warning("SK-PARAM-004", f"<{older.name}> is an older spelling", older.where, f"write <{name}>")
+    return params.vector3(name + "s", (0.0, 0.0, 0.0))

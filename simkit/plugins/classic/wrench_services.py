@@ -1,0 +1,103 @@
+"""Wrenches and efforts that hold for a while: `/apply_link_wrench` and `/apply_joint_effort`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.plugins.classic.property_services import joint_of
+from simkit.plugins.world.entities import RequestRefused, find_entity, frame_of, require_finite, vector_of
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_WORLD = ("", "world", "map", "/map")
+
+
+@dataclass(frozen=True, slots=True)
+class TimedWrench:
+    """What pushes a link or drives a joint, from one tick to another.
+
+    Attributes:
+        link, joint: scoped name of the one that is meant; the other is empty.
+        values: force [N] and torque [N·m] in the world at the link's centre of mass, or the effort [N·m or N].
+        start, end: it is there in the steps from tick `start` on, before tick `end`; None for ever.
+    """
+
+    link: str
+    joint: str
+    values: tuple[float, ...]
+    start: int
+    end: int | None
+
+
+def link_wrench(sim: Simulation, link_name: str, request: Any) -> TimedWrench | None:
+    """What a request for a wrench means; None where it lasts no time.
+
+    In the world's frame the reference point is a lever from the link's centre of mass, as Classic takes it; in the
+    frame of an entity it is a point of that frame, and so is the frame's origin where no point is given.
+
+    Raises:
+        Refused: there is no such link or frame, or a number cannot be used.
+    """
+    scoped = find_entity(sim, link_name, ("link",))[1]
+    link = sim.link(scoped)
+    force, torque = (np.array(vector_of(getattr(request.wrench, p), p)) for p in ("force", "torque"))
+    point = np.array(vector_of(request.reference_point, "reference_point"))
+    if request.reference_frame in _WORLD:
+        lever = point
+    else:
+        frame = frame_of(sim, request.reference_frame)
+        force, torque = frame.rotate(force), frame.rotate(torque)
+        lever = frame.transform(point) - link.pose.transform(link.scene.inertial.com)
+    span = _tick_range(sim, request)
+    values = (*force.tolist(), *(torque + np.cross(lever, force)).tolist())
+    return None if span is None else TimedWrench(scoped, "", values, *span)
+
+
+def joint_effort(sim: Simulation, request: Any) -> TimedWrench | None:
+    """What a request for an effort means; None where it lasts no time. Raises Refused."""
+    joint = joint_of(sim, request.joint_name)
+    if joint.dof != 1:
+        raise RequestRefused(f"joint {joint.scoped!r} has {joint.dof} degrees of freedom, an effort is for one")
+    effort, span = require_finite(request.effort, "effort"), _tick_range(sim, request)
+    return None if span is None else TimedWrench("", joint.scoped, (effort,), *span)
+
+
+def _tick_range(sim: Simulation, request: Any) -> tuple[int, int | None] | None:
+    """First tick, and the one at which it ends; a duration below zero is for ever, of zero nothing."""
+    duration, start_ns = msgs.stamp_ns(request.duration), msgs.stamp_ns(request.start_time)
+    start = sim.tick
+    if start_ns > sim.time_ns:
+        start = sim.clock.ticks(start_ns / 1e9)
+        while sim.clock.time_ns(start) < start_ns:
+            start += 1
+    if duration < 0:
+        return start, None
+    step_ns = sim.clock.time_ns(1)
+    return (start, start + math.ceil(duration / step_ns)) if duration else None
+
+
+def apply_wrenches(sim: Simulation, pushes: list[TimedWrench]) -> list[TimedWrench]:
+    """Applies for the next step what is due; gives what is left of it, without what is over or has no link any more."""
+    tick = sim.tick
+    tables = sim.entities.tables
+    left = [
+        p
+        for p in pushes
+        if (p.end is None or tick < p.end) and (p.link in tables["link"] or p.joint in tables["joint"])
+    ]
+    for push in left:
+        if tick < push.start:
+            continue
+        if push.link:
+            sim.link(push.link).apply_wrench(push.values[:3], push.values[3:])
+        else:
+            joint = sim.joint(push.joint)
+            waiting = float(sim.mj_data.qfrc_applied[joint.mj_dofs[0]]) if sim.physics.one_shot else 0.0
+            joint.set_effort(waiting + push.values[0])
+    return left

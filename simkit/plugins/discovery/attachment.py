@@ -1,0 +1,101 @@
+"""Attach plugins made in Python, `simkit.load(world, plugins=[…])`, to the world, a model, a visual or a sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.plugins.base import Plugin
+from simkit.plugins.discovery.gz_hooks import as_plugin
+from simkit.scene import SceneModel, SceneWorld
+
+
+@dataclass(frozen=True)
+class Attachment:
+    """A plugin and what it hangs on.
+
+    Attributes:
+        plugin: the instance.
+        top: name of the top-level model that it is part of; empty for the world.
+        scoped: scoped name of what it hangs on; empty for the world.
+        scene: the resolved entity.
+        parent: gives the handle, once there is a simulation.
+    """
+
+    plugin: Plugin
+    top: str
+    scoped: str
+    scene: Any
+    parent: Callable[[Any], Any]
+
+
+def attach_plugins(made: Iterable[Any], world: SceneWorld, diagnostics: Diagnostics) -> list[Attachment]:
+    """What each plugin hangs on: what it was handed over with, `("robot", MyPlugin())`, else the world, else the only.
+
+    Args:
+        made: plugins, or pairs of a scoped name and a plugin.
+        world: what there is.
+        diagnostics: gets errors; who has one is left out.
+    """
+    found = []
+    for item in made:
+        name, one = item if isinstance(item, tuple) and len(item) == 2 else ("", item)
+        plugin = as_plugin(one, diagnostics)
+        hung = None if plugin is None else _attach_plugin(plugin, str(name), world, diagnostics)
+        if hung is not None:
+            found.append(hung)
+    return found
+
+
+def _attach_plugin(plugin: Plugin, name: str, world: SceneWorld, diagnostics: Diagnostics) -> Attachment | None:
+    kinds = (plugin.parent_kind,) if isinstance(plugin.parent_kind, str) else plugin.parent_kind
+    may_be_world = "world" in kinds or "any" in kinds
+    if may_be_world and name in ("", world.name):
+        return Attachment(plugin, "", "", world, lambda sim: sim)
+    there = {scoped: hung for kind in kinds for scoped, hung in _candidates_of_kind(kind, plugin, world).items()}
+    shown = type(plugin).__name__
+    places = " or a ".join(kind for kind in kinds if kind != "any") or "model, visual or sensor"
+    listed = ", ".join(map(repr, list(there)[:12])) or "none"
+    if name:
+        if name not in there:
+            message = f"plugin {shown!r} is to hang on {name!r}, which is no {places}; there is {listed}"
+            diagnostics.error("SK-PLUGIN-021", message, hint=did_you_mean(name, there))
+        return there.get(name)
+    fitting = [hung for hung in there.values() if not getattr(hung.scene, "static", False) and _is_top_level(hung)]
+    if len(fitting) == 1:
+        return fitting[0]
+    message = f"plugin {shown!r} belongs on a {places}, and there is not exactly one to hang it on: {listed}"
+    diagnostics.error("SK-PLUGIN-021", message, hint=f'say which: plugins=[("name", {shown}(...))]')
+    return None
+
+
+def _is_top_level(hung: Attachment) -> bool:
+    return not isinstance(hung.scene, SceneModel) or "::" not in hung.scoped
+
+
+def _candidates_of_kind(kind: str, plugin: Plugin, world: SceneWorld) -> Mapping[str, Attachment]:
+    """Everything of a kind that a plugin might hang on, by scoped name."""
+    found: dict[str, Attachment] = {}
+    for top in world.models:
+        if kind in ("model", "any"):
+            for model in top.all_models():
+                found[model.scoped] = Attachment(
+                    plugin, top.name, model.scoped, model, _handle_getter("model", model.scoped)
+                )
+        if kind in ("sensor", "any"):
+            for sensor in top.all_sensors():
+                found[sensor.scoped] = Attachment(
+                    plugin, top.name, sensor.scoped, sensor, _handle_getter("sensor", sensor.scoped)
+                )
+        if kind in ("visual", "any"):
+            for visual in (v for link in top.all_links() for v in link.visuals):
+                found[visual.scoped] = Attachment(
+                    plugin, top.name, visual.scoped, visual, _handle_getter("visual", visual.scoped)
+                )
+    return found
+
+
+def _handle_getter(kind: str, scoped: str) -> Callable[[Any], Any]:
+    return lambda sim: getattr(sim, kind)(scoped)

@@ -1,0 +1,152 @@
+"""Find plugins that a user wrote: in entry points and in the folders that the user allows, nowhere else."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import inspect
+import re
+import sys
+from collections.abc import Sequence
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import Any
+
+from simkit.diagnostics import Diagnostics
+from simkit.plugins import GROUP, aliases, normalise
+from simkit.plugins.base import Plugin
+from simkit.plugins.discovery.gz_hooks import as_class, describe_allowed_plugins, has_hooks
+from simkit.registry import entry_points_of
+from simkit.scene import ScenePlugin
+
+_CLASS = re.compile(r"^(?P<module>[A-Za-z_][\w.]*):(?P<name>[A-Za-z_]\w*)$")
+
+
+def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    """The class that `module:Class`, `file.py` or a library alias stands for, if it is installed or allowed."""
+    if _CLASS.match(plugin.filename):
+        return _find_by_class_name(plugin, paths, diagnostics)
+    if plugin.filename.endswith(".py"):
+        return _find_by_file(plugin, paths, diagnostics)
+    return _find_by_alias(plugin, paths, diagnostics)
+
+
+def _find_by_class_name(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    match = _CLASS.match(plugin.filename)
+    assert match is not None
+    for point in entry_points_of(GROUP):
+        if point.value.replace(" ", "") == plugin.filename:
+            return _load_entry_point(point, plugin, diagnostics)
+    relative = Path(*match["module"].split("."))
+    for folder in paths:
+        for file in (folder / relative.with_suffix(".py"), folder / relative / "__init__.py"):
+            if _is_inside(file, folder):
+                module = _import_file(match["module"], file, plugin, diagnostics)
+                return _checked_class(getattr(module, match["name"], None), plugin, diagnostics) if module else None
+    message = f"plugin {plugin.filename!r}: no module {match['module']!r} in an entry point or under the plugin paths"
+    diagnostics.warning("SK-PLUGIN-001", f"{message}; it is left out", plugin.where, _allow_hint(paths))
+    return None
+
+
+def _find_by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    for folder in paths:
+        file = folder / plugin.filename
+        if _is_inside(file, folder):
+            module = _import_file(file.stem, file, plugin, diagnostics)
+            if module is None:
+                return None
+            classes = _classes_of(module)
+            wanted = [c for c in classes if c.__name__ == plugin.name] or classes
+            if len(wanted) == 1:
+                return as_class(wanted[0])
+            whole = None if any(issubclass(c, Plugin) for c in classes) else as_class(module)
+            if whole is not None:
+                return whole
+            listed = ", ".join(c.__name__ for c in classes) or "none with a load method"
+            message = f"{plugin.filename!r} must have one plugin class, or one called {plugin.name!r}; it has: {listed}"
+            diagnostics.error("SK-PLUGIN-008", message, plugin.where)
+            return None
+    message = f"plugin file {plugin.filename!r} is not under a plugin path; it is left out"
+    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, _allow_hint(paths))
+    return None
+
+
+def _find_by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
+    """Looks among the names of entry points, then for the classes' own in modules directly in the allowed folders."""
+    wanted = set(aliases(plugin))
+    for point in entry_points_of(GROUP):
+        if normalise(point.name) in wanted:
+            return _load_entry_point(point, plugin, diagnostics)
+    for folder in paths:
+        for file in sorted(folder.glob("*.py")):
+            if not _is_inside(file, folder) or not wanted & _string_literals(file):
+                continue  # only what claims the name is run
+            module = _import_file(file.stem, file, plugin, diagnostics)
+            for cls in _classes_of(module) if module else ():
+                if wanted & set(map(normalise, (*getattr(cls, "filenames", ()), *getattr(cls, "names", ())))):
+                    return as_class(cls)
+    return None
+
+
+def _load_entry_point(point: EntryPoint, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
+    try:
+        found = point.load()
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - an installed package may raise anything
+        message = f"plugin {plugin.filename!r}: loading entry point {point.name!r} ({point.value}) failed"
+        diagnostics.error("SK-PLUGIN-008", f"{message}: {type(error).__name__}: {error}", plugin.where)
+        return None
+    return _checked_class(found, plugin, diagnostics)
+
+
+def _string_literals(file: Path) -> set[str]:
+    """Every text literal of a Python file as a normalised plugin name; the file is read, not run."""
+    try:
+        tree = ast.parse(file.read_bytes(), str(file))
+    except (SyntaxError, ValueError):
+        return set()
+    texts = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    return {normalise(text) for text in texts if isinstance(text, str) and len(text) < 200}
+
+
+def _is_inside(file: Path, folder: Path) -> bool:
+    return file.is_file() and file.resolve().is_relative_to(folder.resolve())
+
+
+def _import_file(name: str, file: Path, plugin: ScenePlugin, diagnostics: Diagnostics) -> object | None:
+    """The module at `file`, under a name of its own so that it shadows nothing."""
+    key = f"simkit_user_plugins.{file.resolve()}"
+    if key in sys.modules:
+        return sys.modules[key]
+    spec = importlib.util.spec_from_file_location(key, file)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[key] = module
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a user's module may raise anything
+        del sys.modules[key]
+        message = f"plugin {plugin.filename!r}: importing {name!r} from {file} failed: {type(error).__name__}: {error}"
+        diagnostics.error("SK-PLUGIN-008", message, plugin.where)
+        return None
+    return module
+
+
+def _classes_of(module: object) -> list[type[Any]]:
+    """The classes of a module that can be plugins; those with hooks of gz only where none derives from `Plugin`."""
+    own = [c for _, c in inspect.getmembers(module, inspect.isclass) if c.__module__ == getattr(module, "__name__", "")]
+    derived = [c for c in own if issubclass(c, Plugin) and not inspect.isabstract(c)]
+    if derived or callable(getattr(module, "get_system", None)):
+        return derived
+    return [c for c in own if has_hooks(c)]
+
+
+def _checked_class(found: object, plugin: ScenePlugin, diagnostics: Diagnostics) -> type[Plugin] | None:
+    cls = as_class(found)
+    if cls is None:
+        diagnostics.error("SK-PLUGIN-008", f"{plugin.filename!r} is not {describe_allowed_plugins()}", plugin.where)
+    return cls
+
+
+def _allow_hint(paths: Sequence[Path]) -> str:
+    searched = ", ".join(str(p) for p in paths)
+    return f"searched: {searched}" if searched else "allow its folder with --plugin-path or plugin_paths"

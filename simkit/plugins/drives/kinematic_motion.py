@@ -1,0 +1,214 @@
+"""Move a model by its velocity instead of by forces on its wheels, for velocity control and planar move."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.params import LARGEST
+from simkit.pose import IDENTITY, Pose, Vector
+from simkit.runtime.engine.physics import STALE, VELOCITY
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+Triple = tuple[float, float, float]
+
+_STATIC, _OTHER = -1, -2  # owners of geoms that nobody moves here
+_SIX = np.arange(6)
+
+
+class KinematicMotion:
+    """The free parts of a model, moved as one body; a handle, without state of its own.
+
+    Joints below the free links move as they do; on a carried arm gravity and inertia act as ever.
+
+    Args:
+        sim: the simulation.
+        links: scoped names of links; those that move freely (not hung on another link or on the world) are moved.
+        carrier: scoped name of the link that the frame stands still in.
+        frame: in that link.
+    """
+
+    def __init__(self, sim: Simulation, links: Iterable[str], carrier: str, frame: Pose = IDENTITY) -> None:
+        self._sim, self.links, self._carrier, self._frame = sim, tuple(links), carrier, frame
+        names = sim.names
+        self._roots = [name for name in self.links if names.link(name).root_joint_dof >= 0]
+        self._bound: Any = None
+
+    def __bool__(self) -> bool:
+        return bool(self._roots)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> KinematicMotion:
+        return self
+
+    @property
+    def frame(self) -> Pose:
+        """The frame in the world; unlike a link's pose it is read without what follows from velocities set since."""
+        self.bind()
+        physics = self._sim.physics
+        if physics.stage == STALE:
+            physics.fresh()
+        data = physics.data
+        pose = Pose(data.xpos[self._body], data.xquat[self._body])
+        return pose if self._offset == IDENTITY else pose @ self._offset
+
+    def bind(self) -> None:
+        """Finds the addresses in the engine's present model."""
+        sim = self._sim
+        if self._bound is sim.mj_model:
+            return
+        self._bound, names = sim.mj_model, sim.names
+        carrier = names.link(self._carrier)
+        self._body, self._offset = int(carrier.body), carrier.offset @ self._frame
+        roots = [names.link(name) for name in self._roots]
+        self.addresses = [(int(b.root_joint_dof), int(b.root_joint_qpos), int(b.body)) for b in roots]
+        self.geoms = [geom for name in self.links for geom in names.link(name).geoms]
+
+
+@dataclass(frozen=True, slots=True)
+class VelocityTarget:
+    """What is to be moved in the next step: everything turns and goes on with a frame that has this twist.
+
+    Attributes:
+        motion: what is moved.
+        frame: in the world.
+        linear, angular: of the frame's origin, in the frame's axes [m/s, rad/s].
+        falls: the vertical speed is left to gravity while nothing touches the model.
+    """
+
+    motion: KinematicMotion
+    frame: Pose
+    linear: Triple
+    angular: Triple
+    falls: bool = False
+
+
+class KinematicMover:
+    """Carries out moves of one step: what they have in common is done once. A handle, without state of its own."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._bound: tuple[Any, tuple[KinematicMotion, ...]] = (None, ())
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> KinematicMover:
+        return self
+
+    def move(self, moves: Sequence[VelocityTarget]) -> None:
+        """For the next step only. At its end each frame is where its twist leads (along a screw, an arc in the plane).
+
+        Args:
+            moves: of parts that no joint ties together.
+        """
+        if not moves:
+            return
+        sim, physics = self._sim, self._sim.physics
+        self._bind(tuple(move.motion for move in moves))
+        if physics.stage == STALE:
+            physics.fresh()
+        # positions and unconstrained accelerations are of that forward pass, whoever has moved another model since
+        data = physics.data
+        touched = self._smooth_contacts(data) if data.ncon else frozenset()
+        mobility = self._mobilities(data)
+        gravity, step = sim.mj_model.opt.gravity, sim.timestep
+        for index, move in enumerate(moves):
+            falls = move.falls and index not in touched
+            place, axes = move.frame.position, move.frame.matrix
+            shift, turn = _screw(move.linear, move.angular, step)
+            turn, target = axes @ turn @ axes.T, place + axes @ shift
+            turning = axes @ move.angular
+            for dof, qpos, body in move.motion.addresses:
+                root = data.qpos[qpos : qpos + 3]
+                velocity = (target + turn @ (root - place) - root) / step
+                lacking = -data.qacc_smooth[dof : dof + 6]
+                if falls:
+                    lacking[2] += gravity[2]
+                    velocity[2] = data.qvel[dof + 2]
+                data.qfrc_applied[dof : dof + 6] += _solve_force(mobility[:, dof : dof + 6], lacking)
+                data.qvel[dof : dof + 3] = velocity
+                data.qvel[dof + 3 : dof + 6] = turning @ data.xmat[body].reshape(3, 3)
+                physics.one_shot = True
+                physics.changed_body(VELOCITY, body)
+
+    def _mobilities(self, data: Any) -> Vector:
+        """Accelerations of all degrees of freedom by unit forces on the six of each free link, shape (6, nv).
+
+        What the six of one link do to another's is zero: they are in different trees.
+        """
+        mujoco.mj_solveM(self._sim.mj_model, data, self._columns, self._units)
+        return self._columns
+
+    def _smooth_contacts(self, data: Any) -> frozenset[int]:
+        """Lets the models slide on what is static; returns which of them something touches.
+
+        What is carried presses on nothing, so nothing rubs; but the engine's friction presses by itself where something
+        slides fast (its cone is convex), and would lift and tilt the model.
+        """
+        contacts = data.contact
+        first, second = self._owners[contacts.geom.T]
+        least, most = np.minimum(first, second), np.maximum(first, second)
+        sliding = np.flatnonzero((most >= 0) & ((least == _STATIC) | (least == most)))
+        if len(sliding) and self._is_pyramidal:  # whose friction is in the constraints already
+            contacts.dim[sliding] = 1
+            model = self._sim.mj_model
+            mujoco.mj_makeConstraint(model, data)
+            if not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_ISLAND):
+                mujoco.mj_island(model, data)
+            mujoco.mj_projectConstraint(model, data)
+        elif len(sliding):
+            friction, mu = contacts.friction, contacts.mu
+            mu[sliding] *= mujoco.mjMINMU / friction[sliding, 0]
+            friction[sliding] = mujoco.mjMINMU
+        return frozenset(first.tolist()) | frozenset(second.tolist())
+
+    def _bind(self, motions: tuple[KinematicMotion, ...]) -> None:
+        """Tables for these motions in the engine's present model."""
+        model = self._sim.mj_model
+        if self._bound[0] is model and self._bound[1] == motions:
+            return
+        self._bound = model, motions
+        self._is_pyramidal = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
+        self._units, self._columns = np.zeros((6, model.nv)), np.zeros((6, model.nv))
+        owners = np.where(np.append(model.geom_bodyid, -1) == 0, _STATIC, _OTHER)  # the last for -1: no geom
+        for index, motion in enumerate(motions):
+            motion.bind()
+            owners[motion.geoms] = index
+            for dof, _, _ in motion.addresses:
+                self._units[_SIX, _SIX + dof] = 1.0
+        self._owners: npt.NDArray[np.int_] = owners
+
+
+def _solve_force(mobility: Vector, acceleration: Vector) -> Vector:
+    """The force (6,) that makes this acceleration; the mobility is symmetric and positive."""
+    factor, force = np.ascontiguousarray(mobility), np.empty(6)
+    mujoco.mju_cholFactor(factor, 0.0)
+    mujoco.mju_cholSolve(force, factor, acceleration)
+    return force
+
+
+@functools.lru_cache(maxsize=256)
+def _screw(linear: Triple, angular: Triple, step: float) -> tuple[Vector, Vector]:
+    """Shift (3,) and rotation matrix (3, 3) of a frame after a step with this twist in its own axes.
+
+    The exponential of SE(3); a series of it where the quotients would lose digits.
+    """
+    v, w = (np.clip(motion, -LARGEST, LARGEST) * step for motion in (linear, angular))
+    square = float(w @ w)
+    if square > 1e-6:
+        angle = math.sqrt(square)
+        first, second = (1 - math.cos(angle)) / square, (angle - math.sin(angle)) / (angle * square)
+    else:
+        first, second = 0.5 - square / 24, 1 / 6 - square / 120
+    x, y, z = w
+    across = np.array(((0, -z, y), (z, 0, -x), (-y, x, 0)))
+    turn = np.eye(3) + (1 - square * second) * across + first * across @ across
+    shift = v + first * (across @ v) + second * (across @ (across @ v))
+    shift.flags.writeable = turn.flags.writeable = False
+    return shift, turn

@@ -1,0 +1,140 @@
+"""Publish the transforms of a robot: fixed frames on `/tf_static`, moving links on `/tf`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin, WorldPlugin
+from simkit.plugins.drives.odometry import TRANSFORMS, transforms
+from simkit.plugins.entity_poses import EntityPoses, PosedEntity, transforms_message
+from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.pose import Pose
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model, Simulation
+    from simkit.scene import SceneModel
+
+
+def frame_names(sim: Simulation) -> dict[str, str]:
+    """The frame of each link of each model, by its scoped name; see `StaticTransforms`."""
+    frames: dict[str, str] = {}
+    taken: set[str] = set()
+    for scene in _moving_models_first(sim):
+        links = {link.scoped: link.name for link in scene.all_links()}
+        clash = any(name in taken for name in links.values())
+        mine = {scoped: f"{scene.name}/{name}" if clash else name for scoped, name in links.items()}
+        frames.update(mine)
+        taken.update(mine.values())
+    return frames
+
+
+def _moving_models_first(sim: Simulation) -> list[SceneModel]:
+    """Those that move come first: what stands around takes no name from a robot."""
+    return sorted((handle.scene for handle in sim.models.values()), key=lambda scene: scene.static)
+
+
+class StaticTransforms(WorldPlugin):
+    """Publishes, latched, how the fixed joints of each moving model tie its links, and sensor frames to their links.
+
+    Frames are plain link names as in ROS; where two models have a link of one name, the later model's frames are
+    `<model>/<link>`. A sensor whose frame is not a link's but its own (`model::link::sensor`, as gz has it) gets a
+    transform from its link, on static models too; a camera's `<optical_frame_id>` gets one from the sensor's frame,
+    unless it is a link's. Part of every world; looks once a second of simulated time for models that came or went.
+    """
+
+    after_step_rate = 1.0
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._static = self.advertise("/tf_static", TRANSFORMS, latched=True)
+        self._known: tuple[str, ...] = ()
+        self.after_step()
+
+    def reset(self) -> None:
+        self._known = ()
+        self.after_step()
+
+    def after_step(self) -> None:
+        """Publishes all transforms again where the models have changed."""
+        names = tuple(self.sim.models)
+        if names == self._known:
+            return
+        self._known = names
+        found = list(self._all())
+        if found:
+            self._static.publish_later(partial(transforms, 0, *found))
+
+    def _all(self) -> Iterator[tuple[str, str, Pose]]:
+        names = frame_names(self.sim)
+        for scene in _moving_models_first(self.sim):
+            frames = {link.scoped: names[link.scoped] for link in scene.all_links()}
+            if not scene.static:
+                yield from self._links(scene, frames)
+            yield from self._sensors(scene, frames)
+
+    def _links(self, scene: SceneModel, frames: dict[str, str]) -> Iterator[tuple[str, str, Pose]]:
+        poses = {link.scoped: link.pose_world for link in scene.all_links()}
+        for joint in scene.all_joints():
+            if joint.type == "fixed" and joint.parent_link in poses and joint.child_link in poses:
+                pose = poses[joint.parent_link].inverse() @ poses[joint.child_link]
+                yield frames[joint.parent_link], frames[joint.child_link], pose
+
+    def _sensors(self, scene: SceneModel, frames: dict[str, str]) -> Iterator[tuple[str, str, Pose]]:
+        children = {joint.scoped: joint.child_link for joint in scene.all_joints()}
+        links = {frames[link.scoped]: link.pose_world for link in scene.all_links()}
+        for described in scene.all_sensors():
+            link = children[described.parent] if described.on_joint else described.parent
+            # a Classic plugin names a link's frame; a kind that simkit does not have is in the scene only
+            if described.plugins or link not in frames or not self.sim.has_sensor(described.scoped):
+                continue
+            sensor = self.sim.sensor(described.scoped)
+            frame, pose = sensor.frame_id, sensor.scene.pose_link
+            if frame in {described.name, described.scoped} - set(links):
+                yield frames[link], frame, pose
+            for optical, turned in sensor.optical_frames().items():
+                if optical in links or optical == frame:
+                    continue
+                if frame in links:  # another link's perhaps
+                    turned = links[frame].inverse() @ links[frames[link]] @ pose @ turned
+                yield frame, optical, turned
+
+
+class RobotStatePublisher(ModelPlugin):
+    """Publishes on `/tf`, `<publish_frequency>` (20) times a second, each link that a joint moves in its parent link.
+
+    Frames have the names that `/tf_static` has. The poses are the true ones, also of joints without an encoder. What
+    makes them in ROS, `robot_state_publisher`, is a node of its own that is started beside Gazebo.
+    """
+
+    filenames = ("libsimkit_robot_state_publisher.so",)
+    names = ("simkit::RobotStatePublisher",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._rate = params.number("publish_frequency", 20.0, minimum=1e-3)
+
+    def load(self, parent: Model, params: Params) -> None:
+        self._robot = parent
+        self._out = self.advertise("/tf", TRANSFORMS)
+        publish_while_subscribed(self, self._out, self._rate, "tell")
+
+    def tell(self) -> None:
+        """Publishes."""
+        poses: Any = self.sim.names.shared(f"joint frames {id(self)}", self._poses)
+        self._out.publish_later(partial(transforms_message, self.sim.time_ns, poses.take()))
+
+    def _poses(self) -> EntityPoses:
+        frames, joints = frame_names(self.sim), list(self._robot.scene.all_joints())
+        told = {joint.child_link for joint in joints if joint.type == "fixed"}
+        parts = []
+        for joint in joints:
+            parent, child = joint.parent_link, joint.child_link
+            if child in told or parent not in frames or child not in frames:  # no frame has a second parent
+                continue
+            told.add(child)
+            parts.append(
+                PosedEntity(frames[parent], frames[child], handle=self.sim.link(child), within=self.sim.link(parent))
+            )
+        return EntityPoses(self.sim, parts)

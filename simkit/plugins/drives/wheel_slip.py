@@ -1,0 +1,273 @@
+"""Wheel slip of gz and of Gazebo Classic: `gz::sim::systems::WheelSlip`, `libgazebo_ros_wheel_slip.so`,
+`libWheelSlipPlugin.so`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_link
+from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.pose import quat_conjugate, quat_rotate
+from simkit.runtime.contact.anisotropic_friction import SlippingWheel
+from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Simulation
+
+
+LATERAL, LONGITUDINAL = "slip_compliance_unitless_lateral", "slip_compliance_unitless_longitudinal"
+
+
+@dataclass(frozen=True, slots=True)
+class Wheel:
+    """A `<wheel>` of the file.
+
+    Attributes:
+        name: plain name of the link.
+        contact: its link and joint.
+        radius: [m].
+        force: that the compliances are told at [N].
+        lateral, longitudinal: compliances along the axle and across it.
+    """
+
+    name: str
+    contact: SlippingWheel
+    radius: float
+    force: float
+    lateral: float
+    longitudinal: float
+
+
+class WheelSlipBase(ModelPlugin):
+    """Lets the contacts of wheels slip with the force on them; the compliances are live parameters.
+
+    The compliances of a wheel are the parameters `slip_compliance_unitless_lateral/<link>` and
+    `slip_compliance_unitless_longitudinal/<link>` of the plugin's node; `/world/<world>/wheel_slip` sets them too.
+    """
+
+    lets_sleep = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        blocks = params.all("wheel")
+        if not blocks:
+            params.text("wheel", required=True)
+        self.wheels: list[Wheel] = []
+        taken: set[str] = set()
+        for block in blocks:
+            wheel = _read_wheel(scene, block)
+            if wheel is None:
+                continue
+            if wheel.contact.link in taken:
+                block.error("SK-PLUGIN-092", f"link {wheel.name!r} has a <wheel> already; there is one for each")
+                continue
+            taken.add(wheel.contact.link)
+            self.wheels.append(wheel)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.compliances = [
+            (self._own(LATERAL, w, w.lateral), self._own(LONGITUDINAL, w, w.longitudinal)) for w in self.wheels
+        ]
+        self._scales = [wheel.radius / wheel.force for wheel in self.wheels]
+        if self.wheels:
+            self.sim.friction.add_wheels(self, [wheel.contact for wheel in self.wheels], self.slips)
+
+    def _own(self, name: str, wheel: Wheel, value: float) -> Any:
+        ahead = "along" if name == LATERAL else "across"
+        text = f"slip of wheel {wheel.name}, {ahead} its axle, where the force is {wheel.force:g} N"
+        return self.declare(f"{name}/{wheel.name}", value, minimum=0.0, maximum=_MOST, description=text)
+
+    def slips(self) -> list[tuple[float, float]]:
+        """Compliances of each wheel, per rate of turning [m/N]."""
+        return [
+            (scale * across.value, scale * ahead.value)
+            for scale, (across, ahead) in zip(self._scales, self.compliances, strict=True)
+        ]
+
+
+_MOST = 1e6
+
+
+def _read_wheel(scene: SceneModel, block: Params) -> Wheel | None:
+    """One `<wheel>`; None after an error."""
+    lateral = block.number("slip_compliance_lateral", 0.0, minimum=0, maximum=_MOST)
+    longitudinal = block.number("slip_compliance_longitudinal", 0.0, minimum=0, maximum=_MOST)
+    force = block.number("wheel_normal_force", required=True, minimum=1e-6)
+    radius = block.number("wheel_radius", 1.0, minimum=1e-6) if block.has("wheel_radius") else 0.0
+    name = block.attribute("link_name")
+    if not name:
+        block.error("SK-PARAM-001", "<wheel> has no link_name; it is the link of the wheel")
+        return None
+    link = find_link(scene, name, block)
+    if link is None:
+        return None
+    joint = _wheel_joint(scene, link, block)
+    if len(link.collisions) != 1:
+        message = f"link {name!r} has {len(link.collisions) or 'no'} collisions; a wheel that slips has one"
+        block.error("SK-PLUGIN-091", message)
+    shape = link.collisions[0].geometry if link.collisions else None
+    if not radius and isinstance(shape, (Cylinder, Sphere)):
+        radius = shape.radius
+    if not radius:
+        block.number("wheel_radius", required=True)
+    if joint is None or len(link.collisions) != 1 or not radius:
+        return None
+    contact = SlippingWheel(link.scoped, joint.scoped)
+    return Wheel(link.name, contact, radius, force, lateral, longitudinal)
+
+
+def _wheel_joint(scene: SceneModel, link: SceneLink, block: Params) -> SceneJoint | None:
+    """The one joint that a wheel turns on; None after an error."""
+    joints = [joint for joint in scene.all_joints() if joint.child_link == link.scoped]
+    if len(joints) != 1 or len(joints[0].axes) != 1:
+        found = ", ".join(f"{joint.name!r} ({joint.type})" for joint in joints) or "none"
+        message = f"link {link.name!r} is the child of {found}; a wheel that slips turns on one joint with one axis"
+        block.error("SK-PLUGIN-091", message)
+        return None
+    return joints[0]
+
+
+def set_compliances(sim: Simulation, links: set[str], lateral: float, longitudinal: float) -> list[str]:
+    """Sets the compliances of wheels among links, as `/world/<world>/wheel_slip` does; which wheels were there."""
+    found: list[str] = []
+    for plugin in sim.friction.owners():
+        if not isinstance(plugin, WheelSlipBase):
+            continue
+        for wheel, pair in zip(plugin.wheels, plugin.compliances, strict=True):
+            if wheel.contact.link in links:
+                found.append(wheel.contact.link)
+                for parameter, value in zip(pair, (lateral, longitudinal), strict=True):
+                    sim.set_parameter(parameter.node, parameter.name, value)
+    return found
+
+
+class WheelSlip(WheelSlipBase):
+    """Lets wheels slip, along their axle and across it; no `<fdir1>` is needed."""
+
+    filenames = ("gz-sim-wheel-slip-system",)
+    names = ("gz::sim::systems::WheelSlip",)
+
+
+_SLIP = "gazebo_msgs/msg/WheelSlip"
+_VECTOR = "geometry_msgs/msg/Vector3"
+_NUMBERS = ("std_msgs/msg/Float64", "std_msgs/msg/Float32")
+_UNSET = -1.0
+
+
+class _ClassicWheelSlip(WheelSlipBase):
+    """What both know of their wheels: how they slip now."""
+
+    def load(self, parent: Any, params: Params) -> None:
+        super().load(parent, params)
+        self._model = parent
+        down = self.sim.mj_model.opt.gravity
+        size = float(np.linalg.norm(down))
+        # as Classic: downwards where the model started, turned with it
+        world = down / size if size > 0 else np.array([0.0, 0.0, -1.0])
+        self._down = quat_rotate(quat_conjugate(parent.scene.pose_world.quaternion), world).tolist()
+        self._links = [self.sim.link(wheel.contact.link) for wheel in self.wheels]
+        self._joints = [self.sim.joint(wheel.contact.joint) for wheel in self.wheels]
+
+    def measured(self) -> list[tuple[Wheel, float, float, float]]:
+        """Of each wheel its speeds ahead and along the axle, and that of its rim [m/s]."""
+        data = self.sim.physics.fresh()
+        down = quat_rotate(self._model.pose.quaternion, self._down)
+        found = []
+        for wheel, link, joint in zip(self.wheels, self._links, self._joints, strict=True):
+            axle = data.xaxis[self.sim.names.joint(wheel.contact.joint).joint_ids[0]]
+            velocity, rim = link.linear_velocity, wheel.radius * float(joint.velocity)
+            found.append((wheel, float(np.cross(down, axle) @ velocity), float(axle @ velocity), rim))
+        return found
+
+    def set_all(self, side: int, value: float) -> None:
+        """One compliance of every wheel: 0 is the lateral one, 1 the longitudinal."""
+        for pair in self.compliances:
+            self.sim.set_parameter(pair[side].node, pair[side].name, value)
+
+
+class GazeboRosWheelSlip(_ClassicWheelSlip):
+    """Lets wheels slip, and tells on `wheel_slip` by how much.
+
+    The lateral slip is the angle between a wheel and the way it goes [rad], the longitudinal one the part of its rim
+    speed that it loses; both are 0 of a wheel whose rim moves slower than `<wheel_spin_tolerance>` (0.001 m/s). With
+    the parameters `slip_compliance_unitless_lateral` and `slip_compliance_unitless_longitudinal` all wheels are set.
+    """
+
+    filenames = ("libgazebo_ros_wheel_slip.so",)
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        super().prepare(scene, params, builder)
+        self._tolerance = params.number("wheel_spin_tolerance", 1e-3, minimum=0)
+        self._rate = params.number("publisher_update_rate", 100.0)
+
+    def load(self, parent: Any, params: Params) -> None:
+        super().load(parent, params)
+        for side, name in enumerate((LATERAL, LONGITUDINAL)):
+            what = f"{'lateral' if side == 0 else 'longitudinal'} slip compliance of every wheel; negative leaves them"
+            self.declare(name, _UNSET, description=what, on_change=partial(self._on_all, side))
+        self._out = self.advertise("wheel_slip", _SLIP)
+        publish_while_subscribed(self, self._out, max(0.0, self._rate), "tell")
+
+    def _on_all(self, side: int, value: float) -> None:
+        if value >= 0.0:
+            self.set_all(side, value)
+
+    def tell(self) -> None:
+        """Publishes."""
+        names: list[str] = []
+        slips: list[tuple[float, float]] = []
+        for wheel, ahead, sideways, rim in self.measured():
+            names.append(wheel.name)
+            is_still = abs(rim) < self._tolerance
+            slips.append((0.0, 0.0) if is_still else (math.atan2(sideways, ahead), (rim - ahead) / rim))
+        lateral, longitudinal = (np.array(column) for column in zip(*slips, strict=True))
+        self._out.publish(msgs.type_of(_SLIP)(names, lateral, longitudinal))
+
+
+class ClassicWheelSlip(_ClassicWheelSlip):
+    """Lets wheels slip, and tells of each on `/<model>/wheel_slip/<link>` how fast.
+
+    It is a vector: the speed ahead less that of the rim, the speed sideways, and that of the rim [m/s].
+
+    Numbers on `/<model>/wheel_slip/lateral_compliance` and `longitudinal_compliance` set all wheels (in Gazebo Classic
+    they are text).
+    """
+
+    filenames = ("libWheelSlipPlugin.so",)
+
+    def load(self, parent: Any, params: Params) -> None:
+        super().load(parent, params)
+        prefix = f"/{parent.name}/wheel_slip"
+        for side, name in enumerate(("lateral", "longitudinal")):
+            topic = valid_topic(f"{prefix}/{name}_compliance")
+            self.listen(topic, _NUMBERS, partial(self._on_compliance, side))
+        self._outs = [self.advertise(valid_topic(f"{prefix}/{wheel.name}"), _VECTOR) for wheel in self.wheels]
+        for out in self._outs:
+            publish_while_subscribed(self, out, 0.0, "tell")
+
+    def _on_compliance(self, side: int, message: Any) -> None:
+        value = float(message.data)
+        if math.isfinite(value) and value >= 0.0:
+            self.set_all(side, value)
+        else:
+            self.log.warning("a compliance of %g is left out, it cannot be negative", value)
+
+    def tell(self) -> None:
+        """Publishes what is heard."""
+        now = self.sim.time_ns
+        if vars(self).get("_told_ns") == now:
+            return
+        self._told_ns = now
+        for out, (_, ahead, sideways, rim) in zip(self._outs, self.measured(), strict=True):
+            if out.wanted:
+                out.publish(msgs.type_of(_VECTOR)(ahead - rim, sideways, rim))

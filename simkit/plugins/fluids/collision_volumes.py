@@ -1,0 +1,95 @@
+"""Volumes of links that displace air or water, from their collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from simkit.diagnostics import Diagnostics
+from simkit.plugins.fluids.submerged_volume import Solid, Triangles, solid_of
+from simkit.pose import Vector
+from simkit.scene import Geometry, Mesh, Polyline, SceneCollision, SceneLink
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """What of a link displaces a fluid.
+
+    Attributes:
+        volume: [m³].
+        centre: of it, in the link's frame [m], shape (3,).
+        reach: from the centre to its farthest point at most [m].
+        solid: its shape; None where only the numbers are known.
+        axes, origin: the solid's frame in the link's.
+    """
+
+    volume: float
+    centre: Vector
+    reach: float = 0.0
+    solid: Solid | None = None
+    axes: Vector = field(default_factory=lambda: np.eye(3))
+    origin: Vector = field(default_factory=lambda: np.zeros(3))
+
+
+class HullFactory:
+    """Makes hulls; shapes that come again are made once. A handle.
+
+    Args:
+        tell: called with the scoped name of a collision whose mesh is open, so that its convex hull is taken instead.
+    """
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self._tell = tell
+        self._solids: dict[Geometry, Solid | None] = {}
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> HullFactory:
+        return self
+
+    def hulls(self, link: SceneLink) -> list[Hull]:
+        """One for each collision of a link that takes up space."""
+        return [hull for collision in link.collisions if (hull := self._hull(collision)) is not None]
+
+    def _hull(self, collision: SceneCollision) -> Hull | None:
+        shape = collision.geometry
+        if shape not in self._solids:
+            self._solids[shape] = solid_of(shape, lambda other: self._triangles(other, collision))
+        solid = self._solids[shape]
+        if solid is None:
+            return None
+        axes, origin = collision.pose_link.matrix, np.asarray(collision.pose_link.position, float)
+        return Hull(solid.volume, origin + axes @ solid.centre, solid.reach, solid, axes, origin)
+
+    def _triangles(self, shape: Geometry, collision: SceneCollision) -> Triangles | None:
+        from simkit.compiler.meshes.collision_bodies import convex_hull
+        from simkit.compiler.meshes.convex_pieces import mesh_volume
+
+        vertices, faces = _surface(shape, collision)
+        if not len(faces):
+            return None
+        if mesh_volume(vertices, faces) <= 0:
+            self._tell(collision.scoped)
+            convex = convex_hull(vertices)
+            if convex is None or not len(convex[1]):
+                return None
+            vertices, faces = convex
+        corners: Triangles = np.asarray(vertices, float)[np.asarray(faces)]
+        return corners
+
+
+def _surface(shape: Geometry, collision: SceneCollision) -> tuple[Any, Any]:
+    """Vertices and faces; what is wrong with a file was said when the world was compiled."""
+    from simkit.compiler.meshes.mesh_part import join_parts
+    from simkit.compiler.meshes.mesh_reader import load_mesh
+    from simkit.compiler.shapes import polyline_triangles
+
+    if isinstance(shape, Polyline):
+        try:
+            return polyline_triangles(shape)
+        except ValueError:
+            return np.zeros((0, 3)), np.zeros((0, 3), int)
+    if not isinstance(shape, Mesh) or shape.missing:
+        return np.zeros((0, 3)), np.zeros((0, 3), int)
+    return join_parts(load_mesh(shape, Diagnostics(), collision.where))

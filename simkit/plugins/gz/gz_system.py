@@ -1,0 +1,186 @@
+"""Plugin that runs a system written for gz-sim: an object or a module with `configure`, `pre_update`, `update`, …"""
+
+from __future__ import annotations
+
+import copy
+import os
+import threading
+import traceback
+import types
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.params import Params
+from simkit.plugins.base import Plugin
+from simkit.plugins.gz_python import import_hook, simulation_context
+from simkit.plugins.joint_states import JointStatePublisher
+
+HOOKS: Final = ("configure", "pre_update", "update", "post_update", "reset", "shutdown")
+"""What a system may have; without one of them it is none."""
+
+_OWN: Final = str(Path(__file__).resolve().parents[2]) + os.sep
+_MODULE = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
+
+_STATELESS: Final = (type(threading.Lock()), type(threading.RLock()), types.ModuleType)
+"""What systems hold and what has nothing to bring back: locks against threads that there are none of here, modules."""
+
+
+class GzSystem(Plugin):
+    """A plugin that stands for a system of gz. Its state is that of the system.
+
+    Args:
+        system: an object or a module with some of the hooks; None where a subclass finds it in `find_system`.
+
+    Attributes:
+        system: what has the hooks; None before `load`.
+        shadow: whether simkit's `gz` modules go before installed ones.
+    """
+
+    parent_kind = "any"
+    is_gz_system = True
+    shadow = False
+
+    def __init__(self, system: Any = None) -> None:
+        self._given = system
+        self.system: Any = None
+        self._calls: dict[str, Callable[..., None]] = {}
+        self._outside: set[str] = set()  # attributes that snapshots leave as they are
+        self._hub: Any = None  # what the systems of a simulation share
+
+    # ------------------------------------------------------------------ simkit's hooks
+
+    def find_system(self) -> Any:
+        """The system to hang here; None where there is none, which has been reported."""
+        return self._given
+
+    def load(self, parent: Any, params: Params) -> None:
+        from simkit.plugins.gz_python.sdformat import Element
+        from simkit.plugins.gz_python.sim.system_hub import hub_of
+        from simkit.plugins.gz_python.sim.update_info import EventManager
+
+        self._hub = hub_of(self.sim)
+        self._hub.ecm.published = _joint_state_publishers
+        before, hook = simulation_context.enter_simulation(self.sim, self), "get_system"
+        try:
+            with import_hook.importable(self.shadow):
+                self.system = self.find_system()
+                found = {hook: getattr(self.system, hook, None) for hook in HOOKS}
+                self._calls = {hook: call for hook, call in found.items() if callable(call)}
+                hook = "configure"
+                if hook in self._calls:
+                    entity = _entity_of(self._hub.ecm, parent)
+                    self._calls[hook](entity, Element(params), self._hub.ecm, EventManager())
+        except Exception as error:  # noqa: BLE001 - a user's system may raise anything
+            self.sim.faults.meet(self, f"{hook}{line_of(error)}", error)
+        finally:
+            simulation_context.leave_simulation(before)
+
+    def before_step(self) -> None:
+        if "pre_update" in self._calls:
+            self.call("pre_update", self._hub.info(1))
+
+    def update_step(self) -> None:
+        """After all `before_step`s; the last system then has the commands of all carried out."""
+        if "update" in self._calls:
+            self.call("update", self._hub.info(1))
+        self._hub.look()
+        if self is self._hub.last:
+            self._hub.carry_out()
+
+    def after_step(self) -> None:
+        if "post_update" in self._calls:
+            self.call("post_update", self._hub.info(0))
+
+    def reset(self) -> None:
+        if "reset" in self._calls:
+            self.call("reset", self._hub.info(0))
+
+    def close(self) -> None:
+        if "shutdown" in self._calls:
+            self.call("shutdown")
+
+    def call(self, hook: str, *info: Any) -> None:
+        """Calls a hook of the system, where it has it; what it raises is the plugin's."""
+        method = self._calls.get(hook)
+        if method is None:
+            return
+        before = simulation_context.enter_simulation(self.sim, self)
+        import_hook.enter(self.shadow)
+        try:
+            method(*info, *((self._hub.ecm,) if info else ()))
+        except Exception as error:  # noqa: BLE001 - a user's system may raise anything
+            self.sim.faults.meet(self, f"{hook}{line_of(error)}", error)
+        finally:
+            import_hook.leave()
+            simulation_context.leave_simulation(before)
+
+    # ------------------------------------------------------------------ state
+
+    def get_state(self) -> dict[str, Any]:
+        """The system's attributes (a module's variables), each copied by itself; the first has the entities too."""
+        if self._hub is None:
+            return {}  # it was never loaded
+        memo: dict[int, Any] = {id(self): self, id(self.system): self.system}
+        state: dict[str, Any] = {}
+        for name, value in _variables(self.system).items():
+            if isinstance(value, _STATELESS):
+                self._outside.add(name)
+                continue
+            try:
+                state[name] = copy.deepcopy(value, memo)
+            except Exception as error:  # noqa: BLE001 - a foreign object may raise anything when copied
+                self._report_uncopied(name, error)
+        self._hub.look()
+        shared = self._hub.ecm.get_state() if self is self._hub.first or self._hub.first is None else None
+        return {"variables": state, "entities": shared}
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Back to a state from `get_state`; attributes made since are dropped, uncopied ones stay as they are."""
+        if not state:
+            return
+        memo: dict[int, Any] = {id(self): self, id(self.system): self.system}
+        kept, own = copy.deepcopy(dict(state["variables"]), memo), getattr(self.system, "__dict__", {})
+        for name in [n for n in _variables(self.system) if n not in kept and n not in self._outside]:
+            del own[name]
+        own.update(kept)
+        if state["entities"] is not None:
+            self._hub.ecm.set_state(state["entities"])
+
+    def _report_uncopied(self, name: str, error: Exception) -> None:
+        if name not in self._outside:
+            self._outside.add(name)
+            which = f"plugin {self.name!r}: attribute {name!r}"
+            message = f"{which} cannot be copied, snapshots and reset leave it as it is: {error}"
+            self.sim.reports.warning("SK-PLUGIN-006", message, self.where, "give it a __deepcopy__")
+
+
+def line_of(error: BaseException) -> str:
+    """Where in the user's code it was raised: ` at file:line`."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if not f.filename.startswith(_OWN)]
+    return f" at {frames[-1].filename}:{frames[-1].lineno}" if frames else ""
+
+
+def _variables(system: Any) -> dict[str, Any]:
+    """What of a system is state: an object's attributes, a module's variables that are data."""
+    own = getattr(system, "__dict__", {})
+    if not isinstance(system, types.ModuleType):
+        return dict(own)
+    return {n: v for n, v in own.items() if not (n.startswith("__") or isinstance(v, _MODULE))}
+
+
+def _joint_state_publishers(sim: Any) -> frozenset[str]:
+    plugins = sim.structure.all_plugins()
+    return frozenset(name for p in plugins if isinstance(p, JointStatePublisher) for name in p._joints)
+
+
+def _entity_of(ecm: Any, parent: Any) -> int:
+    """The number of what a plugin hangs on."""
+    from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
+
+    scoped = getattr(parent, "scoped", "")
+    if not scoped:
+        return WORLD_ENTITY
+    kind = type(parent).__name__.lower()
+    kinds = (kind,) if kind in ("model", "visual") else ("sensor",)
+    return next((r.entity for r in ecm.sync() if r.kind in kinds and r.scene.scoped == scoped), WORLD_ENTITY)

@@ -1,0 +1,28 @@
+"""gz-common's Python: only its verbosity, which here is the level of simkit's log."""
+
+from __future__ import annotations
+
+import logging
+from typing import Any, Final
+
+from simkit.plugins.gz_python.math.missing_names import missing_name_error
+
+_LEVELS: Final = (logging.CRITICAL, logging.ERROR, logging.WARNING, logging.INFO, logging.DEBUG)
+_level = 1
+
+__all__ = ["set_verbosity", "verbosity"]
+
+
+def set_verbosity(level: int) -> None:
+    """0: nothing but what ends a run, 1: errors, 2: warnings, 3: messages, 4: everything."""
+    global _level
+    _level = max(0, min(4, int(level)))
+    logging.getLogger("simkit").setLevel(_LEVELS[_level])
+
+
+def verbosity() -> int:
+    return _level
+
+
+def __getattr__(name: str) -> Any:
+    raise missing_name_error("gz.common", name, __all__, {})

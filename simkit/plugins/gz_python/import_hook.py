@@ -1,0 +1,228 @@
+"""Which modules of Gazebo's Python are known under which names, and how an import finds them.
+
+Every version and both spellings mean one implementation: `gz.sim8`, `gz.sim`, `ignition.gazebo6` are
+`simkit.plugins.gz_python.sim`. They can be imported only while somebody asked for it (`enter` and `leave`, or `install`), and
+what is really installed under such a name goes first unless it is to be shadowed.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import re
+import sys
+import types
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from typing import Any, Final
+
+_FAMILIES: Final = {
+    "sim": "sim",
+    "gazebo": "sim",
+    "math": "math",
+    "common": "common",
+    "transport": "transport",
+    "msgs": "msgs",
+    "sdformat": "sdformat",
+}
+"""Module of Gazebo, without its version -> ours."""
+
+_UNSUPPORTED_MODULES: Final = (
+    "gui",
+    "rendering",
+    "sensors",
+    "physics",
+    "launch",
+    "plugin",
+    "utils",
+    "fuel_tools",
+    "common_av",
+)
+_GAZEBO_NAME: Final = re.compile(
+    r"^(?:(?P<root>gz|ignition)(?:\.(?P<module>[a-z_]+?)\d*)?|(?P<sdf>sdformat)\d*)(?:\.(?P<rest>.+))?$"
+)
+_OURS: Final = "__simkit_shim__"
+
+
+def module_behind(name: str) -> str | None:
+    """The module of ours behind a name of Gazebo's: empty for a bare `gz` or `ignition`; None for other names."""
+    match = _GAZEBO_NAME.match(name)
+    if match is None:
+        return None
+    if match["root"] and not match["module"]:
+        return ""
+    family = _FAMILIES.get(match["sdf"] or match["module"])
+    if family is None:
+        return None
+    target = f"simkit.plugins.gz_python.{family}"
+    if not match["rest"]:
+        return target
+    if family == "msgs":
+        return f"{target}.{match['rest']}"
+    inner = f"{target}.{match['rest']}"
+    return inner if match["rest"] in ("components",) else None
+
+
+class ShimFinder(MetaPathFinder):
+    """Finds Gazebo's modules in this package."""
+
+    def find_spec(self, name: str, path: Sequence[str] | None, target: Any = None) -> ModuleSpec | None:
+        found = module_behind(name)
+        if found is None:
+            self._refuse(name)
+            return None
+        return ModuleSpec(name, _ShimLoader(found), is_package=True)
+
+    @staticmethod
+    def _refuse(name: str) -> None:
+        """Says of a module of Gazebo that simkit has none, where Python would only say that it is not there."""
+        parent, _, leaf = name.rpartition(".")
+        known = module_behind(parent) if parent else None
+        if known and not leaf.startswith("_"):  # `from gz.sim import leaf`: Python's own words would not say more
+            try:
+                getattr(sys.modules.get(parent) or importlib.import_module(known), leaf)
+            except AttributeError as error:
+                raise ImportError(str(error), name=parent) from None
+        root, _, rest = name.partition(".")
+        if root in ("gz", "ignition") and rest.rstrip("0123456789") in _UNSUPPORTED_MODULES:
+            families = sorted(set(_FAMILIES) - {"gazebo"})
+            message = f"simkit has no {name}; of Gazebo's Python it has {', '.join(families)}"
+            raise ModuleNotFoundError(message, name=name)
+
+
+class _ShimLoader(Loader):
+    """Fills a module under Gazebo's name with what ours offers; once made it is the same for good."""
+
+    def __init__(self, target: str) -> None:
+        self._target = target
+
+    def create_module(self, spec: ModuleSpec) -> types.ModuleType | None:
+        return _shim_modules.get(spec.name)
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        own = vars(module)
+        _imported_names.append(module.__name__)
+        if _OURS not in own:
+            own[_OURS] = self._target
+            self._fill(own)
+        _shim_modules[module.__name__] = module
+
+    def _fill(self, own: dict[str, Any]) -> None:
+        if not self._target:
+            return
+        if self._target.startswith("simkit.plugins.gz_python.msgs."):
+            from simkit.plugins.gz_python import msgs
+
+            own.update(msgs.contents_of(self._target.removeprefix("simkit.plugins.gz_python.msgs.")))
+            return
+        real = importlib.import_module(self._target)
+        own.update({name: value for name, value in vars(real).items() if not name.startswith("__")})
+        own.update({name: vars(real)[name] for name in ("__doc__", "__all__", "__getattr__") if name in vars(real)})
+
+
+_finder: Final = ShimFinder()
+_shim_modules: dict[str, types.ModuleType] = {}
+"""Modules of ours under Gazebo's names, whether they can be imported now or not."""
+
+_imported_names: list[str] = []
+"""Names of ours among the modules that Python knows now."""
+
+_depth = 0
+
+
+def is_shim(module: Any) -> bool:
+    """Whether a module is one of ours under Gazebo's name."""
+    return _OURS in getattr(module, "__dict__", {})
+
+
+def enter(shadow: bool = False) -> None:
+    """Lets Gazebo's modules be imported from now on; to be matched by `leave`.
+
+    Args:
+        shadow: ours go before installed ones.
+    """
+    global _depth
+    _depth += 1
+    if _depth == 1:
+        sys.meta_path.append(_finder)
+    if shadow and sys.meta_path[0] is not _finder:
+        sys.meta_path.remove(_finder)
+        sys.meta_path.insert(0, _finder)
+
+
+def leave() -> None:
+    """Takes Gazebo's names away again, once as often as `enter`; what was imported stays with whoever has it."""
+    global _depth
+    _depth -= 1
+    if _depth:
+        return
+    sys.meta_path.remove(_finder)
+    if _imported_names:
+        for name in _imported_names:
+            sys.modules.pop(name, None)
+        _imported_names.clear()
+
+
+@contextmanager
+def importable(shadow: bool = False) -> Iterator[None]:
+    """Gazebo's modules can be imported within; looks anew for what is really installed."""
+    if not _depth and not shadow:
+        _forget_shims_of_installed()
+    enter(shadow)
+    try:
+        yield
+    finally:
+        leave()
+
+
+def _forget_shims_of_installed() -> None:
+    """Lets go of our modules where the real ones have been installed, or found, since."""
+    for root in {name.partition(".")[0] for name in _shim_modules}:
+        if _real_location(root):
+            for name in [n for n in _shim_modules if n.partition(".")[0] == root]:
+                del _shim_modules[name]
+
+
+def installed() -> dict[str, str]:
+    """What is really installed under Gazebo's names and would be imported: name -> where it lies."""
+    found = {}
+    for name in ("gz.sim", *(f"gz.sim{v}" for v in range(7, 12)), "gz.math", *(f"gz.math{v}" for v in range(6, 11))):
+        place = _real_location(name)
+        if place:
+            found[name] = place
+    for name in ("ignition.gazebo", "ignition.math", "sdformat", *(f"sdformat{v}" for v in range(12, 18))):
+        place = _real_location(name)
+        if place:
+            found[name] = place
+    return found
+
+
+def _real_location(name: str) -> str:
+    """Where a module lies; empty where there is none, or only ours."""
+    module = sys.modules.get(name)
+    if module is not None:
+        return "" if is_shim(module) else str(getattr(module, "__file__", None) or "a package")
+    others = [finder for finder in sys.meta_path if finder is not _finder]
+    parent, _, _ = name.rpartition(".")
+    path = None
+    if parent:
+        outer = sys.modules.get(parent)
+        if outer is not None and is_shim(outer):
+            return ""
+        spec = _find_spec(others, parent, None)
+        if spec is None or spec.submodule_search_locations is None:
+            return ""
+        path = list(spec.submodule_search_locations)
+    spec = _find_spec(others, name, path)
+    return str(spec.origin or "a package") if spec is not None else ""
+
+
+def _find_spec(finders: Sequence[Any], name: str, path: Sequence[str] | None) -> ModuleSpec | None:
+    for finder in finders:
+        find = getattr(finder, "find_spec", None)
+        spec: ModuleSpec | None = find(name, path, None) if find is not None else None
+        if spec is not None:
+            return spec
+    return None

@@ -1,0 +1,123 @@
+"""gz-math's types in Python, for modules written for it: `gz.math7`, `gz.math`, `ignition.math6`, … are this package.
+
+Names, meanings and tolerances are those of gz-math's own binding. Numbers have double precision throughout.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from simkit.plugins.gz_python.math.angle import Angle
+from simkit.plugins.gz_python.math.color import AxisAlignedBox, Color, Temperature
+from simkit.plugins.gz_python.math.inertia import Inertiald, MassMatrix3d
+from simkit.plugins.gz_python.math.matrices import Matrix3d, Matrix4d
+from simkit.plugins.gz_python.math.missing_names import missing_name_error
+from simkit.plugins.gz_python.math.pid import PID, RollingMean
+from simkit.plugins.gz_python.math.pose import Pose3d
+from simkit.plugins.gz_python.math.quaternion import Quaterniond
+from simkit.plugins.gz_python.math.scalars import (
+    clamp,
+    equal,
+    fixnan,
+    greater_or_near_equal,
+    is_even,
+    is_odd,
+    is_power_of_two,
+    isnan,
+    less_or_near_equal,
+    mean,
+    parse_float,
+    parse_int,
+    precision,
+    round_up_multiple,
+    round_up_power_of_two,
+    sgn,
+    signum,
+    sort2,
+    sort3,
+    variance,
+)
+from simkit.plugins.gz_python.math.spherical_coordinates import SphericalCoordinates
+from simkit.plugins.gz_python.math.vectors import (
+    Vector2d,
+    Vector2f,
+    Vector2i,
+    Vector3d,
+    Vector3f,
+    Vector3i,
+    Vector4d,
+    Vector4f,
+    Vector4i,
+)
+
+# the single-precision twins of what has no twin of its own
+Quaternionf, Pose3f, Matrix3f, Matrix4f = Quaterniond, Pose3d, Matrix3d, Matrix4d
+MassMatrix3f, Inertialf = MassMatrix3d, Inertiald
+
+__all__ = [
+    "PID",
+    "Angle",
+    "AxisAlignedBox",
+    "Color",
+    "Inertiald",
+    "Inertialf",
+    "MassMatrix3d",
+    "MassMatrix3f",
+    "Matrix3d",
+    "Matrix3f",
+    "Matrix4d",
+    "Matrix4f",
+    "Pose3d",
+    "Pose3f",
+    "Quaterniond",
+    "Quaternionf",
+    "RollingMean",
+    "SphericalCoordinates",
+    "Temperature",
+    "Vector2d",
+    "Vector2f",
+    "Vector2i",
+    "Vector3d",
+    "Vector3f",
+    "Vector3i",
+    "Vector4d",
+    "Vector4f",
+    "Vector4i",
+    "clamp",
+    "equal",
+    "fixnan",
+    "greater_or_near_equal",
+    "is_even",
+    "is_odd",
+    "is_power_of_two",
+    "isnan",
+    "less_or_near_equal",
+    "mean",
+    "parse_float",
+    "parse_int",
+    "precision",
+    "round_up_multiple",
+    "round_up_power_of_two",
+    "sgn",
+    "signum",
+    "sort2",
+    "sort3",
+    "variance",
+]
+
+_INSTEAD: Final = {
+    "Rand": "use random.Random(seed), which two runs with one seed draw the same from",
+    "GaussMarkovProcess": "use random.Random(seed).gauss",
+    "Stopwatch": "use info.sim_time",
+    "DiffDriveOdometry": "use the topic of the DiffDrive plugin",
+    "MecanumDriveOdometry": "use the topic of an OdometryPublisher plugin",
+    "SpeedLimiter": "use the limits of the DiffDrive and VelocityControl plugins",
+    "RotationSpline": "use Quaterniond.squad",
+    "SignalStats": "use mean and variance",
+    "SemanticVersion": "use packaging.version",
+}
+"""What gz-math has, this package has not, and something else does."""
+
+
+def __getattr__(name: str) -> Any:
+    raise missing_name_error("gz.math", name, __all__, _INSTEAD)

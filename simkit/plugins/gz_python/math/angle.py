@@ -1,0 +1,90 @@
+"""Angles of gz-math."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+from simkit.plugins.gz_python.math.scalars import format_number
+from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE
+
+
+class Angle:
+    """An angle; `==` and the order are those of gz-math: within 1e-3 is the same."""
+
+    ZERO: ClassVar[Angle]
+    PI: ClassVar[Angle]
+    HALF_PI: ClassVar[Angle]
+    TWO_PI: ClassVar[Angle]
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, radian: Any = 0.0) -> None:
+        self._value: float = radian._value if isinstance(radian, Angle) else float(radian)
+
+    def radian(self, *value: float) -> Any:
+        """[rad]; with an argument, sets it."""
+        if not value:
+            return self._value
+        self._value = float(value[0])
+        return None
+
+    def set_radian(self, value: float) -> None:
+        self._value = float(value)
+
+    def degree(self, *value: float) -> Any:
+        """[°]; with an argument, sets it."""
+        if not value:
+            return math.degrees(self._value)
+        self._value = math.radians(value[0])
+        return None
+
+    def set_degree(self, value: float) -> None:
+        self._value = math.radians(value)
+
+    def normalize(self) -> None:
+        """Brings it between -π and π."""
+        self._value = math.atan2(math.sin(self._value), math.cos(self._value))
+
+    def normalized(self) -> Angle:
+        angle = Angle(self)
+        angle.normalize()
+        return angle
+
+    def __call__(self) -> float:
+        return self._value
+
+    def __float__(self) -> float:
+        return self._value
+
+    def __add__(self, other: Angle) -> Angle:
+        return Angle(self._value + other._value)
+
+    def __sub__(self, other: Angle) -> Angle:
+        return Angle(self._value - other._value)
+
+    def __mul__(self, other: Angle) -> Angle:
+        return Angle(self._value * other._value)
+
+    def __truediv__(self, other: Angle) -> Angle:
+        return Angle(self._value / other._value)
+
+    def __eq__(self, other: object) -> bool:
+        return abs(self._value - other._value) <= EQUALITY_TOLERANCE if isinstance(other, Angle) else NotImplemented
+
+    def __lt__(self, other: Angle) -> bool:
+        return self._value < other._value
+
+    def __le__(self, other: Angle) -> bool:
+        return self._value < other._value or self == other
+
+    def __gt__(self, other: Angle) -> bool:
+        return self._value > other._value
+
+    def __ge__(self, other: Angle) -> bool:
+        return self._value > other._value or self == other
+
+    def __repr__(self) -> str:
+        return format_number(self._value)
+
+
+Angle.ZERO, Angle.PI, Angle.HALF_PI, Angle.TWO_PI = map(Angle, (0.0, math.pi, math.pi / 2, math.tau))

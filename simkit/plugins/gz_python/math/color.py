@@ -1,0 +1,217 @@
+"""Colours, temperatures and boxes of gz-math."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import Any, ClassVar, Final
+
+from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, clamp, format_number
+from simkit.plugins.gz_python.math.vectors import Vector3d
+
+_KELVIN: Final = 273.15
+_LARGEST: Final = sys.float_info.max
+
+
+class Color:
+    """Red, green, blue and alpha from 0 to 1; what is beyond is cut off. `c.r()` reads, `c.r(0.5)` sets."""
+
+    WHITE: ClassVar[Color]
+    BLACK: ClassVar[Color]
+    RED: ClassVar[Color]
+    GREEN: ClassVar[Color]
+    BLUE: ClassVar[Color]
+    YELLOW: ClassVar[Color]
+    MAGENTA: ClassVar[Color]
+    CYAN: ClassVar[Color]
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        self._c = [0.0, 0.0, 0.0, 1.0]
+        if len(values) == 1:
+            values = (values[0].r(), values[0].g(), values[0].b(), values[0].a())
+        if values:
+            self.set(*values)
+
+    def set(self, r: float = 1.0, g: float = 1.0, b: float = 1.0, a: float = 1.0) -> None:
+        self._c = [clamp(float(v), 0.0, 1.0) if math.isfinite(v) else 0.0 for v in (r, g, b, a)]
+
+    def reset(self) -> None:
+        self._c = [0.0, 0.0, 0.0, 1.0]
+
+    def _one(self, index: int, value: tuple[float, ...]) -> Any:
+        if not value:
+            return self._c[index]
+        self._c[index] = clamp(float(value[0]), 0.0, 1.0)
+        return None
+
+    def r(self, *value: float) -> Any:
+        return self._one(0, value)
+
+    def g(self, *value: float) -> Any:
+        return self._one(1, value)
+
+    def b(self, *value: float) -> Any:
+        return self._one(2, value)
+
+    def a(self, *value: float) -> Any:
+        return self._one(3, value)
+
+    def __getitem__(self, index: int) -> float:
+        return self._c[index]
+
+    def _with(self, other: Any, sign: float) -> Color:
+        others = other._c if isinstance(other, Color) else [float(other)] * 4
+        return Color(*(a + sign * b for a, b in zip(self._c, others, strict=True)))
+
+    def __add__(self, other: Any) -> Color:
+        return self._with(other, 1.0)
+
+    def __sub__(self, other: Any) -> Color:
+        return self._with(other, -1.0)
+
+    def __mul__(self, other: Any) -> Color:
+        others = other._c if isinstance(other, Color) else [float(other)] * 4
+        return Color(*(a * b for a, b in zip(self._c, others, strict=True)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Color):
+            return NotImplemented
+        return all(abs(a - b) <= DEFAULT_TOLERANCE for a, b in zip(self._c, other._c, strict=True))
+
+    def __copy__(self) -> Color:
+        return Color(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Color:
+        return Color(self)
+
+    def __repr__(self) -> str:
+        return " ".join(format_number(v) for v in self._c)
+
+
+Color.WHITE, Color.BLACK = Color(1, 1, 1), Color(0, 0, 0)
+Color.RED, Color.GREEN, Color.BLUE = Color(1, 0, 0), Color(0, 1, 0), Color(0, 0, 1)
+Color.YELLOW, Color.MAGENTA, Color.CYAN = Color(1, 1, 0), Color(1, 0, 1), Color(0, 1, 1)
+
+
+class Temperature:
+    """A temperature; without an argument 0 K."""
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, kelvin: Any = 0.0) -> None:
+        self._kelvin: float = kelvin._kelvin if isinstance(kelvin, Temperature) else float(kelvin)
+
+    def kelvin(self) -> float:
+        return self._kelvin
+
+    def celsius(self) -> float:
+        return self._kelvin - _KELVIN
+
+    def fahrenheit(self) -> float:
+        return self.celsius() * 1.8 + 32.0
+
+    def set_kelvin(self, value: float) -> None:
+        self._kelvin = float(value)
+
+    def set_celsius(self, value: float) -> None:
+        self._kelvin = float(value) + _KELVIN
+
+    def set_fahrenheit(self, value: float) -> None:
+        self.set_celsius((float(value) - 32.0) / 1.8)
+
+    def __call__(self) -> float:
+        return self._kelvin
+
+    def __float__(self) -> float:
+        return self._kelvin
+
+    def __add__(self, other: Any) -> Temperature:
+        return Temperature(self._kelvin + float(other))
+
+    def __sub__(self, other: Any) -> Temperature:
+        return Temperature(self._kelvin - float(other))
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, (int, float, Temperature)):
+            return bool(abs(self._kelvin - float(other)) <= DEFAULT_TOLERANCE)
+        return NotImplemented
+
+    def __lt__(self, other: Any) -> bool:
+        return self._kelvin < float(other)
+
+    def __gt__(self, other: Any) -> bool:
+        return self._kelvin > float(other)
+
+    def __repr__(self) -> str:
+        return format_number(self._kelvin)
+
+
+class AxisAlignedBox:
+    """A box along the axes: `()` is empty; two corners, or six numbers."""
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        self._min, self._max = Vector3d(*[_LARGEST] * 3), Vector3d(*[-_LARGEST] * 3)
+        if len(values) == 1:
+            values = (values[0].min(), values[0].max())
+        elif len(values) == 6:
+            values = (Vector3d(*values[:3]), Vector3d(*values[3:]))
+        if values:
+            first, second = Vector3d(values[0]), Vector3d(values[1])
+            self._min, self._max = Vector3d(first), Vector3d(first)
+            self._min.min(second)
+            self._max.max(second)
+
+    def min(self) -> Vector3d:
+        return self._min
+
+    def max(self) -> Vector3d:
+        return self._max
+
+    def _empty(self) -> bool:
+        return any(a > b for a, b in zip(self._min, self._max, strict=True))
+
+    def size(self) -> Vector3d:
+        return Vector3d() if self._empty() else self._max - self._min
+
+    def x_length(self) -> float:
+        return float(self.size().x())
+
+    def y_length(self) -> float:
+        return float(self.size().y())
+
+    def z_length(self) -> float:
+        return float(self.size().z())
+
+    def center(self) -> Vector3d:
+        return (self._min + self._max) * 0.5
+
+    def volume(self) -> float:
+        return math.prod(self.size())
+
+    def contains(self, point: Any) -> bool:
+        return all(a <= p <= b for a, p, b in zip(self._min, Vector3d(point), self._max, strict=True))
+
+    def intersects(self, other: AxisAlignedBox) -> bool:
+        return all(a <= d and c <= b for a, b, c, d in zip(self._min, self._max, other._min, other._max, strict=True))
+
+    def merge(self, other: AxisAlignedBox) -> None:
+        """Grows to hold the other box too."""
+        self._min.min(other._min)
+        self._max.max(other._max)
+
+    def __add__(self, other: AxisAlignedBox) -> AxisAlignedBox:
+        both = AxisAlignedBox()
+        both.merge(self)
+        both.merge(other)
+        return both
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, AxisAlignedBox):
+            return NotImplemented
+        return self._min == other._min and self._max == other._max
+
+    def __repr__(self) -> str:
+        return f"Min[{self._min}] Max[{self._max}]"

@@ -1,0 +1,275 @@
+"""Masses and moments of inertia of gz-math."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.plugins.gz_python.math.matrices import Matrix3d
+from simkit.plugins.gz_python.math.pose import Pose3d
+from simkit.plugins.gz_python.math.quaternion import Quaterniond
+from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE
+from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
+
+TOLERANCE: Final = 10.0
+"""In units of what rounding does, as gz-math's default."""
+
+
+class MassMatrix3d:
+    """A mass [kg] and the moments of inertia about its centre [kg·m²]: (mass, (ixx, iyy, izz), (ixy, ixz, iyz))."""
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        self._mass, self._diagonal, self._rest = 0.0, Vector3d(), Vector3d()
+        if len(values) == 1:
+            values = (values[0].mass(), values[0].diagonal_moments(), values[0].off_diagonal_moments())
+        if values:
+            self._mass = float(values[0])
+            self._diagonal, self._rest = Vector3d(values[1]), Vector3d(values[2])
+
+    def mass(self) -> float:
+        return self._mass
+
+    def set_mass(self, mass: float) -> bool:
+        self._mass = float(mass)
+        return self.is_valid()
+
+    def diagonal_moments(self) -> Vector3d:
+        return Vector3d(self._diagonal)
+
+    def set_diagonal_moments(self, moments: Any) -> bool:
+        self._diagonal = Vector3d(moments)
+        return self.is_valid()
+
+    def off_diagonal_moments(self) -> Vector3d:
+        return Vector3d(self._rest)
+
+    def set_off_diagonal_moments(self, moments: Any) -> bool:
+        self._rest = Vector3d(moments)
+        return self.is_valid()
+
+    def moi(self) -> Matrix3d:
+        """The moments as a matrix."""
+        (xx, yy, zz), (xy, xz, yz) = self._diagonal, self._rest
+        return Matrix3d(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+
+    def set_moi(self, moi: Matrix3d) -> bool:
+        """From a matrix; of what should be the same on both sides the mean."""
+        self._diagonal = Vector3d(moi(0, 0), moi(1, 1), moi(2, 2))
+        self._rest = Vector3d(*(0.5 * (moi(i, j) + moi(j, i)) for i, j in ((0, 1), (0, 2), (1, 2))))
+        return self.is_valid()
+
+    def set_inertia_matrix(self, ixx: float, iyy: float, izz: float, ixy: float, ixz: float, iyz: float) -> bool:
+        self._diagonal, self._rest = Vector3d(ixx, iyy, izz), Vector3d(ixy, ixz, iyz)
+        return self.is_valid()
+
+    # ------------------------------------------------------------------ of bodies
+
+    def set_from_box(self, *values: Any) -> bool:
+        """Of a box: ([mass], size [m], [rotation]); without a mass the present one."""
+        mass, (size, *rest) = self._leading_mass(values)
+        x, y, z = (v * v for v in components_of(size, 3))
+        return self._set_turned(mass, (mass / 12 * (y + z), mass / 12 * (z + x), mass / 12 * (x + y)), rest)
+
+    def set_from_cylinder_z(self, *values: Any) -> bool:
+        """Of a cylinder along z: (mass, length [m], radius [m], [rotation]), or without the mass."""
+        *numbers, last = values
+        rest = [last] if callable(getattr(last, "w", None)) else []
+        numbers = numbers if rest else [*numbers, last]
+        mass = float(numbers[0]) if len(numbers) == 3 else self._mass
+        length, radius = numbers[-2:]
+        across = mass / 12 * (3 * radius**2 + length**2)
+        return self._set_turned(mass, (across, across, mass / 2 * radius**2), rest)
+
+    def set_from_sphere(self, *values: float) -> bool:
+        """Of a sphere: ([mass], radius [m])."""
+        mass = float(values[0]) if len(values) == 2 else self._mass
+        moment = 0.4 * mass * float(values[-1]) ** 2
+        return self._set_turned(mass, (moment, moment, moment), [])
+
+    def _leading_mass(self, values: tuple[Any, ...]) -> tuple[float, tuple[Any, ...]]:
+        if isinstance(values[0], (int, float)):
+            return float(values[0]), values[1:]
+        return self._mass, values
+
+    def _set_turned(self, mass: float, moments: tuple[float, float, float], rotation: list[Any]) -> bool:
+        self._mass = mass
+        turn = Matrix3d(rotation[0]).array() if rotation else np.eye(3)
+        return self.set_moi(Matrix3d.of(turn @ np.diag(moments) @ turn.T))
+
+    # ------------------------------------------------------------------ principal axes
+
+    def principal_moments(self, tolerance: float = DEFAULT_TOLERANCE) -> Vector3d:
+        """From the smallest to the largest; those of a diagonal matrix in its own order."""
+        if max(abs(v) for v in self._rest) <= abs(tolerance):
+            return Vector3d(self._diagonal)
+        return Vector3d(*np.linalg.eigvalsh(self.moi().array()).tolist())
+
+    def principal_axes_offset(self, tolerance: float = DEFAULT_TOLERANCE) -> Quaterniond:
+        """Rotation R with R · diag(principal moments) · Rᵀ = moments."""
+        if max(abs(v) for v in self._rest) <= abs(tolerance):
+            return Quaterniond()
+        _, axes = np.linalg.eigh(self.moi().array())
+        if np.linalg.det(axes) < 0.0:
+            axes[:, 2] *= -1.0
+        return Quaterniond(Matrix3d.of(axes))
+
+    def equivalent_box(
+        self, size: Vector3d | None = None, rotation: Quaterniond | None = None, tolerance: float = DEFAULT_TOLERANCE
+    ) -> bool:
+        """Size [m] and rotation of the uniform box with this mass and these moments, written into the arguments."""
+        if not self.is_positive(0):
+            return False
+        x, y, z = self.principal_moments(tolerance)
+        squares = [6.0 * v / self._mass for v in (y + z - x, z + x - y, x + y - z)]
+        if any(v < 0.0 for v in squares):
+            return False
+        if size is not None:
+            size.set(*map(math.sqrt, squares))
+        if rotation is not None:
+            rotation.set(*self.principal_axes_offset(tolerance)._q)
+        return True
+
+    # ------------------------------------------------------------------ soundness
+
+    @staticmethod
+    def epsilon(moments: Any, tolerance: float = TOLERANCE) -> float:
+        """What rounding may be off by [kg·m²]: `tolerance` times a double's, of half the moments' sum."""
+        largest = 0.5 * sum(components_of(moments, 3))
+        return abs(tolerance) * float(np.finfo(float).eps) * largest
+
+    def is_positive(self, tolerance: float = TOLERANCE) -> bool:
+        """Whether the mass and the matrix are positive definite."""
+        return self._is_definite(tolerance, strict=True)
+
+    def is_near_positive(self, tolerance: float = TOLERANCE) -> bool:
+        """Whether the mass and the matrix are positive semidefinite."""
+        return self._is_definite(tolerance, strict=False)
+
+    def _is_definite(self, tolerance: float, strict: bool) -> bool:
+        slack = self.epsilon(self._diagonal, tolerance)
+        (xx, yy, _), (xy, _, _) = self._diagonal, self._rest
+        minors = (self._mass, xx, xx * yy - xy * xy, self.moi().determinant())
+        least = slack if strict else -slack
+        return all(m > least if strict else m >= least for m in minors)
+
+    def is_valid(self, tolerance: float = TOLERANCE) -> bool:
+        """Whether a body can have it: semidefinite, and no principal moment larger than the other two together."""
+        return self.is_near_positive(tolerance) and self.valid_moments(self.principal_moments(), tolerance)
+
+    @classmethod
+    def valid_moments(cls, moments: Any, tolerance: float = 0.1) -> bool:
+        x, y, z = components_of(moments, 3)
+        slack = cls.epsilon(moments, tolerance)
+        return min(x, y, z) + slack >= 0 and min(x + y - z, y + z - x, z + x - y) + slack >= 0
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MassMatrix3d):
+            return NotImplemented
+        is_same = abs(self._mass - other._mass) <= DEFAULT_TOLERANCE
+        return is_same and self._diagonal == other._diagonal and self._rest == other._rest
+
+    def __copy__(self) -> MassMatrix3d:
+        return MassMatrix3d(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> MassMatrix3d:
+        return MassMatrix3d(self)
+
+
+def _add_components() -> None:
+    """Gives the moments their methods `ixx`, `set_ixx`, … one by one."""
+
+    def reader(part: str, index: int) -> Any:
+        return lambda self: float(getattr(self, part)[index])
+
+    def writer(part: str, index: int) -> Any:
+        def write(self: MassMatrix3d, value: float) -> bool:
+            getattr(self, part)[index] = value
+            return self.is_valid()
+
+        return write
+
+    names = {"_diagonal": ("ixx", "iyy", "izz"), "_rest": ("ixy", "ixz", "iyz")}
+    for part, components in names.items():
+        for index, name in enumerate(components):
+            setattr(MassMatrix3d, name, reader(part, index))
+            setattr(MassMatrix3d, f"set_{name}", writer(part, index))
+
+
+_add_components()
+
+
+class Inertiald:
+    """A mass matrix at a pose: of the centre of mass, with the moments in that pose's axes."""
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        self._matrix, self._pose = MassMatrix3d(), Pose3d()
+        if len(values) == 1:
+            values = (values[0].mass_matrix(), values[0].pose())
+        if values:
+            self._matrix, self._pose = MassMatrix3d(values[0]), Pose3d(values[1])
+
+    def mass_matrix(self) -> MassMatrix3d:
+        return MassMatrix3d(self._matrix)
+
+    def set_mass_matrix(self, matrix: MassMatrix3d, tolerance: float = TOLERANCE) -> bool:
+        self._matrix = MassMatrix3d(matrix)
+        return self._matrix.is_valid(tolerance)
+
+    def pose(self) -> Pose3d:
+        return Pose3d(self._pose)
+
+    def set_pose(self, pose: Pose3d) -> bool:
+        self._pose = Pose3d(pose)
+        return self._matrix.is_valid()
+
+    def moi(self) -> Matrix3d:
+        """About the centre of mass, in the axes that the pose is given in."""
+        turn = Matrix3d(self._pose.rot()).array()
+        return Matrix3d.of(turn @ self._matrix.moi().array() @ turn.T)
+
+    def set_inertial_rotation(self, rotation: Quaterniond) -> bool:
+        """Turns the pose's axes; what `moi` gives stays."""
+        moi = self.moi().array()
+        self._pose = Pose3d(self._pose.pos(), rotation)
+        turn = Matrix3d(rotation).array()
+        return self._matrix.set_moi(Matrix3d.of(turn.T @ moi @ turn))
+
+    def set_mass_matrix_rotation(self, rotation: Quaterniond, tolerance: float = DEFAULT_TOLERANCE) -> bool:
+        """Turns the principal axes within the pose's; what `moi` gives stays."""
+        moments, offset = self._matrix.principal_moments(tolerance), self._matrix.principal_axes_offset(tolerance)
+        self._pose = Pose3d(self._pose.pos(), self._pose.rot() * offset * rotation.inverse())
+        turn = Matrix3d(rotation).array()
+        return self._matrix.set_moi(Matrix3d.of(turn @ np.diag(list(moments)) @ turn.T))
+
+    def __add__(self, other: Inertiald) -> Inertiald:
+        """Both bodies as one; the pose has the axes that both are given in."""
+        mass = self._matrix.mass() + other._matrix.mass()
+        if not mass > 0.0:
+            return Inertiald(self)
+        centres = [np.array(list(one._pose.pos())) for one in (self, other)]
+        masses = [one._matrix.mass() for one in (self, other)]
+        centre = (masses[0] * centres[0] + masses[1] * centres[1]) / mass
+        moi = np.zeros((3, 3))
+        for one, own, at in zip((self, other), masses, centres, strict=True):
+            arm = at - centre
+            moi += one.moi().array() + own * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        matrix = MassMatrix3d(mass, Vector3d(), Vector3d())
+        matrix.set_moi(Matrix3d.of(moi))
+        return Inertiald(matrix, Pose3d(Vector3d(*centre.tolist()), Quaterniond()))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Inertiald):
+            return NotImplemented
+        return self._pose == other._pose and self._matrix == other._matrix
+
+    def __copy__(self) -> Inertiald:
+        return Inertiald(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Inertiald:
+        return Inertiald(self)

@@ -1,0 +1,136 @@
+"""What controllers written for gz-math use: its PID and its rolling mean."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from datetime import timedelta
+from typing import Any
+
+
+class PID:
+    """gz-math's controller of an error measured − wanted: `cmd = offset − p·e − ∫i·e − d·e'`.
+
+    The integral's part and the output are bounded where the upper bound is not below the lower one.
+    """
+
+    def __init__(
+        self,
+        _p: Any = 0.0,
+        _i: float = 0.0,
+        _d: float = 0.0,
+        _imax: float = -1.0,
+        _imin: float = 0.0,
+        _cmdMax: float = -1.0,  # noqa: N803 - keyword names of gz-math's binding
+        _cmdMin: float = 0.0,  # noqa: N803
+        _cmdOffset: float = 0.0,  # noqa: N803
+    ) -> None:
+        if isinstance(_p, PID):
+            vars(self).update(vars(_p))
+            return
+        self.init(_p, _i, _d, _imax, _imin, _cmdMax, _cmdMin, _cmdOffset)
+
+    def init(
+        self,
+        _p: float = 0.0,
+        _i: float = 0.0,
+        _d: float = 0.0,
+        _imax: float = -1.0,
+        _imin: float = 0.0,
+        _cmdMax: float = -1.0,  # noqa: N803
+        _cmdMin: float = 0.0,  # noqa: N803
+        _cmdOffset: float = 0.0,  # noqa: N803
+    ) -> None:
+        """Sets gains and bounds, and forgets what was."""
+        self._p, self._i, self._d = float(_p), float(_i), float(_d)
+        self._i_max, self._i_min = float(_imax), float(_imin)
+        self._cmd_max, self._cmd_min, self._offset = float(_cmdMax), float(_cmdMin), float(_cmdOffset)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forgets errors and command."""
+        self._last = self._error = self._integral = self._rate = self._cmd = 0.0
+
+    def update(self, error: float, *rate_and_time: Any) -> float:
+        """The command for an error now: `update(error, dt)` or `update(error, rate, dt)`.
+
+        Args:
+            error: measured − wanted.
+            rate_and_time: where known the error's rate [1/s], then the time since the last call, a `timedelta` or [s].
+        """
+        *rates, elapsed = rate_and_time
+        dt = elapsed.total_seconds() if isinstance(elapsed, timedelta) else float(elapsed)
+        if dt == 0.0 or not all(map(math.isfinite, (error, *rates))):
+            return 0.0
+        if rates:
+            self._rate = float(rates[0])
+        else:
+            self._rate, self._last = (error - self._last) / dt, float(error)
+        self._error = float(error)
+        self._integral = _clamp_if_ordered(self._integral + self._i * dt * error, self._i_min, self._i_max)
+        wanted = self._offset - self._p * error - self._integral - self._d * self._rate
+        self._cmd = _clamp_if_ordered(wanted, self._cmd_min, self._cmd_max)
+        return self._cmd
+
+    def cmd(self) -> float:
+        """The last command."""
+        return self._cmd
+
+    def set_cmd(self, value: float) -> None:
+        self._cmd = float(value)
+
+    def errors(self) -> tuple[float, float, float]:
+        """Error, integral's part and rate of the error."""
+        return self._error, self._integral, self._rate
+
+
+def _add_gains() -> None:
+    """Gives each gain and bound its methods `p_gain`, `set_p_gain`, …"""
+
+    def reader(part: str) -> Any:
+        return lambda self: getattr(self, part)
+
+    def writer(part: str) -> Any:
+        return lambda self, value: setattr(self, part, float(value))
+
+    names = {"p_gain": "_p", "i_gain": "_i", "d_gain": "_d", "cmd_offset": "_offset"}
+    for name in ("i_max", "i_min", "cmd_max", "cmd_min"):
+        names[name] = f"_{name}"
+    for name, part in names.items():
+        setattr(PID, name, reader(part))
+        setattr(PID, f"set_{name}", writer(part))
+
+
+_add_gains()
+
+
+class RollingMean:
+    """The mean of the last values."""
+
+    def __init__(self, window_size: int = 10) -> None:
+        self._values: deque[float] = deque(maxlen=max(1, int(window_size)))
+
+    def push(self, value: float) -> None:
+        self._values.append(float(value))
+
+    def mean(self) -> float:
+        """NaN while there is no value."""
+        return math.fsum(self._values) / len(self._values) if self._values else math.nan
+
+    def count(self) -> int:
+        return len(self._values)
+
+    def clear(self) -> None:
+        self._values.clear()
+
+    def set_window_size(self, size: int) -> None:
+        """Forgets the values, as gz-math does."""
+        if size > 0:
+            self._values = deque(maxlen=int(size))
+
+    def window_size(self) -> int:
+        return self._values.maxlen or 0
+
+
+def _clamp_if_ordered(value: float, low: float, high: float) -> float:
+    return min(high, max(low, value)) if high >= low else value

@@ -1,0 +1,171 @@
+"""Poses of gz-math: `a * b` is b's frame seen through a's, as `a @ b` of simkit's own poses."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from simkit.plugins.gz_python.math.quaternion import Quaterniond
+from simkit.plugins.gz_python.math.vectors import Vector3d
+
+
+class Pose3d:
+    """A position [m] and a rotation.
+
+    `Pose3d()`, `(x, y, z, roll, pitch, yaw)`, `(x, y, z, qw, qx, qy, qz)`, `(position, rotation)` or `(pose)`.
+    `pos()` and `rot()` give the very objects, so changing them changes the pose.
+    """
+
+    ZERO: ClassVar[Pose3d]
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        self._p, self._q = Vector3d(), Quaterniond()
+        if len(values) == 7:
+            self._p.set(*values[:3])
+            self._q.set(*values[3:])
+        elif len(values) == 1:
+            self.set(values[0].pos(), values[0].rot())
+        elif values:
+            self.set(*values)
+
+    def set(self, *values: Any) -> None:
+        """From six numbers, or a position and either a rotation or roll, pitch, yaw."""
+        if len(values) == 6:
+            self._p.set(*values[:3])
+            self._q.set_from_euler(*values[3:])
+        elif len(values) == 2:
+            self._p = Vector3d(values[0])
+            self._q = Quaterniond(values[1])
+        else:
+            raise TypeError(f"a pose takes 0, 1, 2, 6 or 7 values, got {len(values)}")
+
+    # ------------------------------------------------------------------ parts
+
+    def pos(self) -> Vector3d:
+        return self._p
+
+    def rot(self) -> Quaterniond:
+        return self._q
+
+    def x(self) -> float:
+        return float(self._p.x())
+
+    def y(self) -> float:
+        return float(self._p.y())
+
+    def z(self) -> float:
+        return float(self._p.z())
+
+    def set_x(self, value: float) -> None:
+        self._p.set_x(value)
+
+    def set_y(self, value: float) -> None:
+        self._p.set_y(value)
+
+    def set_z(self, value: float) -> None:
+        self._p.set_z(value)
+
+    def roll(self) -> float:
+        return self._q.roll()
+
+    def pitch(self) -> float:
+        return self._q.pitch()
+
+    def yaw(self) -> float:
+        return self._q.yaw()
+
+    # ------------------------------------------------------------------ algebra
+
+    def inverse(self) -> Pose3d:
+        back = self._q.inverse()
+        return Pose3d(back.rotate_vector(-self._p), back)
+
+    def __mul__(self, other: Pose3d) -> Pose3d:
+        return Pose3d(self._p + self._q.rotate_vector(other.pos()), self._q * other.rot())
+
+    def __imul__(self, other: Pose3d) -> Pose3d:
+        return self._take(self * other)
+
+    def __add__(self, other: Pose3d) -> Pose3d:
+        """`b * a`: gz-math's older way of composing; it is gone from gz-math 8."""
+        return Pose3d(self.coord_position_add(other), self.coord_rotation_add(other.rot()))
+
+    def __iadd__(self, other: Pose3d) -> Pose3d:
+        return self._take(self + other)
+
+    def __sub__(self, other: Pose3d) -> Pose3d:
+        """`b⁻¹ * a`: this pose seen from the other."""
+        return Pose3d(self.coord_position_sub(other), self.coord_rotation_sub(other.rot()))
+
+    def __isub__(self, other: Pose3d) -> Pose3d:
+        return self._take(self - other)
+
+    def __neg__(self) -> Pose3d:
+        return self.inverse()
+
+    def _take(self, other: Pose3d) -> Pose3d:
+        self._p, self._q = other._p, other._q
+        return self
+
+    def coord_position_add(self, other: Any) -> Vector3d:
+        """Of a point, where it is in the frame this pose is given in; of a pose, where `other * self` is."""
+        if callable(getattr(other, "pos", None)):
+            moved: Vector3d = other.rot().rotate_vector(self._p) + other.pos()
+            return moved
+        return self._q.rotate_vector(other) + self._p
+
+    def coord_position_sub(self, other: Pose3d) -> Vector3d:
+        return other.rot().rotate_vector_reverse(self._p - other.pos())
+
+    def coord_rotation_add(self, rotation: Quaterniond) -> Quaterniond:
+        found: Quaterniond = rotation * self._q
+        return found
+
+    def coord_rotation_sub(self, rotation: Quaterniond) -> Quaterniond:
+        found: Quaterniond = rotation.inverse() * self._q
+        return found.normalized()
+
+    def coord_pose_solve(self, other: Pose3d) -> Pose3d:
+        """gz-math's formula for the a of `other = self + a`; it is exact where the two rotations share an axis."""
+        rotation: Quaterniond = self._q.inverse() * other.rot()
+        return Pose3d(other.pos() - rotation.rotate_vector(self._p), rotation)
+
+    def rotate_position_about_origin(self, rotation: Quaterniond) -> Pose3d:
+        return Pose3d(rotation.rotate_vector(self._p), self._q)
+
+    # ------------------------------------------------------------------ the rest
+
+    def reset(self) -> None:
+        self._p, self._q = Vector3d(), Quaterniond()
+
+    def is_finite(self) -> bool:
+        return self._p.is_finite() and self._q.is_finite()
+
+    def correct(self) -> None:
+        self._p.correct()
+        self._q.correct()
+
+    def round(self, digits: int) -> None:
+        self._p.round(digits)
+        self._q.round(digits)
+
+    def equal(self, other: Pose3d, tolerance: float) -> bool:
+        return self._p.equal(other.pos(), tolerance) and self._q.equal(other.rot(), tolerance)
+
+    def __eq__(self, other: object) -> bool:
+        return self._p == other._p and self._q == other._q if isinstance(other, Pose3d) else NotImplemented
+
+    def __copy__(self) -> Pose3d:
+        return Pose3d(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Pose3d:
+        return Pose3d(self)
+
+    def __reduce__(self) -> tuple[type[Pose3d], tuple[Any, ...]]:
+        return (Pose3d, (*self._p, *self._q._q))
+
+    def __repr__(self) -> str:
+        return f"{self._p} {self._q}"
+
+
+Pose3d.ZERO = Pose3d()

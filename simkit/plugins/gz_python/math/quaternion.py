@@ -1,0 +1,340 @@
+"""Quaternions of gz-math: (w, x, y, z); Euler angles are roll, pitch, yaw about fixed axes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
+from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE, Vector3d, components_of
+
+if TYPE_CHECKING:
+    from simkit.plugins.gz_python.math.matrices import Matrix3d
+
+_POLE: Final = 1e-15
+_NEARLY_ONE_AXIS: Final = 1e-3
+
+
+class Quaterniond:
+    """A rotation.
+
+    `Quaterniond()`, `(w, x, y, z)`, `(roll, pitch, yaw)`, `(axis, angle)`, `(rpy vector)`, `(rotation matrix)` or
+    `(quaternion)`.
+    """
+
+    IDENTITY: ClassVar[Quaterniond]
+    ZERO: ClassVar[Quaterniond]
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        self._q: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+        if len(values) == 4:
+            self.set(*values)
+        elif len(values) == 3:
+            self.set_from_euler(*values)
+        elif len(values) == 2:
+            self.set_from_axis_angle(*values)
+        elif len(values) == 1:
+            self._take(values[0])
+        elif values:
+            raise TypeError(f"a quaternion takes 0 to 4 values, got {len(values)}")
+
+    def _take(self, value: Any) -> None:
+        if callable(getattr(value, "w", None)):
+            self.set(value.w(), value.x(), value.y(), value.z())
+        elif callable(getattr(value, "determinant", None)):
+            self.set_from_matrix(value)
+        else:
+            self.set_from_euler(value)
+
+    # ------------------------------------------------------------------ components
+
+    def w(self) -> float:
+        return self._q[0]
+
+    def x(self) -> float:
+        return self._q[1]
+
+    def y(self) -> float:
+        return self._q[2]
+
+    def z(self) -> float:
+        return self._q[3]
+
+    def set_w(self, value: float) -> None:
+        self._q = (float(value), *self._q[1:])
+
+    def set_x(self, value: float) -> None:
+        self._q = (self._q[0], float(value), *self._q[2:])
+
+    def set_y(self, value: float) -> None:
+        self._q = (*self._q[:2], float(value), self._q[3])
+
+    def set_z(self, value: float) -> None:
+        self._q = (*self._q[:3], float(value))
+
+    def set(self, w: float, x: float, y: float, z: float) -> None:
+        self._q = (float(w), float(x), float(y), float(z))
+
+    # ------------------------------------------------------------------ from and to other forms
+
+    def set_from_axis_angle(self, *values: Any) -> None:
+        """From (axis, angle) or (x, y, z, angle) [rad]; an axis of no length is no rotation."""
+        x, y, z = components_of(values[0], 3) if len(values) == 2 else values[:3]
+        square = x * x + y * y + z * z
+        if square <= DEFAULT_TOLERANCE:
+            self._q = (1.0, 0.0, 0.0, 0.0)
+            return
+        half = 0.5 * values[-1]
+        scale = math.sin(half) / math.sqrt(square)
+        self._q = (math.cos(half), x * scale, y * scale, z * scale)
+        self.normalize()
+
+    def set_from_euler(self, *values: Any) -> None:
+        """From roll, pitch, yaw [rad]: Rz(yaw)·Ry(pitch)·Rx(roll)."""
+        roll, pitch, yaw = components_of(values[0], 3) if len(values) == 1 else values
+        cr, sr = math.cos(roll / 2), math.sin(roll / 2)
+        cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
+        cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
+        self._q = (
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+        self.normalize()
+
+    @staticmethod
+    def euler_to_quaternion(*values: Any) -> Quaterniond:
+        """Of roll, pitch, yaw [rad]."""
+        found = Quaterniond()
+        found.set_from_euler(*values)
+        return found
+
+    def euler(self) -> Vector3d:
+        """Roll, pitch, yaw [rad]; at a pitch of ±π/2, where only their sum is known, the yaw is 0."""
+        w, x, y, z = self.normalized()._q
+        ww, xx, yy, zz = w * w, x * x, y * y, z * z
+        sine = -2.0 * (x * z - w * y) / (ww + xx + yy + zz)
+        pitch = math.asin(max(-1.0, min(1.0, sine)))
+        if abs(abs(sine) - 1.0) < _POLE:
+            both = math.copysign(2.0, sine) * (x * y - z * w)
+            return Vector3d(math.atan2(both, ww - xx + yy - zz), pitch, 0.0)
+        roll = math.atan2(2.0 * (y * z + w * x), ww - xx - yy + zz)
+        return Vector3d(roll, pitch, math.atan2(2.0 * (x * y + w * z), ww + xx - yy - zz))
+
+    def roll(self) -> float:
+        return float(self.euler().x())
+
+    def pitch(self) -> float:
+        return float(self.euler().y())
+
+    def yaw(self) -> float:
+        return float(self.euler().z())
+
+    def axis_angle(self) -> tuple[Vector3d, float]:
+        """Unit axis and angle [rad]; of no rotation, x and 0."""
+        w, x, y, z = self._q
+        square = x * x + y * y + z * z
+        if square <= DEFAULT_TOLERANCE**2:
+            return Vector3d(1, 0, 0), 0.0
+        return Vector3d(x, y, z) / math.sqrt(square), 2.0 * math.acos(max(-1.0, min(1.0, w)))
+
+    def set_from_matrix(self, matrix: Matrix3d) -> None:
+        """From a rotation matrix."""
+        m = [[float(matrix(i, j)) for j in range(3)] for i in range(3)]
+        trace = m[0][0] + m[1][1] + m[2][2]
+        if trace > 0.0:
+            w = math.sqrt(1.0 + trace) / 2
+            s = 1.0 / (4 * w)
+            self._q = (w, (m[2][1] - m[1][2]) * s, (m[0][2] - m[2][0]) * s, (m[1][0] - m[0][1]) * s)
+            return
+        i = max(range(3), key=lambda k: m[k][k])
+        j, k = (i + 1) % 3, (i + 2) % 3
+        largest = math.sqrt(1.0 + m[i][i] - m[j][j] - m[k][k]) / 2
+        s = 1.0 / (4 * largest)
+        vector = [0.0, 0.0, 0.0]
+        vector[i], vector[j], vector[k] = largest, (m[j][i] + m[i][j]) * s, (m[k][i] + m[i][k]) * s
+        self._q = ((m[k][j] - m[j][k]) * s, *vector)  # type: ignore[assignment]
+
+    def set_from_2_axes(self, first: Any, second: Any) -> None:
+        """The shortest rotation that turns the first vector's direction into the second's."""
+        a, b = Vector3d(first).normalized(), Vector3d(second).normalized()
+        cosine = a.dot(b)
+        if cosine < -1.0 + DEFAULT_TOLERANCE:
+            self.set_from_axis_angle(a.perpendicular().normalized(), math.pi)
+            return
+        self.set(1.0 + cosine, *a.cross(b))
+        self.normalize()
+
+    # ------------------------------------------------------------------ algebra
+
+    def inverse(self) -> Quaterniond:
+        """The opposite rotation; of a quaternion without length, none."""
+        w, x, y, z = self._q
+        square = w * w + x * x + y * y + z * z
+        if square <= DEFAULT_TOLERANCE**2:
+            return Quaterniond()
+        return Quaterniond(w / square, -x / square, -y / square, -z / square)
+
+    def invert(self) -> None:
+        self._q = self.normalized().inverse()._q
+
+    def normalize(self) -> None:
+        """Makes its length 1; without a length it becomes no rotation."""
+        length = math.sqrt(sum(v * v for v in self._q))
+        if length <= DEFAULT_TOLERANCE:
+            self._q = (1.0, 0.0, 0.0, 0.0)
+        else:
+            w, x, y, z = self._q
+            self._q = (w / length, x / length, y / length, z / length)
+
+    def normalized(self) -> Quaterniond:
+        found = Quaterniond(self)
+        found.normalize()
+        return found
+
+    def log(self) -> Quaterniond:
+        """Of a unit quaternion: half its rotation vector, w = 0."""
+        w, x, y, z = self._q
+        scale = 1.0
+        if abs(w) < 1.0:
+            angle = math.acos(w)
+            sine = math.sin(angle)
+            scale = angle / sine if abs(sine) >= _NEARLY_ONE_AXIS else 1.0
+        return Quaterniond(0.0, x * scale, y * scale, z * scale)
+
+    def exp(self) -> Quaterniond:
+        """The inverse of `log`."""
+        _, x, y, z = self._q
+        angle = math.sqrt(x * x + y * y + z * z)
+        sine = math.sin(angle)
+        scale = sine / angle if abs(sine) >= _NEARLY_ONE_AXIS else 1.0
+        return Quaterniond(math.cos(angle), x * scale, y * scale, z * scale)
+
+    def scale(self, factor: float) -> None:
+        """Turns `factor` times as far about the same axis."""
+        axis, angle = self.axis_angle()
+        self.set_from_axis_angle(axis, angle * factor)
+
+    def dot(self, other: Quaterniond) -> float:
+        return sum(a * b for a, b in zip(self._q, other._q, strict=True))
+
+    def rotate_vector(self, vector: Any) -> Vector3d:
+        """The vector turned by this rotation."""
+        x, y, z = components_of(vector, 3)
+        product = self * Quaterniond(0.0, x, y, z) * self.inverse()
+        return Vector3d(*product._q[1:])
+
+    def rotate_vector_reverse(self, vector: Any) -> Vector3d:
+        """The vector turned by the opposite rotation."""
+        return self.inverse().rotate_vector(vector)
+
+    def x_axis(self) -> Vector3d:
+        return self.rotate_vector((1.0, 0.0, 0.0))
+
+    def y_axis(self) -> Vector3d:
+        return self.rotate_vector((0.0, 1.0, 0.0))
+
+    def z_axis(self) -> Vector3d:
+        return self.rotate_vector((0.0, 0.0, 1.0))
+
+    def integrate(self, angular_velocity: Any, dt: float) -> Quaterniond:
+        """After turning at a constant angular velocity [rad/s], in fixed axes, for `dt` [s]."""
+        half = Vector3d(angular_velocity) * (dt * 0.5)
+        angle = half.length()
+        sinc = math.sin(angle) / angle if angle > 1e-8 else 1.0 - angle * angle / 6.0
+        turned: Quaterniond = Quaterniond(math.cos(angle), *(half * sinc)) * self
+        return turned
+
+    @staticmethod
+    def slerp(t: float, first: Quaterniond, second: Quaterniond, shortest_path: bool = False) -> Quaterniond:
+        """Between two rotations at an even pace, `t` from 0 to 1."""
+        cosine, target = first.dot(second), second
+        if cosine < 0.0 and shortest_path:
+            cosine, target = -cosine, -second
+        if abs(cosine) < 1.0 - 1e-3:
+            sine = math.sqrt(1.0 - cosine * cosine)
+            angle = math.atan2(sine, cosine)
+            shares = math.sin((1.0 - t) * angle) / sine, math.sin(t * angle) / sine
+        else:
+            shares = 1.0 - t, t
+        found = first._times(shares[0]) + target._times(shares[1])
+        return found if abs(cosine) < 1.0 - 1e-3 else found.normalized()
+
+    @staticmethod
+    def squad(
+        t: float,
+        first: Quaterniond,
+        a: Quaterniond,
+        b: Quaterniond,
+        second: Quaterniond,
+        shortest_path: bool = False,
+    ) -> Quaterniond:
+        """Along a spline through the two rotations with the control rotations a and b."""
+        ends = Quaterniond.slerp(t, first, second, shortest_path)
+        return Quaterniond.slerp(2.0 * t * (1.0 - t), ends, Quaterniond.slerp(t, a, b))
+
+    # ------------------------------------------------------------------ operators
+
+    def __add__(self, other: Quaterniond) -> Quaterniond:
+        return Quaterniond(*(a + b for a, b in zip(self._q, other._q, strict=True)))
+
+    def __sub__(self, other: Quaterniond) -> Quaterniond:
+        return Quaterniond(*(a - b for a, b in zip(self._q, other._q, strict=True)))
+
+    def __neg__(self) -> Quaterniond:
+        return Quaterniond(*(-a for a in self._q))
+
+    def __mul__(self, other: Any) -> Any:
+        if isinstance(other, (int, float)):
+            return self._times(other)
+        if not callable(getattr(other, "w", None)):
+            return self.rotate_vector(other)
+        aw, ax, ay, az = self._q
+        bw, bx, by, bz = other.w(), other.x(), other.y(), other.z()
+        return Quaterniond(
+            aw * bw - ax * bx - ay * by - az * bz,
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+        )
+
+    def _times(self, factor: float) -> Quaterniond:
+        return Quaterniond(*(a * factor for a in self._q))
+
+    def equal(self, other: Quaterniond, tolerance: float = EQUALITY_TOLERANCE) -> bool:
+        """Whether every component is within a tolerance."""
+        return all(abs(a - b) <= tolerance for a, b in zip(self._q, other._q, strict=True))
+
+    def __eq__(self, other: object) -> bool:
+        return self.equal(other) if isinstance(other, Quaterniond) else NotImplemented
+
+    def is_finite(self) -> bool:
+        return all(map(math.isfinite, self._q))
+
+    def correct(self) -> None:
+        """Makes it no rotation where a component is not finite."""
+        if not self.is_finite():
+            self._q = (1.0, 0.0, 0.0, 0.0)
+
+    def round(self, digits: int) -> None:
+        power = 10.0**digits
+        self.set(*(round_half_away(v * power) / power for v in self._q))
+
+    def __copy__(self) -> Quaterniond:
+        return Quaterniond(*self._q)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Quaterniond:
+        return Quaterniond(*self._q)
+
+    def __reduce__(self) -> tuple[type[Quaterniond], Sequence[float]]:
+        return (Quaterniond, self._q)
+
+    def __repr__(self) -> str:
+        return repr(self.euler())
+
+
+Quaterniond.IDENTITY = Quaterniond()
+Quaterniond.ZERO = Quaterniond(0, 0, 0, 0)

@@ -1,0 +1,235 @@
+"""Where on a planet a world lies, as gz-math says it."""
+
+from __future__ import annotations
+
+import enum
+import math
+from typing import Any, ClassVar, Final
+
+from simkit.plugins.gz_python.math.angle import Angle
+from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
+
+MEAN_EARTH_RADIUS: Final = 6371000.0  # [m], of distances between points
+
+
+class Surface(enum.IntEnum):
+    """Which planet."""
+
+    EARTH_WGS84 = 1
+    MOON_SCS = 2
+    CUSTOM_SURFACE = 10
+
+
+class Coordinates(enum.IntEnum):
+    """What a position is given in."""
+
+    SPHERICAL = 1
+    ECEF = 2
+    GLOBAL = 3
+    LOCAL = 4
+
+
+_AXES: Final = {  # semi-axes [m]
+    Surface.EARTH_WGS84: (6378137.0, 6356752.314245),
+    Surface.MOON_SCS: (1738100.0, 1736000.0),
+}
+_RADIUS: Final = {Surface.EARTH_WGS84: MEAN_EARTH_RADIUS, Surface.MOON_SCS: 1737400.0}
+
+
+class SphericalCoordinates:
+    """The world's origin on a planet; its x axis is turned from east by the heading, counter-clockwise.
+
+    `()`, `(coordinates)`, `(surface)`, `(surface, equatorial, polar)` [m] or
+    `(surface, latitude, longitude, elevation, heading)` with `Angle`s.
+    """
+
+    SurfaceType: ClassVar = Surface
+    CoordinateType: ClassVar = Coordinates
+    EARTH_WGS84, MOON_SCS, CUSTOM_SURFACE = Surface
+    SPHERICAL, ECEF, GLOBAL, LOCAL = Coordinates
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        self._surface = Surface.EARTH_WGS84
+        self._equatorial, self._polar = _AXES[self._surface]
+        self._latitude, self._longitude, self._heading = Angle(), Angle(), Angle()
+        self._elevation = 0.0
+        if len(values) == 1 and isinstance(values[0], SphericalCoordinates):
+            vars(self).update({k: Angle(v) if isinstance(v, Angle) else v for k, v in vars(values[0]).items()})
+        elif len(values) in (1, 3):
+            self.set_surface(*values)
+        elif len(values) == 5:
+            self.set_surface(values[0])
+            self._latitude, self._longitude, self._heading = Angle(values[1]), Angle(values[2]), Angle(values[4])
+            self._elevation = float(values[3])
+        elif values:
+            raise TypeError(f"spherical coordinates take 0, 1, 3 or 5 values, got {len(values)}")
+
+    @staticmethod
+    def convert(value: Any) -> Any:
+        """A surface's name of a surface, and the other way round; an unknown name is the Earth's."""
+        if isinstance(value, Surface):
+            return value.name
+        return Surface.__members__.get(value, Surface.EARTH_WGS84)
+
+    # ------------------------------------------------------------------ the surface
+
+    def surface(self) -> Surface:
+        return self._surface
+
+    def set_surface(self, surface: Surface, equatorial: float = 0.0, polar: float = 0.0) -> None:
+        """One of the planets; of one of its own, the semi-axes [m]."""
+        self._surface = Surface(surface)
+        if self._surface in _AXES:
+            self._equatorial, self._polar = _AXES[self._surface]
+        elif equatorial > 0.0 and polar > 0.0:
+            self._equatorial, self._polar = float(equatorial), float(polar)
+
+    def surface_radius(self) -> float:
+        """The mean radius [m], for distances."""
+        return _RADIUS.get(self._surface, (2.0 * self._equatorial + self._polar) / 3.0)
+
+    def surface_axis_equatorial(self) -> float:
+        return self._equatorial
+
+    def surface_axis_polar(self) -> float:
+        return self._polar
+
+    def surface_flattening(self) -> float:
+        return (self._equatorial - self._polar) / self._equatorial
+
+    # ------------------------------------------------------------------ the place
+
+    def latitude_reference(self) -> Angle:
+        return Angle(self._latitude)
+
+    def set_latitude_reference(self, angle: Angle) -> None:
+        self._latitude = Angle(angle)
+
+    def longitude_reference(self) -> Angle:
+        return Angle(self._longitude)
+
+    def set_longitude_reference(self, angle: Angle) -> None:
+        self._longitude = Angle(angle)
+
+    def elevation_reference(self) -> float:
+        """[m]"""
+        return self._elevation
+
+    def set_elevation_reference(self, elevation: float) -> None:
+        self._elevation = float(elevation)
+
+    def heading_offset(self) -> Angle:
+        return Angle(self._heading)
+
+    def set_heading_offset(self, angle: Angle) -> None:
+        self._heading = Angle(angle)
+
+    def update_transformation_matrix(self) -> None:
+        """Nothing is kept that would have to be renewed."""
+
+    # ------------------------------------------------------------------ conversions
+
+    def _place(self) -> Any:
+        from simkit.scene import SphericalCoordinates as Place
+        from simkit.sensors.environment.geodesy import WorldOnPlanet
+
+        return WorldOnPlanet(
+            Place(
+                float(self._latitude),
+                float(self._longitude),
+                self._elevation,
+                float(self._heading),
+                surface=self._surface.name,
+                equatorial=self._equatorial,
+                polar=self._polar,
+            )
+        )
+
+    def spherical_from_local_position(self, position: Any) -> Vector3d:
+        """Latitude [°], longitude [°] and height [m] of a position in the world [m]."""
+        latitude, longitude, height = self.position_transform(position, Coordinates.LOCAL, Coordinates.SPHERICAL)
+        return Vector3d(math.degrees(latitude), math.degrees(longitude), height)
+
+    def local_from_spherical_position(self, position: Any) -> Vector3d:
+        """Position in the world [m] of latitude [°], longitude [°] and height [m]."""
+        latitude, longitude, height = components_of(position, 3)
+        spherical = Vector3d(math.radians(latitude), math.radians(longitude), height)
+        return self.position_transform(spherical, Coordinates.SPHERICAL, Coordinates.LOCAL)
+
+    def global_from_local_velocity(self, velocity: Any) -> Vector3d:
+        """East, north, up [m/s] of a velocity in the world."""
+        return self.velocity_transform(velocity, Coordinates.LOCAL, Coordinates.GLOBAL)
+
+    def local_from_global_velocity(self, velocity: Any) -> Vector3d:
+        """In the world, of a velocity east, north, up [m/s]."""
+        return self.velocity_transform(velocity, Coordinates.GLOBAL, Coordinates.LOCAL)
+
+    def position_transform(self, position: Any, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
+        """Between spherical (rad, rad, m), the planet's axes, east-north-up and the world's own axes [m]."""
+        import numpy as np
+
+        place, point = self._place(), np.array(components_of(position, 3))
+        level, start, end = self._level(place), Coordinates(from_type), Coordinates(to_type)
+        if start is Coordinates.SPHERICAL:
+            point = place.ellipsoid.cartesian(*point.tolist())
+        elif start is not Coordinates.ECEF:
+            axes = level if start is Coordinates.GLOBAL else place.axes
+            point = place.origin + axes @ point
+        if end is Coordinates.SPHERICAL:
+            return Vector3d(*place.ellipsoid.geodetic(*point.tolist()))
+        if end is not Coordinates.ECEF:
+            axes = level if end is Coordinates.GLOBAL else place.axes
+            point = axes.T @ (point - place.origin)
+        return Vector3d(*point.tolist())
+
+    def velocity_transform(self, velocity: Any, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
+        """Between the planet's axes, east-north-up and the world's axes [m/s].
+
+        Raises:
+            ValueError: one of the two is spherical, which velocities have none in.
+        """
+        import numpy as np
+
+        if Coordinates.SPHERICAL in (from_type, to_type):
+            raise ValueError("a velocity has no spherical coordinates; use ECEF, GLOBAL or LOCAL")
+        place = self._place()
+        axes = {
+            Coordinates.ECEF: np.eye(3),
+            Coordinates.GLOBAL: self._level(place),
+            Coordinates.LOCAL: place.axes,
+        }
+        turned = axes[Coordinates(to_type)].T @ axes[Coordinates(from_type)]
+        return Vector3d(*(turned @ np.array(components_of(velocity, 3))).tolist())
+
+    def _level(self, place: Any) -> Any:
+        """East, north and up at the origin as columns in the planet's axes, shape (3, 3)."""
+        import numpy as np
+
+        sine, cosine = math.sin(float(self._heading)), math.cos(float(self._heading))
+        return place.axes @ np.array(((cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0)))
+
+    @staticmethod
+    def distance_WGS84(lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:  # noqa: N802 - gz-math's name
+        """Along a sphere of the Earth's mean radius [m]."""
+        return _along_sphere(MEAN_EARTH_RADIUS, lat_a, lon_a, lat_b, lon_b)
+
+    def distance_between_points(self, lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:
+        """Along a sphere of this surface's mean radius [m]."""
+        return _along_sphere(self.surface_radius(), lat_a, lon_a, lat_b, lon_b)
+
+    def __eq__(self, other: object) -> bool:
+        return vars(self) == vars(other) if isinstance(other, SphericalCoordinates) else NotImplemented
+
+    def __copy__(self) -> SphericalCoordinates:
+        return SphericalCoordinates(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> SphericalCoordinates:
+        return SphericalCoordinates(self)
+
+
+def _along_sphere(radius: float, lat_a: Angle, lon_a: Angle, lat_b: Angle, lon_b: Angle) -> float:
+    """The haversine formula."""
+    across = math.sin((float(lat_b) - float(lat_a)) / 2) ** 2
+    along = math.sin((float(lon_b) - float(lon_a)) / 2) ** 2 * math.cos(float(lat_a)) * math.cos(float(lat_b))
+    return 2.0 * radius * math.atan2(math.sqrt(across + along), math.sqrt(1.0 - across - along))

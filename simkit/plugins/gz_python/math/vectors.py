@@ -1,0 +1,350 @@
+"""Vectors of gz-math. Arithmetic is by components; `==` means within 1e-3, as in gz-math."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar, Final, TypeVar
+
+from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number, round_half_away
+
+V = TypeVar("V", bound="Vector")
+EQUALITY_TOLERANCE: Final = 1e-3
+"""How far components may be apart of vectors, quaternions and angles that `==` calls equal."""
+
+
+def components_of(value: Any, size: int) -> tuple[float, ...]:
+    """The components of a vector of ours, of another library's `x()`, `y()`, … kind, or of a sequence.
+
+    Raises:
+        TypeError: it is none of these.
+    """
+    if isinstance(value, Vector):
+        found = tuple(value._v)
+    elif callable(getattr(value, "x", None)):
+        found = tuple(float(getattr(value, axis)()) for axis in "xyzw"[:size])
+    else:
+        found = tuple(float(v) for v in value)
+    if len(found) != size:
+        raise TypeError(f"a vector of {size} numbers is needed, got {value!r}")
+    return found
+
+
+class Vector:
+    """What vectors of two, three and four numbers share.
+
+    Attributes:
+        SIZE: how many numbers.
+        NUMBER: what a component is made with, `float` or `int`.
+    """
+
+    SIZE: ClassVar[int]
+    NUMBER: ClassVar[Callable[[Any], Any]] = float
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, *values: Any) -> None:
+        if len(values) == 1:
+            values = components_of(values[0], self.SIZE)
+        if values and len(values) != self.SIZE:
+            raise TypeError(f"{type(self).__name__} takes {self.SIZE} numbers, got {len(values)}")
+        number = type(self).NUMBER
+        self._v: list[Any] = [number(v) for v in values] if values else [number(0)] * self.SIZE
+
+    # ------------------------------------------------------------------ components
+
+    def _component(self, index: int, value: tuple[Any, ...]) -> Any:
+        if value:
+            self._v[index] = type(self).NUMBER(value[0])
+            return None
+        return self._v[index]
+
+    def x(self, *value: float) -> Any:
+        """The first component; with an argument, sets it."""
+        return self._component(0, value)
+
+    def y(self, *value: float) -> Any:
+        """The second component; with an argument, sets it."""
+        return self._component(1, value)
+
+    def set_x(self, value: float) -> None:
+        self._component(0, (value,))
+
+    def set_y(self, value: float) -> None:
+        self._component(1, (value,))
+
+    def set(self, *values: float) -> None:
+        """Sets every component; those left out become 0."""
+        padded = [*values, *[0] * (self.SIZE - len(values))]
+        self._v[:] = [type(self).NUMBER(v) for v in padded]
+
+    def __getitem__(self, index: int) -> Any:
+        if not 0 <= index < self.SIZE:
+            raise IndexError(f"{type(self).__name__} has components 0 to {self.SIZE - 1}, not {index}")
+        return self._v[index]
+
+    def __setitem__(self, index: int, value: float) -> None:
+        if not 0 <= index < self.SIZE:
+            raise IndexError(f"{type(self).__name__} has components 0 to {self.SIZE - 1}, not {index}")
+        self._v[index] = type(self).NUMBER(value)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(tuple(self._v))
+
+    def __len__(self) -> int:
+        return self.SIZE
+
+    # ------------------------------------------------------------------ arithmetic, by components
+
+    def _with(self: V, other: Any, operation: Callable[[Any, Any], Any]) -> V:
+        if isinstance(other, (int, float)):
+            return type(self)(*(operation(a, other) for a in self._v))
+        if isinstance(other, Vector) or callable(getattr(other, "x", None)):
+            return type(self)(*(operation(a, b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True)))
+        refused: V = NotImplemented
+        return refused
+
+    def __add__(self: V, other: Any) -> V:
+        return self._with(other, operator.add)
+
+    def __sub__(self: V, other: Any) -> V:
+        return self._with(other, operator.sub)
+
+    def __mul__(self: V, other: Any) -> V:
+        return self._with(other, operator.mul)
+
+    def __truediv__(self: V, other: Any) -> V:
+        return self._with(other, _divide)
+
+    def __iadd__(self: V, other: Any) -> V:
+        return self._take(self + other)
+
+    def __isub__(self: V, other: Any) -> V:
+        return self._take(self - other)
+
+    def __imul__(self: V, other: Any) -> V:
+        return self._take(self * other)
+
+    def __itruediv__(self: V, other: Any) -> V:
+        return self._take(self / other)
+
+    def __rmul__(self: V, other: Any) -> V:
+        return self._with(other, operator.mul)
+
+    def __radd__(self: V, other: Any) -> V:
+        return self._with(other, operator.add)
+
+    def __neg__(self: V) -> V:
+        return type(self)(*(-a for a in self._v))
+
+    def _take(self: V, other: V) -> V:
+        """These components in this very object: `+=` changes what others hold too, as in C++."""
+        self._v[:] = other._v
+        return self
+
+    # ------------------------------------------------------------------ measures
+
+    def sum(self) -> Any:
+        return sum(self._v)
+
+    def dot(self, other: Any) -> Any:
+        return sum(a * b for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
+
+    def abs_dot(self, other: Any) -> Any:
+        """The sum of the products' magnitudes."""
+        return sum(abs(a * b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
+
+    def squared_length(self) -> Any:
+        return sum(a * a for a in self._v)
+
+    def length(self) -> float:
+        return math.sqrt(self.squared_length())
+
+    def distance(self, *other: Any) -> float:
+        """To another point, given as a vector or by its components."""
+        return (self - type(self)(*other)).length()
+
+    def normalize(self: V) -> V:
+        """Makes the length 1, unless it is below 1e-6; gives a copy of the outcome."""
+        length = self.length()
+        if length > DEFAULT_TOLERANCE:
+            self._take(self / length)
+        return type(self)(*self._v)
+
+    def normalized(self: V) -> V:
+        return type(self)(*self._v).normalize()
+
+    def abs(self: V) -> V:
+        return type(self)(*(abs(a) for a in self._v))
+
+    def round(self: V, digits: int | None = None) -> V | None:
+        """To whole numbers, or to decimal places."""
+        power = 10.0 ** (digits or 0)
+        self._v[:] = [type(self).NUMBER(round_half_away(a * power) / power) for a in self._v]
+        return type(self)(*self._v) if digits is None else None
+
+    def rounded(self: V) -> V:
+        copy = type(self)(*self._v)
+        copy.round()
+        return copy
+
+    def max(self, *other: Any) -> Any:
+        """The largest component; with a vector, takes the larger of each pair."""
+        if not other:
+            return max(self._v)
+        self._v[:] = [max(a, b) for a, b in zip(self._v, components_of(other[0], self.SIZE), strict=True)]
+        return None
+
+    def min(self, *other: Any) -> Any:
+        """The smallest component; with a vector, takes the smaller of each pair."""
+        if not other:
+            return min(self._v)
+        self._v[:] = [min(a, b) for a, b in zip(self._v, components_of(other[0], self.SIZE), strict=True)]
+        return None
+
+    def is_finite(self) -> bool:
+        return all(map(math.isfinite, self._v))
+
+    def correct(self) -> None:
+        """Makes what is not finite 0."""
+        self._v[:] = [a if math.isfinite(a) else type(self).NUMBER(0) for a in self._v]
+
+    # ------------------------------------------------------------------ equality and text
+
+    def equal(self, other: Any, tolerance: float = EQUALITY_TOLERANCE) -> bool:
+        """Whether every component is within a tolerance."""
+        return all(abs(a - b) <= tolerance for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Vector):
+            return len(other) == self.SIZE and self.equal(other)
+        return NotImplemented
+
+    def __copy__(self: V) -> V:
+        return type(self)(*self._v)
+
+    def __deepcopy__(self: V, memo: dict[int, Any]) -> V:
+        return type(self)(*self._v)
+
+    def __reduce__(self: V) -> tuple[type[V], tuple[Any, ...]]:
+        return (type(self), tuple(self._v))
+
+    def __repr__(self) -> str:
+        return " ".join(format_number(a) for a in self._v)
+
+
+def _divide(a: float, b: float) -> float:
+    if b:
+        return a / b
+    return math.copysign(math.inf, a) * math.copysign(1.0, b) if a else math.nan
+
+
+class Vector2d(Vector):
+    """Two numbers."""
+
+    SIZE = 2
+    ZERO: ClassVar[Vector2d]
+    ONE: ClassVar[Vector2d]
+    NAN: ClassVar[Vector2d]
+
+
+class Vector3d(Vector):
+    """Three numbers."""
+
+    SIZE = 3
+    ZERO: ClassVar[Vector3d]
+    ONE: ClassVar[Vector3d]
+    UNIT_X: ClassVar[Vector3d]
+    UNIT_Y: ClassVar[Vector3d]
+    UNIT_Z: ClassVar[Vector3d]
+    NAN: ClassVar[Vector3d]
+
+    def z(self, *value: float) -> Any:
+        """The third component; with an argument, sets it."""
+        return self._component(2, value)
+
+    def set_z(self, value: float) -> None:
+        self._component(2, (value,))
+
+    def cross(self: V, other: Any) -> V:
+        ax, ay, az = self._v
+        bx, by, bz = components_of(other, 3)
+        return type(self)(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+
+    def perpendicular(self: V) -> V:
+        """Some vector at right angles to this one, not normalised: across the x axis, or else the y axis."""
+        found = Vector3d.cross(self, (1.0, 0.0, 0.0))
+        return found if found.squared_length() >= DEFAULT_TOLERANCE**2 else Vector3d.cross(self, (0.0, 1.0, 0.0))
+
+    @classmethod
+    def normal(cls, a: Any, b: Any, c: Any) -> Vector3d:
+        """The unit normal of a triangle, by the right hand."""
+        first, second, third = cls(a), cls(b), cls(c)
+        return (second - first).cross(third - first).normalize()
+
+    def dist_to_line(self, a: Any, b: Any) -> float:
+        """To the endless line through two points."""
+        first, second = Vector3d(a), Vector3d(b)
+        here = Vector3d(*self._v)
+        return (here - first).cross(here - second).length() / (second - first).length()
+
+
+class Vector4d(Vector):
+    """Four numbers."""
+
+    SIZE = 4
+    ZERO: ClassVar[Vector4d]
+    ONE: ClassVar[Vector4d]
+    NAN: ClassVar[Vector4d]
+
+    def z(self, *value: float) -> Any:
+        """The third component; with an argument, sets it."""
+        return self._component(2, value)
+
+    def w(self, *value: float) -> Any:
+        """The fourth component; with an argument, sets it."""
+        return self._component(3, value)
+
+
+class Vector2f(Vector2d):
+    """The same; numbers have double precision here."""
+
+
+class Vector3f(Vector3d):
+    """The same; numbers have double precision here."""
+
+
+class Vector4f(Vector4d):
+    """The same; numbers have double precision here."""
+
+
+class Vector2i(Vector2d):
+    """Two whole numbers."""
+
+    NUMBER = int
+
+
+class Vector3i(Vector3d):
+    """Three whole numbers."""
+
+    NUMBER = int
+
+
+class Vector4i(Vector4d):
+    """Four whole numbers."""
+
+    NUMBER = int
+
+
+def _constants() -> None:
+    for cls in (Vector2d, Vector2f, Vector2i, Vector3d, Vector3f, Vector3i, Vector4d, Vector4f, Vector4i):
+        named = {"ZERO": [0] * cls.SIZE, "ONE": [1] * cls.SIZE}
+        if cls.SIZE == 3:
+            named |= {"UNIT_X": [1, 0, 0], "UNIT_Y": [0, 1, 0], "UNIT_Z": [0, 0, 1]}
+        for name, values in named.items():
+            setattr(cls, name, cls(*values))
+        if cls.NUMBER is float:
+            cls.NAN = cls(*[math.nan] * cls.SIZE)
+
+
+_constants()

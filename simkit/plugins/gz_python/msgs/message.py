@@ -1,0 +1,176 @@
+"""Messages of gz.msgs as Python has them from protobuf: fields that are there from the start, nested ones too."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping
+from typing import Any, ClassVar, Final, NamedTuple, TypeVar
+
+from simkit.diagnostics import did_you_mean
+
+M = TypeVar("M", bound="Message")
+PLAIN_DEFAULTS: Final[Mapping[str, Any]] = {"f": 0.0, "i": 0, "s": "", "b": False, "y": b""}
+"""Letter of a kind of field -> its value at the start: number, whole number, text, truth, bytes."""
+
+
+class Repeated(list[Any]):
+    """A field that may be there many times; of messages `add()` makes one more."""
+
+    def __init__(self, kind: str, values: Iterable[Any] = ()) -> None:
+        super().__init__(values)
+        self._kind = kind
+
+    def add(self, **fields: Any) -> Any:
+        """One more message, with these fields."""
+        made = MESSAGE_CLASSES[self._kind](**fields)
+        self.append(made)
+        return made
+
+    def CopyFrom(self, other: Iterable[Any]) -> None:  # noqa: N802 - protobuf's names
+        self[:] = copy.deepcopy(list(other))
+
+    def MergeFrom(self, other: Iterable[Any]) -> None:  # noqa: N802
+        self.extend(copy.deepcopy(list(other)))
+
+
+class Descriptor(NamedTuple):
+    """What protobuf tells of a class of messages."""
+
+    name: str
+    full_name: str
+
+
+class Message:
+    """What all messages share.
+
+    Attributes:
+        DESCRIPTOR: its names.
+        FIELDS: name -> letter of a plain kind or a message's name, with `[]` after it where repeated.
+    """
+
+    DESCRIPTOR: ClassVar[Descriptor]
+    FIELDS: ClassVar[Mapping[str, str]] = {}
+    __slots__ = ("_values",)
+    _values: dict[str, Any]
+
+    def __init__(self, **fields: Any) -> None:
+        object.__setattr__(self, "_values", {})
+        for name, value in fields.items():
+            kind = type(self)._kind_of(name)
+            if kind.endswith("[]"):
+                getattr(self, name).extend(value)
+            elif kind in PLAIN_DEFAULTS:
+                setattr(self, name, value)
+            else:
+                getattr(self, name).CopyFrom(value if isinstance(value, Message) else MESSAGE_CLASSES[kind](**value))
+
+    @classmethod
+    def _kind_of(cls, name: str) -> str:
+        kind = cls.FIELDS.get(name)
+        if kind is None:
+            hint = did_you_mean(name, cls.FIELDS) or "fields: " + ", ".join(cls.FIELDS)
+            raise AttributeError(f"gz.msgs.{cls.__name__} has no field {name!r}; {hint}")
+        return kind
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        values = self._values
+        if name not in values:
+            kind = type(self)._kind_of(name)
+            if kind.endswith("[]"):
+                values[name] = Repeated(kind[:-2])
+            elif kind in PLAIN_DEFAULTS:
+                return PLAIN_DEFAULTS[kind]
+            else:
+                values[name] = MESSAGE_CLASSES[kind]()
+        return values[name]
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        kind = type(self)._kind_of(name)
+        if kind not in PLAIN_DEFAULTS:
+            raise AttributeError(f"{name} of gz.msgs.{type(self).__name__} cannot be assigned to; use CopyFrom")
+        start = PLAIN_DEFAULTS[kind]
+        if isinstance(start, bool):
+            value = bool(value)
+        elif isinstance(start, int):
+            if value != int(value):
+                raise TypeError(f"{name} of gz.msgs.{type(self).__name__} is a whole number, got {value!r}")
+            value = int(value)
+        elif isinstance(start, float):
+            value = float(value)
+        elif not isinstance(value, type(start)):
+            wanted = type(start).__name__
+            raise TypeError(f"{name} of gz.msgs.{type(self).__name__} is a {wanted}, got {value!r}")
+        self._values[name] = value
+
+    def CopyFrom(self, other: Message) -> None:  # noqa: N802 - protobuf's names
+        """Becomes the same."""
+        self._values.clear()
+        self._values.update(copy.deepcopy(other._values))
+
+    def Clear(self) -> None:  # noqa: N802
+        self._values.clear()
+
+    def HasField(self, name: str) -> bool:  # noqa: N802
+        """Whether a nested message was ever looked into, or a plain field set."""
+        type(self)._kind_of(name)
+        return name in self._values
+
+    def ListFields(self) -> list[tuple[str, Any]]:  # noqa: N802
+        """Names and values of what is not as at the start."""
+        return [(name, getattr(self, name)) for name in self.FIELDS if not _is_empty(self._values.get(name))]
+
+    def __eq__(self, other: object) -> bool:
+        if type(self) is not type(other) or not isinstance(other, Message):
+            return False
+        return all(getattr(self, name) == getattr(other, name) for name in self.FIELDS)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __deepcopy__(self: M, memo: dict[int, Any]) -> M:
+        made = type(self)()
+        made._values.update({name: copy.deepcopy(value, memo) for name, value in self._values.items()})
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_unpickle_message, (type(self).__name__, dict(self._values)))
+
+    def __repr__(self) -> str:
+        return _format_message(self, "")
+
+
+def _unpickle_message(name: str, values: dict[str, Any]) -> Message:
+    made = MESSAGE_CLASSES[name]()
+    made._values.update(values)
+    return made
+
+
+def _is_empty(value: Any) -> bool:
+    return value is None or value in (0, "", b"", []) or (isinstance(value, Message) and not value.ListFields())
+
+
+def _format_message(message: Message, indent: str) -> str:
+    lines = []
+    for name, value in message.ListFields():
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, Message):
+                lines.append(f"{indent}{name} {{\n{_format_message(one, indent + '  ')}{indent}}}\n")
+            else:
+                shown = f'"{one}"' if isinstance(one, str) else one
+                lines.append(f"{indent}{name}: {shown}\n")
+    return "".join(lines)
+
+
+MESSAGE_CLASSES: dict[str, type[Message]] = {}
+"""Message classes by name."""
+
+
+def define_messages(text: str) -> dict[str, type[Message]]:
+    """Message classes of lines `Name field:kind …`."""
+    for line in text.strip().splitlines():
+        name, *fields = line.split()
+        kinds = dict(field.split(":") for field in fields)
+        own = {"DESCRIPTOR": Descriptor(name, f"gz.msgs.{name}"), "FIELDS": kinds, "__slots__": ()}
+        MESSAGE_CLASSES[name] = type(name, (Message,), {**own, "__module__": __name__})
+    return MESSAGE_CLASSES

@@ -1,0 +1,338 @@
+"""Conversion between gz.msgs and ROS messages, and calls of the simulation's services by messages of gz."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.errors import InputError, MessageError
+from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, Message
+
+_FIELDS: Final = """
+Boolean std_msgs/msg/Bool data
+Double std_msgs/msg/Float64 data
+Float std_msgs/msg/Float32 data
+Int32 std_msgs/msg/Int32 data
+UInt32 std_msgs/msg/UInt32 data
+Int64 std_msgs/msg/Int64 data
+StringMsg std_msgs/msg/String data
+Empty std_msgs/msg/Empty
+Float_V ros_gz_interfaces/msg/Float32Array data
+Double_V std_msgs/msg/Float64MultiArray data
+Int32_V std_msgs/msg/Int32MultiArray data
+Time builtin_interfaces/msg/Time sec nsec=nanosec
+Clock rosgraph_msgs/msg/Clock sim=clock
+Color std_msgs/msg/ColorRGBA r g b a
+Vector2d geometry_msgs/msg/Vector3 x y
+Vector3d geometry_msgs/msg/Vector3 x y z
+Vector3d geometry_msgs/msg/Point x y z
+Pose geometry_msgs/msg/PoseStamped header .=pose
+Pose geometry_msgs/msg/Pose position orientation
+Twist geometry_msgs/msg/Twist linear angular
+Twist geometry_msgs/msg/TwistStamped header .=twist
+Wrench geometry_msgs/msg/Wrench force torque
+Wrench geometry_msgs/msg/WrenchStamped header .=wrench
+Odometry nav_msgs/msg/Odometry header pose=pose.pose twist=twist.twist
+IMU sensor_msgs/msg/Imu header entity_name<header.frame_id orientation angular_velocity linear_acceleration
+LaserScan sensor_msgs/msg/LaserScan header frame<header.frame_id angle_min angle_max angle_step=angle_increment range_min range_max ranges intensities
+NavSat sensor_msgs/msg/NavSatFix header frame_id<header.frame_id latitude_deg=latitude longitude_deg=longitude altitude
+Magnetometer sensor_msgs/msg/MagneticField header field_tesla=magnetic_field
+FluidPressure sensor_msgs/msg/FluidPressure header pressure=fluid_pressure variance
+Altimeter ros_gz_interfaces/msg/Altimeter header vertical_position vertical_velocity vertical_reference
+BatteryState sensor_msgs/msg/BatteryState header voltage current charge capacity percentage power_supply_status
+Actuators actuator_msgs/msg/Actuators header position velocity normalized
+Entity ros_gz_interfaces/msg/Entity id name type
+EntityWrench ros_gz_interfaces/msg/EntityWrench header entity wrench
+JointWrench ros_gz_interfaces/msg/JointWrench header body_1_name=body_1_name.data body_1_id=body_1_id.data body_2_name=body_2_name.data body_2_id=body_2_id.data body_1_wrench body_2_wrench
+Contact ros_gz_interfaces/msg/Contact collision1 collision2 position=positions normal=normals depth=depths wrench=wrenches
+Contacts ros_gz_interfaces/msg/Contacts header contact=contacts
+"""  # noqa: E501
+"""Message, ROS type, fields: `gz`, `gz=ros` under another name, `gz<ros` only read, `.` the whole message."""
+
+
+@dataclass(frozen=True, slots=True)
+class RosTwin:
+    """A ROS type that a message of gz is.
+
+    Attributes:
+        ros: its name.
+        to_ros: fields for `simkit.msgs.make` of a message of gz.
+        from_ros: fills a message of gz from one of ROS.
+        is_wrapped: whether it is the message with more around it, and so not what it is within others.
+    """
+
+    ros: str
+    to_ros: Callable[[Any], dict[str, Any]]
+    from_ros: Callable[[Any, Any], None]
+    is_wrapped: bool = False
+
+
+# ---------------------------------------------------------------------- field by field
+
+
+def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
+    """The twin of a line of the table."""
+    pairs = []
+    for field in fields:
+        ours, _, theirs = field.replace("<", "=").partition("=")
+        kind = name if ours == "." else MESSAGE_CLASSES[name].FIELDS[ours]
+        pairs.append((ours, tuple((theirs or ours).split(".")), kind, "<" in field))
+
+    def to_ros(gz: Any) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for ours, (*outer, last), kind, is_read_only in pairs:
+            if not is_read_only:
+                place = found
+                for part in outer:
+                    place = place.setdefault(part, {})
+                place[last] = _value_to_ros(kind, gz if ours == "." else getattr(gz, ours))
+        return found
+
+    def from_ros(gz: Any, message: Any) -> None:
+        for ours, path, kind, _ in pairs:
+            value = message
+            for part in path:
+                value = getattr(value, part)
+            if ours == ".":
+                _twin_of_field(kind).from_ros(gz, value)
+            else:
+                _value_from_ros(gz, ours, kind, value)
+
+    return RosTwin(ros, to_ros, from_ros, is_wrapped="." in (ours for ours, *_ in pairs))
+
+
+@cache
+def _twin_of_field(kind: str) -> RosTwin:
+    """What a message is within others."""
+    return next(twin for twin in _all_twins()[kind] if not twin.is_wrapped)
+
+
+def _value_to_ros(kind: str, value: Any) -> Any:
+    if kind in PLAIN_DEFAULTS:
+        return value
+    if not kind.endswith("[]"):
+        return _twin_of_field(kind).to_ros(value)
+    return list(value) if kind[:-2] in PLAIN_DEFAULTS else [_value_to_ros(kind[:-2], one) for one in value]
+
+
+def _value_from_ros(gz: Any, ours: str, kind: str, value: Any) -> None:
+    if kind in PLAIN_DEFAULTS:
+        setattr(gz, ours, value)
+    elif not kind.endswith("[]"):
+        _twin_of_field(kind).from_ros(getattr(gz, ours), value)
+    elif kind[:-2] in PLAIN_DEFAULTS:
+        getattr(gz, ours).extend(np.asarray(value).tolist())
+    else:
+        for one in value:
+            _twin_of_field(kind[:-2]).from_ros(getattr(gz, ours).add(), one)
+
+
+# ---------------------------------------------------------------------- what is put another way
+
+
+def _header_entry(header: Any, key: str) -> str:
+    """What gz keeps beside the stamp, such as the name of the frame."""
+    return next((str(entry.value[0]) for entry in header.data if entry.key == key and entry.value), "")
+
+
+def _header_to(gz: Any) -> dict[str, Any]:
+    return {"stamp": _value_to_ros("Time", gz.stamp), "frame_id": _header_entry(gz, "frame_id")}
+
+
+def _header_from(gz: Any, ros: Any) -> None:
+    _value_from_ros(gz, "stamp", "Time", ros.stamp)
+    if ros.frame_id:
+        gz.data.add(key="frame_id", value=[ros.frame_id])
+
+
+def _quaternion_to(gz: Any) -> dict[str, Any]:
+    """One of zeros, which is what a new message has, means no rotation."""
+    values = {axis: getattr(gz, axis) for axis in "xyzw"}
+    return values if any(values.values()) else {**values, "w": 1.0}
+
+
+def _quaternion_from(gz: Any, ros: Any) -> None:
+    gz.x, gz.y, gz.z, gz.w = ros.x, ros.y, ros.z, ros.w
+
+
+def _odometry_to(gz: Any) -> dict[str, Any]:
+    return {**_plain_twin("Odometry").to_ros(gz), "child_frame_id": _header_entry(gz.header, "child_frame_id")}
+
+
+def _odometry_from(gz: Any, ros: Any) -> None:
+    _plain_twin("Odometry").from_ros(gz, ros)
+    if ros.child_frame_id:
+        gz.header.data.add(key="child_frame_id", value=[ros.child_frame_id])
+
+
+def _scan_from(gz: Any, ros: Any) -> None:
+    _plain_twin("LaserScan").from_ros(gz, ros)
+    gz.count, gz.vertical_count = len(gz.ranges), 1
+
+
+_AXIS: Final = {"position": "position", "velocity": "velocity", "force": "effort"}
+"""What gz has of a joint's axis -> field of a JointState."""
+
+
+def _joints_to(gz: Any) -> dict[str, Any]:
+    columns = {theirs: [getattr(joint.axis1, ours) for joint in gz.joint] for ours, theirs in _AXIS.items()}
+    return {"header": _header_to(gz.header), "name": [joint.name for joint in gz.joint], **columns}
+
+
+def _joints_from(gz: Any, ros: Any) -> None:
+    _header_from(gz.header, ros.header)
+    for place, name in enumerate(ros.name):
+        axis = gz.joint.add(name=name).axis1
+        for ours, theirs in _AXIS.items():
+            column = getattr(ros, theirs)
+            setattr(axis, ours, float(column[place]) if place < len(column) else math.nan)
+
+
+def _frames_to(gz: Any) -> dict[str, Any]:
+    transforms = []
+    for pose in gz.pose:
+        header = _header_to(pose.header if pose.HasField("header") else gz.header)
+        turn = {"translation": _value_to_ros("Vector3d", pose.position), "rotation": _quaternion_to(pose.orientation)}
+        transforms.append({"header": header, "child_frame_id": pose.name, "transform": turn})
+    return {"transforms": transforms}
+
+
+def _frames_from(gz: Any, ros: Any) -> None:
+    for transform in ros.transforms:
+        pose = gz.pose.add(name=transform.child_frame_id)
+        _header_from(pose.header, transform.header)
+        _value_from_ros(pose, "position", "Vector3d", transform.transform.translation)
+        _quaternion_from(pose.orientation, transform.transform.rotation)
+    if ros.transforms:
+        _header_from(gz.header, ros.transforms[0].header)
+
+
+_PIXELS: Final = {"mono8": 1, "mono16": 2, "rgb8": 3, "rgba8": 4, "bgra8": 5, "rgb16": 6, "bgr8": 8, "32FC1": 13}
+"""Encoding of ROS -> number of gz's pixel format."""
+
+
+def _image_to(gz: Any) -> dict[str, Any]:
+    encoding = next((name for name, number in _PIXELS.items() if number == gz.pixel_format_type), "")
+    size = {"width": gz.width, "height": gz.height, "step": gz.step}
+    return {"header": _header_to(gz.header), **size, "encoding": encoding, "data": np.frombuffer(gz.data, np.uint8)}
+
+
+def _image_from(gz: Any, ros: Any) -> None:
+    _header_from(gz.header, ros.header)
+    gz.width, gz.height, gz.step = int(ros.width), int(ros.height), int(ros.step)
+    gz.pixel_format_type, gz.data = _PIXELS.get(ros.encoding, 0), np.asarray(ros.data).tobytes()
+
+
+# ---------------------------------------------------------------------- the table
+
+
+@cache
+def _twins_by_fields() -> dict[str, tuple[RosTwin, ...]]:
+    found: dict[str, tuple[RosTwin, ...]] = {}
+    for line in _FIELDS.strip().splitlines():
+        name, ros, *fields = line.split()
+        found[name] = (*found.get(name, ()), _twin_by_fields(name, ros, fields))
+    return found
+
+
+def _plain_twin(name: str) -> RosTwin:
+    return _twins_by_fields()[name][0]
+
+
+@cache
+def _all_twins() -> dict[str, tuple[RosTwin, ...]]:
+    scan, odometry = _plain_twin("LaserScan"), _plain_twin("Odometry")
+    return {
+        **_twins_by_fields(),
+        "Header": (RosTwin("std_msgs/msg/Header", _header_to, _header_from),),
+        "Quaternion": (RosTwin("geometry_msgs/msg/Quaternion", _quaternion_to, _quaternion_from),),
+        "Odometry": (RosTwin(odometry.ros, _odometry_to, _odometry_from),),
+        "LaserScan": (RosTwin(scan.ros, scan.to_ros, _scan_from),),
+        "Model": (RosTwin("sensor_msgs/msg/JointState", _joints_to, _joints_from),),
+        "Pose_V": (RosTwin("tf2_msgs/msg/TFMessage", _frames_to, _frames_from),),
+        "Image": (RosTwin("sensor_msgs/msg/Image", _image_to, _image_from),),
+    }
+
+
+def twins_of(kind: type[Message]) -> tuple[RosTwin, ...]:
+    """The ROS types of a message class.
+
+    Raises:
+        MessageError: it has none.
+    """
+    found = _all_twins().get(kind.__name__)
+    if found is None:
+        listed = ", ".join(sorted(_all_twins()))
+        raise MessageError(f"gz.msgs.{kind.__name__} has no ROS type to go on a topic as; those that have: {listed}")
+    return found
+
+
+def fields_of(message: Message) -> dict[str, Any]:
+    """The fields of the ROS message that it is within others."""
+    return _twin_of_field(type(message).__name__).to_ros(message)
+
+
+def to_ros(message: Message, ros: str) -> Any:
+    """A message of a ROS type."""
+    twin = next(twin for twin in twins_of(type(message)) if twin.ros == ros)
+    return msgs.make(ros, **twin.to_ros(message))
+
+
+def from_ros(kind: type[Message], message: Any) -> Message:
+    """A message of gz of one of ROS, whose type must be a twin of it."""
+    name, made = msgs.type_name(message), MESSAGE_CLASSES[kind.__name__]()
+    twin = next(twin for twin in twins_of(kind) if twin.ros == name)
+    twin.from_ros(made, message)
+    return made
+
+
+SERVICE_REQUEST_TYPES: Final = ("WorldControl", "EntityFactory", "Entity", "Pose", "Boolean", "Empty")
+"""Messages that are known as requests."""
+
+
+def call_service(sim: Any, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
+    """Calls a service: whether it is there and was understood, and the response (of Boolean: whether it succeeded)."""
+    response = response_kind()
+    if service not in sim.services():
+        return False, response
+    try:
+        answer = sim.call(service, _request_fields(request))
+    except InputError:
+        return False, response
+    succeeded = bool(getattr(answer, "success", True))
+    if "data" in response_kind.FIELDS and response_kind.FIELDS["data"] == "b":
+        response.data = succeeded
+    return True, response
+
+
+def _request_fields(request: Any) -> dict[str, Any]:
+    """The fields of the ROS service that does the same.
+
+    Raises:
+        InputError: simkit has none.
+    """
+    kind = type(request).__name__
+    if kind == "WorldControl":
+        reset = {name: getattr(request.reset, name) for name in ("all", "time_only", "model_only")}
+        control = {name: getattr(request, name) for name in ("pause", "step", "multi_step", "seed")}
+        until = {"sec": request.run_to_sim_time.sec, "nanosec": request.run_to_sim_time.nsec}
+        return {"world_control": {**control, "reset": reset, "run_to_sim_time": until}}
+    if kind == "EntityFactory":
+        names = ("name", "allow_renaming", "sdf", "sdf_filename", "clone_name")
+        plain = {name: getattr(request, name) for name in names}
+        return {"entity_factory": {**plain, "pose": fields_of(request.pose)}}
+    if kind == "Entity":
+        return {"entity": {name: getattr(request, name) for name in ("id", "name", "type")}}
+    if kind == "Pose":
+        return {"entity": {"name": request.name, "id": request.id, "type": 2}, "pose": fields_of(request)}
+    if kind == "Boolean":
+        return {"data": request.data}
+    if kind == "Empty":
+        return {}
+    raise InputError(f"simkit has no service that takes gz.msgs.{kind}")

@@ -1,0 +1,219 @@
+"""Protobuf's text form, in which people write messages of gz: `linear: {x: 0.2}, header { stamp { sec: 3 } }`."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any, Final
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import MessageError
+from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, Message
+
+_TOKEN: Final = re.compile(
+    r"""
+      "(?:[^"\\\n]|\\.)*" | '(?:[^'\\\n]|\\.)*'
+    | [-+]?(?:0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?[fF]?)(?![\w.])
+    | -?[A-Za-z_][\w.]*
+    | [{}<>\[\]:;,]
+    """,
+    re.VERBOSE,
+)
+_BETWEEN: Final = re.compile(r"\s*(?:#[^\n]*\n?\s*)*")
+"""White space and comments."""
+_ESCAPE: Final = re.compile(r"\\(x[0-9a-fA-F]{1,2}|[0-7]{1,3}|.)", re.DOTALL)
+_ESCAPES: Final = {"n": "\n", "t": "\t", "r": "\r", "a": "\a", "b": "\b", "f": "\f", "v": "\v"}
+_TRUE: Final = frozenset(("true", "True", "t", "1"))
+_FALSE: Final = frozenset(("false", "False", "f", "0"))
+_CLOSES: Final = {"{": "}", "<": ">"}
+_DEEPEST: Final = 50
+
+
+def parse_message(kind: type[Message], text: str) -> Message:
+    """The message that a text describes; of an empty one all is as at the start.
+
+    Raises:
+        MessageError: it is no such text, or names what the message does not have.
+    """
+    reader = _TextReader(text)
+    message = MESSAGE_CLASSES[kind.__name__]()
+    reader.read_fields(message, "")
+    return message
+
+
+def parse_value(kind: str, text: str) -> Any:
+    """The value of one field; of a repeated one a list of what is in `[…]`, or of the one value.
+
+    Args:
+        kind: as `Message.FIELDS` has it: a letter of `PLAIN_DEFAULTS` or a message's name, with `[]` where repeated.
+        text: as after `name:`.
+
+    Raises:
+        MessageError: it is none.
+    """
+    reader = _TextReader(text)
+    values = reader.read_values(kind.removesuffix("[]"), is_repeated=kind.endswith("[]"))
+    reader.expect_end()
+    return values if kind.endswith("[]") else values[0]
+
+
+class _TextReader:
+    """Walks through the tokens of a text."""
+
+    def __init__(self, text: str) -> None:
+        self._text, self._at, self._depth = text, 0, 0
+        self._ahead: str | None = None
+
+    def _peek(self) -> str:
+        """The next token; empty at the end."""
+        if self._ahead is None:
+            between = _BETWEEN.match(self._text, self._at)
+            start = between.end() if between else self._at
+            found = _TOKEN.match(self._text, start)
+            if found is None and start < len(self._text):
+                raise MessageError(f"found {_shorten(self._text[start:])}, which is no part of a message's text")
+            self._ahead, self._at = (found[0], found.end()) if found else ("", start)
+        return self._ahead
+
+    def _next(self) -> str:
+        token, self._ahead = self._peek(), None
+        if not token:
+            raise MessageError("the text ends too soon")
+        return token
+
+    def _skip(self, *tokens: str) -> bool:
+        if self._peek() in tokens and self._peek():
+            self._ahead = None
+            return True
+        return False
+
+    def expect_end(self) -> None:
+        if self._peek():
+            raise MessageError(f"found {_shorten(self._peek())} after the value, allowed is one value")
+
+    def read_fields(self, message: Message, end: str) -> None:
+        """Fields up to the token `end`."""
+        self._depth += 1
+        if self._depth > _DEEPEST:
+            raise MessageError(f"the text is nested more than {_DEEPEST} deep")
+        while self._peek() != end:
+            name = self._next()
+            kind = _kind_of(message, name)
+            has_colon = self._skip(":")
+            is_repeated, one = kind.endswith("[]"), kind.removesuffix("[]")
+            if not has_colon and one in PLAIN_DEFAULTS:
+                raise MessageError(f"found {name!r} without a colon, allowed is {name}: value")
+            for value in self.read_values(one, is_repeated=is_repeated):
+                _set_field(message, name, value, is_repeated=is_repeated)
+            self._skip(",", ";")
+        self._depth -= 1
+
+    def read_values(self, kind: str, *, is_repeated: bool) -> list[Any]:
+        """One value, or those of a list."""
+        if not (is_repeated and self._skip("[")):
+            return [self._read_value(kind)]
+        values: list[Any] = []
+        while not self._skip("]"):
+            values.append(self._read_value(kind))
+            if not self._skip(",") and self._peek() != "]":
+                raise MessageError(f"found {_shorten(self._peek())} in a list, allowed is a comma or ]")
+        return values
+
+    def _read_value(self, kind: str) -> Any:
+        token = self._next()
+        if kind not in PLAIN_DEFAULTS:
+            if token not in _CLOSES:
+                raise MessageError(f"found {_shorten(token)}, allowed is {{ and the fields of a gz.msgs.{kind}")
+            inner = MESSAGE_CLASSES[kind]()
+            self.read_fields(inner, _CLOSES[token])
+            self._next()
+            return inner
+        if kind in ("s", "y"):
+            parts = [_unquote(token)]
+            while self._peek()[:1] in ('"', "'"):
+                parts.append(_unquote(self._next()))
+            text = "".join(parts)
+            return text if kind == "s" else text.encode("latin-1", "replace")
+        return _parse_plain(kind, token)
+
+
+def _kind_of(message: Message, name: str) -> str:
+    kind = type(message).FIELDS.get(name)
+    if kind is None:
+        fields = type(message).FIELDS
+        hint = did_you_mean(name, fields) or f"its fields are {', '.join(fields)}"
+        raise MessageError(f"gz.msgs.{type(message).__name__} has no field {_shorten(name)}; {hint}")
+    return kind
+
+
+def _set_field(message: Message, name: str, value: Any, *, is_repeated: bool) -> None:
+    if is_repeated:
+        getattr(message, name).append(value)
+    elif isinstance(value, Message):
+        getattr(message, name).CopyFrom(value)
+    elif isinstance(value, _EnumWord):
+        setattr(message, name, _number_of_word(type(message), value))
+    else:
+        setattr(message, name, value)
+
+
+class _EnumWord(str):
+    """A value that is a name, of an enumeration."""
+
+
+def _number_of_word(kind: type[Message], word: str) -> int:
+    number = getattr(kind, word, None)
+    if not isinstance(number, int):
+        known = [name for name in vars(kind) if name.isupper() and isinstance(getattr(kind, name), int)]
+        allowed = " or ".join(("a whole number", *known))
+        raise MessageError(f"found {_shorten(word)}, allowed is {allowed}")
+    return number
+
+
+def _parse_plain(kind: str, token: str) -> Any:
+    if kind == "b":
+        if token in _TRUE or token in _FALSE:
+            return token in _TRUE
+        raise MessageError(f"found {_shorten(token)}, allowed is true or false")
+    number = _number(token)
+    if kind == "i" and number is None and re.fullmatch(r"[A-Za-z_]\w*", token):
+        return _EnumWord(token)
+    if number is None or (kind == "i" and number != number // 1):
+        raise MessageError(f"found {_shorten(token)}, allowed is a {'whole ' if kind == 'i' else ''}number")
+    return int(number) if kind == "i" else float(number)
+
+
+def _number(token: str) -> float | int | None:
+    sign, bare = (-1, token[1:]) if token[:1] == "-" else (1, token.removeprefix("+"))
+    if bare.lower() in ("inf", "infinity"):
+        return sign * math.inf
+    if bare.lower() == "nan":
+        return math.nan
+    try:
+        if bare[:2].lower() == "0x":
+            return sign * int(bare, 16)
+        if re.fullmatch(r"0[0-7]+", bare):
+            return sign * int(bare, 8)
+        if bare.isdigit():
+            return sign * int(bare)
+        return sign * float(bare.rstrip("fF"))
+    except ValueError:
+        return None
+
+
+def _unquote(token: str) -> str:
+    if token[:1] not in ('"', "'"):
+        raise MessageError(f"found {_shorten(token)}, allowed is a text in quotes")
+
+    def one(found: re.Match[str]) -> str:
+        code = found[1]
+        if code[0] == "x" and len(code) > 1:
+            return chr(int(code[1:], 16))
+        return chr(int(code, 8) & 0xFF) if code[0] in "01234567" else _ESCAPES.get(code, code)
+
+    return _ESCAPE.sub(one, token[1:-1])
+
+
+def _shorten(text: str) -> str:
+    text = text.strip()
+    return repr(text if len(text) <= 40 else text[:37] + "...") if text else "the end of the text"

@@ -1,0 +1,339 @@
+"""sdformat's types as far as systems of gz-sim meet them: `sdformat14`, `sdformat`, … are this module.
+
+`Element` shows a block of a world file. What is read of it counts as used, as with any plugin's parameters.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable
+from typing import Any, Final
+
+from simkit.params import Params
+from simkit.plugins.gz_python.math.angle import Angle
+from simkit.plugins.gz_python.math.color import Color, Temperature
+from simkit.plugins.gz_python.math.missing_names import missing_name_error
+from simkit.plugins.gz_python.math.pose import Pose3d
+from simkit.plugins.gz_python.math.quaternion import Quaterniond
+from simkit.plugins.gz_python.math.vectors import Vector2d, Vector2i, Vector3d
+
+SDF_VERSION: Final = "1.11"
+
+
+class JointType(enum.IntEnum):
+    """Kinds of joints."""
+
+    INVALID = 0
+    BALL = 1
+    CONTINUOUS = 2
+    FIXED = 3
+    GEARBOX = 4
+    PRISMATIC = 5
+    REVOLUTE = 6
+    REVOLUTE2 = 7
+    SCREW = 8
+    UNIVERSAL = 9
+
+
+class Param:
+    """The text of an element or of an attribute."""
+
+    def __init__(self, key: str, text: str) -> None:
+        self._key, self._text = key, text
+
+    def get_key(self) -> str:
+        return self._key
+
+    def get_as_string(self) -> str:
+        return self._text
+
+    def get_string(self) -> str:
+        return self._text
+
+    def get_double(self) -> float:
+        return float(self._text)
+
+    def get_int(self) -> int:
+        return int(float(self._text))
+
+    def get_bool(self) -> bool:
+        return self._text.strip().lower() in ("1", "true")
+
+    def get_set(self) -> bool:
+        return True
+
+    def __repr__(self) -> str:
+        return self._text
+
+
+class Element:
+    """An element of a file, or one made by hand.
+
+    `get_double("force")` reads a child or an attribute and is 0 where there is neither; `get_double("force", 2.0)`
+    gives the value, or 2.0, and whether it was found. Without a name they read the element's own text. A text that is
+    no number is an error of the file (SK-PARAM-002).
+    """
+
+    def __init__(self, params: Params | None = None, parent: Element | None = None) -> None:
+        self._params = params if params is not None else Params()
+        self._parent = parent
+
+    # ------------------------------------------------------------------ the tree
+
+    def get_name(self) -> str:
+        return self._params.name
+
+    def set_name(self, name: str) -> None:
+        self._params.name = name
+
+    def get_parent(self) -> Element | None:
+        """None at the top: what a plugin hangs on is asked of the entity."""
+        return self._parent
+
+    def has_element(self, name: str) -> bool:
+        return self._params.has(name)
+
+    def find_element(self, name: str) -> Element | None:
+        """The first child of that name, or None."""
+        child = self._params.child(name)
+        return Element(child, self) if child is not None else None
+
+    def get_first_element(self) -> Element | None:
+        """The first child, or None."""
+        children = self._params.children
+        return self.find_element(children[0].name) if children else None
+
+    def get_next_element(self, name: str = "") -> Element | None:
+        """The next sibling, of a name where one is given, or None."""
+        if self._parent is None:
+            return None
+        siblings = self._parent._params.children
+        place = next(i for i, child in enumerate(siblings) if child is self._params)
+        for child in siblings[place + 1 :]:
+            if not name or child.name == name:
+                self._parent._params.all(child.name)
+                return Element(child, self._parent)
+        return None
+
+    def add_element(self, name: str) -> Element:
+        """A new child at the end."""
+        child = Params(name, where=self._params.where, diagnostics=self._params.diagnostics)
+        self._params.children.append(child)
+        return Element(child, self)
+
+    def insert_element(self, element: Element, set_parent: bool = False) -> None:
+        """Adds an element that is there already."""
+        self._params.children.append(element._params)
+        if set_parent:
+            element._parent = self
+
+    def clone(self) -> Element:
+        return Element(self._params.copied(), self._parent)
+
+    # ------------------------------------------------------------------ attributes and text
+
+    def has_attribute(self, name: str) -> bool:
+        return name in self._params.attributes
+
+    def get_attribute(self, name: str | int) -> Param | None:
+        """By name or by place."""
+        if isinstance(name, int):
+            name = next(iter(list(self._params.attributes)[name : name + 1]), "")
+        if name not in self._params.attributes:
+            return None
+        return Param(name, self._params.attribute(name))
+
+    def get_attribute_set(self, name: str) -> bool:
+        return self.has_attribute(name)
+
+    def get_attributes(self) -> list[Param]:
+        return [Param(name, self._params.attribute(name)) for name in self._params.attributes]
+
+    def get_attribute_count(self) -> int:
+        return len(self._params.attributes)
+
+    def get_value(self) -> Param | None:
+        """The element's own text; None where it has none."""
+        return Param(self._params.name, self._params.value) if self._params.value else None
+
+    def file_path(self) -> str:
+        return self._params.where.file or ""
+
+    def line_number(self) -> int | None:
+        return self._params.where.line
+
+    def to_string(self, prefix: str = "", *_: Any) -> str:
+        """The element as XML text."""
+        p = self._params
+        attributes = "".join(f" {k}='{_escape_xml(v)}'" for k, v in p.attributes.items())
+        if not p.children:
+            return f"{prefix}<{p.name}{attributes}>{_escape_xml(p.value)}</{p.name}>\n"
+        inner = "".join(Element(child).to_string(prefix + "  ") for child in p.children)
+        return f"{prefix}<{p.name}{attributes}>\n{inner}{prefix}</{p.name}>\n"
+
+    def __repr__(self) -> str:
+        return f"<Element {self._params.name!r}>"
+
+    def __getattr__(self, name: str) -> Any:
+        raise missing_name_error("Element", name, dir(type(self)), {"get_element": "use find_element, or add_element"})
+
+    # ------------------------------------------------------------------ values by type
+
+    def _read(self, key: str, default: tuple[Any, ...], zero: Any, parse: Callable[[Params, str], Any]) -> Any:
+        found, block, name = False, self._params, key
+        if not key:
+            found = bool(block.value)
+            block, name = (
+                Params("", children=(_wrap_element(block),), diagnostics=block.diagnostics),
+                block.name or "value",
+            )
+        elif key in block.attributes:
+            found = True
+            text = Params(key, block.attribute(key), where=block.where, diagnostics=block.diagnostics)
+            block = Params("", children=(text,), diagnostics=block.diagnostics)
+        else:
+            found = block.child(key) is not None
+        value = parse(block, name) if found else (default[0] if default else zero)
+        return (value, found) if default else value
+
+    def get_string(self, key: str = "", *default: str) -> Any:
+        return self._read(key, default, "", lambda p, name: p.text(name))
+
+    def get_bool(self, key: str = "", *default: bool) -> Any:
+        return self._read(key, default, False, lambda p, name: p.boolean(name))
+
+    def get_int(self, key: str = "", *default: int) -> Any:
+        return self._read(key, default, 0, lambda p, name: p.integer(name))
+
+    def get_uint(self, key: str = "", *default: int) -> Any:
+        return self._read(key, default, 0, lambda p, name: p.integer(name, minimum=0))
+
+    def get_uint64(self, key: str = "", *default: int) -> Any:
+        return self.get_uint(key, *default)
+
+    def get_double(self, key: str = "", *default: float) -> Any:
+        return self._read(key, default, 0.0, lambda p, name: p.number(name, finite=False))
+
+    def get_float(self, key: str = "", *default: float) -> Any:
+        return self.get_double(key, *default)
+
+    def get_angle(self, key: str = "", *default: Angle) -> Any:
+        """An angle [rad]."""
+        return self._read(key, default, Angle(), lambda p, name: Angle(p.number(name)))
+
+    def get_vector2d(self, key: str = "", *default: Vector2d) -> Any:
+        return self._read(key, default, Vector2d(), lambda p, name: Vector2d(*p.vector(name, 2)))
+
+    def get_vector2i(self, key: str = "", *default: Vector2i) -> Any:
+        return self._read(key, default, Vector2i(), lambda p, name: Vector2i(*p.vector(name, 2)))
+
+    def get_vector3d(self, key: str = "", *default: Vector3d) -> Any:
+        return self._read(key, default, Vector3d(), lambda p, name: Vector3d(*p.vector3(name)))
+
+    def get_quaterniond(self, key: str = "", *default: Quaterniond) -> Any:
+        """Of roll, pitch and yaw [rad]."""
+        return self._read(key, default, Quaterniond(), lambda p, name: Quaterniond(*p.vector3(name)))
+
+    def get_pose(self, key: str = "", *default: Pose3d) -> Any:
+        """Of x, y, z [m], roll, pitch and yaw [rad]."""
+
+        def parse(p: Params, name: str) -> Pose3d:
+            pose = p.pose(name)
+            return Pose3d(*pose.position, *pose.quaternion)
+
+        return self._read(key, default, Pose3d(), parse)
+
+    def get_color(self, key: str = "", *default: Color) -> Any:
+        def parse(p: Params, name: str) -> Color:
+            child = p.child(name)
+            size = 3 if child is not None and len(child.value.split()) == 3 else 4
+            return Color(*p.vector(name, size))
+
+        return self._read(key, default, Color(), parse)
+
+    def _write(self, value: Any) -> None:
+        self._params.value = str(value).lower() if isinstance(value, bool) else str(value)
+
+    set_string = set_bool = set_int = set_uint = set_double = set_float = _write
+    set_vector3d = set_pose = set_quaterniond = set_angle = set_color = _write
+
+
+def _wrap_element(element: Params) -> Params:
+    return Params(element.name or "value", element.value, element.attributes, (), element.where, element.diagnostics)
+
+
+def _escape_xml(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace("'", "&apos;")
+
+
+class JointAxis:
+    """One degree of freedom of a joint; limits are infinite where there are none."""
+
+    def __init__(self, axis: Any = None) -> None:
+        self._axis = axis
+
+    def _of(self, name: str, default: float) -> float:
+        return default if self._axis is None else float(getattr(self._axis, name))
+
+    def xyz(self) -> Vector3d:
+        """Unit axis in the joint frame; z where nothing says it."""
+        return Vector3d(0, 0, 1) if self._axis is None else Vector3d(*self._axis.xyz_joint)
+
+    def lower(self) -> float:
+        return self._of("lower", -1e16)
+
+    def upper(self) -> float:
+        return self._of("upper", 1e16)
+
+    def effort(self) -> float:
+        return self._of("effort", float("inf"))
+
+    def max_velocity(self) -> float:
+        return self._of("velocity", float("inf"))
+
+    def damping(self) -> float:
+        return self._of("damping", 0.0)
+
+    def friction(self) -> float:
+        return self._of("friction", 0.0)
+
+    def spring_reference(self) -> float:
+        return self._of("spring_ref", 0.0)
+
+    def spring_stiffness(self) -> float:
+        return self._of("stiffness", 0.0)
+
+
+class Atmosphere:
+    """The air at sea level."""
+
+    def __init__(self, temperature: float = 288.15, gradient: float = -0.0065, pressure: float = 101325.0) -> None:
+        self._temperature, self._gradient, self._pressure = Temperature(temperature), gradient, pressure
+
+    def temperature(self) -> Temperature:
+        return self._temperature
+
+    def set_temperature(self, value: Any) -> None:
+        self._temperature = Temperature(value)
+
+    def temperature_gradient(self) -> float:
+        """[K/m]"""
+        return self._gradient
+
+    def set_temperature_gradient(self, value: float) -> None:
+        self._gradient = float(value)
+
+    def pressure(self) -> float:
+        """[Pa]"""
+        return self._pressure
+
+    def set_pressure(self, value: float) -> None:
+        self._pressure = float(value)
+
+
+_DOCUMENT: Final = "Root World Model Link Joint Collision Visual Geometry GeometryType Light Sensor Plugin Material"
+_INSTEAD: Final = dict.fromkeys(_DOCUMENT.split(), "use simkit.describe(file), which tells what a file means")
+
+
+def __getattr__(name: str) -> Any:
+    raise missing_name_error("sdformat", name, globals(), _INSTEAD)

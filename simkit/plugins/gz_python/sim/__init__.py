@@ -1,0 +1,51 @@
+"""gz-sim's Python over a simulation of simkit: `gz.sim8`, `gz.sim`, `ignition.gazebo6`, … are this package."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from simkit.plugins.gz_python.math.missing_names import missing_name_error
+from simkit.plugins.gz_python.sim import components
+from simkit.plugins.gz_python.sim.components import ComponentState
+from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
+from simkit.plugins.gz_python.sim.fixture import Server, ServerConfig, TestFixture
+from simkit.plugins.gz_python.sim.joint import Joint
+from simkit.plugins.gz_python.sim.link import Link
+from simkit.plugins.gz_python.sim.model import Model
+from simkit.plugins.gz_python.sim.sensors_lights_actors import Actor, Light, Sensor
+from simkit.plugins.gz_python.sim.update_info import K_NULL_ENTITY, EventManager, UpdateInfo
+from simkit.plugins.gz_python.sim.world import World, world_entity, world_pose
+
+K_COMPONENT_TYPE_ID_INVALID: Final = 0
+
+__all__ = [
+    "K_COMPONENT_TYPE_ID_INVALID",
+    "K_NULL_ENTITY",
+    "Actor",
+    "ComponentState",
+    "EntityComponentManager",
+    "EventManager",
+    "Joint",
+    "Light",
+    "Link",
+    "Model",
+    "Sensor",
+    "Server",
+    "ServerConfig",
+    "TestFixture",
+    "UpdateInfo",
+    "World",
+    "components",
+    "world_entity",
+    "world_pose",
+]
+
+_INSTEAD: Final = {
+    "Gui": "simkit has no user interface",
+    "HelperFixture": "use TestFixture, its later name",
+    "get_install_prefix": "there is no Gazebo whose folder it could be",
+}
+
+
+def __getattr__(name: str) -> Any:
+    raise missing_name_error("gz.sim", name, __all__, _INSTEAD)

@@ -1,0 +1,317 @@
+"""Components of gz-sim: of those that simkit has a twin of, by name; any number of others made by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from enum import IntEnum
+from typing import Any, Final
+
+from simkit.plugins.gz_python.math.missing_names import missing_name_error
+from simkit.plugins.gz_python.math.simkit_conversion import simkit_pose, three_numbers
+from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
+from simkit.plugins.gz_python.sim.entity_table import EntityRecord
+from simkit.plugins.gz_python.sim.joint import Joint as _Joint
+from simkit.plugins.gz_python.sim.link import Link as _Link
+from simkit.plugins.gz_python.sim.model import Model as _Model
+from simkit.plugins.gz_python.sim.sensors_lights_actors import Sensor as _Sensor
+from simkit.plugins.gz_python.sim.world import World as _World
+from simkit.plugins.gz_python.sim.world import world_pose
+
+
+class ComponentState(IntEnum):
+    """How a component changed; nothing is sent of components here."""
+
+    NoChange = 0
+    PeriodicChange = 1
+    OneTimeChange = 2
+
+
+class ComponentProxy:
+    """Stands for a kind of component.
+
+    Attributes:
+        name: as in gz-sim.
+        type_id: a number of its own, the same in every run.
+    """
+
+    __slots__ = ("name", "type_id")
+
+    def __init__(self, name: str) -> None:
+        self.name, self.type_id = name, _hash64(f"gz_sim_components.{name}")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ComponentProxy) and other.name == self.name
+
+    def __hash__(self) -> int:
+        return hash(self.name)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> ComponentProxy:
+        return self
+
+    def __repr__(self) -> str:
+        return f"<gz.sim.components.{self.name}>"
+
+
+def _hash64(text: str) -> int:
+    """FNV-1a with 64 bits."""
+    found = 0xCBF29CE484222325
+    for byte in text.encode():
+        found = ((found ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
+    return found
+
+
+def register_custom_component(name: str) -> ComponentProxy:
+    """A kind of component of one's own; its data may be anything that can be copied."""
+    return ComponentProxy(name)
+
+
+_TAGS: Final = ("World", "Model", "Link", "Joint", "Visual", "Collision", "Sensor", "Light", "Actor")
+_Reader = Callable[[EntityComponentManager, EntityRecord], Any]
+
+
+def _kind_reader(kind: str, read: _Reader) -> _Reader:
+    return lambda ecm, record: read(ecm, record) if record.kind == kind else None
+
+
+_HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _Sensor, "world": _World}
+
+
+def _handle_reader(kind: str, method: Callable[[Any, EntityComponentManager], Any]) -> _Reader:
+    """What a method of the handle says."""
+    return _kind_reader(kind, lambda ecm, record: method(_HANDLES[kind](record.entity), ecm))
+
+
+def _reader_for_kinds(kinds: tuple[str, ...], read: _Reader) -> _Reader:
+    return lambda ecm, record: read(ecm, record) if record.kind in kinds else None
+
+
+def _local_pose(ecm: EntityComponentManager, record: EntityRecord) -> Any:
+    """In the frame of the entity it is in."""
+    if record.kind == "joint":
+        return _Joint(record.entity).pose(ecm)
+    own = world_pose(record.entity, ecm)
+    return own if record.parent <= 1 else world_pose(record.parent, ecm).inverse() * own
+
+
+def _in_link_axes(read: Callable[[_Link, EntityComponentManager], Any]) -> _Reader:
+    def turned(ecm: EntityComponentManager, record: EntityRecord) -> Any:
+        value, pose = read(_Link(record.entity), ecm), _Link(record.entity).world_pose(ecm)
+        return pose.rot().rotate_vector_reverse(value) if value is not None and pose is not None else None
+
+    return turned
+
+
+def _inertial(ecm: EntityComponentManager, record: EntityRecord) -> Any:
+    from simkit.plugins.gz_python.math.inertia import Inertiald
+
+    link, pose = _Link(record.entity).world_inertial(ecm), _Link(record.entity).world_pose(ecm)
+    if link is None or pose is None:
+        return None
+    return Inertiald(link.mass_matrix(), pose.inverse() * link.pose())
+
+
+_READERS: Final[dict[str, _Reader]] = {
+    "Name": lambda _, record: record.name,
+    "ParentEntity": lambda _, record: record.parent or None,
+    "Pose": _reader_for_kinds(
+        ("model", "link", "joint", "visual", "collision", "sensor", "light", "actor"), _local_pose
+    ),
+    "WorldPose": _reader_for_kinds(("model", "link", "sensor"), lambda ecm, record: world_pose(record.entity, ecm)),
+    "Static": _kind_reader("model", lambda _, record: record.scene.static),
+    "SelfCollide": _kind_reader("model", lambda _, record: record.scene.self_collide),
+    "SourceFilePath": _handle_reader("model", _Model.source_file_path),
+    "ModelCanonicalLink": _handle_reader("model", _Model.canonical_link),
+    "WindMode": _kind_reader("link", lambda _, record: record.scene.enable_wind),
+    "Inertial": _kind_reader("link", _inertial),
+    "WorldLinearVelocity": _handle_reader("link", _Link.world_linear_velocity),
+    "WorldAngularVelocity": _handle_reader("link", _Link.world_angular_velocity),
+    "WorldLinearAcceleration": _handle_reader("link", _Link.world_linear_acceleration),
+    "WorldAngularAcceleration": _handle_reader("link", _Link.world_angular_acceleration),
+    "LinearVelocity": _kind_reader("link", _in_link_axes(_Link.world_linear_velocity)),
+    "AngularVelocity": _kind_reader("link", _in_link_axes(_Link.world_angular_velocity)),
+    "LinearAcceleration": _kind_reader("link", _in_link_axes(_Link.world_linear_acceleration)),
+    "AngularAcceleration": _kind_reader("link", _in_link_axes(_Link.world_angular_acceleration)),
+    "JointType": _handle_reader("joint", _Joint.type),
+    "JointAxis": _kind_reader("joint", lambda ecm, record: next(iter(_Joint(record.entity).axis(ecm) or ()), None)),
+    "JointPosition": _handle_reader("joint", _Joint.position),
+    "JointVelocity": _handle_reader("joint", _Joint.velocity),
+    "JointTransmittedWrench": _handle_reader("joint", _Joint.transmitted_wrench),
+    "ParentLinkName": _handle_reader("joint", _Joint.parent_link_name),
+    "ChildLinkName": _handle_reader("joint", _Joint.child_link_name),
+    "ThreadPitch": _kind_reader("joint", lambda _, record: record.scene.thread_pitch),
+    "SensorTopic": _handle_reader("sensor", _Sensor.topic),
+    "Gravity": _handle_reader("world", _World.gravity),
+    "MagneticField": _handle_reader("world", _World.magnetic_field),
+    "Atmosphere": _handle_reader("world", _World.atmosphere),
+    "SphericalCoordinates": _handle_reader("world", _World.spherical_coordinates),
+}
+_TAG_READERS: Final[dict[str, _Reader]] = {
+    **{name: _kind_reader(name.lower(), lambda *_: True) for name in _TAGS},
+    "CanonicalLink": _kind_reader("link", lambda ecm, record: _Link(record.entity).is_canonical(ecm) or None),
+}
+
+_ENABLING_COMPONENTS: Final = {
+    **dict.fromkeys(("WorldLinearVelocity", "WorldAngularVelocity", "LinearVelocity", "AngularVelocity"), "velocity"),
+    **dict.fromkeys(
+        ("WorldLinearAcceleration", "WorldAngularAcceleration", "LinearAcceleration", "AngularAcceleration"),
+        "acceleration",
+    ),
+    "JointPosition": "position",
+    "JointVelocity": "velocity",
+    "JointTransmittedWrench": "wrench",
+}
+"""Component -> reading that its making turns on."""
+
+
+def _numbers(data: Any) -> tuple[float, ...]:
+    return tuple(float(v) for v in data)
+
+
+_COMMANDS: Final[dict[str, tuple[tuple[str, ...], str, Callable[[Any], Any]]]] = {
+    "JointForceCmd": (("joint",), "force", _numbers),
+    "JointVelocityCmd": (("joint",), "velocity", _numbers),
+    "JointPositionReset": (("joint",), "position_reset", _numbers),
+    "JointVelocityReset": (("joint",), "velocity_reset", _numbers),
+    "WorldPoseCmd": (("model",), "pose", simkit_pose),
+    "LinearVelocityCmd": (("model", "link"), "linear", three_numbers),
+    "AngularVelocityCmd": (("model", "link"), "angular", three_numbers),
+}
+"""Component -> who takes it, where among the commands it waits, what its data becomes."""
+
+_DESCRIBED: Final = "simkit's own simkit.describe(file)"
+_INSTEAD: Final = {
+    "Geometry": f"use {_DESCRIBED}, or Link.compute_axis_aligned_box for its bounds",
+    "Material": f"use {_DESCRIBED}",
+    "Physics": "use info.dt for the step size",
+    "ExternalWorldWrenchCmd": "use Link.add_world_wrench",
+    "ContactSensorData": "use a subscription to the contact sensor's topic",
+    "DetachableJoint": "use the DetachableJoint plugin",
+    "SlipComplianceCmd": "use the <surface> of the collision",
+    **dict.fromkeys(("Altimeter", "Imu", "Camera", "GpuLidar", "NavSat", "Magnetometer"), "use Sensor and its topic"),
+    **dict.fromkeys(("BatterySoC", "Actuators", "Wind"), "use a topic; register_custom_component keeps data"),
+}
+COMPONENT_NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
+"""Components of gz-sim that are known here."""
+
+
+def _check_component(kind: Any) -> ComponentProxy:
+    if not isinstance(kind, ComponentProxy):
+        raise TypeError(f"a component such as components.Pose is needed, got {kind!r}")
+    return kind
+
+
+def read_component(ecm: EntityComponentManager, entity: int, kind: Any) -> Any:
+    """The data of a component; of a tag the tag itself; None where the entity has none."""
+    proxy = _check_component(kind)
+    kept = ecm.custom.get(proxy.name, {})
+    if entity in kept:
+        return kept[entity]
+    record = ecm.record(entity)
+    if record is None or not record.kind:
+        return None
+    if proxy.name in _TAG_READERS:
+        return proxy if _TAG_READERS[proxy.name](ecm, record) else None
+    if proxy.name in _COMMANDS:
+        return getattr(ecm.commands, _COMMANDS[proxy.name][1]).get(entity)
+    reader = _READERS.get(proxy.name)
+    return reader(ecm, record) if reader is not None else None
+
+
+def write_component(ecm: EntityComponentManager, entity: int, kind: Any, *data: Any) -> None:
+    """Gives a component, or a command where it is one.
+
+    Raises:
+        KeyError: no such entity.
+        TypeError: data for a tag, none for another, or some that do not fit.
+        NotImplementedError: something that the simulation says and nobody else.
+    """
+    proxy = _check_component(kind)
+    record = ecm.record(entity)
+    if record is None:
+        raise KeyError(f"there is no entity {entity}")
+    is_tag = proxy.name in _TAG_READERS
+    if is_tag and data:
+        raise TypeError(f"{proxy.name} is a tag and has no data")
+    if not record.kind or proxy.name not in COMPONENT_NAMES:
+        if not is_tag and (not data or data[0] is None):
+            raise TypeError(f"{proxy.name} needs data")
+        ecm.custom.setdefault(proxy.name, {})[entity] = proxy if is_tag else data[0]
+    elif proxy.name in _COMMANDS:
+        kinds, waiting, convert = _COMMANDS[proxy.name]
+        if record.kind not in kinds:
+            raise TypeError(f"{proxy.name} is for a {' or a '.join(kinds)}, entity {entity} is a {record.kind}")
+        if not data or data[0] is None:
+            raise TypeError(f"{proxy.name} needs data")
+        if proxy.name == "WorldPoseCmd":
+            _Model(entity).set_world_pose_cmd(ecm, data[0])  # warns of nested models
+        else:
+            getattr(ecm.commands, waiting)[entity] = convert(data[0])
+    elif proxy.name in _ENABLING_COMPONENTS:
+        ecm.enable(entity, _ENABLING_COMPONENTS[proxy.name], True)
+    elif proxy.name == "Pose" and record.kind == "light":
+        ecm.handle(entity, "light").set_pose(simkit_pose(data[0]))
+    else:
+        raise _read_only_error(proxy, record)
+
+
+def _read_only_error(proxy: ComponentProxy, record: EntityRecord) -> NotImplementedError:
+    what = f"{proxy.name} of {record.kind} {record.name!r}"
+    return NotImplementedError(f"{what} is what the simulation says; use a command such as WorldPoseCmd")
+
+
+def mark_changed(ecm: EntityComponentManager, entity: int, kind: Any) -> None:
+    """Takes note that data was changed in place, which is all where it was given from here.
+
+    Raises:
+        NotImplementedError: the simulation says what it is, so the change has no effect.
+    """
+    proxy, record = _check_component(kind), ecm.record(entity)
+    if record is not None and record.kind and proxy.name in _READERS and entity not in ecm.custom.get(proxy.name, {}):
+        raise _read_only_error(proxy, record)
+
+
+def remove_component(ecm: EntityComponentManager, entity: int, kind: Any) -> bool:
+    """Takes away a component that was given; whether it was there."""
+    proxy = _check_component(kind)
+    if proxy.name in _COMMANDS and getattr(ecm.commands, _COMMANDS[proxy.name][1]).pop(entity, None) is not None:
+        return True
+    if (
+        proxy.name in _ENABLING_COMPONENTS
+        and ecm.checks.pop((entity, _ENABLING_COMPONENTS[proxy.name]), None) is not None
+    ):
+        return True
+    return ecm.custom.get(proxy.name, {}).pop(entity, None) is not None
+
+
+class ComponentCursor:
+    """An entity on the way through those that have some components.
+
+    Attributes:
+        entity: its number.
+        components: the data, in the order the kinds were asked for.
+    """
+
+    entity = 0
+    components: list[Any]
+
+    def __iter__(self) -> Iterator[Any]:
+        """`for entity, (pose, name) in ecm.each([Pose, Name])`"""
+        return iter((self.entity, tuple(self.components)))
+
+
+def each_entity(ecm: EntityComponentManager, kinds: list[Any]) -> Iterator[ComponentCursor]:
+    """Every entity that has them all, by number; the same cursor each time."""
+    proxies, cursor = [_check_component(kind) for kind in kinds], ComponentCursor()
+    for record in list(ecm.sync()):
+        found = [read_component(ecm, record.entity, proxy) for proxy in proxies]
+        if all(value is not None for value in found):
+            cursor.entity, cursor.components = record.entity, found
+            yield cursor
+
+
+def __getattr__(name: str) -> Any:
+    if name in COMPONENT_NAMES:
+        return ComponentProxy(name)
+    raise missing_name_error(
+        "gz.sim.components", name, COMPONENT_NAMES, _INSTEAD, "register_custom_component makes one to keep data in"
+    )

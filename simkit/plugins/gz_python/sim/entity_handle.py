@@ -1,0 +1,74 @@
+"""What the handles of gz-sim share: an entity's number, asked of a manager each time."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, TypeVar
+
+from simkit.plugins.gz_python.math.missing_names import missing_name_error
+from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
+from simkit.plugins.gz_python.sim.entity_table import EntityRecord
+from simkit.plugins.gz_python.sim.update_info import K_NULL_ENTITY
+
+E = TypeVar("E", bound="EntityHandle")
+
+
+class EntityHandle:
+    """A number with the questions that can be asked of it.
+
+    Attributes:
+        KIND: what it must be the number of.
+    """
+
+    KIND: ClassVar[str]
+
+    def __init__(self, entity: Any = K_NULL_ENTITY) -> None:
+        self._entity: int = entity._entity if isinstance(entity, EntityHandle) else int(entity)
+
+    def entity(self) -> int:
+        return self._entity
+
+    def reset_entity(self, new_entity: int) -> None:
+        """Makes it a handle of another entity."""
+        self._entity = int(new_entity)
+
+    def valid(self, ecm: EntityComponentManager) -> bool:
+        """Whether the entity is there and of this kind."""
+        return self._record(ecm) is not None
+
+    def name(self, ecm: EntityComponentManager) -> str | None:
+        """Its own name, without those it is in; None where it is not there."""
+        record = ecm.record(self._entity)
+        return record.name if record is not None else None
+
+    def _record(self, ecm: EntityComponentManager) -> EntityRecord | None:
+        return ecm.record(self._entity, self.KIND)
+
+    def _handle(self, ecm: EntityComponentManager) -> Any:
+        return ecm.handle(self._entity, self.KIND)
+
+    def _named(self, ecm: EntityComponentManager, kind: str, name: str) -> int:
+        return ecm.sync().named(self._entity, kind, name)
+
+    def _below(self, ecm: EntityComponentManager, kind: str) -> list[int]:
+        return ecm.sync().below(self._entity, kind)
+
+    def _reading(self, ecm: EntityComponentManager, what: str) -> bool | None:
+        return ecm.is_enabled(self._entity, what)
+
+    def __getattr__(self, name: str) -> Any:
+        raise missing_name_error(type(self).__name__, name, dir(type(self)), {})
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and isinstance(other, EntityHandle) and self._entity == other._entity
+
+    def __hash__(self) -> int:
+        return hash((type(self).__name__, self._entity))
+
+    def __copy__(self: E) -> E:
+        return type(self)(self._entity)
+
+    def __deepcopy__(self: E, memo: dict[int, Any]) -> E:
+        return type(self)(self._entity)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self._entity}>"

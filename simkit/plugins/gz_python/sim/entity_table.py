@@ -1,0 +1,115 @@
+"""Entities: whole numbers for what is in a simulation, the same from the load to the end of the run.
+
+The world is 1, as in gz-sim, its wind 2 and its default level 3. Then in the order in which gz-sim makes them: models
+with their links (visuals, collisions, lights, sensors), nested models, joints (sensors); actors; lights.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from simkit.scene import SceneLink, SceneModel
+
+WORLD_ENTITY: Final = 1
+FIRST_ENTITY: Final = 4
+"""The number of the first entity after the world's own."""
+
+
+@dataclass(slots=True)
+class EntityRecord:
+    """One entity.
+
+    Attributes:
+        kind: world, model, link, joint, visual, collision, light, sensor or actor; empty for one made by hand.
+        scene: what the file says of it.
+        parent: the entity it is in; 0 for the world.
+        children: in the order they came.
+        handle: simkit's handle, once somebody asked.
+    """
+
+    entity: int
+    kind: str
+    name: str
+    scene: Any
+    parent: int
+    children: list[int] = field(default_factory=list)
+    handle: Any = None
+
+
+Key = tuple[str, int]
+"""Kind and identity of a scene object; the scene is kept alive by whoever keeps the key."""
+
+
+class EntityTable:
+    """Numbers for the entities of a structure; who stays keeps the number."""
+
+    def __init__(self) -> None:
+        self.records: dict[int, EntityRecord] = {}
+        self.numbers: dict[Key, tuple[int, Any]] = {}
+        self.next = FIRST_ENTITY
+
+    def make(self, parent: int = 0) -> EntityRecord:
+        """An entity of nobody's file."""
+        record = EntityRecord(self.next, "", "", None, parent)
+        self.records[record.entity] = record
+        self.next += 1
+        return record
+
+    def rebuild(self, world: Any, models: list[SceneModel]) -> None:
+        """Takes what is there now; entities made by hand stay."""
+        own = [record for record in self.records.values() if not record.kind]
+        self.records = {WORLD_ENTITY: EntityRecord(WORLD_ENTITY, "world", world.name, world, 0)}
+        for entity, kind in ((2, "wind"), (3, "level")):
+            self.records[entity] = EntityRecord(entity, kind, kind, None, WORLD_ENTITY)
+        for model in models:
+            if model.moved_by is None:  # an actor, which comes below
+                self._add_model(model, WORLD_ENTITY)
+        for actor in world.actors:
+            self._add("actor", actor, WORLD_ENTITY)
+        for light in world.lights:
+            self._add("light", light, WORLD_ENTITY)
+        self.records.update((record.entity, record) for record in own)
+
+    def _add(self, kind: str, scene: Any, parent: int) -> int:
+        key = (kind, id(scene))
+        if key not in self.numbers:
+            self.numbers[key] = (self.next, scene)
+            self.next += 1
+        entity = self.numbers[key][0]
+        self.records[entity] = EntityRecord(entity, kind, scene.name, scene, parent)
+        self.records[parent].children.append(entity)
+        return entity
+
+    def _add_model(self, model: SceneModel, parent: int) -> None:
+        entity = self._add("model", model, parent)
+        for link in model.links:
+            self._add_link(link, entity)
+        for nested in model.models:
+            self._add_model(nested, entity)
+        for joint in model.joints:
+            own = self._add("joint", joint, entity)
+            for sensor in joint.sensors:
+                self._add("sensor", sensor, own)
+
+    def _add_link(self, link: SceneLink, parent: int) -> None:
+        entity = self._add("link", link, parent)
+        kinds = {"visual": link.visuals, "collision": link.collisions, "light": link.lights, "sensor": link.sensors}
+        for kind, scenes in kinds.items():
+            for scene in scenes:
+                self._add(kind, scene, entity)
+
+    def below(self, entity: int, kind: str) -> list[int]:
+        """Children of a kind, in order."""
+        record = self.records.get(entity)
+        if record is None:
+            return []
+        return [child for child in record.children if self.records[child].kind == kind]
+
+    def named(self, entity: int, kind: str, name: str) -> int:
+        """The child of a kind and name; 0 where there is none."""
+        return next((child for child in self.below(entity, kind) if self.records[child].name == name), 0)
+
+    def __iter__(self) -> Iterator[EntityRecord]:
+        return iter([self.records[entity] for entity in sorted(self.records)])

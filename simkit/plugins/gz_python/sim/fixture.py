@@ -1,0 +1,229 @@
+"""Running a world from a script, as gz-sim's Python does it: `TestFixture`, `Server`, `ServerConfig`."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, ClassVar, Final
+
+from simkit.plugins.gz_python import transport
+from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager, manager_of
+from simkit.plugins.gz_python.sim.update_info import EventManager, UpdateInfo
+
+_EMPTY: Final = "<sdf version='1.9'><world name='default'/></sdf>"
+
+
+class ServerConfig:
+    """What a server is to run."""
+
+    def __init__(self) -> None:
+        self._source: str = _EMPTY
+        self._seed = 0
+
+    def set_sdf_file(self, path: Any) -> bool:
+        self._source = str(path)
+        return True
+
+    def set_sdf_string(self, text: str) -> bool:
+        self._source = str(text)
+        return True
+
+    def set_seed(self, seed: int) -> None:
+        self._seed = int(seed)
+
+
+class _Callbacks:
+    """The system that a fixture hangs on its world: it calls what the script gave. A reset takes nothing of it back."""
+
+    __slots__ = ("given", "hooks", "is_final", "steps")
+
+    def __init__(self) -> None:
+        self.hooks: dict[str, list[Callable[..., None]]] = {}
+        self.is_final = False
+        self.given: tuple[Any, ...] = ()
+        self.steps = 0
+
+    def call(self, hook: str, *values: Any) -> None:
+        if self.is_final:
+            for callback in self.hooks.get(hook, ()):
+                callback(*values)
+
+    def configure(self, entity: int, sdf: Any, ecm: EntityComponentManager, events: EventManager) -> None:
+        self.given = (entity, sdf, ecm, events)
+
+    def pre_update(self, info: UpdateInfo, ecm: EntityComponentManager) -> None:
+        self.steps += 1
+        self.call("pre_update", info, ecm)
+
+    def update(self, info: UpdateInfo, ecm: EntityComponentManager) -> None:
+        self.call("update", info, ecm)
+
+    def post_update(self, info: UpdateInfo, ecm: EntityComponentManager) -> None:
+        self.call("post_update", info, ecm)
+
+    def reset(self, info: UpdateInfo, ecm: EntityComponentManager) -> None:
+        self.call("reset", info, ecm)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> _Callbacks:
+        return self
+
+
+class Server:
+    """Runs a world in this process.
+
+    Attributes:
+        simulation: simkit's own simulation underneath.
+    """
+
+    def __init__(self, config: ServerConfig | None = None, callbacks: _Callbacks | None = None) -> None:
+        import simkit
+
+        chosen = config if config is not None else ServerConfig()
+        self._callbacks = callbacks if callbacks is not None else _Callbacks()
+        self.simulation = simkit.load(chosen._source, seed=chosen._seed, plugins=[self._callbacks])
+        self._thread: threading.Thread | None = None
+        self._stops = False
+        transport.adopt_early_nodes(self.simulation)
+
+    # ------------------------------------------------------------------ running
+
+    def run(self, blocking: bool = False, iterations: int = 0, paused: bool = True) -> bool:
+        """Runs so many iterations; 0 is for ever.
+
+        A number of iterations is run at once and to the end, also where `blocking` is false: the outcome is the same,
+        and `is_running` is false afterwards. For ever and not blocking is a thread of its own, until `stop`.
+
+        Args:
+            blocking: of an endless run whether to wait for its end.
+            iterations: how many.
+            paused: hooks are called, and the physics stands still.
+
+        Returns:
+            Whether it ran; false where a thread runs already.
+        """
+        if self.is_running():
+            return False
+        if iterations or blocking:
+            try:
+                self._go(iterations, paused)
+            except KeyboardInterrupt:
+                if iterations:
+                    raise  # only an endless run is meant to end so
+            return True
+        self._stops = False
+        self._thread = threading.Thread(target=self._go, args=(0, paused), daemon=True, name="gz-server")
+        self._thread.start()
+        return True
+
+    def run_once(self, paused: bool = False) -> bool:
+        return self.run(True, 1, paused)
+
+    def _go(self, iterations: int, paused: bool) -> None:
+        done, sim, calls = 0, self.simulation, self._callbacks
+        if not paused and iterations:
+            end = calls.steps + iterations
+            while calls.steps < end:  # who resets within a callback has the rest of the iterations after it
+                sim._advance(sim.tick + end - calls.steps, is_served=True)
+            return
+        while not self._stops and (not iterations or done < iterations):
+            if paused:
+                from simkit.plugins.gz_python.sim.system_hub import update_paused
+
+                update_paused(self.simulation)
+            else:
+                self.simulation.step()
+            done += 1
+
+    def stop(self) -> None:
+        """Ends a run that has a thread of its own."""
+        self._stops = True
+        if self._thread is not None:
+            self._thread.join()
+        self._thread = None
+
+    def is_running(self, runner: int = 0) -> bool:
+        """Whether a thread runs it now."""
+        return self._thread is not None and self._thread.is_alive()
+
+    def reset_all(self) -> None:
+        """Back to the start."""
+        self.simulation.reset()
+
+    # ------------------------------------------------------------------ what is in it
+
+    @contextmanager
+    def ecm(self, runner: int = 0) -> Iterator[EntityComponentManager]:
+        """The entities of the world, of which there is one; ValueError for another."""
+        if runner != 0:
+            raise ValueError(f"there is one world, number 0, not {runner}")
+        yield manager_of(self.simulation)
+
+    def has_entity(self, name: str, runner: int = 0) -> bool:
+        """Whether something has that name."""
+        return any(record.name == name for record in manager_of(self.simulation).sync())
+
+    def entity_by_name(self, name: str, runner: int = 0) -> int | None:
+        found = (record.entity for record in manager_of(self.simulation).sync() if record.name == name)
+        return next(found, None)
+
+    def entity_count(self, runner: int = 0) -> int:
+        return manager_of(self.simulation).entity_count()
+
+    def system_count(self, runner: int = 0) -> int:
+        """The plugins of the world, those that simkit adds by itself included."""
+        return len(self.simulation.structure.all_plugins())
+
+    def iteration_count(self, runner: int = 0) -> int:
+        return self.simulation.tick
+
+    def current_info(self, runner: int = 0) -> UpdateInfo | None:
+        """The time now; None for a world that there is not."""
+        if runner != 0:
+            return None
+        sim = self.simulation
+        return UpdateInfo(sim.time_ns, sim.clock.time_ns(1), sim.tick, not self.is_running())
+
+
+class TestFixture:
+    """A world with callbacks on it: `on_pre_update` and the others, then `finalize`, then `server().run(…)`."""
+
+    __test__: ClassVar[bool] = False  # pytest would take it for a test
+
+    def __init__(self, path_or_config: Any) -> None:
+        self._callbacks = _Callbacks()
+        config = path_or_config
+        if not isinstance(config, ServerConfig):
+            config = ServerConfig()
+            config.set_sdf_file(path_or_config)
+        self._server = Server(config, self._callbacks)
+
+    def server(self) -> Server:
+        return self._server
+
+    def _on(self, hook: str, callback: Callable[..., None]) -> TestFixture:
+        self._callbacks.hooks.setdefault(hook, []).append(callback)
+        return self
+
+    def on_configure(self, callback: Callable[..., None]) -> TestFixture:
+        """Called with (entity, element, manager, events) by `finalize`."""
+        return self._on("configure", callback)
+
+    def on_pre_update(self, callback: Callable[..., None]) -> TestFixture:
+        return self._on("pre_update", callback)
+
+    def on_update(self, callback: Callable[..., None]) -> TestFixture:
+        return self._on("update", callback)
+
+    def on_post_update(self, callback: Callable[..., None]) -> TestFixture:
+        return self._on("post_update", callback)
+
+    def on_reset(self, callback: Callable[..., None]) -> TestFixture:
+        return self._on("reset", callback)
+
+    def finalize(self) -> TestFixture:
+        """From now on the callbacks are called."""
+        if not self._callbacks.is_final:
+            self._callbacks.is_final = True
+            self._callbacks.call("configure", *self._callbacks.given)
+        return self

@@ -1,0 +1,133 @@
+"""The world as gz-sim's Python shows it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from simkit.plugins.gz_python.math.angle import Angle
+from simkit.plugins.gz_python.math.pose import Pose3d
+from simkit.plugins.gz_python.math.simkit_conversion import gz_pose, gz_vector
+from simkit.plugins.gz_python.math.spherical_coordinates import SphericalCoordinates, Surface
+from simkit.plugins.gz_python.math.vectors import Vector3d
+from simkit.plugins.gz_python.sdformat import Atmosphere
+from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
+from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
+from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
+from simkit.plugins.gz_python.sim.update_info import K_NULL_ENTITY
+from simkit.scene import SphericalCoordinates as Place
+
+
+class World(EntityHandle):
+    """The world."""
+
+    KIND = "world"
+
+    def gravity(self, ecm: EntityComponentManager) -> Vector3d | None:
+        """[m/s²]"""
+        return gz_vector(ecm.simulation.mj_model.opt.gravity) if self.valid(ecm) else None
+
+    def magnetic_field(self, ecm: EntityComponentManager) -> Vector3d | None:
+        """[T] in world axes."""
+        return gz_vector(ecm.simulation.world.magnetic_field) if self.valid(ecm) else None
+
+    def atmosphere(self, ecm: EntityComponentManager) -> Atmosphere | None:
+        if not self.valid(ecm):
+            return None
+        air = ecm.simulation.world.atmosphere
+        return Atmosphere(air.temperature, air.temperature_gradient, air.pressure)
+
+    def spherical_coordinates(self, ecm: EntityComponentManager) -> SphericalCoordinates | None:
+        """Where on its planet the origin lies; None where nothing says it."""
+        return _coordinates(ecm.simulation.site.place) if self.valid(ecm) else None
+
+    def set_spherical_coordinates(self, ecm: EntityComponentManager, coordinates: SphericalCoordinates) -> None:
+        """Lays the origin somewhere else, at once; sensors of position and field go by it from now on."""
+        if not self.valid(ecm):
+            return
+        site = ecm.simulation.site
+        site.move(
+            replace(
+                site.place or Place(where=ecm.simulation.world.where),
+                latitude=float(coordinates.latitude_reference().radian()),
+                longitude=float(coordinates.longitude_reference().radian()),
+                elevation=float(coordinates.elevation_reference()),
+                heading=float(coordinates.heading_offset().radian()),
+                surface=Surface(int(coordinates.surface())).name,
+                equatorial=float(coordinates.surface_axis_equatorial()),
+                polar=float(coordinates.surface_axis_polar()),
+            )
+        )
+
+    def light_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+        """0 where there is none."""
+        return self._named(ecm, "light", name)
+
+    def actor_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+        """0 where there is none."""
+        return self._named(ecm, "actor", name)
+
+    def model_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+        """0 where there is none."""
+        return self._named(ecm, "model", name)
+
+    def lights(self, ecm: EntityComponentManager) -> list[int]:
+        """The lights that are on no link."""
+        return self._below(ecm, "light")
+
+    def actors(self, ecm: EntityComponentManager) -> list[int]:
+        return self._below(ecm, "actor")
+
+    def models(self, ecm: EntityComponentManager) -> list[int]:
+        """The models that are in no other."""
+        return self._below(ecm, "model")
+
+    def light_count(self, ecm: EntityComponentManager) -> int:
+        return len(self.lights(ecm))
+
+    def actor_count(self, ecm: EntityComponentManager) -> int:
+        return len(self.actors(ecm))
+
+    def model_count(self, ecm: EntityComponentManager) -> int:
+        return len(self.models(ecm))
+
+
+def _coordinates(place: Any) -> SphericalCoordinates | None:
+    if place is None:
+        return None
+    surface = Surface[place.surface]
+    angles = (Angle(place.latitude), Angle(place.longitude), place.elevation, Angle(place.heading))
+    found = SphericalCoordinates(surface, *angles)
+    if surface is Surface.CUSTOM_SURFACE:
+        found.set_surface(surface, place.equatorial, place.polar)
+    return found
+
+
+def world_entity(*values: Any) -> int:
+    """The world, of a manager or of an entity and a manager; 0 where it shows no simulation."""
+    ecm = values[-1]
+    return WORLD_ENTITY if ecm.record(WORLD_ENTITY, "world") is not None else K_NULL_ENTITY
+
+
+def world_pose(entity: int, ecm: EntityComponentManager) -> Pose3d:
+    """Of any entity, in the world; no rotation at the origin for what has no pose."""
+    record = ecm.record(entity)
+    if record is None or not record.kind or record.kind == "world":
+        return Pose3d()
+    if record.kind in ("model", "link"):
+        return gz_pose(ecm.handle(entity, record.kind).pose)
+    if record.kind == "light":
+        return gz_pose(ecm.handle(entity, "light").pose)
+    scene, parent = record.scene, ecm.record(record.parent)
+    assert parent is not None
+    if record.kind == "actor":
+        return gz_pose(scene.pose_world)
+    if record.kind == "joint":
+        child = next((r for r in ecm.sync() if r.kind == "link" and r.scene.scoped == scene.child_link), None)
+        if child is None:
+            return gz_pose(scene.pose_world)
+        return gz_pose(ecm.handle(child.entity, "link").pose @ child.scene.pose_world.inverse() @ scene.pose_world)
+    if record.kind == "sensor" and parent.kind == "joint":
+        inner = parent.scene.pose_world.inverse() @ scene.pose_world
+        return world_pose(parent.entity, ecm) * gz_pose(inner)
+    return gz_pose(ecm.handle(parent.entity, "link").pose @ scene.pose_link)

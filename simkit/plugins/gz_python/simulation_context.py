@@ -1,0 +1,35 @@
+"""Which simulation is meant while a system of gz is at work: what gz-sim's Python leaves to its process."""
+
+from __future__ import annotations
+
+import weakref
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_current: tuple[Simulation, Any] | None = None
+_latest: weakref.ref[Simulation] | None = None
+
+
+def enter_simulation(sim: Simulation, owner: Any) -> tuple[Simulation, Any] | None:
+    """Says whose code runs now; gives what is to be handed to `leave_simulation`."""
+    global _current, _latest
+    before, _current = _current, (sim, owner)
+    if _latest is None or _latest() is not sim:
+        _latest = weakref.ref(sim)
+    return before
+
+
+def leave_simulation(before: tuple[Simulation, Any] | None) -> None:
+    """Back to what `enter_simulation` gave."""
+    global _current
+    _current = before
+
+
+def current_simulation() -> tuple[Simulation, Any] | None:
+    """The simulation and the plugin whose code runs; outside of hooks the last simulation that ran one, and None."""
+    if _current is not None:
+        return _current
+    sim = _latest() if _latest is not None else None
+    return (sim, None) if sim is not None else None

@@ -1,0 +1,271 @@
+"""gz-transport's Python over the topics and services of the simulation: nothing leaves the process.
+
+Messages go as the ROS types that the bridge between Gazebo and ROS makes of them, so what a system publishes is read by
+`sim.subscribe` and recorded like all else. Callbacks run between two steps, in order.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from typing import Any, Final
+
+from simkit.diagnostics import NOWHERE
+from simkit.errors import MessageError
+from simkit.plugins.gz_python import simulation_context
+from simkit.plugins.gz_python.math.missing_names import missing_name_error
+from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
+from simkit.plugins.gz_python.msgs.ros_conversion import from_ros, to_ros, twins_of
+
+__all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publisher", "SubscribeOptions"]
+
+_NO_SIMULATION: Final = (
+    "no simulation is there yet that this Node could belong to; use it in a hook, or after the TestFixture is made"
+)
+_INSTEAD: Final = {
+    "advertise_service": "write a simkit plugin and use self.offer",
+    "service_info": "use service_list, or simkit's own sim.services()",
+    "topic_info": "use topic_list, or simkit's own sim.topics()",
+    **dict.fromkeys(("enable_stats", "topic_stats"), "nothing is counted: every message arrives"),
+}
+_SCENE_POSES: Final = ("/pose/info", "/dynamic_pose/info")
+"""Topics whose poses have names without those of what they are in: of gz's scene broadcaster."""
+
+_early_nodes: list[Node] = []
+"""Nodes that topics were asked of before there was a simulation: a script may make them first."""
+
+
+def adopt_early_nodes(sim: Any) -> None:
+    """Opens on a new simulation what nodes were asked for before it was there."""
+    waiting, _early_nodes[:] = list(_early_nodes), []
+    for node in waiting:
+        node._open_on(sim)
+
+
+class _Options:
+    """Options of gz-transport.
+
+    Attributes:
+        msgs_per_sec: has no effect here, and a warning (SK-PLUGIN-086) says so: every message arrives.
+    """
+
+    def __init__(self, *_: Any, **__: Any) -> None:
+        self.msgs_per_sec = 0
+
+
+def _warn_of_rate(sim: Any, owner: Any, topic: str, options: Any) -> None:
+    rate = getattr(options, "msgs_per_sec", 0)
+    if rate:
+        message = f"msgs_per_sec = {rate} for {topic!r} has no effect: every message arrives"
+        where = getattr(owner, "where", NOWHERE)
+        sim.reports.warning("SK-PLUGIN-086", message, where, "count steps, or compare info.sim_time")
+
+
+class AdvertiseMessageOptions(_Options):
+    """Of a publisher."""
+
+
+class AdvertiseServiceOptions(_Options):
+    """Of a service."""
+
+
+class SubscribeOptions(_Options):
+    """Of a subscription."""
+
+
+class Publisher:
+    """Publishes messages of one class on one topic."""
+
+    def __init__(self, topic: str, kind: type[Message], options: Any = None) -> None:
+        self._topic, self._kind, self._options = topic, kind, options
+        self._end: Any = None  # until there is a simulation
+        self._ros = ""
+
+    def _open_on(self, sim: Any, owner: Any) -> None:
+        _warn_of_rate(sim, owner, self._topic, self._options)
+        known, twins = sim.topics().get(self._topic), twins_of(self._kind)
+        self._ros = known if known in (twin.ros for twin in twins) else twins[0].ros
+        with sim.bus.owned_by(owner):
+            self._end = sim.bus.advertise(self._topic, self._ros)
+
+    def publish(self, message: Message) -> bool:
+        """Sends a message.
+
+        Raises:
+            MessageError: it is of another class than was advertised.
+        """
+        if not isinstance(message, self._kind):
+            got = type(message).__name__
+            raise MessageError(f"{self._topic!r} was advertised for gz.msgs.{self._kind.__name__}, got {got}")
+        if self._end is None:
+            return True  # nobody could hear it
+        if self._end.wanted:
+            self._end.publish(to_ros(message, self._ros))
+        return True
+
+    def valid(self) -> bool:
+        return True
+
+    def has_connections(self) -> bool:
+        """Whether somebody reads now."""
+        return self._end is not None and bool(self._end.wanted)
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
+        return self
+
+
+class _Subscription:
+    """What a node hears on a topic.
+
+    Attributes:
+        end: the listener; None until there is a simulation.
+    """
+
+    def __init__(self, topic: str, kind: type[Message], callback: Callable[[Any], None], options: Any = None) -> None:
+        self.topic, self._kind, self._callback, self._options = topic, kind, callback, options
+        self.end: Any = None
+
+    def _hear(self, message: Any) -> None:
+        heard = from_ros(self._kind, message)
+        if self._kind is MESSAGE_CLASSES["Pose_V"] and self.topic.endswith(_SCENE_POSES):
+            for pose in heard.pose:
+                pose.name = pose.name.rpartition("::")[2]
+        self._callback(heard)
+
+    def _open_on(self, sim: Any, owner: Any) -> None:
+        _warn_of_rate(sim, owner, self.topic, self._options)
+        known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
+        types = sorted(twins, key=lambda ros: ros != known)  # what is published there is listed first
+        called = self._hear if owner is None else _call_as_owner(sim, owner, self.topic, self._hear)
+        with sim.bus.owned_by(owner):
+            self.end = sim.bus.listen(self.topic, types, called)
+
+
+class Node:
+    """An end of the simulation's topics and services."""
+
+    def __init__(self, *_: Any) -> None:
+        found = simulation_context.current_simulation()
+        # made outside of a hook it may have been before its simulation: whose it is shows when it is first used
+        is_known = found is not None and found[1] is not None
+        self._sim = weakref.ref(found[0]) if is_known and found is not None else None
+        self._owner = found[1] if is_known and found is not None else None
+        self._subscriptions: dict[str, list[_Subscription]] = {}
+        self._advertised: list[str] = []
+        self._waiting: list[Publisher | _Subscription] = []
+
+    def _found(self) -> Any:
+        """The simulation it belongs to; None where there is none yet."""
+        if self._sim is None:
+            found = simulation_context.current_simulation()
+            if found is None:
+                return None
+            self._sim, self._owner = weakref.ref(found[0]), found[1]
+        sim = self._sim()
+        if sim is None:
+            raise RuntimeError("the simulation that this Node belonged to is gone")
+        return sim
+
+    def _simulation(self) -> Any:
+        sim = self._found()
+        if sim is None:
+            raise RuntimeError(_NO_SIMULATION)
+        return sim
+
+    def _open(self, end: Publisher | _Subscription) -> None:
+        """Opens an end now, or as soon as there is a simulation."""
+        sim = self._found()
+        if sim is not None:
+            end._open_on(sim, self._owner)
+            return
+        self._waiting.append(end)
+        if self not in _early_nodes:
+            _early_nodes.append(self)
+
+    def _open_on(self, sim: Any) -> None:
+        self._sim, waiting = weakref.ref(sim), list(self._waiting)
+        self._waiting.clear()
+        for end in waiting:
+            end._open_on(sim, None)
+
+    def advertise(self, topic: str, kind: type[Message], options: Any = None) -> Publisher:
+        """Opens a topic for messages of a class."""
+        twins_of(kind)  # said now, not when there is a simulation
+        publisher = Publisher(_absolute_topic(topic), kind, options)
+        self._advertised.append(publisher._topic)
+        self._open(publisher)
+        return publisher
+
+    def subscribe(self, kind: Any, topic: Any, callback: Callable[[Any], None], options: Any = None) -> bool:
+        """Calls `callback(message)` between two steps for each message of a class on a topic."""
+        if isinstance(kind, str):  # older bindings had the topic first
+            kind, topic = topic, kind
+        twins_of(kind)
+        subscription = _Subscription(_absolute_topic(topic), kind, callback, options)
+        self._subscriptions.setdefault(subscription.topic, []).append(subscription)
+        self._open(subscription)
+        return True
+
+    def unsubscribe(self, topic: str) -> bool:
+        """Ends the subscriptions of this node to a topic; whether there were any."""
+        ends = self._subscriptions.pop(_absolute_topic(topic), [])
+        for end in ends:
+            if end in self._waiting:
+                self._waiting.remove(end)
+            elif end.end is not None:
+                self._simulation().bus.close(end.end)
+        return bool(ends)
+
+    def request(self, service: str, request: Message, request_kind: Any, response_kind: Any, timeout: int) -> Any:
+        """Calls a service of the simulation: (whether it is there and took it, the response).
+
+        Known are those of a world that take a WorldControl, an EntityFactory, an Entity or a Pose and give a Boolean.
+        """
+        from simkit.plugins.gz_python.msgs.ros_conversion import call_service
+
+        return call_service(self._simulation(), _absolute_topic(service), request, response_kind)
+
+    def topic_list(self) -> list[str]:
+        return list(self._simulation().topics())
+
+    def service_list(self) -> list[str]:
+        return list(self._simulation().services())
+
+    def advertised_topics(self) -> list[str]:
+        return list(self._advertised)
+
+    def subscribed_topics(self) -> list[str]:
+        return list(self._subscriptions)
+
+    def __getattr__(self, name: str) -> Any:
+        raise missing_name_error("Node", name, dir(type(self)), _INSTEAD)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Node:
+        return self
+
+
+def _call_as_owner(sim: Any, owner: Any, topic: str, callback: Callable[[Any], None]) -> Callable[[Any], None]:
+    """What a plugin's callback raises is the plugin's, and what it opens too."""
+
+    def run(message: Any) -> None:
+        before = simulation_context.enter_simulation(sim, owner)
+        try:
+            callback(message)
+        finally:
+            simulation_context.leave_simulation(before)
+
+    found: Callable[[Any], None] = sim.faults.guard(owner, f"its callback for {topic!r}", run)
+    return found
+
+
+def _absolute_topic(topic: str) -> str:
+    if not topic or any(c.isspace() for c in topic) or "//" in topic or "@" in topic:
+        raise MessageError(f"{topic!r} is no topic's name")
+    return topic if topic.startswith("/") else f"/{topic}"
+
+
+def __getattr__(name: str) -> Any:
+    raise missing_name_error("gz.transport", name, __all__, {})

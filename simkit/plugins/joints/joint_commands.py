@@ -1,0 +1,219 @@
+"""Base of gz's systems that command joints: names, topics, targets, reports."""
+
+from __future__ import annotations
+
+import abc
+import math
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.joints.joint_axis import JointAxis, find_joints
+from simkit.plugins.joints.kinematic_trees import KinematicTrees
+from simkit.plugins.joints.pid import FIELDS, Pid
+from simkit.plugins.joints.velocity_servo import VelocityServo
+from simkit.plugins.one_time_warnings import OneTimeWarnings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneModel
+
+DOUBLE: Final = "std_msgs/msg/Float64"
+ACTUATORS: Final = "actuator_msgs/msg/Actuators"
+
+
+class ControlledJoints:
+    """Mixin of plugins with controllers: which joints they drive, and what is said where one runs away."""
+
+    name: str
+    where: Any
+    once: OneTimeWarnings
+
+    def controllers(self) -> list[tuple[JointAxis, Pid]]:
+        """The joints with their controllers."""
+        return []
+
+    def watch(self, axis: JointAxis, pid: Pid) -> None:
+        """Reports a controller that runs away."""
+        if pid.swings.runs_away:
+            message = (
+                f"the PID of joint {axis.joint.scoped!r} is not stable: its error swings ever wider or from one bound "
+                f"of the effort to the other (p_gain {pid.p:g}, i_gain {pid.i:g}, d_gain {pid.d:g})"
+            )
+            hint = "smaller gains, a smaller max_step_size, or damping in the joint"
+            self.once.warn("SK-PLUGIN-040", f"unstable {axis.joint.scoped}", message, hint)
+
+    def explain_divergence(self, name: str) -> str:
+        """What this plugin may have to do with the physics leaving the numbers; empty for nothing.
+
+        Args:
+            name: scoped name of a joint, or of a top-level model: then it tells of the joint that is pushed hardest.
+        """
+        own = [pair for pair in self.controllers() if pair[0].is_meant(name)]
+        if not own:
+            return ""
+        own.sort(key=lambda pair: -abs(pair[1].command))
+        axis, pid = own[0]
+        gains = f"p_gain {pid.p:g}, i_gain {pid.i:g}, d_gain {pid.d:g}"
+        return (
+            f"plugin {self.name!r} ({self.where}) drives joint {axis.joint.scoped!r} by a PID ({gains}); "
+            f"its last error was {-pid.last:g}, its last effort {pid.command:g}"
+        )
+
+
+class JointCommander(ControlledJoints, ModelPlugin):
+    """Base of the systems that bring one or more joints to a commanded value, that of the first for all.
+
+    gz asks for a joint's state in its first step and commands from the second on.
+
+    Attributes:
+        own_topic: the default topic, below the model's.
+        actuator_field: field of an `Actuators` message that holds the commands.
+        target_element: element that holds the first target.
+    """
+
+    drives = True
+    own_topic: str = ""
+    actuator_field: ClassVar[str]
+    target_element: ClassVar[str]
+    _by_velocity: bool = False
+    _index: int = 0
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        faults = params.diagnostics.error_count
+        found = find_joints(scene, params, axis=self._index)
+        if params.diagnostics.error_count > faults:  # it will not be loaded: what else is wrong is said now
+            for element in FIELDS:
+                params.number(element)
+        self._scoped = [joint.scoped for joint in found]
+        self._first = next((e.value for e in params.all("joint_name") if e.value), "")
+
+    def load(self, parent: Any, params: Params) -> None:
+        self.once = OneTimeWarnings(self)
+        self.axes = [JointAxis(self.sim.joint(name), self._index) for name in self._scoped]
+        self._target = params.number(self.target_element, 0.0)
+        self._is_ready = False
+        self._pid: Pid | None = None
+        self._servo = VelocityServo()
+        self._wish: float | None = None
+        self._crew_of: _VelocityGroup | None = None
+        self._listen(parent, params)
+
+    @property
+    def node(self) -> str:
+        """Name of its node, for its parameters, where the file gives it none but its class."""
+        joint = f"/model/{self.scoped}/joint/{self._first}".replace("::", "/")
+        axis = f"_{self._index}" if self._index else ""
+        return valid_topic(f"{joint}/{self.actuator_field}_controller{axis}")
+
+    def _listen(self, parent: Any, params: Params) -> None:
+        """Opens the topic that commands come on, by gz's rules: `<topic>`, else `<sub_topic>`, else its own."""
+        self._number = -1
+        if params.boolean("use_actuator_msg", False):
+            if params.has("actuator_number"):
+                self._number = params.integer("actuator_number", 0, minimum=0)
+            else:
+                message = "<use_actuator_msg> needs <actuator_number>; commands are taken as single numbers"
+                self.once.warn("SK-PLUGIN-042", "number", message)
+        else:
+            params.integer("actuator_number", 0, minimum=0)
+        own = f"/model/{parent.name}"
+        topic = "/actuators" if self._number >= 0 else f"{own}/{self.own_topic}"
+        inner = params.text("sub_topic", "")
+        topic = params.text("topic", "") or (f"{own}/{inner}" if inner else topic)
+        if self._number >= 0:
+            self.listen(valid_topic(topic), ACTUATORS, self._on_actuators)
+        else:
+            self.listen(valid_topic(topic), DOUBLE, self._on_command)
+
+    def _on_command(self, message: Any) -> None:
+        self._aim(float(message.data))
+
+    def _on_actuators(self, message: Any) -> None:
+        values = getattr(message, self.actuator_field)
+        if self._number < len(values):
+            self._aim(float(values[self._number]))
+        else:
+            what = f"a message with {len(values)} numbers in {self.actuator_field} has none for actuator {self._number}"
+            self.once.left_out("short", f"{what}; it is left out")
+
+    def _aim(self, target: float) -> None:
+        if math.isfinite(target):
+            self._target = target
+        else:
+            self.once.left_out("finite", f"the command {target} is left out; allowed is a finite number")
+
+    def controllers(self) -> list[tuple[JointAxis, Pid]]:
+        return [] if self._pid is None else [(axis, self._pid) for axis in self.axes]
+
+    def explain_divergence(self, name: str) -> str:
+        """As `ControlledJoints` has it, and of a joint that is to move at a velocity, at which."""
+        axis = next((axis for axis in self.axes if axis.is_meant(name)), None)
+        if axis is None or self._wish is None:
+            return super().explain_divergence(name)
+        return f"plugin {self.name!r} ({self.where}) has joint {axis.joint.scoped!r} move at {self._wish:g}"
+
+    def before_step(self) -> None:
+        self._wish = None
+        if self.axes and self._is_ready:
+            self.command()
+        self._is_ready = True
+        if self._by_velocity:
+            self._drive()
+
+    @abc.abstractmethod
+    def command(self) -> None:
+        """Brings the joints nearer to the target, by `push` or `turn`."""
+
+    def push(self, error: float) -> None:
+        """Pushes all joints as the controller says to an error of the first."""
+        assert self._pid is not None
+        effort = self._pid.update(error, self.period)
+        for axis in self.axes:
+            axis.push(effort)
+        if self._pid.swings.runs_away:
+            self.watch(self.axes[0], self._pid)
+
+    def turn(self, velocity: float) -> None:
+        """Has all joints move at a velocity in the next step."""
+        self._wish = velocity
+
+    def _drive(self) -> None:
+        """The last of all plugins that command velocities moves the joints of all: they hang together."""
+        crew, structure = self._crew_of, self.sim.structure
+        if crew is None or crew.structure is not structure:
+            members = [p for p in structure.all_plugins() if isinstance(p, JointCommander) and p._by_velocity]
+            crew = self._crew_of = _VelocityGroup(structure, members)
+        is_disabled = self.sim.faults.is_disabled
+        if self is next(p for p in reversed(crew.members) if not is_disabled(p)):
+            pairs = [
+                (axis, p._wish) for p in crew.members if p._wish is not None and not is_disabled(p) for axis in p.axes
+            ]
+            if pairs:
+                axes, velocities = zip(*pairs, strict=True)
+                self._servo.drive(self.sim, axes, velocities, crew.layouts)
+
+    def say_gains_are_unused(self, params: Params, unused: Sequence[str], why: str) -> None:
+        """Warns of numbers of a controller that is not used."""
+        found = [name for name in unused if params.all(name)]
+        if found:
+            listed = ", ".join(f"<{name}>" for name in found)
+            message = f"plugin {self.name!r}: {listed} {'has' if len(found) == 1 else 'have'} no effect {why}"
+            params.diagnostics.warning("SK-PLUGIN-043", message, self.where)
+
+
+class _VelocityGroup:
+    """The plugins that command velocities in one structure, and how what they move lies in the engine's model."""
+
+    def __init__(self, structure: Any, members: list[JointCommander]) -> None:
+        self.structure, self.members = structure, members
+        self.layouts: dict[tuple[int, ...], KinematicTrees] = {}
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> _VelocityGroup:
+        return self
+
+
+GAINS: Final = tuple(FIELDS)

@@ -1,0 +1,188 @@
+"""A trajectory of joints in time: the active point, and the interpolation between two points."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+Interpolation = Literal["none", "linear", "cubic", "quintic"]
+INTERPOLATIONS: Final = ("none", "linear", "cubic", "quintic")
+SECOND: Final = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class JointTarget:
+    """Of one joint: position, velocity and acceleration [rad or m, per s, per s²]."""
+
+    position: float
+    velocity: float = 0.0
+    acceleration: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class TrajectoryPoint:
+    """One point of a trajectory; a list may be shorter than the names, or empty.
+
+    Attributes:
+        time: from the start [ns].
+        positions, velocities, accelerations, efforts: by the order of the names.
+    """
+
+    time: int
+    positions: tuple[float, ...] = ()
+    velocities: tuple[float, ...] = ()
+    accelerations: tuple[float, ...] = ()
+    efforts: tuple[float, ...] = ()
+
+
+def read_points(message: Any) -> list[TrajectoryPoint]:
+    """The points of a `trajectory_msgs/msg/JointTrajectory`."""
+    return [
+        TrajectoryPoint(
+            nanoseconds(p.time_from_start),
+            *(tuple(float(v) for v in values) for values in (p.positions, p.velocities, p.accelerations, p.effort)),
+        )
+        for p in message.points
+    ]
+
+
+def nanoseconds(stamp: Any) -> int:
+    """A time or duration message in [ns]."""
+    return int(stamp.sec) * SECOND + int(stamp.nanosec)
+
+
+def trajectory_faults(names: list[str], points: list[TrajectoryPoint]) -> str:
+    """What makes a trajectory unusable: numbers that are none, times that go back; empty for nothing."""
+    before = 0
+    for i, point in enumerate(points):
+        if not all(abs(v) < float("inf") for v in _numbers_of_point(point)):
+            return f"point {i} has a number that is not finite"
+        if point.time < before:
+            return f"point {i} is at {point.time / SECOND:g} s, the one before it at {before / SECOND:g} s"
+        before = point.time
+        most = max(len(point.positions), len(point.velocities), len(point.accelerations), len(point.efforts))
+        if most > len(names):
+            return f"point {i} has {most} numbers for {len(names)} joint names"
+    return ""
+
+
+def _numbers_of_point(point: TrajectoryPoint) -> tuple[float, ...]:
+    return (*point.positions, *point.velocities, *point.accelerations, *point.efforts)
+
+
+def active_point(times: list[int], now: int) -> int:
+    """The first point whose time [ns] is not yet over at `now`; the last one after all."""
+    return min(bisect_left(times, now), len(times) - 1)
+
+
+@dataclass(frozen=True, slots=True)
+class JointPath:
+    """Where a joint is to be at every time.
+
+    Attributes:
+        times: where one piece ends and the next begins, from the start [ns]; the first is 0.
+        pieces: between them, coefficients of rising powers of the seconds since its beginning.
+        last: after all.
+    """
+
+    times: tuple[int, ...]
+    pieces: tuple[tuple[float, ...], ...]
+    last: JointTarget
+
+    @classmethod
+    def through(
+        cls, start: JointTarget, points: list[TrajectoryPoint], joint: int, rule: Interpolation
+    ) -> JointPath | None:
+        """The path of a joint through the points that hold a position for it; None where none does.
+
+        linear: straight from point to point. cubic: at the points' velocities; a point that has none is passed at the
+        mean of the slopes before and after it, or at rest where these differ in sign, and the last at rest. quintic: at
+        their accelerations as well, 0 where none is given.
+
+        Args:
+            start: of the joint when the trajectory begins, unless a point at time 0 says where.
+            points: of the trajectory.
+            joint: its place among the names.
+            rule: "linear", "cubic" or "quintic".
+        """
+        held = [p for p in points if joint < len(p.positions)]
+        if not held:
+            return None
+        if held[0].time > 0:
+            first = TrajectoryPoint(0, (start.position,) * (joint + 1), (start.velocity,) * (joint + 1))
+            held = [first, *held]
+        spline = {"linear": _linear, "cubic": _cubic, "quintic": _quintic}[rule]
+        times, pieces = [held[0].time], []
+        for i in range(1, len(held)):
+            a, b = held[i - 1], held[i]
+            if b.time <= times[-1]:
+                continue
+            ends = a.positions[joint], b.positions[joint]
+            velocities = _velocity(held, joint, i - 1), _velocity(held, joint, i)
+            accelerations = _value_of_joint(a.accelerations, joint), _value_of_joint(b.accelerations, joint)
+            pieces.append(spline(ends, velocities, accelerations, (b.time - a.time) / SECOND))
+            times.append(b.time)
+        last = JointTarget(held[-1].positions[joint], _value_of_joint(held[-1].velocities, joint))
+        return cls(tuple(times), tuple(pieces), last)
+
+    def at(self, now: int) -> JointTarget:
+        """Where it is to be `now` [ns] after the start."""
+        if now >= self.times[-1]:
+            return self.last
+        i = max(bisect_right(self.times, now) - 1, 0)
+        return _polynomial(self.pieces[i], max(now - self.times[i], 0) / SECOND)
+
+
+def _value_of_joint(values: tuple[float, ...], joint: int) -> float:
+    return values[joint] if joint < len(values) else 0.0
+
+
+def _velocity(points: list[TrajectoryPoint], joint: int, i: int) -> float:
+    """At a point: its own, or one that fits its neighbours."""
+    if joint < len(points[i].velocities):
+        return points[i].velocities[joint]
+    if i == 0 or i == len(points) - 1:
+        return 0.0
+    before, after = (
+        (points[k + 1].positions[joint] - points[k].positions[joint])
+        * SECOND
+        / max(points[k + 1].time - points[k].time, 1)
+        for k in (i - 1, i)
+    )
+    return (before + after) / 2.0 if before * after > 0.0 else 0.0
+
+
+Pair = tuple[float, float]
+
+
+def _linear(ends: Pair, _: Pair, __: Pair, t: float) -> tuple[float, ...]:
+    return ends[0], (ends[1] - ends[0]) / t
+
+
+def _cubic(ends: Pair, velocities: Pair, _: Pair, t: float) -> tuple[float, ...]:
+    """Coefficients of rising powers of the Hermite cubic over a time t."""
+    rise, (v0, v1) = ends[1] - ends[0], velocities
+    return ends[0], v0, (3.0 * rise / t - 2.0 * v0 - v1) / t, (-2.0 * rise / t + v0 + v1) / t**2
+
+
+def _quintic(ends: Pair, velocities: Pair, accelerations: Pair, t: float) -> tuple[float, ...]:
+    """Coefficients of rising powers of the quintic over a time t."""
+    rise, (v0, v1), (a0, a1) = ends[1] - ends[0], velocities, accelerations
+    return (
+        ends[0],
+        v0,
+        a0 / 2.0,
+        (20.0 * rise - (8.0 * v1 + 12.0 * v0) * t - (3.0 * a0 - a1) * t**2) / (2.0 * t**3),
+        (-30.0 * rise + (14.0 * v1 + 16.0 * v0) * t + (3.0 * a0 - 2.0 * a1) * t**2) / (2.0 * t**4),
+        (12.0 * rise - 6.0 * (v1 + v0) * t + (a1 - a0) * t**2) / (2.0 * t**5),
+    )
+
+
+def _polynomial(coefficients: tuple[float, ...], t: float) -> JointTarget:
+    position = velocity = acceleration = 0.0
+    for c in reversed(coefficients):
+        acceleration = acceleration * t + 2.0 * velocity
+        velocity = velocity * t + position
+        position = position * t + c
+    return JointTarget(position, velocity, acceleration)

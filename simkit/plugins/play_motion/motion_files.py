@@ -1,0 +1,244 @@
+"""Files of motions: YAML in the layout of play_motion2 (ROS 2) or of play_motion (ROS 1).
+
+Both have `motions` below the name of a node. In ROS 2's a motion has `joints`, `positions` (all points one after
+another) and `times_from_start`; in ROS 1's `joints` and `points`, each with `positions`, `time_from_start` and perhaps
+`velocities`. A motion is taken for what it has, whatever the file around it is like.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Final
+
+from simkit.diagnostics import Diagnostic, Diagnostics, Where, did_you_mean
+from simkit.plugins.play_motion.motion import Motion, motion_fault, point_rows
+from simkit.plugins.ros2_control.parameter_files import Entry, ParameterFile, read_parameter_file
+
+_KEYS: Final = ("joints", "positions", "times_from_start", "points", "meta")
+_POINT_KEYS: Final = ("positions", "velocities", "time_from_start")
+_META_KEYS: Final = ("name", "usage", "description")
+_PLANNERS: Final = ("motion_planner", "approach_planner")
+_SPEEDS: Final = ("approach_velocity", "skip_planning_approach_vel", "approach_vel")
+_SHORTEST: Final = ("approach_min_duration",)
+_EXCLUDED: Final = ("exclude_from_planning_joints",)
+_SETTINGS: Final = (*_SPEEDS, *_SHORTEST, *_EXCLUDED)
+
+
+@dataclass(slots=True)
+class MotionFile:
+    """What a file of motions says.
+
+    Attributes:
+        motions: by key, in the order of the file.
+        approach_velocity: of the fastest joint on its way to the first point [rad/s or m/s]; None: nothing is said.
+        approach_min_duration: [s]; None: nothing is said.
+        excluded_joints: joints that are free to touch what they are to hold; None: nothing is said.
+    """
+
+    motions: dict[str, Motion] = field(default_factory=dict)
+    approach_velocity: float | None = None
+    approach_min_duration: float | None = None
+    excluded_joints: tuple[str, ...] | None = None
+
+    def update(self, other: MotionFile) -> None:
+        """Takes what a later file says over what is there."""
+        self.motions.update(other.motions)
+        for name in ("approach_velocity", "approach_min_duration", "excluded_joints"):
+            if getattr(other, name) is not None:
+                setattr(self, name, getattr(other, name))
+
+
+def read_motions(path: Path, diagnostics: Diagnostics) -> MotionFile:
+    """Reads a file of motions; a motion that is none is left out with a warning, the others stay."""
+    stamp: tuple[int, ...] = ()
+    with suppress(OSError):  # told by whoever reads it
+        stat = path.stat()
+        stamp = (stat.st_dev, stat.st_ino, stat.st_mtime_ns, stat.st_size)
+    file, said = _read_cached(path, stamp)
+    diagnostics.extend(said)
+    return replace(file, motions=dict(file.motions))
+
+
+@lru_cache(maxsize=32)  # worlds are loaded again and again, and reading takes 10 ms
+def _read_cached(path: Path, _stamp: tuple[int, ...]) -> tuple[MotionFile, tuple[Diagnostic, ...]]:
+    """A file as it was when it was last changed, and what is wrong with it."""
+    found, said = MotionFile(), Diagnostics()
+    file = read_parameter_file(path, said)
+    if file is None:
+        return found, tuple(said)
+    # what is said of a file without parameters is about controllers
+    said.drop([d for d in said if d.code == "SK-CONTROL-003"])
+    for block in _motion_blocks(file):
+        for name, entry in (block.below or {}).items():
+            if name == "motions":
+                _read_motions(entry, found, said)
+            elif name in _PLANNERS:
+                _read_planner(entry, found, said)
+            elif name in _SETTINGS:
+                _read_planner(Entry(block.where, below={name: entry}), found, said)
+            elif near := did_you_mean(name, ("motions", *_PLANNERS, *_SETTINGS)):
+                said.warning("SK-MOTION-006", f"{name!r} is not used", entry.where, near)
+    if not found.motions and not said.has_errors:
+        hint = "motions stand in a block `motions` below the name of a node"
+        said.warning("SK-MOTION-003", f"{path.name} has no motion that can be played", Where(str(path)), hint)
+    return found, tuple(said)
+
+
+def _motion_blocks(file: ParameterFile) -> Iterator[Entry]:
+    """Every block that may hold motions: the nodes of ROS 2, or whatever holds `motions` in a file of ROS 1."""
+    for _, entry in file.nodes:
+        yield entry
+    if file.root is not None:
+        yield from _blocks_with_motions(file.root)
+
+
+def _blocks_with_motions(entry: Entry) -> Iterator[Entry]:
+    below = entry.below or {}
+    if any(name in below for name in ("motions", *_PLANNERS)):
+        yield entry
+        return
+    for inner in below.values():
+        yield from _blocks_with_motions(inner)
+
+
+def _read_motions(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> None:
+    for key, inner in (entry.below or {}).items():
+        try:
+            found.motions[key] = _motion(key, inner, diagnostics)
+        except ValueError as error:
+            diagnostics.warning("SK-MOTION-002", f"motion {key!r} is left out: {error}", inner.where)
+
+
+def _motion(key: str, entry: Entry, diagnostics: Diagnostics) -> Motion:
+    """One motion; raises ValueError where it is none."""
+    below = entry.below
+    if below is None:
+        raise ValueError(f"found {entry.text!r}, allowed is a block with {', '.join(_KEYS[:3])}")
+    if not key.strip() or not key.isprintable():
+        raise ValueError("it has no name that can be called")
+    _report_unknown(f"motion {key!r}", below, _KEYS, diagnostics)
+    joints = [one.text for one in _list_items(below, "joints")]
+    if any(not joint for joint in joints):
+        raise ValueError("a name in 'joints' is no text")
+    if "points" in below:
+        times, flat, velocities = _points(key, below["points"], len(joints), diagnostics)
+        for name in ("positions", "times_from_start"):
+            if name in below:
+                message = f"motion {key!r}: {name!r} is not used beside 'points'"
+                diagnostics.warning("SK-MOTION-006", message, below[name].where)
+    else:
+        flat, times, velocities = _numbers(below, "positions"), _numbers(below, "times_from_start"), ()
+    fault = motion_fault(joints, flat, times, [v for row in velocities for v in row])
+    if fault:
+        raise ValueError(fault)
+    meta = _meta(key, below, diagnostics)
+    _report_unknown(f"motion {key!r}, 'meta'", meta, _META_KEYS, diagnostics)
+    texts = {name: " ".join(meta[name].text.split()) for name in _META_KEYS if name in meta}
+    return Motion(
+        key, tuple(joints), tuple(times), point_rows(flat, len(joints)), velocities, where=entry.where, **texts
+    )
+
+
+def _meta(key: str, below: dict[str, Entry], diagnostics: Diagnostics) -> dict[str, Entry]:
+    """What a motion says for people."""
+    entry = below.get("meta")
+    if entry is None:
+        return {}
+    if entry.below is None and (entry.text or entry.items):
+        message = f"motion {key!r}: 'meta' is not used, allowed is a block with {', '.join(_META_KEYS)}"
+        diagnostics.warning("SK-MOTION-006", message, entry.where)
+    return entry.below or {}
+
+
+def _points(
+    key: str, entry: Entry, width: int, diagnostics: Diagnostics
+) -> tuple[list[float], list[float], tuple[tuple[float, ...], ...]]:
+    """Times, positions one after another, and velocities of the points of a motion in ROS 1's layout."""
+    times: list[float] = []
+    flat: list[float] = []
+    velocities: list[tuple[float, ...]] = []
+    for k, item in enumerate(entry.items or ()):
+        point = item.below
+        if point is None:
+            raise ValueError(f"point {k} is {item.text!r}, allowed is a block with positions and time_from_start")
+        _report_unknown(f"motion {key!r}, point {k}", point, _POINT_KEYS, diagnostics)
+        positions = _numbers(point, "positions", f"point {k}")
+        if len(positions) != width:
+            raise ValueError(f"point {k} has {len(positions)} positions for {width} joints")
+        if "time_from_start" not in point:
+            raise ValueError(f"point {k} needs 'time_from_start'")
+        times.append(_number(point["time_from_start"], "time_from_start"))
+        flat += positions
+        if "velocities" in point:
+            row = tuple(_numbers(point, "velocities", f"point {k}"))
+            if len(row) != width:
+                raise ValueError(f"point {k} has {len(row)} velocities for {width} joints")
+            velocities.append(row)
+    if velocities and len(velocities) != len(times):
+        raise ValueError(f"{len(velocities)} of {len(times)} points have velocities, allowed is all or none")
+    return times, flat, tuple(velocities)
+
+
+def _read_planner(entry: Entry, found: MotionFile, diagnostics: Diagnostics) -> None:
+    """The settings of the way to the first point; what a planner has beside is not needed here."""
+    for name, inner in (entry.below or {}).items():
+        try:
+            if name in _SPEEDS:
+                found.approach_velocity = _bounded_number(inner, name, 0.0, strictly=True)
+            elif name in _SHORTEST:
+                found.approach_min_duration = _bounded_number(inner, name, 0.0, strictly=False)
+            elif name in _EXCLUDED:
+                found.excluded_joints = _names(inner)
+        except ValueError as error:
+            diagnostics.warning("SK-MOTION-002", f"{name!r} is left out: {error}", inner.where)
+
+
+def _bounded_number(entry: Entry, name: str, least: float, *, strictly: bool) -> float:
+    value = _number(entry, name)
+    if not math.isfinite(value) or value < least or (strictly and value == least):
+        raise ValueError(f"found {value:g}, allowed is a number {'above' if strictly else 'from'} {least:g}")
+    return value
+
+
+def _names(entry: Entry) -> tuple[str, ...]:
+    if entry.below is not None or (entry.items is None and entry.text):
+        raise ValueError(f"found {entry.text or 'a block'!r}, allowed is a list of joints")
+    return tuple(one.text for one in entry.items or ())
+
+
+def _list_items(below: dict[str, Entry], name: str) -> list[Entry]:
+    entry = below.get(name)
+    if entry is None:
+        near = did_you_mean(name, below)
+        raise ValueError(f"it needs {name!r}" + (f"; {near}" if near else ""))
+    if entry.items is None:
+        raise ValueError(f"{name!r} is no list")
+    return entry.items
+
+
+def _numbers(below: dict[str, Entry], name: str, owner: str = "") -> list[float]:
+    try:
+        return [_number(one, name) for one in _list_items(below, name)]
+    except ValueError as error:
+        raise ValueError(f"{owner}: {error}" if owner else str(error)) from None
+
+
+def _number(entry: Entry, name: str) -> float:
+    if entry.items is not None or entry.below is not None:
+        raise ValueError(f"{name!r} holds a list or block, allowed are numbers")
+    try:
+        return float(entry.text)
+    except ValueError:
+        raise ValueError(f"{name!r} holds {entry.text!r}, allowed are numbers") from None
+
+
+def _report_unknown(owner: str, below: dict[str, Entry], allowed: tuple[str, ...], diagnostics: Diagnostics) -> None:
+    for name, entry in below.items():
+        if name not in allowed:
+            hint = did_you_mean(name, allowed) or "there is " + ", ".join(allowed)
+            diagnostics.warning("SK-MOTION-006", f"{owner}: {name!r} is not used", entry.where, hint)

@@ -1,0 +1,209 @@
+"""From a motion to what the joints are to do: the way to its first point, its time, and what is in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import did_you_mean
+from simkit.plugins.play_motion.motion import Motion, limit_violations, speed_limits
+from simkit.plugins.play_motion.motion_timing import SHORTEST_INTERVAL, Course, approach_time, time_course
+from simkit.plugins.play_motion.trajectory_controllers import (
+    TrajectoryController,
+    leader_name,
+    mimic_of,
+    unclaimed_joints,
+)
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime import Joint, Model, Simulation
+
+MISSING_CONTROLLER: Final = -4
+NO_PLAN_FOUND: Final = -8
+OTHER_ERROR: Final = -42
+APPROACH_SPEED: Final = 0.5
+"""[rad/s or m/s], where nobody says anything."""
+_STEPS: Final = {"prismatic": 0.005}  # [m] between two places that are looked at
+_STEP: Final = 0.03  # [rad]
+_REACHED_DISTANCE: Final = 1e-3  # [rad or m] from the first point, where no way to it is needed
+_MIMIC_TOLERANCE: Final = (
+    1e-3  # [rad or m] that a joint may be wanted off the place that it has by the one that it follows
+)
+_LONGEST_DURATION: Final = 2.0**31 - 1.0  # [s] that the time of a trajectory's point can tell
+
+
+class MotionRefused(Exception):
+    """A motion is not played.
+
+    Attributes:
+        code: why, as `play_motion_msgs/action/PlayMotion` numbers it.
+    """
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """How the first point of a motion is reached.
+
+    Attributes:
+        speed: at most, on average of the joint that has the longest way [rad/s or m/s].
+        shortest: it takes at least that long [s].
+        free_joints: plain names of joints whose links may touch each other and whatever lies loose, as grippers do.
+    """
+
+    speed: float = APPROACH_SPEED
+    shortest: float = 0.0
+    free_joints: frozenset[str] = frozenset()
+
+
+def plan_motion(
+    sim: Simulation,
+    robot: Model,
+    motion: Motion,
+    movers: Sequence[TrajectoryController],
+    approach: Approach,
+    *,
+    looks_around: bool = True,
+) -> Course:
+    """The course of a motion's joints from where they are now.
+
+    Args:
+        sim: the simulation.
+        robot: whose joints they are.
+        motion: what is to be done.
+        movers: controllers that can do it.
+        approach: how to get to its first point.
+        looks_around: whether it is to touch nothing.
+
+    Raises:
+        Refused: it cannot be done, or leaves the limits, or something is in the way.
+    """
+    joints = find_joints(robot, motion.joints, movers)
+    beyond = limit_violations(motion, joints)
+    if beyond:
+        raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r} leaves the limits: {'; '.join(beyond)}")
+    check_mimic_joints(robot, motion)
+    start = np.array([float(joint.position) for joint in joints.values()])
+    found = course_from(start, motion, speed_limits(motion, joints), approach)
+    if not found.duration <= _LONGEST_DURATION:
+        said = f"motion {motion.key!r} would take {found.duration:g} s, allowed is up to {_LONGEST_DURATION:.0f} s"
+        raise MotionRefused(OTHER_ERROR, said)
+    if looks_around and not approach.free_joints.issuperset(motion.joints):
+        check_collisions(sim, robot, motion, found, joints, approach.free_joints)
+    return found
+
+
+def find_joints(robot: Model, names: Sequence[str], movers: Sequence[TrajectoryController]) -> dict[str, Joint]:
+    """The joints of a motion by name, each of which a controller moves. Raises Refused."""
+    missing = [name for name in names if name not in robot.joints]
+    if missing:
+        near = did_you_mean(missing[0], robot.joints)
+        raise MotionRefused(
+            MISSING_CONTROLLER, f"{robot.name!r} has no joint {missing[0]!r}" + (f"; {near}" if near else "")
+        )
+    free = unclaimed_joints(robot, names, movers)
+    if free:
+        listed = ", ".join(map(repr, free))
+        plural = "s" if len(free) > 1 else ""
+        verb = "are" if plural else "is"
+        raise MotionRefused(MISSING_CONTROLLER, f"Joint{plural} {listed} {verb} not claimed by any active controller")
+    return {name: robot.joints[name] for name in names}
+
+
+def add_leader_joints(robot: Model, motion: Motion) -> Motion:
+    """A motion with the joints that lead those which it names: a joint that follows another one moves by that one."""
+    for name in motion.joints:
+        law = mimic_of(robot, name)
+        if (
+            law is None
+            or leader_name(law) in motion.joints
+            or leader_name(law) not in robot.joints
+            or not law.multiplier
+        ):
+            continue
+        column = motion.joints.index(name)
+        ratio, rows = law.multiplier, motion.positions
+        places = tuple((*row, (row[column] - law.offset) / ratio + law.reference) for row in rows)
+        speeds = tuple((*row, row[column] / ratio) for row in motion.velocities)
+        motion = replace(motion, joints=(*motion.joints, leader_name(law)), positions=places, velocities=speeds)
+    return motion
+
+
+def check_mimic_joints(robot: Model, motion: Motion) -> None:
+    """Raises Refused where a joint that follows another one is to be elsewhere than that one takes it."""
+    for column, name in enumerate(motion.joints):
+        law = mimic_of(robot, name)
+        if law is None or leader_name(law) not in motion.joints:
+            continue
+        lead = motion.joints.index(leader_name(law))
+        for time, row in zip(motion.times, motion.positions, strict=True):
+            there = law.multiplier * (row[lead] - law.reference) + law.offset
+            if abs(row[column] - there) > _MIMIC_TOLERANCE:
+                wanted = f"{name} is to be at {row[column]:g} at {time:g} s, but it follows {leader_name(law)}"
+                raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r}: {wanted}, which takes it to {there:g}")
+
+
+def course_from(start: Vector, motion: Motion, limits: Vector, approach: Approach) -> Course:
+    """The course from where the joints are through the points of a motion.
+
+    The way to the first point takes the time that the motion gives it, or longer where a joint would be too fast; what
+    follows keeps its distance in time.
+    """
+    points = np.vstack([start, np.array(motion.positions)])
+    times = np.array(motion.times)
+    is_there = float(np.max(np.abs(points[1] - start))) <= _REACHED_DISTANCE
+    needed = SHORTEST_INTERVAL if is_there else approach_time(start, points[1], approach.speed, approach.shortest)
+    shifted = np.concatenate([[0.0], times + max(needed - times[0], 0.0)])
+    given = np.array(motion.velocities) if motion.velocities else None
+    return time_course(points, shifted, given, limits)
+
+
+def check_collisions(
+    sim: Simulation,
+    robot: Model,
+    motion: Motion,
+    found: Course,
+    joints: Mapping[str, Joint],
+    free_joints: Collection[str],
+) -> None:
+    """Goes along a course in a copy of the state. Raises Refused where two links come into each other."""
+    from simkit.plugins.play_motion.collision_check import CollisionCheck
+
+    clearance = CollisionCheck(sim, robot, list(joints.values()), free_joints)
+    steps = np.array([_STEPS.get(joint.type, _STEP) for joint in joints.values()])
+    reached = found.times[1]
+    for time, positions in found.samples(steps):
+        meeting = clearance.meeting(positions)
+        if meeting is not None:
+            at = time - reached + motion.times[0]
+            where = "on the way to its first point" if time < reached else f"at {at:.2f} s"
+            raise MotionRefused(NO_PLAN_FOUND, f"motion {motion.key!r} collides {where}: {meeting}")
+
+
+def trajectory_goal(found: Course, motion: Motion, mover: TrajectoryController, robot: Model) -> dict[str, Any]:
+    """The goal of one controller: its joints of a course; those that the motion leaves out stay where they are."""
+    columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in mover.joints]
+    here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in mover.joints]
+
+    def row(values: Vector, otherwise: Sequence[float]) -> list[float]:
+        return [otherwise[k] if c is None else float(values[c]) for k, c in enumerate(columns)]
+
+    at_rest = [0.0] * len(columns)
+    points = []
+    for k in range(1, len(found.times)):
+        points.append(
+            {
+                "positions": row(found.positions[k], here),
+                "velocities": row(found.velocities[k], at_rest),
+                "time_from_start": msgs.duration(round(float(found.times[k]) * 1e9)),
+            }
+        )
+    return {"trajectory": {"joint_names": list(mover.joints), "points": points}}

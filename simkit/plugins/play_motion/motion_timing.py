@@ -1,0 +1,148 @@
+"""When a motion is where: a smooth course through its points, no faster than its joints may go.
+
+Between two points every joint follows the cubic of their positions and velocities, as joint_trajectory_controller
+interpolates. Where a motion gives no velocities they are those of a monotone cubic (Fritsch and Butland, "A method for
+constructing local monotone piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 5, 1984): zero at both ends and
+where a joint turns back, so that no joint leaves the range between two points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from simkit.pose import Vector
+
+SHORTEST_INTERVAL: Final = 1e-3  # [s] between two points
+LARGEST_STRETCH: Final = 3.0
+"""How much faster than on average a joint can be between two points of a smooth course: with the weights of
+`smooth_velocities` the speed at a point is at most that of either side's average times three."""
+_ROUNDS: Final = 100
+_EXACT: Final = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A course of joints through points, the first of which is where they are.
+
+    Attributes:
+        times: [s], rising from 0, shape (points,).
+        positions: [rad or m], shape (points, joints).
+        velocities: [rad/s or m/s], shape (points, joints).
+        stretched: by how much the time of the motion was made longer so that no joint is too fast, the approach
+            apart; 1 where it was not.
+    """
+
+    times: Vector
+    positions: Vector
+    velocities: Vector
+    stretched: float = 1.0
+
+    @property
+    def duration(self) -> float:
+        """[s]."""
+        return float(self.times[-1])
+
+    def samples(self, step: Vector) -> Iterator[tuple[float, Vector]]:
+        """Times and positions along it, so close that no joint goes further than its step between two of them."""
+        yield 0.0, self.positions[0]
+        for k in range(len(self.times) - 1):
+            h = self.times[k + 1] - self.times[k]
+            peak = _peak_speeds(self.positions[k : k + 2], self.velocities[k : k + 2], np.array([h]))[0]
+            count = max(1, int(np.ceil(np.max(peak * h / step))))
+            for s in np.arange(1, count + 1) / count:
+                yield float(self.times[k] + s * h), self._at(k, float(s), float(h))
+
+    def _at(self, k: int, s: float, h: float) -> Vector:
+        """The cubic between points k and k + 1, at the part s of the way."""
+        p0, p1, v0, v1 = self.positions[k], self.positions[k + 1], self.velocities[k] * h, self.velocities[k + 1] * h
+        found: Vector = p0 + s * (v0 + s * ((3 * (p1 - p0) - 2 * v0 - v1) + s * (v0 + v1 - 2 * (p1 - p0))))
+        return found
+
+
+def time_course(
+    points: Vector,
+    times: Vector,
+    given: Vector | None,
+    limits: Vector,
+    approach: int = 1,
+) -> Course:
+    """A course through points, its time stretched where a joint would be faster than it may.
+
+    Args:
+        points: where the joints are, then the points of the motion, shape (points, joints).
+        times: of the points [s], from 0, rising, shape (points,).
+        given: velocities of the points of the motion, without where the joints are; None for a smooth course.
+        limits: largest speed of each joint [rad/s or m/s].
+        approach: index of the first point of the motion itself; what comes before is its approach.
+    """
+    gaps = np.maximum(np.diff(times), SHORTEST_INTERVAL)
+    if given is not None:
+        return _course_with_velocities(points, gaps, given, limits, approach)
+    planned = float(gaps[approach:].sum())
+    for _ in range(_ROUNDS):
+        velocities = smooth_velocities(points, gaps)
+        ratio = np.max(_peak_speeds(points, velocities, gaps) / limits, axis=1)
+        if np.all(ratio <= 1 + _EXACT):
+            break
+        gaps = gaps * np.maximum(ratio, 1.0)
+    else:
+        gaps = gaps * max(1.0, float(ratio.max()))
+        velocities = smooth_velocities(points, gaps)
+    stretched = float(gaps[approach:].sum()) / planned if planned else 1.0
+    return Course(np.concatenate([[0.0], np.cumsum(gaps)]), points, velocities, stretched)
+
+
+def _course_with_velocities(points: Vector, gaps: Vector, given: Vector, limits: Vector, approach: int) -> Course:
+    """The course through points with these velocities: as a whole slower where it is too fast anywhere."""
+    velocities = np.zeros_like(points)
+    velocities[approach:] = given
+    inside = (
+        _peak_speeds(points[approach:], velocities[approach:], gaps[approach:]) if len(points) > approach + 1 else None
+    )
+    factor = max(1.0, float(np.max(inside / limits)) if inside is not None else 1.0, float(np.max(abs(given) / limits)))
+    gaps, velocities = np.where(np.arange(len(gaps)) >= approach, gaps * factor, gaps), velocities / factor
+    for _ in range(_ROUNDS):
+        ratio = float(
+            np.max(_peak_speeds(points[: approach + 1], velocities[: approach + 1], gaps[:approach]) / limits)
+        )
+        if ratio <= 1 + _EXACT:
+            break
+        gaps[:approach] *= max(ratio, 1.05)
+    return Course(np.concatenate([[0.0], np.cumsum(gaps)]), points, velocities, factor)
+
+
+def smooth_velocities(points: Vector, gaps: Vector) -> Vector:
+    """Velocities at the points for a course that goes beyond none of them, shape (points, joints)."""
+    velocities = np.zeros_like(points)
+    if len(points) < 3:
+        return velocities
+    slopes = np.diff(points, axis=0) / gaps[:, None]
+    before, after = slopes[:-1], slopes[1:]
+    w0 = (2 * gaps[1:] + gaps[:-1])[:, None]
+    w1 = (gaps[1:] + 2 * gaps[:-1])[:, None]
+    goes_on = before * after > 0
+    safe_before, safe_after = np.where(goes_on, before, 1.0), np.where(goes_on, after, 1.0)
+    velocities[1:-1] = np.where(goes_on, (w0 + w1) / (w0 / safe_before + w1 / safe_after), 0.0)
+    return velocities
+
+
+def _peak_speeds(points: Vector, velocities: Vector, gaps: Vector) -> Vector:
+    """The largest speed of each joint between each two points [rad/s or m/s], shape (points - 1, joints)."""
+    slopes = np.diff(points, axis=0) / gaps[:, None]
+    v0, v1 = velocities[:-1], velocities[1:]
+    # v(s) = v0 + b s + c s², s from 0 to 1
+    b, c = 6 * slopes - 4 * v0 - 2 * v1, 3 * (v0 + v1) - 6 * slopes
+    flat = np.abs(c) < 1e-12
+    s = np.clip(-b / np.where(flat, 1.0, 2 * c), 0.0, 1.0)
+    between = np.where(flat, 0.0, np.abs(v0 + s * (b + s * c)))
+    found: Vector = np.maximum(np.maximum(np.abs(v0), np.abs(v1)), between)
+    return found
+
+
+def approach_time(start: Vector, first: Vector, speed: float, shortest: float) -> float:
+    """How long the way to the first point takes [s]: its farthest joint goes at that speed on average."""
+    return max(float(np.max(np.abs(first - start))) / speed, shortest, SHORTEST_INTERVAL)

@@ -1,0 +1,322 @@
+"""play_motion: a robot plays motions that it knows by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_plugin_file
+from simkit.plugins.play_motion.motion import Motion, limit_violations, motion_of_message, speed_limits
+from simkit.plugins.play_motion.motion_files import MotionFile, read_motions
+from simkit.plugins.play_motion.motion_planning import (
+    APPROACH_SPEED,
+    OTHER_ERROR,
+    Approach,
+    MotionRefused,
+    add_leader_joints,
+    course_from,
+    find_joints,
+    plan_motion,
+    trajectory_goal,
+)
+from simkit.plugins.play_motion.motion_timing import LARGEST_STRETCH
+from simkit.plugins.play_motion.play_motion_services import offer_services
+from simkit.plugins.play_motion.trajectory_controllers import active_controllers
+from simkit.plugins.ros_names import RosNames
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Model
+    from simkit.runtime.communication.action_server import GoalHandle
+    from simkit.scene import SceneModel
+
+ROS_2: Final = "play_motion2_msgs/action/PlayMotion2"
+ROS_2_RAW: Final = "play_motion2_msgs/action/PlayMotion2Raw"
+ROS_1: Final = "play_motion_msgs/action/PlayMotion"
+SUCCEEDED, MOTION_NOT_FOUND, CONTROLLER_BUSY, TRAJECTORY_ERROR, GOAL_NOT_REACHED = 1, -1, -3, -5, -6
+_TRAJECTORY_RESULTS: Final = {-4: TRAJECTORY_ERROR, -5: GOAL_NOT_REACHED}
+_GRIPPER_WORDS: Final = ("gripper", "finger", "hand")
+
+
+@dataclass(slots=True)
+class _RunningMotion:
+    """A motion that is being played.
+
+    Attributes:
+        goal: of whoever asked for it.
+        parts: goals of the controllers that have not got there yet, by controller.
+        until_ns: when it has failed [ns].
+    """
+
+    goal: GoalHandle
+    key: str
+    controllers: tuple[str, ...]
+    until_ns: int
+    parts: dict[str, GoalHandle] = field(default_factory=dict)
+
+
+class PlayMotion(ModelPlugin):
+    """Plays motions through the robot's trajectory controllers, as PAL's play_motion2 (and ROS 1's play_motion) does.
+
+    The way to the first point is no faster than `approach_velocity` and the joints' own limits; the motion follows as
+    its file has it, through all points smoothly. It is refused where it leaves the limits of a joint, and, unless the
+    goal says `skip_planning`, where links would come into each other or into something else.
+
+    Attributes:
+        robot: whose motions they are.
+        known: the motions that it knows, by key.
+    """
+
+    filenames = ("libsimkit_play_motion.so",)
+    names = ("simkit::PlayMotion",)
+    drives = True
+    robot: Model
+    known: dict[str, Motion]
+
+    # ------------------------------------------------------------------ what the file says
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        said = MotionFile()
+        for element in params.all("motions"):
+            path = self._find(element.value, builder)
+            if path is None:
+                message = f"the file of motions {element.value} is not found"
+                hint = "name its package's folder: --package-path NAME=DIR, or put the file beside the robot's"
+                params.diagnostics.warning("SK-MOTION-001", message, element.where, hint)
+                continue
+            said.update(read_motions(path, params.diagnostics))
+        self.known = dict(said.motions)
+        speed = said.approach_velocity or APPROACH_SPEED
+        shortest = said.approach_min_duration or 0.0
+        self._speed = params.number("approach_velocity", speed, minimum=1e-6)
+        self._shortest = params.number("approach_min_duration", shortest, minimum=0.0)
+        given = [name for p in params.all("exclude_from_planning_joints") for name in p.value.split()]
+        self._free_joints = tuple(given) if given else said.excluded_joints
+
+    def _find(self, uri: str, builder: SpecBuilder) -> Path | None:
+        """A file by its URI or beside the robot's file, else by its path as it stands (Python's way to name one)."""
+        found = find_plugin_file(self, uri, builder, ("motions", "config", "../motions"))
+        with suppress(OSError, ValueError):  # a name that no file can have
+            return Path(uri) if found is None and Path(uri).is_file() else found
+        return found
+
+    # ------------------------------------------------------------------ at work
+
+    def load(self, parent: Model, params: Params) -> None:
+        self.robot = parent
+        self._runs: list[_RunningMotion] = []
+        named = [n for n in parent.joints if any(word in n for word in _GRIPPER_WORDS)]
+        free = named if self._free_joints is None else self._free_joints
+        for name in free:
+            if name not in parent.joints:
+                message = f"exclude_from_planning_joints: {name!r} is no joint of {parent.name!r}"
+                params.diagnostics.warning("SK-MOTION-006", message, self.where, did_you_mean(name, parent.joints))
+        self._approach = Approach(self._speed, self._shortest, frozenset(free))
+        for motion in self.known.values():
+            self._check(motion, params.diagnostics)
+        self._find_names()
+        self._open()
+
+    def _find_names(self) -> None:
+        """Plays under the robot's own name where another one has the names that it would have."""
+        taken = self.ros.topic("play_motion2")
+        if taken not in self.sim.action_table.names():
+            return
+        self.ros = RosNames(self.ros.node, f"{self.ros.namespace}/{self.robot.name}", params=self.params)
+        message = f"robot {self.robot.name!r} plays motions under {self.action_name!r}: {taken!r} is another one's"
+        hint = "a namespace gives it other names: <ros><namespace>...</namespace></ros>"
+        self.params.diagnostics.note("SK-MOTION-007", message, self.where, hint)
+
+    def _open(self) -> None:
+        self.act("play_motion2", ROS_2, self._on_goal, self._on_cancel)
+        self.act("play_motion2/raw", ROS_2_RAW, self._on_raw_goal, self._on_cancel)
+        self.act("play_motion", ROS_1, self._on_goal, self._on_cancel)
+        offer_services(self)
+
+    def _check(self, motion: Motion, reports: Diagnostics) -> None:
+        """Says of a motion of a file what will come of it."""
+        joints = self.robot.joints
+        missing = next((n for n in motion.joints if n not in joints or len(joints[n].scene.axes) != 1), None)
+        if missing is not None:
+            near = did_you_mean(missing, [n for n, joint in joints.items() if len(joint.scene.axes) == 1])
+            what = "does not move along one axis" if missing in joints else f"is none of {self.robot.name!r}"
+            message = f"motion {motion.key!r} cannot be played: joint {missing!r} {what}"
+            reports.warning("SK-MOTION-004", message, motion.where, near)
+            return
+        beyond = limit_violations(motion, self.robot.joints)
+        if beyond:
+            message = f"motion {motion.key!r} will be refused, it leaves the limits: {'; '.join(beyond)}"
+            reports.warning("SK-MOTION-004", message, motion.where)
+        elif len(motion.times) > 1:
+            self._check_speed(motion, reports)
+
+    def _check_speed(self, motion: Motion, reports: Diagnostics) -> None:
+        limits, rows = speed_limits(motion, self.robot.joints), np.array(motion.positions)
+        slopes = np.abs(np.diff(rows, axis=0)) / np.diff(motion.times)[:, None]
+        if not motion.velocities and np.all(slopes * LARGEST_STRETCH <= limits):
+            return
+        alone = course_from(rows[0], motion, limits, self._approach)
+        if alone.stretched > 1.001:
+            took, takes = motion.times[-1] - motion.times[0], alone.times[-1] - alone.times[1]
+            message = f"motion {motion.key!r} takes {takes:.2f} s from its first point instead of {took:g}"
+            reports.note("SK-MOTION-005", f"{message}: a joint would be faster than its limit", motion.where)
+
+    def read(self, path: Path) -> None:
+        """Knows the motions of one more file from now on; what is wrong with them is among `sim.diagnostics`."""
+        found = read_motions(path, self.sim.reports)
+        self.known.update(found.motions)
+        for motion in found.motions.values():
+            self._check(motion, self.sim.reports)
+
+    @property
+    def action_name(self) -> str:
+        """Of the action `PlayMotion2`."""
+        return self.ros.topic("play_motion2")
+
+    @property
+    def motions(self) -> dict[str, Motion]:
+        """The motions it knows, by key."""
+        return dict(self.known)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no motion is being played."""
+        return not self._runs
+
+    # ------------------------------------------------------------------ goals
+
+    def _on_goal(self, goal: GoalHandle) -> None:
+        key = goal.request.motion_name
+        motion = self.known.get(key)
+        if motion is None:
+            near = did_you_mean(key, self.known) or "there is " + (", ".join(self.known) or "none")
+            self._refuse(goal, MotionRefused(MOTION_NOT_FOUND, f"Motion '{key}' is not known; {near}"), rejects=True)
+            return
+        self._play(goal, motion)
+
+    def _on_raw_goal(self, goal: GoalHandle) -> None:
+        try:
+            motion = motion_of_message(goal.request.motion)
+        except ValueError as error:
+            self._refuse(goal, MotionRefused(OTHER_ERROR, f"Motion is not valid: {error}"), rejects=True)
+            return
+        self._play(goal, motion)
+
+    def _play(self, goal: GoalHandle, motion: Motion) -> None:
+        movers = active_controllers(self.sim, self.robot)
+        motion = add_leader_joints(self.robot, motion)
+        needed = [mover for mover in movers if set(mover.joints) & set(motion.joints)]
+        names = tuple(mover.name for mover in needed)
+        try:
+            self._check_idle(goal, names)
+            find_joints(self.robot, motion.joints, movers)
+        except MotionRefused as refused:
+            self._refuse(goal, refused, rejects=True)
+            return
+        try:
+            checked = not goal.request.skip_planning
+            found = plan_motion(self.sim, self.robot, motion, movers, self._approach, looks_around=checked)
+        except MotionRefused as refused:
+            self._refuse(goal, refused, rejects=False)
+            return
+        until = self.sim.time_ns + round((2.0 * found.duration + 1.0) * 1e9)
+        run = _RunningMotion(goal, motion.key, names, until)
+        self._runs.append(run)
+        for mover in needed:
+            request = trajectory_goal(found, motion, mover, self.robot)
+            send = self.sim.action_table.send
+            run.parts[mover.name] = send(mover.action, request, self._on_feedback, self._on_part_done)
+
+    def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
+        """Raises Refused while another motion is being played; in ROS 1 only one with the same controllers counts."""
+        for run in self._runs:
+            common = [name for name in names if name in run.controllers]
+            if not _is_ros_1(goal):
+                raise MotionRefused(CONTROLLER_BUSY, f"PlayMotion2 is busy: motion '{run.key}' is being played")
+            if common:
+                raise MotionRefused(
+                    CONTROLLER_BUSY, f"controller '{common[0]}' is busy: motion '{run.key}' is being played"
+                )
+
+    def _refuse(self, goal: GoalHandle, refused: MotionRefused, *, rejects: bool) -> None:
+        """Ends a goal that is not played; in ROS 1 with the number that says why."""
+        self.log.info("%s", refused)
+        if rejects and not _is_ros_1(goal):
+            goal.reject(str(refused))
+        else:
+            goal.abort(_result_fields(goal, refused.code, str(refused)), str(refused))
+
+    def _on_cancel(self, goal: GoalHandle) -> bool:
+        run = next((run for run in self._runs if run.goal is goal), None)
+        if run is None:
+            return False
+        self._leave(run)
+        goal.canceled(_result_fields(goal, OTHER_ERROR, "Motion canceled"), "Motion canceled")
+        return True
+
+    # ------------------------------------------------------------------ what the controllers say
+
+    def _on_part_done(self, part: GoalHandle) -> None:
+        run = next((run for run in self._runs if part in run.parts.values()), None)
+        if run is None:
+            return
+        name = next(name for name, one in run.parts.items() if one is part)
+        if part.status.name == "SUCCEEDED":
+            del run.parts[name]
+            if not run.parts:
+                self._runs.remove(run)
+                run.goal.succeed(_result_fields(run.goal, SUCCEEDED, ""))
+            return
+        code = getattr(part.result, "error_code", 0)
+        why = part.reason or getattr(part.result, "error_string", "") or part.status.name.lower()
+        if part.status.name == "REJECTED":
+            text = f"Motion {run.key} aborted. Cannot send goal to {name}: {why}"
+        else:
+            text = f"Joint Trajectory failed: {name}: {why}"
+        self._fail(run, _TRAJECTORY_RESULTS.get(code, OTHER_ERROR), text)
+
+    def _on_feedback(self, feedback: Any) -> None:
+        """A controller says how far it is; the first of those that are still at it is passed on."""
+        now = self.sim.time_ns
+        for run in tuple(self._runs):
+            first = next(iter(run.parts.values()), None)
+            if now > run.until_ns:
+                self._fail(run, OTHER_ERROR, "Timeout exceeded while the motion was played")
+            elif first is None or first.feedback is not feedback:
+                continue
+            elif _is_ros_1(run.goal):
+                run.goal.publish_feedback(None)
+            else:
+                run.goal.publish_feedback({"current_time": msgs.time(now)})
+
+    def _fail(self, run: _RunningMotion, code: int, text: str) -> None:
+        self.log.info("%s", text)
+        self._leave(run)
+        run.goal.abort(_result_fields(run.goal, code, text), text)
+
+    def _leave(self, run: _RunningMotion) -> None:
+        """Calls the controllers off; their joints hold where they are."""
+        self._runs.remove(run)
+        for part in run.parts.values():
+            if not part.is_done:
+                part.cancel()
+
+
+def _is_ros_1(goal: GoalHandle) -> bool:
+    return hasattr(goal.request, "priority")
+
+
+def _result_fields(goal: GoalHandle, code: int, text: str) -> dict[str, Any]:
+    """The fields of the result message that the goal's action has."""
+    if _is_ros_1(goal):
+        return {"error_code": code, "error_string": text}
+    return {"success": code == SUCCEEDED, "error": text}

@@ -1,0 +1,84 @@
+"""Services about the motions that a robot knows: those of play_motion2, and ROS 1's of play_motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from simkit.plugins.play_motion.motion import limit_violations, motion_of_message
+from simkit.plugins.play_motion.motion_planning import MotionRefused, find_joints
+from simkit.plugins.play_motion.trajectory_controllers import active_controllers
+
+if TYPE_CHECKING:
+    from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
+
+
+def offer_services(player: PlayMotion) -> None:
+    """Opens the services of a robot that plays motions."""
+    answers = _ServiceHandlers(player)
+    package = "play_motion2_msgs/srv"
+    player.offer("play_motion2/list_motions", f"{package}/ListMotions", answers.keys)
+    player.offer("play_motion2/is_motion_ready", f"{package}/IsMotionReady", answers.is_ready)
+    player.offer("play_motion2/is_joint_list_ready", f"{package}/IsJointListReady", answers.are_joints_ready)
+    player.offer("play_motion2/get_motion_info", f"{package}/GetMotionInfo", answers.motion)
+    player.offer("play_motion2/add_motion", f"{package}/AddMotion", answers.add)
+    player.offer("play_motion2/remove_motion", f"{package}/RemoveMotion", answers.remove)
+    player.offer("play_motion/list_motions", "play_motion_msgs/srv/ListMotions", answers.infos)
+    player.offer("play_motion/is_already_there", "play_motion_msgs/srv/IsAlreadyThere", answers.is_there)
+
+
+class _ServiceHandlers:
+    """What the services answer, from what the robot knows at that moment."""
+
+    def __init__(self, player: PlayMotion) -> None:
+        self._player = player
+
+    def keys(self, _: Any) -> dict[str, Any]:
+        return {"motion_keys": list(self._player.known)}
+
+    def infos(self, _: Any) -> dict[str, Any]:
+        return {"motions": [motion.as_info() for motion in self._player.known.values()]}
+
+    def motion(self, request: Any) -> dict[str, Any]:
+        motion = self._player.known.get(request.motion_key)
+        return {"motion": motion.as_message()} if motion is not None else {}
+
+    def is_ready(self, request: Any) -> dict[str, Any]:
+        motion = self._player.known.get(request.motion_key)
+        if motion is None or not self._are_ready(motion.joints):
+            return {"is_ready": False}
+        return {"is_ready": not limit_violations(motion, self._player.robot.joints)}
+
+    def are_joints_ready(self, request: Any) -> dict[str, Any]:
+        return {"is_ready": self._are_ready(request.joints)}
+
+    def _are_ready(self, joints: Sequence[str]) -> bool:
+        player = self._player
+        try:
+            find_joints(player.robot, joints, active_controllers(player.sim, player.robot))
+        except MotionRefused:
+            return False
+        return player.is_idle
+
+    def add(self, request: Any) -> dict[str, Any]:
+        known = self._player.known
+        try:
+            motion = motion_of_message(request.motion)
+        except ValueError as error:
+            self._player.log.info("motion %r is not added: %s", request.motion.key, error)
+            return {"success": False}
+        if not motion.key or (motion.key in known and not request.overwrite):
+            return {"success": False}
+        known[motion.key] = motion
+        return {"success": True}
+
+    def remove(self, request: Any) -> dict[str, Any]:
+        return {"success": self._player.known.pop(request.motion_key, None) is not None}
+
+    def is_there(self, request: Any) -> dict[str, Any]:
+        motion, joints = self._player.known.get(request.motion_name), self._player.robot.joints
+        if motion is None or any(name not in joints for name in motion.joints):
+            return {"already_there": False}
+        here = [float(joints[name].position) for name in motion.joints]
+        off = max(abs(a - b) for a, b in zip(here, motion.positions[0], strict=True))
+        return {"already_there": off <= request.tolerance}

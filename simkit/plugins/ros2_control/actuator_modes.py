@@ -1,0 +1,193 @@
+"""How a joint may be driven, and what each way amounts to: gains, bounds and which of the losses it feels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.compiler.servos import drive_gains, felt_inertias
+from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.plugins.ros2_control.hardware import HardwareJoint
+    from simkit.plugins.ros2_control.hardware_description import PidGains
+
+Mask = npt.NDArray[np.bool_]
+
+FREE, POSITION_MODE, VELOCITY_MODE, EFFORT_MODE, SPRING_MODE = range(5)
+
+_VELOCITY_DAMPING: Final = 0.5
+"""Damping of a velocity servo, times step over inertia. Contacts are solved without what the integrator knows of it: a
+wheel slips in proportion (2 mm/s at 1 and 0.8 m/s²)."""
+
+_CATCH_UP_TIME: Final = 0.05
+"""[s] in which a velocity servo makes up for what it lost."""
+
+_POSITION_REACH: Final = 2.0
+"""Times the whole effort that a position servo asks for at most: what damping takes off leaves the whole."""
+
+
+@dataclass(slots=True, eq=False)
+class ControlLoops:
+    """The loop of every joint in each mode: that of the file where it has one, else a servo's.
+
+    Attributes:
+        gains: kp [N·m/rad or N/m] and kv [N·m·s/rad or N·s/m], shape (joints, modes, 2).
+        integral: ki, and the bounds of the integral's part [N·m or N], shape (joints, modes, 3).
+        is_given: whether the loop is the file's, shape (joints, modes).
+        bounds: lowest and highest effort [N·m or N], shape (joints, modes, 2).
+        calm: the highest kp and kv of a spring that do not ring, shape (joints, 2).
+    """
+
+    gains: Vector
+    integral: Vector
+    is_given: Mask
+    bounds: Vector
+    calm: Vector
+
+    @classmethod
+    def choose(
+        cls,
+        model: mujoco.MjModel,
+        ids: Any,
+        joints: Sequence[HardwareJoint],
+        pids: Mapping[str, Mapping[str, PidGains]],
+    ) -> ControlLoops:
+        """The loops of joints.
+
+        Args:
+            model: the engine's.
+            ids: of the joints in it.
+            joints: the same, with their limits.
+            pids: the file's loops, by joint and interface.
+        """
+        count, step = len(joints), float(model.opt.timestep)
+        limits = np.array([joint.max_effort for joint in joints], float)
+        bounds = np.repeat(np.stack((-limits, limits), 1)[:, None], 5, 1)
+        made = cls(
+            np.zeros((count, 5, 2)), np.zeros((count, 5, 3)), np.zeros((count, 5), bool), bounds, np.zeros((count, 2))
+        )
+        if not count:
+            return made
+        least, most = felt_inertias(model, ids)
+        made.calm = np.stack((0.25 * least / step**2, least / step), 1)
+        is_slide = model.jnt_type[ids] == int(mujoco.mjtJoint.mjJNT_SLIDE)
+        made.gains[:, POSITION_MODE] = np.stack(drive_gains(limits, is_slide, least, most, step), 1)
+        damping = _VELOCITY_DAMPING * least / step
+        made.gains[:, VELOCITY_MODE] = np.stack((damping / _CATCH_UP_TIME, damping), 1)
+        for k, joint in enumerate(joints):
+            for mode, interface in ((POSITION_MODE, POSITION), (VELOCITY_MODE, VELOCITY)):
+                given = pids.get(joint.name, {}).get(interface)
+                if given:
+                    wanted = (given.p, given.d) if mode == POSITION_MODE else (0.0, given.p)
+                    made.gains[k, mode] = min(wanted[0], least[k] / step**2), min(wanted[1], least[k] / step)
+                    made.integral[k, mode] = given.i, given.i_min, given.i_max
+                    made.bounds[k, mode] = max(given.u_min, -limits[k]), min(given.u_max, limits[k])
+                    made.is_given[k, mode] = True
+        return made
+
+
+@dataclass(slots=True)
+class ActiveModes:
+    """What the present modes amount to, one number or truth for each joint; made anew when the modes change.
+
+    Attributes:
+        modes: that it is of.
+        nothing: zeros, by which commands that are not finite are found.
+        kp, kv: gains of the actuators [N·m/rad or N/m, N·m·s/rad or N·s/m].
+        pull: kp of the servos; 0 for the others.
+        lowest, highest: bounds of the effort [N·m or N].
+        integral: ki of the file's loops, and the bounds of that part [N·m or N].
+        is_position, is_servo: whether by position; whether by position or velocity.
+        is_helped, helped: whether gravity and friction are made up for; the same as 1 or 0.
+        direct: 1 where the command is an effort.
+        all_helped, all_position: whether it is so of all joints.
+        reach: how far a reference may be from its joint at most [rad or m].
+        rolling: those that are not driven by position: place, addresses, stiffness and top speed.
+        slacks, catch_up, groups: theirs, as `rolling.lead` takes them.
+        claims: the array of groups that `groups` are of.
+        has_effort, has_integral: whether any joint has such a part.
+        period: that `least` and `most` are of, how far references may move in it [s].
+    """
+
+    modes: Any
+    nothing: Vector
+    kp: Vector
+    kv: Vector
+    pull: Vector
+    lowest: Vector
+    highest: Vector
+    integral: tuple[Vector, Vector, Vector]
+    is_position: Mask
+    is_servo: Mask
+    is_helped: Mask
+    helped: Vector
+    direct: Vector
+    all_helped: bool
+    all_position: bool
+    reach: Vector
+    rolling: list[tuple[int, int, int, int, float, float]]
+    slacks: list[float]
+    catch_up: list[float]
+    claims: Any
+    groups: list[int]
+    has_effort: bool
+    has_integral: bool
+    period: float = 0.0
+    least: Any = None
+    most: Any = None
+
+    @classmethod
+    def of(
+        cls, modes: Any, groups: Any, loops: ControlLoops, addresses: tuple[Any, Any, Any], fastest: Vector
+    ) -> ActiveModes:
+        """What these modes amount to.
+
+        Args:
+            modes: of the joints.
+            groups: number of the controller that has claimed each joint; 0 for none.
+            loops: of the joints.
+            addresses: of the joints' actuators, positions and velocities in the engine.
+            fastest: top speeds [rad/s or m/s].
+        """
+        rows = np.arange(len(modes))
+        (kp, kv), bounds = loops.gains[rows, modes].T, loops.bounds[rows, modes]
+        is_position = modes == POSITION_MODE
+        is_servo = is_position | (modes == VELOCITY_MODE)
+        is_helped = is_servo & ~loops.is_given[rows, modes]
+        integral = loops.integral[rows, modes].T
+        rolls = np.flatnonzero(~is_position)
+        stiffness = np.maximum(kp[rolls], 1e-12)
+        top = np.where(is_servo, fastest, 0.0)[rolls]
+        columns = (rolls, *(address[rolls] for address in addresses), stiffness, top)
+        return cls(
+            modes=modes,
+            nothing=np.zeros(len(modes)),
+            kp=kp.copy(),
+            kv=kv.copy(),
+            pull=np.where(is_servo, kp, 0.0),
+            lowest=bounds[:, 0].copy(),
+            highest=bounds[:, 1].copy(),
+            integral=(integral[0].copy(), integral[1].copy(), integral[2].copy()),
+            is_position=is_position,
+            is_servo=is_servo,
+            is_helped=is_helped,
+            helped=is_helped.astype(float),
+            direct=((modes == EFFORT_MODE) | (modes == SPRING_MODE)).astype(float),
+            all_helped=bool(is_helped.all()),
+            all_position=bool(is_position.all()),
+            reach=np.where(is_position, _POSITION_REACH * bounds[:, 1] / np.maximum(kp, 1e-12), np.inf),
+            rolling=list(zip(*(column.tolist() for column in columns), strict=True)),
+            slacks=(bounds[rolls, 1] / stiffness).tolist(),
+            catch_up=(np.maximum(kv[rolls], 1e-12) / stiffness).tolist(),
+            claims=groups,
+            groups=groups[rolls].tolist(),
+            has_effort=bool((modes >= EFFORT_MODE).any()),
+            has_integral=bool(integral[0].any()),
+        )

@@ -1,0 +1,311 @@
+"""Gazebo's plugins that host a controller manager: gz_ros2_control, gazebo_ros2_control and ROS 1's
+gazebo_ros_control.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.plugins.base import ModelPlugin
+from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
+from simkit.plugins.ros_names import RosNames
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.plugins.ros2_control.controller_manager import ControllerManager
+    from simkit.plugins.ros2_control.hardware import Hardware
+    from simkit.plugins.ros2_control.hardware_description import PidGains
+    from simkit.plugins.ros2_control.parameter_files import ParameterFile, ParameterFiles
+    from simkit.scene import SceneModel
+
+
+UPDATE_RATE: Final = 100.0
+"""[Hz] of a controller manager whose file says nothing."""
+_PARAMS_FILE_HINT: Final = "--params-file FILE, params_files=[FILE] in Python"
+
+
+class ControlPlugin(ModelPlugin):
+    """Reads the hardware and the controllers' parameter files, and runs the manager at its rate.
+
+    Attributes:
+        manager: the controller manager.
+        hardware: what it drives.
+        files: the controllers' parameters.
+        is_ros_1: whether it is ROS 1's.
+    """
+
+    drives = True
+    is_ros_1: ClassVar[bool] = False
+    manager: ControllerManager
+    hardware: Hardware
+    files: ParameterFiles
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        from simkit.plugins.ros2_control.hardware import Hardware
+        from simkit.plugins.ros2_control.hardware_description import describe_hardware
+        from simkit.plugins.ros2_control.parameter_files import ParameterFiles
+        from simkit.plugins.ros2_control.transmissions import transmissions_of
+
+        transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
+        self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
+        self._manager_name = params.text("controller_manager_name", "") or "controller_manager"
+        given = [one.file for one in builder.parameter_files if one.is_for(scene)]
+        files = [*self._read_files(params, builder, any_given=bool(given)), *self._fitted(given, params)]
+        self.files = ParameterFiles(files)
+        self._chosen = [(word, one) for one in params.all("controllers") for word in _split_names(one)]
+        self.hardware.holds = params.boolean("hold_joints", True)
+        self.read_rest(params)
+        self.before_step_rate = self.read_rate(params, builder)
+        self._report_driven(builder)
+        self.hardware.prepare(builder, self.name, self.read_pids())
+
+    # ------------------------------------------------------------------ what the file says
+
+    def read_rest(self, params: Params) -> None:
+        """Elements that mean something to the plugin in Gazebo and nothing here."""
+        for name in ("robot_param", "robot_param_node", "position_proportional_gain"):
+            params.child(name)
+        for name in ("controller_manager_prefix_node_name", "controller_manager_node_name", "robotNamespace"):
+            params.child(name)
+
+    def read_rate(self, params: Params, builder: SpecBuilder) -> float | None:
+        """[Hz] of the manager; None for every step."""
+        own = self.files.of_node(f"{self.ros.namespace}/{self._manager_name}")
+        if own is None or "update_rate" not in (own.below or {}):
+            return UPDATE_RATE
+        rate = own.block("controller_manager", params.diagnostics).number("update_rate", UPDATE_RATE, minimum=1e-3)
+        steps = 1.0 / builder.world.physics.max_step_size
+        if rate > steps * (1.0 + 1e-9):
+            message = f"the controller manager's update_rate is {rate:g} Hz, more than the {steps:g} steps a second"
+            where = (own.below or {})["update_rate"].where
+            params.diagnostics.warning("SK-CONTROL-017", f"{message}; it is updated at every step", where)
+        return rate
+
+    def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
+        """Loops that take a servo's place, by joint and interface.
+
+        Those of the hardware's joints, and those in `pid_gains` of the plugin's own node, which go over them.
+        """
+        found = {j.name: dict(j.pids) for c in self.hardware.components for j in c.joints}
+        entry = self.files.of_node(f"{self.ros.namespace}/{self.name}")
+        if entry is not None and "pid_gains" in (entry.below or {}):
+            block = entry.block(self.name, self.params.diagnostics).block("pid_gains")
+            for interface in (POSITION, VELOCITY):
+                for joint, gains in self.gains_of_joints(block.block(interface)).items():
+                    found.setdefault(joint, {})[interface] = gains
+            block.report_unread("SK-CONTROL-011", "pid_gains")
+        return {joint: pids for joint, pids in found.items() if pids}
+
+    def gains_of_joints(self, block: Params) -> dict[str, PidGains]:
+        """Gains in a block by joint; a joint that the hardware does not have is told."""
+        from simkit.plugins.ros2_control.parameter_block import ParameterBlock
+
+        found = {}
+        forms = block.forms if isinstance(block, ParameterBlock) else {}
+        for name, (_, where) in forms.items():
+            gains = block.block(name)
+            if name in self.hardware.joints:
+                found[name] = read_pid_gains(gains)
+                continue
+            gains.mark_all_read()
+            message = f"pid_gains names joint {name!r}, which the hardware does not have"
+            near = did_you_mean(name, self.hardware.joints)
+            self.params.diagnostics.warning("SK-CONTROL-008", message, where, near)
+        return found
+
+    def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Those [m/s, rad/s] of the controller that takes velocities on a topic; None where none says."""
+        asked = (getattr(one.controller, "speed_bounds", None) for one in self.manager.controllers.values())
+        return next((found for ask in asked if ask is not None and (found := ask(topic)) is not None), None)
+
+    def _report_driven(self, builder: SpecBuilder) -> None:
+        """Tells of joints that another plugin drives too."""
+        driven = {ref.joint: ref.owner for record in builder.records.values() for ref in record.actuators}
+        for joint in self.hardware.joints.values():
+            if joint.command_interfaces and joint.scoped in driven:
+                message = f"joint {joint.name!r} is driven by plugin {driven[joint.scoped]!r} already: both push it"
+                hint = "leave one of the two plugins out, or the joint out of <ros2_control>"
+                self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
+
+    def _fitted(self, given: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
+        """The files that the run was given, as this manager looks for what they say."""
+        if given:
+            from simkit.plugins.ros2_control.run_parameter_files import adapt_to_manager
+
+            for file in given:
+                namespace, name = self.ros.namespace, self._manager_name
+                yield adapt_to_manager(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
+
+    def _read_files(self, params: Params, builder: SpecBuilder, *, any_given: bool) -> Iterator[ParameterFile]:
+        from simkit.plugins.lookups import find_plugin_file
+        from simkit.plugins.ros2_control.parameter_files import read_parameter_file
+
+        elements = params.all("parameters")
+        for element in elements:
+            for uri in [element.value] if element.value.startswith("$(") else element.value.split():
+                path = find_plugin_file(self, uri, builder, ("config", "../config"))
+                if path is None:
+                    message = f"the controllers' parameter file {uri[:200]} is not found: no controller of it is loaded"
+                    hint = (
+                        f"name its package's folder: --package-path NAME=DIR, or the file itself: {_PARAMS_FILE_HINT}"
+                    )
+                    params.diagnostics.warning("SK-CONTROL-015", message, element.where, hint)
+                    continue
+                read = read_parameter_file(path, params.diagnostics)
+                if read is not None:
+                    yield read
+        if not any_given and not any(element.value for element in elements):
+            message = f"plugin {self.name!r} names no parameter file: no controller is loaded"
+            hint = f"give what a launch file of ROS would load: {_PARAMS_FILE_HINT}; or name it in <simkit:parameters>"
+            params.diagnostics.note("SK-CONTROL-018", message, self.where, hint)
+
+    # ------------------------------------------------------------------ at work
+
+    def load(self, parent: Any, params: Params) -> None:
+        from simkit.plugins.ros2_control.controller_manager import ControllerManager
+        from simkit.plugins.ros2_control.controller_manager_services import offer_services
+        from simkit.plugins.ros2_control.parameter_file_checks import report_high_rates, report_unused_parameters
+
+        self.hardware.load(self.sim)
+        self.manager = ControllerManager(self, self.hardware, self.files, self._manager_name, params.diagnostics)
+        self._stand_apart(parent.scoped.partition("::")[0], params)
+        self.manager.is_ros_1 = self.is_ros_1
+        offer_services(self.manager)
+        declared = self.manager.declared()
+        report_unused_parameters(self.manager, params.diagnostics)
+        chosen = list(declared) if not self._chosen else []
+        for name, element in self._chosen:
+            if name in declared:
+                chosen.append(name)
+                continue
+            near = did_you_mean(name, declared) or "it declares: " + (", ".join(declared) or "none")
+            message = f"<simkit:controllers> names {name!r}, which no parameter file declares with a type"
+            params.diagnostics.error("SK-CONTROL-013", message, element.where, near)
+        self.manager.start(chosen)
+        report_high_rates(self.manager, self.before_step_rate, params.diagnostics)
+
+    def _stand_apart(self, model: str, params: Params) -> None:
+        """Takes the model's name for a namespace where another robot has a manager of this one's name."""
+        wanted = f"{self.ros.namespace}/{self._manager_name}"
+        if f"{wanted}/list_controllers" not in self.sim.services():
+            return
+        self.ros = RosNames(self.name, f"{self.ros.namespace}/{model}", params=params)
+        message = (
+            f"there is a controller manager {wanted!r} already: that of {model!r}, its controllers and their topics "
+        )
+        hint = "give each robot a <namespace> in the plugin's <ros>"
+        params.diagnostics.note("SK-CONTROL-001", f"{message}are below {self.ros.namespace!r}", self.where, hint)
+
+    def _remember_loaded(self) -> None:
+        """Everything it keeps can be copied: there is no need to try."""
+
+    def before_step(self) -> None:
+        try:
+            self.manager.update(self.sim.time_ns)
+        except KeyError:
+            if self.scoped.partition("::")[0] in self.sim.models:
+                raise
+            # who heard of it has removed the robot meanwhile: nothing is left to be commanded
+
+    def get_state(self) -> dict[str, Any]:
+        state = super().get_state()
+        if "manager" in state:
+            state["manager"] = self.manager.get_state()
+        return state
+
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        if "manager" not in state:
+            super().set_state(state)
+            return
+        manager = self.manager
+        super().set_state({**state, "manager": manager})
+        manager.set_state(state["manager"])
+
+
+def read_pid_gains(params: Params) -> PidGains:
+    """Gains of a joint: `kp`, `ki`, `kd` and `max_integral_error`, or `p`, `i`, `d` and `i_clamp` as in ROS 1."""
+    from simkit.plugins.ros2_control.hardware_description import PidGains
+
+    i = params.number("ki", params.number("i", 0.0))
+    clamp = abs(params.number("i_clamp", 0.0))
+    if params.has("max_integral_error"):
+        clamp = abs(i * params.number("max_integral_error", 0.0, minimum=0.0))
+    params.child("antiwindup")
+    return PidGains(
+        p=params.number("kp", params.number("p", 0.0)),
+        i=i,
+        d=params.number("kd", params.number("d", 0.0)),
+        i_max=params.number("i_clamp_max", clamp),
+        i_min=params.number("i_clamp_min", -clamp),
+    )
+
+
+def _split_names(element: Params) -> list[str]:
+    return element.value.replace(",", " ").split()
+
+
+class GzRos2Control(ControlPlugin):
+    """Runs the controllers that the files in `<parameters>` declare; see `docs/ros2_control.md`."""
+
+    filenames = ("libgz_ros2_control-system.so", "libign_ros2_control-system.so")
+    names = ("gz_ros2_control::GazeboSimROS2ControlPlugin", "ign_ros2_control::IgnitionROS2ControlPlugin")
+
+
+class GazeboRos2Control(ControlPlugin):
+    """Runs the controllers that the files in `<parameters>` declare; see `docs/ros2_control.md`."""
+
+    filenames = ("libgazebo_ros2_control.so",)
+
+
+_ROS_1_NODE: Final = "gazebo_ros_control"
+
+
+class GazeboRosControl(ControlPlugin):
+    """Runs the controllers of files in ROS 1's layout.
+
+    In ROS 1 a launch file loads them, so the plugin's own `<parameters>` (or `<simkit:parameters>`) is simkit's. Loops
+    in `gazebo_ros_control/pid_gains` drive the joints that have some.
+    """
+
+    filenames = ("libgazebo_ros_control.so",)
+
+    is_ros_1 = True
+
+    def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
+        self._take_namespace(scene.name, params)
+        super().prepare(scene, params, builder)
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._take_namespace(parent.name, params)
+        super().load(parent, params)
+
+    def _take_namespace(self, model: str, params: Params) -> None:
+        if not params.has("robotNamespace"):  # then it is the model's name
+            self.ros = RosNames(self.name, model, params=params)
+
+    def read_rest(self, params: Params) -> None:
+        for name in ("robotSimType", "legacyModeNS", "robotParam", "eStopTopic", "joints"):
+            params.child(name)
+
+    def read_rate(self, params: Params, builder: SpecBuilder) -> float | None:
+        period = params.number("controlPeriod", 0.0, minimum=0)
+        return 1.0 / period if period > 0.0 else None
+
+    def read_pids(self) -> Mapping[str, Mapping[str, PidGains]]:
+        found: dict[str, Mapping[str, PidGains]] = {}
+        for place in dict.fromkeys((f"{self.ros.namespace}/{_ROS_1_NODE}", f"/{_ROS_1_NODE}")):
+            entry = self.files.of_node(place)
+            if entry is not None:
+                block = entry.block(_ROS_1_NODE, self.params.diagnostics).block("pid_gains")
+                for joint, gains in self.gains_of_joints(block).items():
+                    found.setdefault(joint, self._loop(joint, gains))
+                block.report_unread("SK-CONTROL-011", "pid_gains")
+        return found
+
+    def _loop(self, joint: str, gains: PidGains) -> Mapping[str, PidGains]:
+        """One set of gains is for whichever interface the joint has."""
+        interfaces = self.hardware.joints[joint].command_interfaces
+        return {name: gains for name in (POSITION, VELOCITY) if name in interfaces}

@@ -1,0 +1,292 @@
+"""The differential drive of ros2_controllers, with its odometry: `diff_drive_controller/DiffDriveController`."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.plugins.drives.odometry import (
+    COMMAND_TYPES,
+    ODOMETRY,
+    TRANSFORMS,
+    BodyTwist,
+    DeadReckoning,
+    command_of,
+    odometry_message,
+    transforms,
+)
+from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.ros2_control.controller import Controller
+from simkit.plugins.ros2_control.diff_drive_options import DriveOptions, read_drive_options
+from simkit.pose import Pose, Vector
+from simkit.scene import Cylinder, Sphere
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.parameter_server import Parameter
+
+
+_SHORTEST_PERIOD = 1e-4  # [s]; in less no speed can be told
+
+
+class WheelOdometry:
+    """Where the point between two wheels is by their turning, and the mean of its speeds over the last updates.
+
+    Args:
+        window: updates that the twist is the mean of.
+
+    Attributes:
+        reckoning: planar pose; it begins at zero.
+    """
+
+    def __init__(self, window: int) -> None:
+        self.reckoning = DeadReckoning()
+        self._speeds: deque[tuple[float, float]] = deque(maxlen=max(1, window))
+
+    def roll(self, left: float, right: float, separation: float, elapsed: float) -> bool:
+        """Goes on by what the wheels rolled.
+
+        Args:
+            left, right: ways of the two rims [m].
+            separation: between the wheels [m].
+            elapsed: [s].
+
+        Returns:
+            Whether it did: in next to no time it does not.
+        """
+        if elapsed < _SHORTEST_PERIOD:
+            return False
+        self.reckoning.advance(left, right, separation)
+        self._speeds.append(((left + right) / 2 / elapsed, (right - left) / separation / elapsed))
+        return True
+
+    def follow(self, ahead: float, turn: float, elapsed: float) -> None:
+        """Goes on as commanded, by a speed ahead [m/s] and a rate of turning [rad/s] over a time [s]."""
+        # two wheels 1 m apart
+        self.reckoning.advance((ahead - turn / 2) * elapsed, (ahead + turn / 2) * elapsed, 1.0)
+        self._speeds.clear()
+        self._speeds.append((ahead, turn))  # no mean: it is known
+
+    @property
+    def twist(self) -> BodyTwist:
+        """Mean over the window, in the body's axes."""
+        if not self._speeds:
+            return BodyTwist()
+        count = len(self._speeds)
+        ahead, turn = (sum(speeds) / count for speeds in zip(*self._speeds, strict=True))
+        return BodyTwist((ahead, 0.0, 0.0), (0.0, 0.0, turn))
+
+
+_STAMPED = "geometry_msgs/msg/TwistStamped"
+_NS = 1_000_000_000
+_NO_MOTION = (0.0, 0.0)
+
+
+class DiffDriveController(Controller):
+    """Drives wheels by their velocities from `~/cmd_vel`, and tells on `~/odom` and `/tf` where that led.
+
+    A command holds for `cmd_vel_timeout`; then the base brakes. Commands are limited in jerk, acceleration and speed
+    before they become speeds of wheels. Where it differs from ros2_controllers on purpose: odometry in open loop is of
+    the limited command, not of the one asked for (as ROS 1's); odometry begins where the wheels are when the controller
+    is first activated, and not with a leap there; `publish_rate` is met on its grid.
+    """
+
+    types = ("diff_drive_controller/DiffDriveController",)
+
+    def configure(self) -> None:
+        before = self.params.diagnostics.error_count
+        options = read_drive_options(self.params, self.plugin.ros.namespace, self._measured)
+        self._options = options
+        self._period_ns = max(round(_NS / options.publish_rate), 1) if options.publish_rate > 0 else 0
+        self._multipliers = self._read_multipliers(options.is_ros_1)
+        if self.params.diagnostics.error_count > before:
+            return
+        self._once = OneTimeWarnings(self.plugin)
+        self._takes = False  # commands, while it is active
+        self._command, self._stamp_ns = _NO_MOTION, 0
+        self._last, self._before_last = _NO_MOTION, _NO_MOTION
+        self._driven: tuple[Any, ...] | None = None  # what the wheels are told, and by which sizes
+        self._odometry = WheelOdometry(options.window)
+        self._began = False
+        self._angles: tuple[float, float] | None = None  # of the wheels, up to which the way is reckoned
+        self._reckoned_ns = self._told_ns = 0
+        self._open_topics(options)
+
+    def _open_topics(self, options: DriveOptions) -> None:
+        types = COMMAND_TYPES[::-1] if options.stamped else COMMAND_TYPES
+        self.listen("~/cmd_vel", types, self._on_command)
+        if not options.stamped and not options.is_ros_1:
+            self.listen("~/cmd_vel_unstamped", COMMAND_TYPES, self._on_command)
+        self._odom = self.advertise("~/odom", ODOMETRY)
+        self._tf = self.advertise("/tf", TRANSFORMS) if options.publish_tf else None
+        self._limited = self.advertise("~/cmd_vel_out", _STAMPED) if options.publish_limited else None
+
+    def speed_bounds(self, topic: str) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Least and greatest speed ahead [m/s] and rate of turning [rad/s] of commands; None of other topics."""
+        if topic not in (self.plugin.ros.topic(self.topic(name)) for name in ("~/cmd_vel", "~/cmd_vel_unstamped")):
+            return None
+        linear, angular = self._options.linear, self._options.angular
+        return (linear.least, linear.most), (angular.least, angular.most)
+
+    def command_interfaces(self) -> Sequence[str]:
+        return [f"{name}/velocity" for name in (*self._options.left, *self._options.right)]
+
+    def state_interfaces(self) -> Sequence[str]:
+        if self._options.open_loop:
+            return ()
+        what = "position" if self._options.position_feedback else "velocity"
+        return [f"{name}/{what}" for name in (*self._options.left, *self._options.right)]
+
+    def activate(self) -> None:
+        now = self.sim.time_ns
+        self._command, self._last, self._before_last = _NO_MOTION, _NO_MOTION, _NO_MOTION
+        self._stamp_ns, self._driven = now, None
+        if not self._began:
+            self._began, self._told_ns, self._reckoned_ns = True, now, now
+        self._takes = True
+
+    def deactivate(self) -> None:
+        self._takes = False
+        self._drive(_NO_MOTION, self._sizes())
+
+    # ------------------------------------------------------------------ commands
+
+    def _on_command(self, message: Any) -> None:
+        if not self._takes:
+            self._warn("inactive", "a command came while it is not active, and is left out")
+            return
+        command = command_of(message)
+        if command is None:
+            self._warn("finite", "a command with a number that is not finite is left out")
+            return
+        header = getattr(message, "header", None)
+        stamp = 0 if header is None else msgs.stamp_ns(header.stamp)
+        self._command, self._stamp_ns = command, stamp or self.sim.time_ns
+
+    def _warn(self, what: str, message: str) -> None:
+        self._once.warn("SK-CONTROL-045", f"{self.name} {what}", f"controller {self.name!r}: {message}")
+
+    @property
+    def odometry_frame(self) -> tuple[str, str, Pose]:
+        """The frame it reckons in, that of its base, and where that is in it."""
+        return self._options.odom_frame, self._options.base_frame, self._odometry.reckoning.pose
+
+    def update(self, now_ns: int, period: float) -> None:
+        """Odometry up to now, then the limited command to the wheels."""
+        options = self._options
+        if now_ns - self._stamp_ns > options.timeout_ns:
+            self._command = _NO_MOTION
+        sizes = self._sizes()
+        self._reckon(now_ns, sizes)
+        self._tell(now_ns)
+        (ahead, turn), last, before = self._command, self._last, self._before_last
+        self._before_last = last
+        self._last = (
+            options.linear.limit(ahead, last[0], before[0], period),
+            options.angular.limit(turn, last[1], before[1], period),
+        )
+        if self._limited is not None and self._limited.wanted:
+            self._limited.publish_later(partial(_twist_stamped, now_ns, options.base_frame, *self._last))
+        self._drive(self._last, sizes)
+
+    def _drive(self, command: tuple[float, float], sizes: tuple[float, float, float]) -> None:
+        if self._driven == (command, sizes):
+            return  # what was written stays
+        self._driven = command, sizes
+        separation, left_radius, right_radius = sizes
+        ahead, turn = command
+        half, count = turn * separation / 2, len(self._options.left)
+        self.commands.values = [(ahead - half) / left_radius] * count + [(ahead + half) / right_radius] * count
+
+    # ------------------------------------------------------------------ odometry
+
+    def _reckon(self, now_ns: int, sizes: tuple[float, float, float]) -> None:
+        elapsed = (now_ns - self._reckoned_ns) / _NS
+        separation, left_radius, right_radius = sizes
+        if self._options.open_loop:
+            self._odometry.follow(*self._last, elapsed)
+        else:
+            left, right = self._feedback()
+            if not math.isfinite(left + right):
+                return  # the hardware has not been read yet
+            if self._angles is None:
+                self._angles, self._reckoned_ns = (left, right), now_ns
+                return
+            if self._options.position_feedback:
+                # what the wheels turned while it was inactive is part of the way
+                old_left, old_right = self._angles
+                ways = (left - old_left) * left_radius, (right - old_right) * right_radius
+            else:
+                ways = left * left_radius * elapsed, right * right_radius * elapsed
+            if not self._odometry.roll(*ways, separation, elapsed):
+                return
+            self._angles = left, right
+        self._reckoned_ns = now_ns
+
+    def _feedback(self) -> tuple[float, float]:
+        """Mean of the wheels on either side: angles [rad], or speeds [rad/s]."""
+        values, count = self.states.values.tolist(), len(self._options.left)
+        if count == 1:
+            left, right = values
+            return left, right
+        return sum(values[:count]) / count, sum(values[count:]) / count
+
+    def _tell(self, now_ns: int) -> None:
+        """Publishes odometry and its transform, on the grid of the publish rate."""
+        options, period_ns = self._options, self._period_ns
+        if period_ns:
+            missed = (now_ns - self._told_ns) // period_ns
+            if missed < 1:
+                return
+            self._told_ns += missed * period_ns
+        has_odom, has_tf = self._odom.wanted, self._tf is not None and self._tf.wanted
+        if not has_odom and not has_tf:
+            return
+        pose, frames = self._odometry.reckoning.pose, (options.odom_frame, options.base_frame)
+        if has_odom:
+            told = frames, pose, self._odometry.twist, options.pose_covariance, options.twist_covariance
+            self._odom.publish_later(partial(_odometry_message, now_ns, *told))
+        if self._tf is not None and has_tf:
+            self._tf.publish_later(partial(transforms, now_ns, (*frames, pose)))
+
+    # ------------------------------------------------------------------ sizes
+
+    def _sizes(self) -> tuple[float, float, float]:
+        """Separation and the radii of the left and the right wheels, corrected [m]."""
+        (separation, left, right), options = self._multipliers, self._options
+        return options.separation * separation.value, options.radius * left.value, options.radius * right.value
+
+    def _read_multipliers(self, is_ros_1: bool) -> tuple[Parameter[float], ...]:
+        """Of the separation and of the two radii; they may be set while it runs."""
+        radius = self.params.number("wheel_radius_multiplier", 1.0, minimum=1e-3) if is_ros_1 else 1.0
+        defaults = {
+            "wheel_separation_multiplier": (1.0, "of the distance between the wheels"),
+            "left_wheel_radius_multiplier": (radius, "of the radius of the left wheels"),
+            "right_wheel_radius_multiplier": (radius, "of the radius of the right wheels"),
+        }
+        return tuple(self.declare(n, v, minimum=1e-3, description=what) for n, (v, what) in defaults.items())
+
+    def _measured(self, left: str, right: str) -> tuple[float | None, float | None]:
+        """Separation and radius as the model has them [m]: by the joints' origins and the left wheel's shape."""
+        joints = [self.hardware.joints.get(name) for name in (left, right)]
+        if joints[0] is None or joints[1] is None:
+            return None, None
+        scenes = [joint.joint.scene for joint in joints if joint is not None]
+        apart = scenes[0].pose_world.position - scenes[1].pose_world.position
+        shapes = [c.geometry for c in self.sim.link(scenes[0].child_link).scene.collisions]
+        radii = [shape.radius for shape in shapes if isinstance(shape, (Cylinder, Sphere))]
+        return float(np.linalg.norm(apart)), float(max(radii)) if radii else None
+
+
+def _odometry_message(time_ns: int, frames: tuple[str, str], pose: Pose, twist: BodyTwist, *covariances: Vector) -> Any:
+    return odometry_message(time_ns, *frames, pose, twist, *covariances)
+
+
+def _twist_stamped(time_ns: int, frame: str, ahead: float, turn: float) -> Any:
+    twist = {"linear": {"x": ahead}, "angular": {"z": turn}}
+    return msgs.make(_STAMPED, header=msgs.header(time_ns, frame), twist=twist)

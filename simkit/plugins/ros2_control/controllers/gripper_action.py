@@ -1,0 +1,210 @@
+"""Closes and opens a gripper's joint: ros2_controllers' `gripper_controllers` and `parallel_gripper_controller`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.plugins.ros2_control.controller import Controller, OneTimeWarnings
+from simkit.plugins.ros2_control.joint_pids import JointPids
+from simkit.plugins.ros2_control.trajectory import SECOND
+
+COMMAND: Final = "control_msgs/action/GripperCommand"
+PARALLEL: Final = "control_msgs/action/ParallelGripperCommand"
+
+
+class GripperActionController(Controller):
+    """Takes goals of `~/gripper_cmd`: a position [rad or m] of one joint, and the effort that it may take [N·m or N].
+
+    A goal succeeds within `goal_tolerance` of its position. Where the joint does not move faster than
+    `stall_velocity_threshold` for `stall_timeout`, something is between the fingers: with `allow_stalling` the goal
+    succeeds then, else it is aborted; the position stays commanded, so the gripper goes on pressing. A new goal takes
+    the place of the one that runs, and a cancelled one leaves the joint where it is.
+
+    Commanded by position, the effort that a goal asks for is only told back, as ros2_control does.
+    """
+
+    types = ("position_controllers/GripperActionController",)
+    interface: ClassVar[str] = "position"
+    action_type: ClassVar[str] = COMMAND
+
+    def configure(self) -> None:
+        params = self.params
+        self._joint = params.text("joint", "")
+        if not self._joint:
+            params.error("SK-CONTROL-026", "'joint' parameter is empty: a gripper controller is for one joint")
+        self._feedback_ns = round(SECOND / params.number("action_monitor_rate", 20.0, minimum=0.1))
+        self._tolerance = params.number("goal_tolerance", 0.01, minimum=0.0)
+        self._usual_effort = abs(params.number("max_effort", 0.0))
+        self._allow_stalling = params.boolean("allow_stalling", False)
+        self._slow = params.number("stall_velocity_threshold", 0.001, minimum=0.0)
+        self._patience = params.number("stall_timeout", 1.0, minimum=0.0)
+        self._extras: tuple[str, ...] = ()
+        self._said = OneTimeWarnings(self)
+        self._pids: JointPids | None = None
+        if self.interface == "effort":
+            self._pids = JointPids.read(params.block("gains"), (self._joint,))
+            if not (self._pids.p.any() or self._pids.i.any()):
+                message = f"gains of joint {self._joint!r} are all 0: no effort is ever given"
+                hint = f"gains: {{{self._joint}: {{p: 100.0, d: 10.0}}}}"
+                params.diagnostics.warning("SK-CONTROL-026", message, params.where, hint)
+        self._read_more()
+        self.act("~/gripper_cmd", self.action_type, self._on_goal, self._on_cancel)
+        self._is_active = False
+        self._clear()
+
+    def _read_more(self) -> None:
+        """Parameters of a kind of its own."""
+
+    def _clear(self) -> None:
+        self._goal: Any = None
+        self._wanted, self._effort, self._limits = math.nan, self._usual_effort, np.zeros(0)
+        self._given = 0.0  # the effort that is told
+        self._moved_ns = self._next_feedback = 0
+        self._is_new = True
+
+    def command_interfaces(self) -> Sequence[str]:
+        return (f"{self._joint}/{self.interface}", *self._extras)
+
+    def state_interfaces(self) -> Sequence[str]:
+        return (f"{self._joint}/position", f"{self._joint}/velocity")
+
+    def activate(self) -> None:
+        self._clear()
+        self._is_active = True
+        if self._pids is not None:
+            self._pids.restart()
+        self._wanted = float(self.states.values[0])
+
+    def deactivate(self) -> None:
+        self._is_active = False
+        if self._goal is not None:
+            goal, self._goal = self._goal, None
+            goal.abort(self._result(), "Current goal cancelled during deactivate transition.")
+        if self._pids is not None:
+            self.commands.values = np.zeros(len(self.commands))
+
+    # ------------------------------------------------------------------ goals
+
+    def _on_goal(self, goal: Any) -> None:
+        if not self._is_active:
+            goal.reject("Can't accept new action goals. Controller is not running.")
+            return
+        position, effort, fault = self._asked(goal.request)
+        if fault:
+            goal.reject(fault)
+            return
+        joint = self.hardware.joints.get(self._joint)
+        if joint is not None and not joint.lower - 1e-6 <= position <= joint.upper + 1e-6:
+            limits = f"its limits are {joint.lower:g} and {joint.upper:g}"
+            what = f"a goal asks joint {self._joint!r} for {position:g}, {limits}: there it stops"
+            self._said.warn("SK-CONTROL-021", "limits", what)
+        if self._goal is not None:
+            self._goal.canceled(reason="Current goal cancelled due to new incoming action.")
+        self._goal, self._wanted, self._effort = goal, position, effort
+        self._moved_ns, self._next_feedback, self._is_new = self.sim.time_ns, 0, True
+
+    def _asked(self, request: Any) -> tuple[float, float, str]:
+        """Position and effort of a goal, and why it cannot be taken."""
+        position, effort = float(request.command.position), float(request.command.max_effort)
+        fault = "" if math.isfinite(position) and math.isfinite(effort) else "The command is not a finite number."
+        return position, effort, fault
+
+    def _on_cancel(self, goal: Any) -> None:
+        if goal is not self._goal:
+            return
+        self._goal = None
+        self._wanted, self._effort, self._is_new = float(self.states.values[0]), self._usual_effort, True
+        goal.canceled()
+
+    # ------------------------------------------------------------------ each period
+
+    def update(self, now_ns: int, period: float) -> None:
+        if self._goal is None and not self._is_new and self._pids is None:
+            return
+        self._is_new = False
+        position, velocity = self.states.values
+        error = self._wanted - float(position)
+        command, self._given = self._wanted, self._effort
+        if self._pids is not None:
+            driven = float(self._pids.update(np.array([error]), np.array([-float(velocity)]), period)[0])
+            command = self._given = max(-abs(self._effort), min(abs(self._effort), driven))
+        self.commands.values = np.array([command, *self._limits])
+        if self._goal is not None:
+            self._look(now_ns, error, float(velocity))
+
+    def _look(self, now: int, error: float, velocity: float) -> None:
+        """Tells the goal how far it is."""
+        goal = self._goal
+        if abs(error) < self._tolerance:
+            self._goal = None
+            goal.succeed(self._result(reached_goal=True), "Successfully moved to goal.")
+            return
+        if abs(velocity) > self._slow:
+            self._moved_ns = now
+        elif now - self._moved_ns > self._patience * SECOND:
+            self._goal = None
+            end = goal.succeed if self._allow_stalling else goal.abort
+            end(self._result(stalled=True), f"Stall detected moving to goal, {abs(error):g} away from it.")
+            return
+        if now >= self._next_feedback:
+            self._next_feedback = now + self._feedback_ns
+            goal.publish_feedback(self._feedback())
+
+    def _result(self, *, stalled: bool = False, reached_goal: bool = False) -> dict[str, Any]:
+        return {**self._feedback(), "stalled": stalled, "reached_goal": reached_goal}
+
+    def _feedback(self) -> dict[str, Any]:
+        return {"position": float(self.states.values[0]), "effort": self._given}
+
+
+class EffortGripperActionController(GripperActionController):
+    """Commands the joint by effort: a PID (`gains.<joint>`) on its position, bounded by the goal's `max_effort`."""
+
+    types = ("effort_controllers/GripperActionController",)
+    interface = "effort"
+
+
+class ParallelGripperActionController(GripperActionController):
+    """Takes `ParallelGripperCommand` goals, whose speed and effort go to the interfaces named for them."""
+
+    types = ("parallel_gripper_action_controller/GripperActionController",)
+    action_type = PARALLEL
+
+    def _read_more(self) -> None:
+        params = self.params
+        names = params.text("max_velocity_interface", ""), params.text("max_effort_interface", "")
+        self._extras = tuple(f"{self._joint}/{name}" if "/" not in name else name for name in names if name)
+        self._names = names
+        self._usual = params.number("max_velocity", 0.0, minimum=0.0), self._usual_effort
+
+    def activate(self) -> None:
+        super().activate()
+        self._limits = np.array([v for name, v in zip(self._names, self._usual, strict=True) if name])
+
+    def _asked(self, request: Any) -> tuple[float, float, str]:
+        command = request.command
+        if not len(command.position):
+            return 0.0, 0.0, "The command has no position."
+        velocity = float(command.velocity[0]) if len(command.velocity) else self._usual[0]
+        effort = float(command.effort[0]) if len(command.effort) else self._usual[1]
+        if not all(math.isfinite(v) for v in (command.position[0], velocity, effort)):
+            return 0.0, 0.0, "The command is not a finite number."
+        self._limits = np.array([v for name, v in zip(self._names, (velocity, effort), strict=True) if name])
+        return float(command.position[0]), effort, ""
+
+    def _feedback(self) -> dict[str, Any]:
+        position, velocity = self.states.values.tolist()
+        state = msgs.make(
+            "sensor_msgs/msg/JointState",
+            header=msgs.header(self.sim.time_ns, ""),
+            name=[self._joint],
+            position=[position],
+            velocity=[velocity],
+            effort=[self._given],
+        )
+        return {"state": state}

@@ -1,0 +1,48 @@
+"""Arms that give way like springs: a trajectory controller over efforts, without the arm's own weight."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from simkit.plugins.ros2_control.controllers.joint_trajectory import JointTrajectoryController
+from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.joint_pids import JointPids
+
+
+class ImpedanceController(JointTrajectoryController):
+    """PAL's joint impedance control: springs and dampers pull the joints along the trajectory; gravity is compensated.
+
+    Everything is as in a joint trajectory controller that commands efforts, with `impedance_gains.<joint>` `kp` and
+    `kd` for its gains. On the robot they are those of the motors, in the direction in which each is mounted: what pulls
+    at the joint is |kp| · `motor_params.<joint>.reduction_ratio` [N·m/rad], |kd| likewise [N·m·s/rad].
+    """
+
+    types = ("impedance_controllers/JointTrajectoryController",)
+    default_commands: ClassVar[tuple[str, ...]] = (EFFORT,)
+    default_states: ClassVar[tuple[str, ...]] = (POSITION, VELOCITY)
+
+    def configure(self) -> None:
+        super().configure()
+        for one in self.params.all("robot_model_chains"):
+            one.mark_all_read()
+        joints = [name for name in self._group.commanded_joints if name in self.hardware.joints]
+        self._weights = GravityEfforts(self.sim, [self.hardware.joints[name].scoped for name in joints])
+        self.hardware.springs[self.name] = dict(zip(joints, self._springs, strict=False))
+
+    def _read_gains(self) -> JointPids | None:
+        gains, motors = self.params.block("impedance_gains"), self.params.block("motor_params")
+        self._springs = []
+        for joint in (self._group.joints[place] for place in self._group.places):
+            gain, motor = gains.block(joint), motors.block(joint)
+            motor.child("motor_torque_constant")
+            ratio = motor.number("reduction_ratio", 1.0, minimum=1e-9)
+            self._springs.append((abs(gain.number("kp", 0.0)) * ratio, abs(gain.number("kd", 0.0)) * ratio))
+        return None  # the springs are the engine's
+
+    def update(self, now_ns: int, period: float) -> None:
+        super().update(now_ns, period)
+        if self._command is not None:
+            kp, kd = self.hardware.drives.spring_gains(self._group.commanded_joints)
+            position, velocity = self._command.motion[:2, self._group.places]
+            self.commands.values = kp * position + kd * velocity + self._weights.now()

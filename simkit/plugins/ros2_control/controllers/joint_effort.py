@@ -1,0 +1,166 @@
+"""Controllers that bring joints to positions or velocities by a loop of their own, whose output is commanded.
+
+Those of ROS 1 for one joint (`effort_controllers/JointPositionController` and the like), and
+`effort_controllers/JointGroupPositionController` for several.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.ros2_control.controller import Controller
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.joint_pids import JointPids
+from simkit.plugins.ros2_control.parameter_block import read_names
+from simkit.pose import Vector
+
+COMMAND: Final = "std_msgs/msg/Float64"
+COMMANDS: Final = "std_msgs/msg/Float64MultiArray"
+STATE: Final = "control_msgs/msg/JointControllerState"
+
+
+class _LoopController(Controller):
+    """One loop for each joint, of wanted − measured.
+
+    Attributes:
+        measured: position or velocity.
+        output: effort or velocity.
+    """
+
+    measured: ClassVar[str] = POSITION
+    output: ClassVar[str] = EFFORT
+    _out: Any
+
+    def configure(self) -> None:
+        params = self.params
+        joint = params.text("joint", required=True)
+        gains = Params(
+            "gains",
+            children=[_renamed_block(params.block("pid"), joint)],
+            where=params.where,
+            diagnostics=params.diagnostics,
+        )
+        self._take((joint,), gains)
+        self.listen("~/command", COMMAND, lambda message: self.take([message.data]))
+        self._out = self.advertise("~/state", STATE)
+
+    def _take(self, joints: tuple[str, ...], gains: Params) -> None:
+        self._joints = joints
+        for joint in joints:
+            if not gains.block(joint).has("p"):
+                message = f"No p gain specified for joint {joint!r}: nothing would move it"
+                self.params.error("SK-PARAM-001", message, "pid: {p: 100.0, i: 0.0, d: 10.0}")
+        self._pids = JointPids.read(gains, joints)
+        self._wanted = np.full(len(joints), np.nan)
+        self._last: Vector | None = None
+        self._out = None
+        hardware = self.hardware.joints
+        found = [hardware[joint] for joint in joints if joint in hardware]
+        self._ends = np.array([(j.lower, j.upper) for j in found]).reshape(-1, 2).T
+        self._turns = np.array([j.is_continuous for j in found], bool)
+
+    def command_interfaces(self) -> Sequence[str]:
+        return [f"{joint}/{self.output}" for joint in self._joints]
+
+    def state_interfaces(self) -> Sequence[str]:
+        return [f"{joint}/{part}" for part in (POSITION, VELOCITY) for joint in self._joints]
+
+    def activate(self) -> None:
+        """Keeps what is: the position, or standing still."""
+        position = self.states.values[: len(self._joints)]
+        self._wanted = position if self.measured == POSITION else np.zeros(len(self._joints))
+        self._last = None
+        self._pids.restart()
+
+    def take(self, data: Sequence[float]) -> None:
+        """Takes a command; what it is not is told and left out."""
+        values = np.array(data, dtype=float)
+        if len(values) == len(self._joints) and np.isfinite(values).all():
+            self._wanted = values
+            return
+        found = f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
+        message = f"controller {self.name!r}: found {found}, allowed are {len(self._joints)} finite numbers"
+        self.sim.reports.warning("SK-CONTROL-016", f"{message}; it is left out", self.params.where)
+
+    def update(self, now_ns: int, period: float) -> None:
+        position, velocity = self.states.values.reshape(2, -1)
+        if self.measured == POSITION:
+            wanted = np.clip(self._wanted, *self._ends)
+            error = wanted - position
+            error = np.where(self._turns, np.mod(error + np.pi, 2.0 * np.pi) - np.pi, error)
+        else:
+            wanted = self._wanted
+            error = wanted - velocity
+        rate = (error - self._last) / period if self._last is not None and period > 0.0 else np.zeros_like(error)
+        self._last = error
+        command = self._pids.update(error, rate, period)
+        self.commands.values = command
+        if self._out is not None and self._out.wanted:
+            process = position if self.measured == POSITION else velocity
+            self._out.publish(self._state(now_ns, period, wanted, process, velocity, error, command))
+
+    def _state(self, now_ns: int, period: float, *values: Vector) -> Any:
+        wanted, process, velocity, error, command = (float(v[0]) for v in values)
+        pids = self._pids
+        return msgs.make(
+            STATE,
+            header=msgs.header(now_ns, ""),
+            set_point=wanted,
+            process_value=process,
+            process_value_dot=velocity,
+            error=error,
+            time_step=period,
+            command=command,
+            p=float(pids.p[0]),
+            i=float(pids.i[0]),
+            d=float(pids.d[0]),
+            i_clamp=float(pids.i_high[0]),
+        )
+
+
+class EffortPositionController(_LoopController):
+    """ROS 1: one joint to a position [rad or m] by effort; gains in `pid`."""
+
+    types = ("effort_controllers/JointPositionController",)
+
+
+class EffortVelocityController(_LoopController):
+    """ROS 1: one joint to a velocity [rad/s or m/s] by effort; gains in `pid`."""
+
+    types = ("effort_controllers/JointVelocityController",)
+    measured = VELOCITY
+
+
+class VelocityPositionController(_LoopController):
+    """ROS 1: one joint to a position [rad or m] by velocity; gains in `pid`."""
+
+    types = ("velocity_controllers/JointPositionController",)
+    output = VELOCITY
+
+
+class EffortGroupPositionController(_LoopController):
+    """Several joints to positions [rad or m] by effort; gains of each in `<joint>.pid`, or in `gains.<joint>`."""
+
+    types = ("effort_controllers/JointGroupPositionController",)
+
+    def configure(self) -> None:
+        params = self.params
+        joints = tuple(read_names(params, "joints", required=True))
+        given = params.block("gains")
+        if not params.has("gains"):
+            blocks = [_renamed_block(params.block(joint).block("pid"), joint) for joint in joints]
+            given = Params("gains", children=blocks, where=params.where, diagnostics=params.diagnostics)
+        self._take(joints, given)
+        ros_1 = getattr(self.plugin, "is_ros_1", False)
+        self.listen("~/command" if ros_1 else "~/commands", COMMANDS, lambda message: self.take(message.data))
+
+
+def _renamed_block(block: Params, name: str) -> Params:
+    """The same block under another name; what is read of it counts as read."""
+    block.child("antiwindup")
+    return Params(name, block.value, block.attributes, block.children, block.where, block.diagnostics)

@@ -1,0 +1,104 @@
+"""`joint_state_broadcaster`: the states of the joints as topics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.plugins.ros2_control.controller import Controller
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+from simkit.plugins.ros2_control.parameter_block import read_names
+
+JOINT_STATE: Final = "sensor_msgs/msg/JointState"
+DYNAMIC: Final = "control_msgs/msg/DynamicJointState"
+_FIELDS: Final = (POSITION, VELOCITY, EFFORT)
+
+
+class JointStateBroadcaster(Controller):
+    """All state interfaces, or those of `joints` and `interfaces`, on `joint_states` and `dynamic_joint_states`.
+
+    A joint in `joint_states` has NaN where it has no such interface, as in ros2_controllers. `extra_joints`, which the
+    hardware does not have, are at 0.
+    """
+
+    types = ("joint_state_broadcaster/JointStateBroadcaster",)
+
+    def configure(self) -> None:
+        params = self.params
+        prefix = "~/" if params.boolean("use_local_topics", False) else ""
+        self._frame = params.text("frame_id", "")
+        self._states = self._chosen(read_names(params, "joints"), read_names(params, "interfaces"))
+        mapping = params.block("map_interface_to_joint_state")
+        fields = {(mapping.text(field, field) or field): field for field in _FIELDS}
+        params.child("use_urdf_to_filter")  # only the hardware's own joints are there
+        params.child("publish_dynamic_joint_states")
+        owners = [(owner, interface) for owner, _, interface in (one.rpartition("/") for one in self._states)]
+        joints = list(dict.fromkeys(owner for owner, interface in owners if interface in fields))
+        extra = [name for name in read_names(params, "extra_joints") if name and name not in joints]
+        self._names = [*joints, *extra]
+        self._columns = np.full((3, len(self._names)), np.nan)
+        self._columns[:, len(joints) :] = 0.0
+        self._places = np.array(
+            [_FIELDS.index(fields[i]) * len(self._names) + joints.index(o) for o, i in owners if i in fields], np.intp
+        )
+        self._told = [f"{owner}/{interface}" for owner, interface in owners if interface in fields]
+        self._by_owner: dict[str, list[tuple[int, str]]] = {}
+        for k, (owner, interface) in enumerate(owners):
+            self._by_owner.setdefault(owner, []).append((k, interface))
+        self._out = self.advertise(f"{prefix}joint_states", JOINT_STATE)
+        self._dynamic = self.advertise(f"{prefix}dynamic_joint_states", DYNAMIC)
+
+    def _chosen(self, joints: Sequence[str], interfaces: Sequence[str]) -> list[str]:
+        """The state interfaces that it tells of; both lists are needed to choose."""
+        there = self.hardware.states.names
+        if any(joints) and any(interfaces):
+            return [f"{joint}/{interface}" for joint in joints for interface in interfaces]
+        if any(joints) or any(interfaces):
+            message = (
+                f"controller {self.name!r}: 'joints' and 'interfaces' are needed together; all interfaces are published"
+            )
+            self.params.diagnostics.warning("SK-CONTROL-011", message, self.params.where)
+        return [name for name in there if name.rpartition("/")[0] not in self.hardware.actuators]
+
+    def state_interfaces(self) -> Sequence[str]:
+        return self._states
+
+    def activate(self) -> None:
+        self._of_joints = self.hardware.states.select(self._told)
+
+    def update(self, now_ns: int, period: float) -> None:
+        if self._out.wanted:
+            columns = self._columns.copy()
+            columns.ravel()[self._places] = self._of_joints.values
+            position, velocity, effort = columns
+            made = msgs.type_of(JOINT_STATE)(msgs.header(now_ns, self._frame), self._names, position, velocity, effort)
+            self._out.publish(made)
+        if self._dynamic.wanted:
+            self._dynamic.publish(self._everything(now_ns, self.states.values))
+
+    def _everything(self, now_ns: int, values: Any) -> Any:
+        of_joint = msgs.type_of("control_msgs/msg/InterfaceValue")
+        parts = [
+            of_joint([interface for _, interface in found], np.array([values[k] for k, _ in found]))
+            for found in self._by_owner.values()
+        ]
+        return msgs.type_of(DYNAMIC)(msgs.header(now_ns, self._frame), list(self._by_owner), parts)
+
+
+class JointStateController(JointStateBroadcaster):
+    """ROS 1's `joint_state_controller`: at `publish_rate`, with extra joints given as blocks with a name each."""
+
+    types = ("joint_state_controller/JointStateController",)
+
+    def configure(self) -> None:
+        params = self.params
+        self.update_rate = max(1, round(params.number("publish_rate", 50.0, minimum=0.0) or 0.0))
+        for element in params.all("extra_joints"):
+            if element.children:
+                element.value = element.text("name", "")
+                for word in (POSITION, VELOCITY, EFFORT):
+                    element.child(word)
+        super().configure()

@@ -1,0 +1,396 @@
+"""Follows trajectories of several joints: ros2_controllers' `joint_trajectory_controller`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.plugins.ros2_control.controller import Controller, OneTimeWarnings
+from simkit.plugins.ros2_control.interfaces import POSITION
+from simkit.plugins.ros2_control.joint_group import TRAJECTORY, JointGroup, TrajectoryMessages
+from simkit.plugins.ros2_control.joint_pids import JointPids
+from simkit.plugins.ros2_control.trajectory import (
+    SECOND,
+    Setpoint,
+    Spline,
+    TrajectoryPoint,
+    integrate_points,
+    shortest_differences,
+    whole_turn_offset,
+)
+from simkit.plugins.ros2_control.trajectory_goals import TrajectoryRules, describe_violation, read_points
+from simkit.plugins.ros2_control.trajectory_options import LiveTolerances, StopRule, read_pids, read_timeout
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.publisher import Publisher
+
+FOLLOW: Final = "control_msgs/action/FollowJointTrajectory"
+QUERY: Final = "control_msgs/srv/QueryTrajectoryState"
+SCALING: Final = "control_msgs/msg/SpeedScalingFactor"
+SUCCESSFUL, INVALID_GOAL, PATH_VIOLATED, GOAL_VIOLATED = 0, -1, -4, -5
+_HOLD: Final = "hold"
+_FASTEST: Final = 1000.0  # speed scaling
+_IGNORED_PARAMETERS: Final = ("start_with_holding", "verbose")  # it always holds at first, and its log is the caller's
+
+
+class JointTrajectoryController(Controller):
+    """Takes trajectories from `~/joint_trajectory` and as goals of `~/follow_joint_trajectory`.
+
+    Between two points: a cubic where both give velocities, a quintic with accelerations too, else a straight line. It
+    begins at the measured state (with `interpolate_from_desired_state` at the last command), and each command is the
+    one for the end of the period that begins. A new trajectory takes the place of the one that runs.
+
+    A goal ends as in ros2_control: with PATH_TOLERANCE_VIOLATED as soon as a joint is further off than
+    `constraints.<joint>.trajectory`; after the last point with SUCCESSFUL once all are within
+    `constraints.<joint>.goal`, or with GOAL_TOLERANCE_VIOLATED `constraints.goal_time` later. After a violation, and
+    where a goal is cancelled, the joints hold where they are. A trajectory that cannot be followed changes nothing.
+    """
+
+    types = ("joint_trajectory_controller/JointTrajectoryController",)
+    default_commands: ClassVar[tuple[str, ...]] = ()
+    default_states: ClassVar[tuple[str, ...]] = ()
+    topics: ClassVar[tuple[str, ...]] = ("~/joint_trajectory",)
+    may_end_moving: ClassVar[bool] = False
+
+    # ------------------------------------------------------------------ what it is made of
+
+    def configure(self) -> None:
+        params = self.params
+        self._group = JointGroup.read(params, self.hardware, self.default_commands, self.default_states)
+        self._said = OneTimeWarnings(self)
+        self._turns = bool(self._group.turning.any())
+        joints = self._group.joints
+        self._rules = TrajectoryRules(
+            joints,
+            params.boolean("allow_partial_joints_goal", False),
+            params.boolean("allow_integration_in_goal_trajectories", False),
+            params.boolean("allow_nonzero_velocity_at_trajectory_end", self.may_end_moving),
+        )
+        for name in _IGNORED_PARAMETERS:
+            params.child(name)
+        self._from_desired = params.boolean("open_loop_control", False)
+        self._from_desired = params.boolean("interpolate_from_desired_state", self._from_desired)
+        self._starts_at_command = params.boolean("set_last_command_interface_value_as_state_on_activation", True)
+        self._steps = params.choice("interpolation_method", ("splines", "none"), "splines") == "none"
+        self._feedback_ns = round(SECOND / params.number("action_monitor_rate", 20.0, minimum=0.1))
+        rate = params.number("state_publish_rate", 0.0, minimum=0.0)
+        self._state_ns = round(SECOND / rate) if rate else 0
+        self._constraints = LiveTolerances(self, joints)
+        self._timeout = read_timeout(params, self._constraints.tolerances().goal_time)
+        self._stopping = StopRule.read(params, joints)
+        self._pids = self._read_gains()
+        self._period_ns = 0
+        scaling = params.block("speed_scaling")
+        self._scaling = scaling.number("initial_scaling_factor", 1.0, minimum=0.0, maximum=_FASTEST)
+        self._scaling_state = scaling.text("state_interface", "")
+        self._scaling_command = scaling.text("command_interface", "")
+        # whether its commands are places on the way, whatever is measured
+        self._is_plain = self._group.commands == (POSITION,) and not (self._scaling_state or self._scaling_command)
+        self._is_active = False
+        self._open()
+        self._clear()
+
+    def _read_gains(self) -> JointPids | None:
+        """PIDs of the commanded joints; None where positions are commanded as they are."""
+        if not self._group.is_closed_loop:
+            self.params.block("gains").mark_all_read()
+            return None
+        joints = tuple(self._group.joints[place] for place in self._group.places)
+        return read_pids(self, joints, lambda: self._pids)
+
+    def _open(self) -> None:
+        for topic in self.topics:
+            self.listen(topic, TRAJECTORY, self._on_trajectory)
+        self.act("~/follow_joint_trajectory", FOLLOW, self._on_goal, self._on_cancel)
+        self.offer("~/query_state", QUERY, self._on_query)
+        self.listen("~/speed_scaling_input", SCALING, self._on_scaling)
+        self._messages = TrajectoryMessages(self._group)
+        self._publishers: list[Publisher] = [
+            self.advertise(f"~/{name}", TrajectoryMessages.STATE) for name in ("controller_state", "state")
+        ]
+
+    def _clear(self) -> None:
+        """As before the first trajectory."""
+        self._goal: Any = None
+        self._waiting: Any = None  # a trajectory message, or _HOLD
+        self._spline: Spline | None = None
+        self._active = self._constraints.tolerances()
+        self._is_holding = self._is_first = self._is_idle = False
+        self._elapsed = self._last = self._start = 0
+        self._next_feedback = self._next_state = 0
+        self._command: Setpoint | None = None
+        self._ahead: tuple[int, Setpoint] | None = None  # what the next period is to begin with
+        self._watches_path = False
+
+    def command_interfaces(self) -> Sequence[str]:
+        extra = (self._scaling_command,) if self._scaling_command else ()
+        return (*self._group.command_names, *extra)
+
+    def state_interfaces(self) -> Sequence[str]:
+        extra = (self._scaling_state,) if self._scaling_state else ()
+        return (*self._group.state_names, *extra)
+
+    def activate(self) -> None:
+        self._clear()
+        if self._pids is not None:
+            self._pids.restart()
+        self._is_active = True
+        # updates that fall on steps come at uneven times; setpoints are as far ahead of each (as in ros2_controllers)
+        rate = self.update_rate or self.plugin.before_step_rate
+        self._period_ns = max(round(SECOND / rate) if rate else 0, round(self.sim.timestep * SECOND))
+        self._waiting = _HOLD
+        if self._starts_at_command:
+            commanded = self._group.commanded(self.commands.values)
+            if commanded is not None:
+                self._waiting = Spline.held(commanded)
+
+    def deactivate(self) -> None:
+        self._is_active = False
+        if self._goal is not None:
+            self._end("abort", INVALID_GOAL, "Current goal cancelled during deactivate transition.")
+        self.commands.values = self._group.at_rest(self.commands.values)
+
+    # ------------------------------------------------------------------ what comes in
+
+    def _on_trajectory(self, message: Any) -> None:
+        """From the topic."""
+        fault = self._rules.fault(message, self.sim.time_ns)
+        if fault:
+            self._said.warn("SK-CONTROL-020", fault, f"a trajectory is left out: {fault}")
+        if fault or not self._is_active:
+            return
+        if self._goal is not None:
+            what = "a trajectory on the topic takes the place of a goal's, which ends when the new one does"
+            self._said.warn("SK-CONTROL-022", "replaced", what, "cancel the goal first")
+        else:
+            self._active = self._constraints.tolerances()
+        self._look_at(message)
+        self._waiting = message
+
+    def _on_goal(self, goal: Any) -> None:
+        trajectory = goal.request.trajectory
+        if not self._is_active:
+            goal.reject("Can't accept new action goals. Controller is not running.")
+            return
+        fault = self._rules.fault(trajectory, self.sim.time_ns)
+        if fault:
+            self.log.error("%s", fault)
+            goal.reject(fault)
+            return
+        if self._goal is not None:
+            self._end("canceled", INVALID_GOAL, "Current goal cancelled due to new incoming action.")
+        self._goal = goal
+        self._active, what = self._constraints.tolerances().with_goal(goal.request, self._group.joints)
+        if what:
+            self._said.warn("SK-CONTROL-020", what, what)
+        self._look_at(trajectory)
+        self._waiting = trajectory
+        self._next_feedback = 0
+
+    def _on_cancel(self, goal: Any) -> None:
+        if goal is not self._goal:
+            return
+        self._goal = None
+        goal.canceled()
+        self._waiting = _HOLD
+
+    def _on_scaling(self, message: Any) -> None:
+        if 0.0 <= message.factor <= _FASTEST:
+            self._scaling = float(message.factor)
+        else:
+            what = f"a speed scaling of {message.factor:g} is left out; allowed is a number from 0 to {_FASTEST:g}"
+            self._said.warn("SK-CONTROL-020", what, what)
+
+    def _look_at(self, message: Any) -> None:
+        """Says what of a trajectory will not be as it is written."""
+        if not self._group.has_effort and any(len(point.effort) for point in message.points):
+            self._said.warn("SK-CONTROL-025", "effort", "efforts of a trajectory are not used: it commands none")
+        for place, name in enumerate(message.joint_names):
+            joint = self.hardware.joints.get(self._group.command_of(str(name)))
+            asked = [p.positions[place] for p in message.points if len(p.positions)]
+            beyond = [] if joint is None else [p for p in asked if not joint.lower - 1e-6 <= p <= joint.upper + 1e-6]
+            if joint is not None and beyond:
+                limits = f"its limits are {joint.lower:g} and {joint.upper:g}"
+                what = f"a trajectory asks joint {name!r} for {beyond[0]:g}, {limits}: there it stops"
+                self._said.warn("SK-CONTROL-021", str(name), what)
+
+    # ------------------------------------------------------------------ each period
+
+    def update(self, now_ns: int, period: float) -> None:
+        if self._waiting is None:
+            if self._is_idle:
+                if self._is_watched(now_ns) and self._command is not None:
+                    state = self._group.state(self.states.values)
+                    self._publish(now_ns, self._command.motion, state, self._errors(self._command.motion, state))
+                return
+            if self._is_plain and not self._is_first and self._goes_on(now_ns):
+                return
+        state = self._group.state(self.states.values)
+        if self._scaling_state:
+            factor = float(self.states.values[-1])
+            self._scaling = factor if 0.0 <= factor <= _FASTEST else self._scaling
+        if self._waiting is None:
+            self._elapsed += round((now_ns - self._last) * self._scaling)
+        else:
+            self._begin(now_ns, state)
+        self._last = now_ns
+        self._follow(now_ns, period, state)
+
+    def _goes_on(self, now: int) -> bool:
+        """Commands the next place on the way where nothing else is to be done; whether that was so."""
+        spline, scaling = self._spline, self._scaling
+        if spline is None or (self._watches_path and not self._is_holding):
+            return False
+        passed = round((now - self._last) * scaling)
+        elapsed = self._elapsed + passed
+        if elapsed >= spline.times[-1] or (self._goal is not None and now >= self._next_feedback):
+            return False
+        if now >= self._next_state and self._has_audience():
+            return False
+        self._elapsed, self._last = elapsed, now
+        step = round(self._period_ns * scaling)
+        then = elapsed + step
+        self._command = command = spline.at(then, step if passed == step else 0)
+        self._ahead = then, command
+        self.commands.values = command.motion[0][self._group.span]
+        return True
+
+    def _begin(self, now: int, state: Vector) -> None:
+        """Takes up the trajectory that waits."""
+        waiting, self._waiting, self._ahead = self._waiting, None, None
+        self._watches_path = self._active.watches_path
+        self._is_holding, self._is_first, self._is_idle = True, True, False
+        self._start, self._elapsed = now, 0
+        if isinstance(waiting, Spline):
+            self._spline = waiting
+        elif isinstance(waiting, str):
+            self._spline = self._stopping.spline(state, has_velocity=self._group.has_velocity_state)
+        else:
+            self._is_holding = False
+            self._start = msgs.stamp_ns(waiting.header.stamp) or now
+            self._elapsed = now - self._start
+            self._spline = self._through(waiting, state)
+
+    def _through(self, message: Any, state: Vector) -> Spline:
+        """A trajectory's way from here."""
+        group = self._group
+        start = TrajectoryPoint(self._elapsed, state[0], state[1] if group.has_velocity_state else None)
+        if self._from_desired and self._command is not None:
+            start = TrajectoryPoint(self._elapsed, *self._command.motion)
+        commanded = group.commanded(self.commands.values)
+        points = read_points(message, group.joints, state[0] if commanded is None else commanded)
+        if self._rules.allow_integration:
+            points = integrate_points(start, points)
+        assert start.positions is not None and points[0].positions is not None
+        turns = whole_turn_offset(start.positions, points[0].positions, group.turning)
+        if turns.any():
+            points = [replace(p, positions=p.positions + turns) for p in points if p.positions is not None]
+        return Spline.through(start, points, steps=self._steps)
+
+    def _follow(self, now: int, period: float, state: Vector) -> None:
+        """Compares, commands, and tells the goal."""
+        spline, goal, tolerances = self._spline, self._goal, self._active
+        assert spline is not None
+        desired = self._ahead[1] if self._ahead is not None and self._ahead[0] == self._elapsed else None
+        desired = spline.at(self._elapsed) if desired is None else desired
+        step = round(self._period_ns * self._scaling)
+        then = self._elapsed + step
+        command = spline.at(then, step if round(period * SECOND) == self._period_ns else 0)
+        self._ahead = then, command
+        errors = self._errors(desired.motion, state)
+        is_over, late = self._elapsed >= spline.end, (self._elapsed - spline.end) / SECOND
+        off = np.abs(errors)
+        is_watched = self._watches_path and not self._is_holding and (not is_over or self._is_first)
+        strays = is_watched and bool((off > tolerances.path).any())
+        misses = not self._is_holding and is_over and bool((off > tolerances.goal).any())
+        is_late = misses and 0.0 < tolerances.goal_time < late
+        self._is_first = False
+        if not strays and not is_late:
+            values = self._group.command(command, errors, period, self._pids)
+            self.commands.values = np.append(values, self._scaling) if self._scaling_command else values
+            self._command = command
+        if goal is not None and (now >= self._next_feedback):
+            self._next_feedback = now + self._feedback_ns
+            goal.publish_feedback(self._messages.feedback(now, desired.motion, state, errors))
+        if self._is_watched(now):
+            self._publish(now, desired.motion, state, errors)
+        if strays:
+            what = describe_violation(off, tolerances.path, self._group.joints)
+            self._finish(PATH_VIOLATED, "Aborted due to path tolerance violation", what)
+        elif is_late:
+            what = describe_violation(off, tolerances.goal, self._group.joints)
+            self._finish(GOAL_VIOLATED, f"Aborted due to goal_time_tolerance exceeding by {late:f} seconds", what)
+        elif is_over and not self._is_holding:
+            self._arrive(misses, late)
+        elif is_over and self._is_holding:
+            self._is_idle = not self._group.is_closed_loop
+
+    def _arrive(self, misses: bool, late: float) -> None:
+        """After the last point."""
+        if not misses and self._goal is not None:
+            self._end("succeed", SUCCESSFUL, "Goal successfully reached!")
+            self.log.info("Goal reached, success!")
+            self._is_holding = True
+        elif not misses and self._timeout == 0.0:
+            self._is_holding = True
+        elif 0.0 < self._timeout < late:
+            self.log.warning("Aborted due to command timeout")
+            self._waiting = _HOLD
+
+    def _finish(self, code: int, text: str, what: str) -> None:
+        """Stops where it is, after a tolerance was not kept."""
+        self.log.warning("%s: %s", text, what)
+        if self._goal is not None:
+            self._end("abort", code, text, what)
+        self._waiting = _HOLD
+
+    def _end(self, how: str, code: int, text: str, what: str = "") -> None:
+        goal, self._goal = self._goal, None
+        getattr(goal, how)({"error_code": code, "error_string": text}, what or text)
+
+    # ------------------------------------------------------------------ readings
+
+    def _errors(self, desired: Vector, state: Vector) -> Vector:
+        """Wanted − measured, shape (3, n); 0 for what is not both commanded and measured."""
+        group = self._group
+        errors = (desired - state) * group.compared
+        if self._turns:
+            errors[0] = shortest_differences(errors[0], group.turning)
+        return errors
+
+    def _has_audience(self) -> bool:
+        here, there = self._publishers
+        return here.wanted or there.wanted
+
+    def _is_watched(self, now: int) -> bool:
+        """Whether somebody wants the state now."""
+        if now < self._next_state or not self._has_audience():
+            return False
+        self._next_state = now + self._state_ns
+        return True
+
+    def _publish(self, now: int, desired: Vector, state: Vector, errors: Vector) -> None:
+        message = self._messages.state(now, desired, state, errors, self.commands.values)
+        for publisher in self._publishers:
+            if publisher.wanted:
+                publisher.publish(message)
+
+    def _on_query(self, request: Any) -> dict[str, Any]:
+        """Where the joints are to be at a time."""
+        if not self._is_active:
+            return {"success": False, "message": "Can't sample trajectory. Controller is not active."}
+        if self._spline is None:
+            return {"success": False, "message": "Currently there is no valid trajectory instance."}
+        since = msgs.stamp_ns(request.time) - self._start
+        if since < self._spline.times[0]:
+            return {"success": False, "message": "Requested sample time precedes trajectory start time."}
+        if since > self._spline.end and not self._is_holding:
+            return {"success": False, "message": "Requested sample time precedes the current trajectory end time."}
+        position, velocity, acceleration = self._spline.at(since).motion
+        found = {"position": position, "velocity": velocity, "acceleration": acceleration}
+        return {"success": True, "name": list(self._group.joints), **found}

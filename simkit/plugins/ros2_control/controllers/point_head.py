@@ -1,0 +1,216 @@
+"""Turns a head so that it looks at a point: the `point_head_action` that comes with PAL's and other robots' heads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.errors import InputError
+from simkit.plugins.ros2_control.controller import Controller
+from simkit.plugins.ros2_control.head_pointing import HeadJoints, frame_link, frame_pose, is_moved_by_joint
+from simkit.plugins.ros2_control.parameter_block import read_names
+from simkit.plugins.ros2_control.trajectory import SECOND
+from simkit.pose import Pose, Vector
+from simkit.runtime.communication.action_server import GoalStatus
+
+POINT_HEAD: Final = "control_msgs/action/PointHead"
+_FEEDBACK_NS: Final = SECOND // 20
+_FARTHEST: Final = 1e12  # [m]
+_LONGEST: Final = 2e9  # [s] that a duration message holds
+_SETTLING_NS: Final = SECOND // 2
+
+
+class PointHeadAction(Controller):
+    """Takes goals of `<controller>/point_head_action` and moves the head by the trajectory controller named.
+
+    The frame `pointing_frame` is turned, by the two joints of the neck, so that its `pointing_axis` goes through the
+    target, which is a point in any frame: it is looked up once, when the goal comes. The head takes `min_duration` at
+    least, and no joint is to turn faster than `max_velocity`, or than its limit. The goal succeeds once the axis
+    is within `success_angle_threshold` of the target, and is aborted where the limits of the neck keep it further off.
+    It claims no interfaces; a trajectory that is sent to the head meanwhile ends the goal.
+    """
+
+    types = ("simkit/PointHeadAction", "head_action/PointHeadAction")
+
+    def configure(self) -> None:
+        params = self.params
+        self._mover = params.text("controller", "head_controller")
+        self._joints = tuple(read_names(params, "joints", code="SK-CONTROL-027"))
+        self._enough = params.number("success_angle_threshold", 0.02, minimum=0.0)
+        self._own_frame = params.text("pointing_frame", "")
+        self._own_axis = np.array(
+            [
+                params.block("pointing_axis").number(one, default)
+                for one, default in zip("xyz", (1.0, 0.0, 0.0), strict=True)
+            ]
+        )
+        if len(self._joints) != 2:
+            message = f"'joints' has {len(self._joints)} names; a neck has two joints, the one nearer the body first"
+            params.error("SK-CONTROL-027", message, "joints: [head_1_joint, head_2_joint]")
+        for name in self._joints:
+            if name not in self.hardware.joints:
+                message = f"there is no joint {name!r} to turn the head by"
+                params.error("SK-CONTROL-027", message, "there are: " + ", ".join(self.hardware.joints))
+        action = params.text("action", f"{self._mover}/point_head_action")
+        self.act(action, POINT_HEAD, self._on_goal, self._on_cancel)
+        self._is_active = False
+        self._clear()
+
+    def _clear(self) -> None:
+        self._goal: Any = None
+        self._move: Any = None
+        self._look: tuple[str, Vector] = "", np.zeros(3)
+        self._target, self._next_feedback = np.zeros(3), 0
+        self._patience_ns = 0  # until then the head may still be on its last way
+
+    def activate(self) -> None:
+        self._clear()
+        self._is_active = True
+
+    def deactivate(self) -> None:
+        self._is_active = False
+        if self._goal is not None:
+            self._end(lambda goal: goal.abort(reason="the controller was deactivated"))
+            self._stop()
+
+    # ------------------------------------------------------------------ goals
+
+    def _on_goal(self, goal: Any) -> None:
+        if not self._is_active:
+            goal.reject("Can't accept new action goals. Controller is not running.")
+            return
+        try:
+            request = goal.request
+            target = self._target_of(request.target)
+            look = self._look_of(request)
+            neck = self._neck(look)
+        except InputError as error:
+            goal.reject(str(error))
+            return
+        if float(np.linalg.norm(target - neck.frame.position)) < 1e-6:
+            goal.reject("the target is where the pointing frame is")
+            return
+        speed = request.max_velocity
+        shortest = msgs.stamp_ns(request.min_duration) / SECOND
+        if not (np.isfinite(speed) and speed >= 0.0 and shortest >= 0.0):
+            goal.reject("max_velocity and min_duration have to be at least 0")
+            return
+        if self._goal is not None:
+            self._end(lambda old: old.canceled(reason="Current goal cancelled due to new incoming action."))
+        self._goal, self._target, self._look, self._next_feedback = goal, target, look, 0
+        self._go(neck, shortest, speed)
+
+    def _target_of(self, target: Any) -> Vector:
+        point = np.array([target.point.x, target.point.y, target.point.z])
+        if not (np.abs(point) <= _FARTHEST).all():
+            raise InputError("the target is not a finite point")
+        return self._frame(target.header.frame_id or "world").transform(point)
+
+    def _look_of(self, request: Any) -> tuple[str, Vector]:
+        """The frame that is to point, and its axis."""
+        axis = np.array([request.pointing_axis.x, request.pointing_axis.y, request.pointing_axis.z])
+        if not axis.any():
+            axis = self._own_axis
+        if not (np.abs(axis) <= _FARTHEST).all() or not (length := float(np.linalg.norm(axis))):
+            raise InputError("the pointing axis is not a direction")
+        tilt = self.hardware.joints[self._joints[1]].joint
+        frame = request.pointing_frame or self._own_frame or tilt.scene.child_link
+        is_fixed = frame.lstrip("/") in ("world", "map", *self._odometry_frames())
+        if is_fixed or not is_moved_by_joint(self.sim, frame_link(self.sim, self.plugin.scoped, frame)[0], tilt.scoped):
+            raise InputError(
+                f"the frame {frame!r} is not turned by joint {self._joints[1]!r}: the head cannot point it"
+            )
+        return frame, axis / length
+
+    def _frame(self, name: str) -> Pose:
+        return frame_pose(self.sim, self.plugin.scoped, name, self._odometry_frames())
+
+    def _odometry_frames(self) -> dict[str, Pose]:
+        """Frames that the robot's base reckons by, such as `odom`, where they lie by its reckoning."""
+        manager = getattr(self.plugin, "manager", None)
+        found: dict[str, Pose] = {}
+        for loaded in getattr(manager, "controllers", {}).values():
+            frames = getattr(loaded.controller, "odometry_frame", None)
+            if frames is not None:
+                odom, base, pose = frames
+                found[odom] = frame_pose(self.sim, self.plugin.scoped, base) @ pose.inverse()
+        return found
+
+    def _neck(self, look: tuple[str, Vector]) -> HeadJoints:
+        """As it is now."""
+        data = self.sim.physics.fresh()
+        joints = [self.hardware.joints[name] for name in self._joints]
+        ids = [int(self.sim.mj_model.dof_jntid[joint.joint.mj_dofs[0]]) for joint in joints]
+        return HeadJoints(
+            np.array(data.xanchor[ids]),
+            np.array(data.xaxis[ids]),
+            np.array([float(joint.joint.position) for joint in joints]),
+            np.array([joint.lower for joint in joints]),
+            np.array([joint.upper for joint in joints]),
+            self._frame(look[0]),
+            look[1],
+        )
+
+    def _go(self, neck: HeadJoints, shortest: float, speed: float) -> None:
+        """Sends the head where it points at the target."""
+        angles, _ = neck.aim(self._target)
+        limits = np.array([self.hardware.joints[name].max_velocity for name in self._joints])
+        speeds = np.minimum(limits, speed) if speed > 0.0 else limits
+        ways = np.abs(angles - neck.angles)
+        # a cubic between two rests is half as fast again in its middle as on average
+        duration = max(shortest, float((1.5 * ways / np.where(speeds > 0.0, speeds, np.inf)).max()), 0.05)
+        point = {
+            "positions": angles,
+            "velocities": np.zeros(2),
+            "time_from_start": msgs.duration(round(min(duration, _LONGEST) * SECOND)),
+        }
+        trajectory = {"joint_names": list(self._joints), "points": [point]}
+        try:
+            name = self.plugin.ros.topic(f"{self._mover}/follow_joint_trajectory")
+            self._move = self.sim.send_goal(name, {"trajectory": trajectory})
+        except InputError as error:
+            reason = str(error)
+            self._end(lambda goal: goal.abort(reason=reason))
+
+    def _on_cancel(self, goal: Any) -> None:
+        if goal is self._goal:
+            self._end(lambda one: one.canceled())
+            self._stop()
+
+    def _stop(self) -> None:
+        move, self._move = self._move, None
+        if move is not None and not move.is_done:
+            move.cancel()
+
+    def _end(self, how: Callable[[Any], None]) -> None:
+        goal, self._goal = self._goal, None
+        how(goal)
+
+    # ------------------------------------------------------------------ each period
+
+    def update(self, now_ns: int, period: float) -> None:
+        goal, move = self._goal, self._move
+        if goal is None or move is None:
+            return
+        if now_ns < self._next_feedback:
+            return
+        self._next_feedback = now_ns + _FEEDBACK_NS
+        neck = self._neck(self._look)
+        error = neck.error(neck.angles, self._target)
+        goal.publish_feedback({"pointing_angle_error": error})
+        if not move.is_done:
+            self._patience_ns = now_ns + _SETTLING_NS
+            return
+        if error <= self._enough:
+            self._end(lambda one: one.succeed())
+        elif now_ns < self._patience_ns and move.status is GoalStatus.SUCCEEDED:
+            return
+        elif move.status is GoalStatus.SUCCEEDED:
+            what = f"the neck's limits leave it {error:.3f} rad from the target"
+            self._end(lambda one: one.abort(reason=what))
+        else:
+            said = move.reason
+            self._end(lambda one: one.abort(reason=f"the head did not get there: {said}"))

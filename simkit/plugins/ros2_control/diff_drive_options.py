@@ -1,0 +1,275 @@
+"""Parameters of the differential drive controller: wheels, frames, and limits of speed, acceleration and jerk."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.ros2_control.parameter_block import read_numbers
+from simkit.pose import Vector
+
+_INFINITY = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class RateLimits:
+    """Bounds on a speed, its rate and the rate of that; SI units, infinite where there is none.
+
+    Attributes:
+        least, most: of the speed.
+        acceleration, deceleration: of the rate while the speed is positive: upwards (≥ 0) and downwards (≤ 0).
+        reverse_acceleration, reverse_deceleration: the same while it is negative: away from zero (≤ 0), towards it
+            (≥ 0). From rest the bounds are those of the two accelerations.
+        least_jerk, most_jerk: of the rate of the rate.
+    """
+
+    least: float = -_INFINITY
+    most: float = _INFINITY
+    acceleration: float = _INFINITY
+    deceleration: float = -_INFINITY
+    reverse_acceleration: float = -_INFINITY
+    reverse_deceleration: float = _INFINITY
+    least_jerk: float = -_INFINITY
+    most_jerk: float = _INFINITY
+
+    def __deepcopy__(self, memo: dict[int, object]) -> RateLimits:
+        return self
+
+    def limit(self, wanted: float, last: float, before_last: float, period: float) -> float:
+        """The speed to command now: bounded in jerk, then in acceleration, then in speed.
+
+        Jerk is bounded while the change grows; it may end at once, or a speed would swing about the one wanted for
+        ever. (The rule of control_toolbox's RateLimiter since 2024; before that jerks of twice the bound went through,
+        and the swinging.)
+
+        Args:
+            wanted: the speed asked for.
+            last, before_last: what was commanded in the two periods before.
+            period: [s].
+        """
+        speed, change = wanted, last - before_last
+        growth = (speed - last) - change
+        if growth * (speed - last) > 0:
+            square = period * period
+            speed = last + change + min(max(growth, self.least_jerk * square), self.most_jerk * square)
+        down = self.deceleration if last > 0 else self.reverse_acceleration
+        up = self.reverse_deceleration if last < 0 else self.acceleration
+        # without a bound in force the speed itself, not the one after rounding
+        if speed - last > up * period:
+            speed = last + up * period
+        elif speed - last < down * period:
+            speed = last + down * period
+        return min(max(speed, self.least), self.most)
+
+
+def read_rate_limits(block: Params) -> RateLimits:
+    """The limits in `linear.x` or `angular.z`.
+
+    A kind of limit is in force where `has_velocity_limits` and the like is true, or is not there and a bound is (they
+    went out of use); what is not bounded below is bounded as above. NaN is no bound.
+    """
+    least, most = _read_bounds(block, "velocity")
+    least_jerk, most_jerk = _read_bounds(block, "jerk")
+    down, up = _read_bounds(block, "acceleration")
+    deceleration = _read_bound(block, "max_deceleration", None, 0.0)
+    reverse = _read_bound(block, "max_acceleration_reverse", None, 0.0)
+    back = _read_bound(block, "max_deceleration_reverse", 0.0, None)
+    if up == _INFINITY:
+        return RateLimits(least, most, least_jerk=least_jerk, most_jerk=most_jerk)
+    away = down if reverse is None else reverse
+    return RateLimits(
+        least=least,
+        most=most,
+        acceleration=up,
+        deceleration=away if deceleration is None else deceleration,
+        reverse_acceleration=away,
+        reverse_deceleration=up if back is None else back,
+        least_jerk=least_jerk,
+        most_jerk=most_jerk,
+    )
+
+
+def _read_bounds(block: Params, what: str) -> tuple[float, float]:
+    """The bounds `min_<what>` and `max_<what>`; infinite where none is in force."""
+    told = block.has(f"has_{what}_limits")
+    wanted = block.boolean(f"has_{what}_limits", False)
+    least, most = _read_bound(block, f"min_{what}", None, 0.0), _read_bound(block, f"max_{what}", 0.0, None)
+    if told and not wanted:
+        return -_INFINITY, _INFINITY
+    if most is None:
+        if wanted or least is not None:
+            # a lower bound alone would be none, and nobody would know
+            _report_missing_maximum(block, what)
+        return -_INFINITY, _INFINITY
+    return -most if least is None else least, most
+
+
+def _report_missing_maximum(block: Params, what: str) -> None:
+    given = f"has_{what}_limits is true" if block.has(f"has_{what}_limits") else f"there is min_{what}"
+    hint = "without it nothing is limited" if block.has(f"max_{what}") else f"min_{what} is -max_{what} unless given"
+    block.error("SK-CONTROL-042", f"{given}, but there is no max_{what} [{_UNITS[what]}]", hint)
+
+
+_UNITS = {"velocity": "m/s or rad/s", "acceleration": "m/s² or rad/s²", "jerk": "m/s³ or rad/s³"}
+
+
+def _read_bound(block: Params, name: str, minimum: float | None, maximum: float | None) -> float | None:
+    """A bound; None where it is absent or NaN."""
+    found = block.child(name)
+    if found is None or found.value.strip().lstrip(".").lower() == "nan":
+        return None
+    return block.number(name, minimum=minimum, maximum=maximum, finite=False)
+
+
+_SMALLEST_SIZE = 1e-6  # [m]
+_ROS_1_NAMES = ("left_wheel", "right_wheel")
+
+
+@dataclass(frozen=True, slots=True)
+class DriveOptions:
+    """What a differential drive is told once.
+
+    Attributes:
+        left, right: joints of the wheels.
+        separation, radius: of the wheels as given, without multipliers [m].
+        linear, angular: limits of the speed ahead and of the rate of turning.
+        timeout_ns: after which a command counts no more [ns].
+        open_loop: odometry by what was commanded.
+        position_feedback: odometry by the wheels' angles; else by their speeds.
+        window: updates that the odometry's twist is the mean of.
+        odom_frame, base_frame: with their prefix.
+        pose_covariance, twist_covariance: 6×6 row-major, shape (36,).
+        publish_rate: of odometry and transform [Hz]; 0 is every update.
+        publish_tf: whether the odometry's transform is told.
+        stamped: whether commands are expected with a stamp.
+        publish_limited: whether the limited command is told.
+        is_ros_1: whether the parameters are in its spelling.
+    """
+
+    left: tuple[str, ...]
+    right: tuple[str, ...]
+    separation: float
+    radius: float
+    linear: RateLimits
+    angular: RateLimits
+    timeout_ns: int
+    open_loop: bool
+    position_feedback: bool
+    window: int
+    odom_frame: str
+    base_frame: str
+    pose_covariance: Vector
+    twist_covariance: Vector
+    publish_rate: float
+    publish_tf: bool
+    stamped: bool
+    publish_limited: bool
+    is_ros_1: bool
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> DriveOptions:
+        return self
+
+
+def read_drive_options(
+    params: Params, namespace: str, measured: Callable[[str, str], tuple[float | None, float | None]]
+) -> DriveOptions:
+    """Reads everything but the multipliers, which may change as it runs.
+
+    Args:
+        params: the controller's.
+        namespace: of its node.
+        measured: gives the separation and the radius that the model has for a left and a right wheel [m], None where it
+            does not show; ROS 1's controller takes those that the file leaves out from there.
+    """
+    is_ros_1 = any(params.has(name) for name in _ROS_1_NAMES)
+    left, right = _wheels(params, is_ros_1)
+    params.child("allow_multiple_cmd_vel_publishers")  # every publisher is heard, as with true
+    separation, radius = _wheel_size(params, is_ros_1, left, right, measured)
+    stamped = params.boolean("use_stamped_vel", not is_ros_1)
+    odom, base = params.text("odom_frame_id", "odom"), params.text("base_frame_id", "base_link")
+    prefix = "" if is_ros_1 else _frame_prefix(params, namespace)
+    linear, angular = (read_rate_limits(params.block(a).block(b)) for a, b in (("linear", "x"), ("angular", "z")))
+    return DriveOptions(
+        left=left,
+        right=right,
+        separation=separation,
+        radius=radius,
+        linear=linear,
+        angular=angular,
+        timeout_ns=round(params.number("cmd_vel_timeout", 0.5, minimum=0, maximum=1e9) * 1e3) * 1_000_000,
+        open_loop=params.boolean("open_loop", False),
+        position_feedback=params.boolean("position_feedback", True),
+        window=params.integer("velocity_rolling_window_size", 10, minimum=1, maximum=100_000),
+        odom_frame=prefix + odom,
+        base_frame=prefix + base,
+        pose_covariance=_covariance(params, "pose_covariance_diagonal"),
+        twist_covariance=_covariance(params, "twist_covariance_diagonal"),
+        publish_rate=params.number("publish_rate", 50.0, minimum=0),
+        publish_tf=params.boolean("enable_odom_tf", True),
+        stamped=stamped,
+        publish_limited=params.boolean("publish_cmd" if is_ros_1 else "publish_limited_velocity", False),
+        is_ros_1=is_ros_1,
+    )
+
+
+def _wheels(params: Params, is_ros_1: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Joints of the wheels on each side; what cannot be is reported."""
+    keys = _ROS_1_NAMES if is_ros_1 else ("left_wheel_names", "right_wheel_names")
+    left, right = (tuple(element.value for element in params.all(key) if element.value) for key in keys)
+    for key, names in zip(keys, (left, right), strict=True):
+        if not names:
+            hint = f"a list of joints, such as {key}: [wheel_{key.split('_')[0]}_joint]"
+            params.error("SK-CONTROL-040", f"{key} names no wheel", hint)
+    if left and right and len(left) != len(right):
+        message = f"{keys[0]} has {len(left)} and {keys[1]} has {len(right)} wheels; each side has as many"
+        params.error("SK-CONTROL-040", message)
+    all_names = left + right
+    for name in dict.fromkeys(n for n in all_names if all_names.count(n) > 1):
+        params.error("SK-CONTROL-041", f"joint {name!r} is named as several wheels; each wheel has a joint of its own")
+    count = params.integer("wheels_per_side", 0, minimum=0)
+    if count and left and count != len(left):
+        message = f"wheels_per_side is {count}, but {keys[0]} names {len(left)}; those named are driven"
+        where = (params.child("wheels_per_side") or params).where
+        params.diagnostics.warning("SK-CONTROL-043", message, where)
+    return left, right
+
+
+def _wheel_size(
+    params: Params,
+    is_ros_1: bool,
+    left: tuple[str, ...],
+    right: tuple[str, ...],
+    measured: Callable[[str, str], tuple[float | None, float | None]],
+) -> tuple[float, float]:
+    """Separation and radius of the wheels [m]."""
+    keys = ("wheel_separation", "wheel_radius")
+    missing = [key for key in keys if not params.has(key)]
+    shown: tuple[float | None, float | None] = (None, None)
+    if is_ros_1 and missing and left and right:
+        shown = measured(left[0], right[0])
+        for key, value in zip(keys, shown, strict=True):
+            if key in missing and value is not None:
+                message = f"{params.name}: {key} is not given, the model's is taken: {value:g} m"
+                params.diagnostics.note("SK-CONTROL-044", message, params.where)
+    found = (params.number(k, v, required=v is None, minimum=_SMALLEST_SIZE) for k, v in zip(keys, shown, strict=True))
+    separation, radius = found
+    return separation or 1.0, radius or 1.0  # only where that was reported
+
+
+def _frame_prefix(params: Params, namespace: str) -> str:
+    """What goes before the frames: `tf_frame_prefix`, else the namespace; never with a slash in front."""
+    enabled, prefix = params.boolean("tf_frame_prefix_enable", True), params.text("tf_frame_prefix", "")
+    if not enabled:
+        return ""
+    chosen = (prefix or namespace).strip("/")
+    return f"{chosen}/" if chosen else ""
+
+
+def _covariance(params: Params, name: str) -> Vector:
+    """A covariance by its diagonal: the variances of x, y, z, roll, pitch, yaw."""
+    return np.diag(read_numbers(params, name, [0.0] * 6, minimum=0.0)).reshape(36)

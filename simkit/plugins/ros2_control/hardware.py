@@ -1,0 +1,325 @@
+"""The hardware that controllers command: joints with their interfaces, limits and servos."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit.plugins.ros2_control.actuator_modes import EFFORT_MODE, FREE, POSITION_MODE, SPRING_MODE, VELOCITY_MODE
+from simkit.plugins.ros2_control.hardware_sensors import HardwareSensor, find_sensor
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY, InterfaceTable
+from simkit.plugins.ros2_control.joint_actuators import JointActuators
+from simkit.plugins.ros2_control.transmissions import TransmissionLaw, transmission_laws
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.diagnostics import Diagnostics
+    from simkit.plugins.ros2_control.hardware_description import ComponentDescription, JointDescription, PidGains
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneJoint, SceneModel
+    from simkit.scene.actuation import Transmission
+
+_MODES = {POSITION: POSITION_MODE, VELOCITY: VELOCITY_MODE, EFFORT: EFFORT_MODE}
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareJoint:
+    """A joint as `<ros2_control>` or `<transmission>` describes it.
+
+    Attributes:
+        name: plain name.
+        joint: the simulation's handle; None before the load.
+        command_interfaces, state_interfaces: position, velocity, effort.
+        lower, upper: position limits [rad or m]; infinite where there are none.
+        max_velocity: [rad/s or m/s]; infinite where there is none.
+        max_effort: [N·m or N]; infinite where there is none.
+        scoped: scoped name.
+        is_continuous: whether its angle has no ends, so that it is wrapped.
+        initial: first position; NaN for that of the file.
+        leader: what it mimics; empty for nothing.
+        multiplier, offset: position = multiplier · leader's + offset.
+    """
+
+    name: str
+    joint: Any
+    command_interfaces: tuple[str, ...]
+    state_interfaces: tuple[str, ...]
+    lower: float = -float("inf")
+    upper: float = float("inf")
+    max_velocity: float = float("inf")
+    max_effort: float = float("inf")
+    scoped: str = ""
+    is_continuous: bool = False
+    initial: float = math.nan
+    leader: str = ""
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(slots=True)
+class Hardware:
+    """Joints and sensors of one robot.
+
+    Attributes:
+        joints: by plain name, in the order of the description.
+        states: read from the simulation before the controllers are updated; what no active controller reads stays.
+        commands: written to the simulation after they were.
+        components: as described.
+        drives: what moves the joints.
+        sensors: by name.
+        actuators: the transmission that each belongs to, by name; their states are interfaces too.
+        owners: who claims a command interface, by its name.
+        springs: kp and kd by joint of controllers under whose efforts the joints are springs, by controller.
+        holds: whether a joint that nobody claims holds still, whatever interfaces it has.
+    """
+
+    joints: dict[str, HardwareJoint] = field(default_factory=dict)
+    states: InterfaceTable = field(default_factory=InterfaceTable)
+    commands: InterfaceTable = field(default_factory=InterfaceTable)
+    components: list[ComponentDescription] = field(default_factory=list)
+    drives: JointActuators = field(default_factory=JointActuators)
+    sensors: dict[str, HardwareSensor] = field(default_factory=dict)
+    actuators: dict[str, TransmissionLaw] = field(default_factory=dict)
+    owners: dict[str, str] = field(default_factory=dict)
+    springs: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
+    holds: bool = True
+    _sim: Any = None
+    _sources: Any = field(default_factory=lambda: np.zeros(0, np.intp))
+    _unclaimed: Any = None  # where in `_sources` there is none
+    _read: frozenset[str] = frozenset()  # state interfaces that somebody reads
+    _model: Any = None
+    _plan: list[tuple[Any, Any]] = field(default_factory=list)  # (where in `states`, what gives them)
+    _late: list[tuple[Any, Any]] = field(default_factory=list)  # read when somebody asks
+
+    @classmethod
+    def of(
+        cls,
+        components: list[ComponentDescription],
+        scene: SceneModel,
+        diagnostics: Diagnostics,
+        transmissions: Iterable[Transmission] = (),
+    ) -> Hardware:
+        """The hardware as described, before there is a simulation."""
+        scenes = {joint.name: joint for joint in scene.all_joints()}
+        found = cls(components=components)
+        states: list[str] = []
+        commands: list[str] = []
+        for one in (joint for component in components for joint in component.joints):
+            found.joints[one.name] = _hardware_joint(one, scenes[one.name])
+            states += [f"{one.name}/{s.name}" for s in one.states]
+            commands += [f"{one.name}/{c.name}" for c in one.commands]
+        for sensor in (sensor for component in components for sensor in component.sensors):
+            states += [f"{sensor.name}/{name}" for name in sensor.interfaces]
+            there = find_sensor(sensor, scene, diagnostics)
+            if there is not None:
+                found.sensors[sensor.name] = there
+        for law in transmission_laws(transmissions, list(found.joints), diagnostics):
+            found.actuators |= dict.fromkeys((a for a in law.actuators if a not in found.joints), law)
+        states += [f"{actuator}/{interface}" for actuator in found.actuators for interface in _MODES]
+        found.states, found.commands = InterfaceTable(states), InterfaceTable(commands)
+        return found
+
+    # ------------------------------------------------------------------ before it runs
+
+    def prepare(self, builder: SpecBuilder, owner: str, pids: Mapping[str, Mapping[str, PidGains]]) -> None:
+        """Adds a drive to every joint that can be commanded.
+
+        Args:
+            builder: the door to the spec.
+            owner: whose they are.
+            pids: loops by joint and interface that take the place of its servo.
+        """
+        self._tie(builder)
+        driven = [j for j in self.joints.values() if j.command_interfaces]
+        self.drives = JointActuators.prepare(builder, owner, driven, pids)
+        self._sources = np.full(len(driven), -1, np.intp)
+
+    def _tie(self, builder: SpecBuilder) -> None:
+        """Couples joints that mimic another by the hardware's words alone."""
+        from simkit.compiler.couplings import Couplings
+
+        for joint in self.joints.values():
+            leader = self.joints.get(joint.leader)
+            binding = builder.names.joint(joint.scoped)
+            if leader is not None and binding.scene.axes[0].mimic is None:
+                record, step = builder.records[binding.model], builder.world.physics.max_step_size
+                coupling = Couplings(builder.spec, record, step, builder.diagnostics)
+                coupling.tie(joint.scoped, leader.scoped, joint.multiplier, joint.offset)
+
+    def load(self, sim: Simulation) -> None:
+        """Ties it to a simulation; joints are put where the description has them at first."""
+        self._sim = sim
+        self.joints = {n: replace(j, joint=sim.joint(j.scoped)) for n, j in self.joints.items()}
+        for joint in self.joints.values():
+            if math.isfinite(joint.initial):
+                joint.joint.set_position(joint.initial)
+        self.drives.load(sim)
+        self._switch()
+
+    # ------------------------------------------------------------------ claims
+
+    def claim(self, names: Sequence[str], owner: str) -> None:
+        """Gives command interfaces to a controller; the joints are driven by them from now on."""
+        for name in names:
+            self.owners[name] = owner
+            self.commands.values[self.commands.index(name)] = np.nan
+        self._switch()
+
+    def release(self, owner: str) -> None:
+        """Takes back what a controller claimed: position joints hold, others are let go."""
+        self.owners = {name: who for name, who in self.owners.items() if who != owner}
+        self._switch()
+
+    def _switch(self) -> None:
+        claimed: dict[str, str] = {}
+        for owner, _, interface in (name.rpartition("/") for name in self.owners):
+            if claimed.get(owner) != POSITION:  # with a velocity beside it, that is the servo's own affair
+                claimed[owner] = interface
+        modes = []
+        springy = {name.rpartition("/")[0] for name, owner in self.owners.items() if owner in self.springs}
+        for owner in dict.fromkeys(self.owners.values()):
+            self.drives.soften(self.springs.get(owner, {}))
+        for k, joint in enumerate(self.drives.joints):
+            chosen = claimed.get(joint.name, "")
+            self._sources[k] = self.commands.index(f"{joint.name}/{chosen}") if chosen else -1
+            mode = _MODES[chosen] if chosen else self._idle(joint, claimed.get(joint.leader, ""))
+            modes.append(SPRING_MODE if mode == EFFORT_MODE and joint.name in springy else mode)
+        self._unclaimed = np.flatnonzero(self._sources < 0)
+        self._group()
+        self.drives.switch(np.array(modes, np.intp))
+
+    def _group(self) -> None:
+        """Tells the drives which joints one controller has claimed: their wheels wait for one another."""
+        by_joint = {name.rpartition("/")[0]: owner for name, owner in self.owners.items()}
+        numbers = {owner: k for k, owner in enumerate(dict.fromkeys(by_joint.values()), 1)}
+        claimed = [numbers.get(by_joint.get(joint.name, ""), 0) for joint in self.drives.joints]
+        self.drives.groups = np.array(claimed, np.intp)
+
+    def _idle(self, joint: HardwareJoint, of_leader: str) -> int:
+        """How a joint is driven that nobody claims; `of_leader`: how the one is that it mimics."""
+        if of_leader:
+            return _MODES[of_leader] if of_leader in joint.command_interfaces else FREE
+        return POSITION_MODE if self.holds or POSITION in joint.command_interfaces else FREE
+
+    # ------------------------------------------------------------------ at work
+
+    def wants(self, names: Iterable[str]) -> None:
+        """Says which state interfaces are read from now on; the others are not kept up to date."""
+        self._read = frozenset(names)
+        self._model = None
+
+    def read(self) -> None:
+        """Brings the state interfaces up to the present."""
+        if self._model is not self._sim.physics.model:
+            self._bind()
+        states = self.states
+        values = states.values
+        for rows, reading in self._plan:
+            values[rows] = reading()
+        if self._late or states.late:
+            states.late = self._late.copy()
+
+    def _bind(self) -> None:
+        """Plans the readings; another engine's model has other addresses."""
+        self._model, self._plan, self._late = self._sim.mj_model, [], []
+        by_kind: dict[str, list[tuple[int, str]]] = {}
+        for name in (n for n in self.states.names if n in self._read):
+            owner, _, interface = name.rpartition("/")
+            if owner in self.joints:
+                by_kind.setdefault(interface, []).append((self.states.index(name), owner))
+            elif owner in self.actuators:
+                reading = _actuator_reading(self, owner, interface)
+                self._plan.append((self.states.index(name), reading))
+            elif owner in self.sensors:
+                by_kind.setdefault(f"sensor {owner}", []).append((self.states.index(name), interface))
+        for kind, found in by_kind.items():
+            rows, places = np.array([row for row, _ in found], np.intp), tuple(place for _, place in found)
+            if kind.startswith("sensor "):
+                sensor = self.sensors[kind.removeprefix("sensor ")]
+                self._late.append((rows, _sensor_reading(sensor, self._sim, places)))
+            elif kind in _MODES:
+                plan = self._late if kind == EFFORT else self._plan  # efforts are worked out, so only when asked for
+                plan.append((rows, self.reading(kind, places)))
+        self.states.late_places = frozenset(row for rows, _ in self._late for row in rows.tolist())
+
+    def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
+        """What gives the positions, velocities or efforts of joints, as long as the engine's model is the same."""
+        names, physics = self._sim.names, self._sim.physics
+        bindings = [names.joint(self.joints[joint].scoped) for joint in joints]
+        if interface == POSITION:
+            qpos = np.array([binding.qpos[0] for binding in bindings], np.intp)
+            return lambda: physics.data.qpos[qpos]
+        if interface == VELOCITY:
+            dofs = np.array([binding.dofs[0] for binding in bindings], np.intp)
+            return lambda: physics.data.qvel[dofs]
+        driven = {joint.name: k for k, joint in enumerate(self.drives.joints)}
+        places = np.array([driven.get(joint, -1) for joint in joints], np.intp)
+        if (places >= 0).all():
+            return lambda: self.drives.efforts()[places]
+        return lambda: np.append(self.drives.efforts(), 0.0)[places]  # what nobody drives gives nothing
+
+    def write(self, period: float) -> None:
+        """Hands the commands to the simulation; `period`: since the last time [s]."""
+        if len(self._sources):
+            commands = self.commands.values[self._sources]
+            if len(self._unclaimed):
+                commands[self._unclaimed] = np.nan
+            self.drives.write(commands, period)
+
+    # ------------------------------------------------------------------ state
+
+    def get_state(self) -> Any:
+        """A copy of everything that changes as it runs."""
+        values = self.states.values.copy(), self.commands.values.copy()
+        own = (*values, dict(self.owners), self._sources.copy(), self._read)
+        drives = self.drives
+        return own, (drives.modes.copy(), drives.targets.copy(), drives.integrals.copy())
+
+    def set_state(self, state: Any) -> None:
+        """Back to a state from `get_state`."""
+        (states, commands, owners, sources, self._read), drives = state
+        self.states.values, self.commands.values = states.copy(), commands.copy()
+        self.owners, self._sources = dict(owners), sources.copy()
+        self._unclaimed = np.flatnonzero(sources < 0)
+        self._model = None
+        self.drives.modes, self.drives.targets, self.drives.integrals = (one.copy() for one in drives)
+        self._group()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Hardware:
+        return self
+
+
+def _hardware_joint(described: JointDescription, joint: SceneJoint) -> HardwareJoint:
+    axis = joint.axes[0]
+    has_no_ends = math.isinf(axis.lower) and math.isinf(axis.upper)
+    return HardwareJoint(
+        described.name,
+        None,
+        tuple(dict.fromkeys(c.name for c in described.commands)),
+        tuple(dict.fromkeys(s.name for s in described.states)),
+        lower=axis.lower,
+        upper=axis.upper,
+        max_velocity=axis.velocity,  # <param name="max"> of an interface bounds nothing in Gazebo
+        max_effort=axis.effort,
+        scoped=joint.scoped,
+        is_continuous=joint.type in ("revolute", "continuous") and has_no_ends,
+        initial=next((s.initial for s in described.states if s.name == POSITION), math.nan),
+        leader=described.leader or (axis.mimic.joint if axis.mimic else ""),
+        multiplier=axis.mimic.multiplier if axis.mimic else described.multiplier,
+        offset=axis.mimic.offset if axis.mimic else described.offset,
+    )
+
+
+def _actuator_reading(hardware: Hardware, actuator: str, interface: str) -> Callable[[], float]:
+    law = hardware.actuators[actuator]
+    joints, row = hardware.reading(interface, law.joints), law.actuators.index(actuator)
+    return lambda: float(law.actuate(interface, joints())[row])
+
+
+def _sensor_reading(sensor: HardwareSensor, sim: Any, interfaces: tuple[str, ...]) -> Any:
+    return lambda: sensor.read(sim, interfaces)

@@ -1,0 +1,395 @@
+"""Description of a robot's control hardware, read from <ros2_control> or <transmission>."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final
+
+from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.params import Params
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneJoint, SceneModel
+
+
+_LARGEST_NUMBER: Final = (
+    1e15  # of positions [rad or m], gains and the like; with larger ones no motion can be worked out
+)
+_ELEMENTS: Final = ("hardware", "joint", "sensor", "gpio", "transmission")
+_JOINT_ELEMENTS: Final = ("command_interface", "state_interface", "param", "limits", "property", "properties")
+_GAINS: Final = ("kp", "ki", "kd", "max_integral_error")
+_JOINT_PARAMS: Final = ("mimic", "multiplier", "offset", *(f"{s}_{g}" for s in ("pos", "vel") for g in _GAINS))
+
+
+def report_unknown_elements(block: Params, found: Diagnostics) -> None:
+    """Tells of elements that no hardware has, and of names in a joint that are nearly ones that count."""
+    owner = f"<ros2_control> {block.attribute('name')!r}"
+    for one in block.children:
+        if one.name not in _ELEMENTS and ":" not in one.name:
+            _report_unused(f"{owner}: <{one.name}>", one, did_you_mean(one.name, _ELEMENTS), found)
+    for joint in block.all("joint"):
+        what = f"{owner}, joint {joint.attribute('name')!r}"
+        for one in joint.children:
+            near = did_you_mean(one.name, _JOINT_ELEMENTS)
+            if one.name not in _JOINT_ELEMENTS and near:
+                _report_unused(f"{what}: <{one.name}>", one, near, found)
+            word = one.attribute("name") if one.name == "param" else ""
+            near = did_you_mean(word, _JOINT_PARAMS) if word else ""
+            if word not in _JOINT_PARAMS and near:  # drivers of real hardware have words of their own
+                _report_unused(f"{what}: <param name={word!r}>", one, near, found)
+
+
+def _report_unused(what: str, element: Params, near: str, found: Diagnostics) -> None:
+    found.warning("SK-CONTROL-008", f"{what} is not known and not used", element.where, near)
+
+
+def parse_number(
+    text: str, default: float, element: Params, found: Diagnostics, *, minimum: float = -_LARGEST_NUMBER
+) -> float:
+    """A finite number; what is none is an error, and the default is taken."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if minimum <= value <= _LARGEST_NUMBER:
+        return value
+    allowed = "a number" if math.isnan(value) else f"a number from {minimum:g} to {_LARGEST_NUMBER:g}"
+    found.error("SK-PARAM-002", f"found {text!r}, allowed is {allowed}", element.where)
+    return default
+
+
+def parse_bound(text: str, default: float, element: Params, found: Diagnostics) -> float:
+    """A bound of an interface, which may be infinite; empty where there is none."""
+    return default if text.strip().lower() in ("", "inf", "-inf") else parse_number(text, default, element, found)
+
+
+def parse_initial_position(text: str, joint: SceneJoint, element: Params, found: Diagnostics) -> float:
+    """A first position [rad or m], within the joint's limits; NaN where there is none."""
+    value = parse_number(text, math.nan, element, found) if text else math.nan
+    axis = joint.axes[0]
+    if axis.lower <= value <= axis.upper or math.isnan(value):
+        return value
+    kept = min(max(value, axis.lower), axis.upper)
+    message = (
+        f"joint {joint.name!r}: the initial_value {value:g} is outside its limits {axis.lower:g} and {axis.upper:g}"
+    )
+    found.warning("SK-CONTROL-008", f"{message}; it begins at {kept:g}", element.where)
+    return kept
+
+
+def mimic_circle(name: str, leaders: Mapping[str, str]) -> Sequence[str]:
+    """The joints of the circle that a joint closes by mimicking its leader; empty where it closes none."""
+    circle, one = [name], leaders[name]
+    while one and one != name and one not in circle:
+        circle.append(one)
+        one = leaders.get(one, "")
+    return circle if one == name else ()
+
+
+MOTION_INTERFACES: Final = (POSITION, VELOCITY, EFFORT)
+_ROS_1: Final = {"PositionJointInterface": POSITION, "VelocityJointInterface": VELOCITY, "EffortJointInterface": EFFORT}
+_SIMULATION_PLUGINS: Final = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
+
+
+@dataclass(frozen=True, slots=True)
+class InterfaceDescription:
+    """A command or state interface.
+
+    Attributes:
+        name: such as position.
+        minimum, maximum: what a command is kept within; infinite where nothing is said.
+        initial: first value; NaN where nothing is said.
+    """
+
+    name: str
+    minimum: float = -math.inf
+    maximum: float = math.inf
+    initial: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class PidGains:
+    """Gains of a joint's own loop: effort per error, per error and second, per error's rate.
+
+    Attributes:
+        i_max, i_min: bounds of the integral's part of the effort.
+        u_max, u_min: bounds of the whole effort.
+    """
+
+    p: float = 0.0
+    i: float = 0.0
+    d: float = 0.0
+    i_max: float = 0.0
+    i_min: float = 0.0
+    u_max: float = math.inf
+    u_min: float = -math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class JointDescription:
+    """A joint of the hardware.
+
+    Attributes:
+        commands, states: its interfaces, in the order of the file.
+        pids: its own loops by interface (position, velocity).
+        leader, multiplier, offset: what it mimics by the hardware's own words; empty for nothing.
+    """
+
+    name: str
+    commands: tuple[InterfaceDescription, ...]
+    states: tuple[InterfaceDescription, ...]
+    where: Where = NOWHERE
+    pids: dict[str, PidGains] = field(default_factory=dict)
+    leader: str = ""
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SensorDescription:
+    """A sensor of the hardware: its name and interfaces, such as `orientation.x`."""
+
+    name: str
+    interfaces: tuple[str, ...]
+    where: Where = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentDescription:
+    """One `<ros2_control>` block, or what stands for one.
+
+    Attributes:
+        kind: system, actuator or sensor.
+        plugin: the hardware's class, as written.
+    """
+
+    name: str
+    kind: str
+    plugin: str
+    joints: tuple[JointDescription, ...] = ()
+    sensors: tuple[SensorDescription, ...] = ()
+
+
+def describe_hardware(scene: SceneModel, params: Params) -> list[ComponentDescription]:
+    """The control hardware of a model.
+
+    From `<ros2_control>` (of the URDF file, or in the plugin's own element), else from `<transmission>`, else every
+    joint of one axis with all interfaces, which a note tells.
+
+    Args:
+        scene: the model.
+        params: the plugin's parameters; problems go there.
+    """
+    found = params.diagnostics
+    blocks = [*scene.controls, *params.all("ros2_control")]
+    for block in blocks:
+        block.mark_all_read()
+        report_unknown_elements(block, found)
+    if blocks:
+        return _remove_mimic_circles(
+            _remove_repeated_joints([_component(scene, block, found) for block in blocks], found), found
+        )
+    if scene.transmissions:
+        return [_component_of_transmissions(scene, found)]
+    names = [joint.name for joint in scene.all_joints() if _is_drivable(joint)]
+    message = (
+        f"model {scene.scoped!r} has neither <ros2_control> nor <transmission>: each of its joints with one axis can "
+        f"be commanded by position, velocity or effort"
+    )
+    found.note("SK-CONTROL-005", message, params.where)
+    every = tuple(InterfaceDescription(name) for name in MOTION_INTERFACES)
+    joints = tuple(JointDescription(name, every, every) for name in names)
+    return [ComponentDescription(scene.name, "system", "simkit", joints)]
+
+
+def _is_drivable(joint: SceneJoint) -> bool:
+    return len(joint.axes) == 1 and joint.type in ("revolute", "continuous", "prismatic") and not joint.axes[0].mimic
+
+
+# ------------------------------------------------------------------ <ros2_control>
+
+
+def _component(scene: SceneModel, block: Params, found: Diagnostics) -> ComponentDescription:
+    hardware = block.block("hardware")
+    plugin = hardware.text("plugin", "")
+    name = block.attribute("name") or "hardware"
+    if plugin.rpartition("/")[2] not in _SIMULATION_PLUGINS:
+        message = f"<ros2_control> {name!r}: the hardware {plugin or '(none)'!r} is the simulation here"
+        found.note("SK-CONTROL-006", message, block.where)
+    for unknown in (c for c in block.children if c.name == "gpio"):
+        message = f"<ros2_control> {name!r}: <gpio> {unknown.attribute('name')!r} has nothing that it stands for here"
+        found.warning("SK-CONTROL-007", f"{message}; it is left out", unknown.where)
+    joints = [_joint(scene, element, found) for element in block.all("joint")]
+    sensors = [_sensor(element) for element in block.all("sensor")]
+    kind = block.attribute("type") or "system"
+    return ComponentDescription(name, kind, plugin, tuple(j for j in joints if j is not None), tuple(sensors))
+
+
+def _joint(scene: SceneModel, element: Params, found: Diagnostics) -> JointDescription | None:
+    name = element.attribute("name")
+    joints = {joint.name: joint for joint in scene.all_joints()}
+    if name not in joints:
+        near = did_you_mean(name, joints)
+        message = f"<ros2_control> names joint {name!r}, which model {scene.scoped!r} does not have; it is left out"
+        found.warning("SK-CONTROL-008", message, element.where, near)
+        return None
+    if len(joints[name].axes) != 1:
+        message = f"<ros2_control> names joint {name!r}, which is {joints[name].type}; one with one axis is needed"
+        found.warning("SK-CONTROL-008", f"{message}; it is left out", element.where)
+        return None
+    words = _param_texts(element)
+    commands = [_interface(one, joints[name], found) for one in element.all("command_interface")]
+    states = [_interface(one, joints[name], found) for one in element.all("state_interface")]
+    pids = {}
+    for command in commands:
+        plain = command.name.removesuffix("_pid")
+        short = {"position": "pos", "velocity": "vel"}.get(plain, "")
+        if short and (command.name != plain or f"{short}_kp" in words):
+            pids[plain] = _gains_of_joint(words, short, element, found)
+    known = [command for command in commands if command.name.removesuffix("_pid") in MOTION_INTERFACES]
+    _report_unknown_interfaces(name, "command", [c.name for c in commands if c not in known], element, found)
+    _report_unknown_interfaces(
+        name, "state", [one.name for one in states if one.name not in MOTION_INTERFACES], element, found
+    )
+    states = [one for one in states if one.name in MOTION_INTERFACES]
+    leader = words.get("mimic", "")
+    if leader and leader not in joints:
+        message = f"joint {name!r} mimics {leader!r}, which model {scene.scoped!r} does not have"
+        found.warning("SK-CONTROL-008", f"{message}; it follows nothing", element.where, did_you_mean(leader, joints))
+        leader = ""
+    return JointDescription(
+        name,
+        tuple(InterfaceDescription(c.name.removesuffix("_pid"), c.minimum, c.maximum, c.initial) for c in known),
+        tuple(states),
+        element.where,
+        pids,
+        leader,
+        parse_number(words.get("multiplier", "1"), 1.0, element, found),
+        parse_number(words.get("offset", "0"), 0.0, element, found),
+    )
+
+
+def _report_unknown_interfaces(
+    joint: str, what: str, names: Iterable[str], element: Params, found: Diagnostics
+) -> None:
+    """Tells of interfaces that no joint has here."""
+    for name in names:
+        message = (
+            f"joint {joint!r}: there is no {what} interface {name!r} here, there are {', '.join(MOTION_INTERFACES)}"
+        )
+        near = did_you_mean(name, MOTION_INTERFACES)
+        found.warning("SK-CONTROL-009", f"{message}; it is left out", element.where, near)
+
+
+def _param_texts(element: Params) -> dict[str, str]:
+    """Its `<param name="…">` by name."""
+    return {one.attribute("name"): one.value for one in element.all("param")}
+
+
+def _interface(element: Params, joint: SceneJoint, found: Diagnostics) -> InterfaceDescription:
+    words = _param_texts(element)
+    first = words.get("initial_value", element.attribute("initial_value"))
+    name = element.attribute("name")
+    is_place = name == POSITION and element.name == "state_interface"  # the others' first values count for nothing
+    return InterfaceDescription(
+        name,
+        parse_bound(words.get("min", ""), -math.inf, element, found),
+        parse_bound(words.get("max", ""), math.inf, element, found),
+        parse_initial_position(first, joint, element, found) if is_place else math.nan,
+    )
+
+
+def _gains_of_joint(words: dict[str, str], short: str, element: Params, found: Diagnostics) -> PidGains:
+    """Gains as `<param>`s of a joint: `pos_kp`, `pos_ki`, `pos_kd`, `pos_max_integral_error`."""
+
+    def gain(name: str) -> float:
+        text = words.get(f"{short}_{name}", "")
+        return parse_number(text, 0.0, element, found) if text else 0.0
+
+    i, text = gain("ki"), words.get(f"{short}_max_integral_error", "")
+    most = parse_number(text, math.inf, element, found, minimum=0.0) if text else math.inf
+    limit = abs(i * most) if i else 0.0
+    return PidGains(gain("kp"), i, gain("kd"), limit, -limit)
+
+
+def _sensor(element: Params) -> SensorDescription:
+    names = tuple(one.attribute("name") for one in element.all("state_interface"))
+    return SensorDescription(element.attribute("name"), names, element.where)
+
+
+def _remove_repeated_joints(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
+    """A joint that comes twice is the one of the first block."""
+    seen: set[str] = set()
+    kept = []
+    for component in components:
+        joints = []
+        for joint in component.joints:
+            if joint.name in seen:
+                message = f"<ros2_control> {component.name!r} names joint {joint.name!r} again; the first one counts"
+                found.warning("SK-CONTROL-004", message, joint.where)
+                continue
+            seen.add(joint.name)
+            joints.append(joint)
+        kept.append(replace(component, joints=tuple(joints)))
+    return kept
+
+
+def _remove_mimic_circles(components: list[ComponentDescription], found: Diagnostics) -> list[ComponentDescription]:
+    """A joint that mimics itself, by others or at once, follows nothing."""
+    leaders = {joint.name: joint.leader for component in components for joint in component.joints}
+    kept = []
+    for component in components:
+        joints = []
+        for joint in component.joints:
+            circle = mimic_circle(joint.name, leaders)
+            if circle:
+                message = f"joint {joint.name!r} mimics {' which mimics '.join(map(repr, [*circle[1:], joint.name]))}"
+                found.warning("SK-CONTROL-008", f"{message}; it follows nothing", joint.where)
+                leaders[joint.name] = ""
+            joints.append(replace(joint, leader="") if circle else joint)
+        kept.append(replace(component, joints=tuple(joints)))
+    return kept
+
+
+# ------------------------------------------------------------------ <transmission>
+
+
+def _component_of_transmissions(scene: SceneModel, found: Diagnostics) -> ComponentDescription:
+    joints = {joint.name: joint for joint in scene.all_joints()}
+    wanted: dict[str, list[str]] = {}
+    places: dict[str, Where] = {}
+    for transmission in scene.transmissions:
+        for end in transmission.joints:
+            if end.name not in joints or len(joints[end.name].axes) != 1:
+                continue  # the loader tells of a joint that is not there
+            written = end.interfaces or tuple(i for a in transmission.actuators for i in a.interfaces)
+            names = _interfaces_of_ros_1(written, transmission.name, transmission.where, found)
+            wanted.setdefault(end.name, []).extend(names)
+            places.setdefault(end.name, transmission.where)
+    return ComponentDescription(
+        scene.name,
+        "system",
+        "gazebo_ros_control/DefaultRobotHWSim",
+        tuple(_joint_with_all_states(name, names, places[name]) for name, names in wanted.items()),
+    )
+
+
+def _joint_with_all_states(name: str, commands: Iterable[str], where: Where) -> JointDescription:
+    written = tuple(InterfaceDescription(one) for one in dict.fromkeys(commands))
+    return JointDescription(name, written, tuple(InterfaceDescription(one) for one in MOTION_INTERFACES), where)
+
+
+def _interfaces_of_ros_1(written: Sequence[str], owner: str, where: Where, found: Diagnostics) -> list[str]:
+    names = []
+    for one in written:
+        plain = one.rpartition("/")[2]
+        if plain in _ROS_1:
+            names.append(_ROS_1[plain])
+        elif plain != "JointStateInterface":  # that one only reads, and every joint can be read
+            message = f"transmission {owner!r}: there is no hardware interface {one!r} here, there are "
+            message += ", ".join(_ROS_1)
+            found.warning("SK-CONTROL-009", f"{message}; it is left out", where, did_you_mean(plain, _ROS_1))
+    return names

@@ -1,0 +1,89 @@
+"""Sensors of the control hardware: what a sensor of the simulation measures, as state interfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.plugins.ros2_control.hardware_description import SensorDescription
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneModel
+
+_IMU: Final = {
+    f"{part}.{axis}": f"{part}.{axis}"
+    for part, axes in (("orientation", "xyzw"), ("angular_velocity", "xyz"), ("linear_acceleration", "xyz"))
+    for axis in axes
+}
+_WRENCH: Final = {f"{part}.{axis}": f"wrench.{part}.{axis}" for part in ("force", "torque") for axis in "xyz"}
+_RANGE: Final = {"range": "range"}
+SENSOR_INTERFACES: Final = {"imu": _IMU, "force_torque": _WRENCH, "sonar": _RANGE}
+"""Kind of sensor -> state interface -> where its message has it."""
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareSensor:
+    """A sensor as controllers see it.
+
+    Attributes:
+        name: the hardware's.
+        scoped: scoped name of the simulation's sensor.
+        kind: of it.
+    """
+
+    name: str
+    scoped: str
+    kind: str
+
+    def read(self, sim: Any, interfaces: tuple[str, ...]) -> Vector:
+        """What it measured last, by state interface; NaN before its first sample and for what it does not measure."""
+        message = sim.sensor(self.scoped).latest
+        fields = SENSOR_INTERFACES[self.kind]
+        if message is None:
+            return np.full(len(interfaces), np.nan)
+        if len(interfaces) > 1 and all(i in fields for i in interfaces):
+            return np.array(_field_getter(self.kind, interfaces)(message))
+        return np.array([attrgetter(fields[i])(message) if i in fields else np.nan for i in interfaces])
+
+
+@cache
+def _field_getter(kind: str, interfaces: tuple[str, ...]) -> attrgetter[Any]:
+    """What takes some interfaces from a message of a kind of sensor."""
+    return attrgetter(*(SENSOR_INTERFACES[kind][interface] for interface in interfaces))
+
+
+def find_sensor(described: SensorDescription, scene: SceneModel, found: Diagnostics) -> HardwareSensor | None:
+    """The sensor of the simulation that a `<sensor>` of `<ros2_control>` means; None after a warning.
+
+    It has the same name, or is the only one of the model that measures such things.
+    """
+    kind = next((k for k, fields in SENSOR_INTERFACES.items() if any(i in fields for i in described.interfaces)), "")
+    if not kind:
+        message = f"<ros2_control> sensor {described.name!r}: there is nothing here that measures its interfaces"
+        hint = "known are those of an IMU (orientation.x, …), of a force-torque sensor (force.x, …), and range"
+        found.warning("SK-CONTROL-008", message, described.where, hint)
+        return None
+    fitting = [s for s in scene.all_sensors() if s.kind == kind]
+    chosen = next((s for s in fitting if s.name == described.name), None)
+    if chosen is None and len(fitting) == 1:
+        chosen = fitting[0]
+        message = f"<ros2_control> sensor {described.name!r} is the model's only {kind} sensor, {chosen.name!r}"
+        found.note("SK-CONTROL-006", message, described.where)
+    if chosen is None:
+        near = did_you_mean(described.name, [s.name for s in fitting])
+        message = f"<ros2_control> sensor {described.name!r}: the model has no {kind} sensor of that name"
+        listed = ", ".join(repr(s.name) for s in fitting) or "none"
+        hint = near or f"it has: {listed}"
+        found.warning("SK-CONTROL-008", f"{message}; its interfaces stay empty", described.where, hint)
+        return None
+    for interface in described.interfaces:
+        if interface not in SENSOR_INTERFACES[kind]:
+            message = f"<ros2_control> sensor {described.name!r}: a {kind} sensor has no {interface!r}"
+            found.warning("SK-CONTROL-008", message, described.where, did_you_mean(interface, SENSOR_INTERFACES[kind]))
+    return HardwareSensor(described.name, chosen.scoped, kind)

@@ -1,0 +1,232 @@
+"""Where a head has to turn so that it looks at a point, and the point that lies behind a pixel of its camera."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.errors import InputError
+from simkit.pose import IDENTITY, Pose, Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_GRID: Final = 25  # directions tried for each joint before the best is refined
+_STEPS: Final = 60
+_WORLD: Final = ("world", "map")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeadJoints:
+    """Two joints, one on the other, and what they turn, all in the world frame and as they are now.
+
+    Attributes:
+        anchors: a point on each joint's axis, shape (2, 3) [m]; the outer joint, which turns both, first.
+        axes: of the joints, unit vectors, shape (2, 3).
+        angles: of the joints now [rad].
+        lower, upper: limits [rad].
+        frame: of what is to point.
+        axis: the direction in that frame that is to point, a unit vector.
+    """
+
+    anchors: Vector
+    axes: Vector
+    angles: Vector
+    lower: Vector
+    upper: Vector
+    frame: Pose
+    axis: Vector
+
+    def error(self, angles: Vector, target: Vector) -> float:
+        """Angle [rad] between where it points and the target [m], with the joints at other angles."""
+        return float(self._errors(angles[None], target)[0])
+
+    def aim(self, target: Vector) -> tuple[Vector, float]:
+        """The angles (2,) [rad] within the limits at which it points best, and the angle [rad] that it is off then.
+
+        The best of a grid of directions, made better by Gauss and Newton's method with a damping.
+        """
+        low, high = np.maximum(self.lower, self.angles - np.pi), np.minimum(self.upper, self.angles + np.pi)
+        grid = np.stack(np.meshgrid(*(np.linspace(a, b, _GRID) for a, b in zip(low, high, strict=True))), -1)
+        tried = np.concatenate([np.clip(self.angles, low, high)[None], grid.reshape(-1, 2)])
+        errors = self._errors(tried, target)
+        angles = tried[int(np.argmin(errors))]
+        error, damping = float(errors.min()), 1e-6
+        for _ in range(_STEPS):
+            miss = self._misses(angles[None], target)[0]
+            step = 1e-6
+            nudged = self._misses(angles + step * np.eye(2), target)
+            slope = ((nudged - miss) / step).T
+            move = np.linalg.solve(slope.T @ slope + damping * np.eye(2), -slope.T @ miss)
+            new = np.clip(angles + move, low, high)
+            better = self.error(new, target)
+            if better < error - 1e-15:
+                angles, error, damping = new, better, max(damping * 0.3, 1e-12)
+            else:
+                damping *= 10.0
+            if damping > 1e6 or error < 1e-12:
+                break
+        return angles, error
+
+    def _errors(self, angles: Vector, target: Vector) -> Vector:
+        misses = self._misses(angles, target)
+        errors: Vector = 2.0 * np.arcsin(np.clip(np.linalg.norm(misses, axis=1) / 2.0, 0.0, 1.0))
+        return errors
+
+    def _misses(self, angles: Vector, target: Vector) -> Vector:
+        """Direction to the target − where it points, for angles (k, 2); shape (k, 3)."""
+        turns = angles - self.angles
+        points = np.repeat(self.frame.position[None], len(turns), 0)
+        rays = np.repeat(self.frame.rotate(self.axis)[None], len(turns), 0)
+        for joint in (1, 0):
+            points = self.anchors[joint] + _rotate_vectors(
+                points - self.anchors[joint], self.axes[joint], turns[:, joint]
+            )
+            rays = _rotate_vectors(rays, self.axes[joint], turns[:, joint])
+        ways = target - points
+        lengths = np.linalg.norm(ways, axis=1, keepdims=True)
+        misses: Vector = ways / np.maximum(lengths, 1e-12) - rays
+        return misses
+
+
+def _rotate_vectors(vectors: Vector, axis: Vector, angles: Vector) -> Vector:
+    """Each vector (k, 3) turned about an axis by its angle (Rodrigues)."""
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    along = (vectors @ axis)[:, None]
+    turned: Vector = vectors * cos + np.cross(axis, vectors) * sin + axis * along * (1.0 - cos)
+    return turned
+
+
+def frame_pose(sim: Simulation, model: str, name: str, others: Mapping[str, Pose] | None = None) -> Pose:
+    """Where a frame is now, in the world.
+
+    Args:
+        sim: the simulation.
+        model: scoped name of the model whose frames come first.
+        name: of a link, of a sensor's frame, of a frame in the file, a scoped one, or `world` or `map`.
+        others: further frames by name.
+
+    Raises:
+        InputError: there is no such frame; names the closest.
+    """
+    if name.lstrip("/") in _WORLD:
+        return IDENTITY
+    if others and name.lstrip("/") in others:
+        return others[name.lstrip("/")]
+    link, offset = frame_link(sim, model, name, (*_WORLD, *(others or ())))
+    return sim.link(link).pose @ offset
+
+
+def frame_link(sim: Simulation, model: str, name: str, others: Sequence[str] = ()) -> tuple[str, Pose]:
+    """The link that a frame is fixed to, by its scoped name, and where the frame is on it.
+
+    Args:
+        sim: the simulation.
+        model: scoped name of the model whose frames come first.
+        name: as in `frame_pose`.
+        others: what else it may have been meant for.
+
+    Raises:
+        InputError: there is no such frame; names the closest.
+    """
+    name = name.lstrip("/")
+    models = [*(m for m in sim.models.values() if m.scoped == model), *sim.models.values()]
+    names: list[str] = []
+    for scene in (handle.scene for handle in models):
+        for link in scene.all_links():
+            if name in (link.name, link.scoped):
+                return link.scoped, IDENTITY
+            names.append(link.name)
+    for scene in (handle.scene for handle in models):
+        found = _sensor_frame(sim, scene, name, names)
+        if found is not None:
+            return found
+    from simkit.diagnostics import did_you_mean
+
+    near = did_you_mean(name, dict.fromkeys([*names, *others]))
+    raise InputError(f"there is no frame {name!r}{near and '; ' + near}")
+
+
+def is_moved_by_joint(sim: Simulation, link: str, joint: str) -> bool:
+    """Whether a link is what a joint turns, or fixed to that, or carried by it; both by their scoped names."""
+    parents, body = sim.mj_model.body_parentid, int(sim.names.link(link).body)
+    turning = int(sim.mj_model.jnt_bodyid[sim.mj_model.dof_jntid[sim.names.joint(joint).dofs[0]]])
+    while body > 0 and body != turning:
+        body = int(parents[body])
+    return body == turning
+
+
+def _sensor_frame(sim: Simulation, scene: Any, name: str, names: list[str]) -> tuple[str, Pose] | None:
+    for described in scene.all_sensors():
+        if described.on_joint or not sim.has_sensor(described.scoped):
+            continue
+        sensor = sim.sensor(described.scoped)
+        optical = sensor.optical_frames()
+        if name in (sensor.frame_id, *optical):
+            return described.parent, sensor.scene.pose_link @ optical.get(name, IDENTITY)
+        names += [sensor.frame_id, *optical]
+    return None
+
+
+def pixel_ray(camera_info: Any, u: float, v: float) -> Vector:
+    """The point at a distance of 1 m along the optical axis that a camera sees at a pixel; shape (3,) [m].
+
+    Args:
+        camera_info: `sensor_msgs/msg/CameraInfo`: K, and distortion by the `plumb_bob` model.
+        u, v: column and row; pixel centres are whole numbers.
+
+    Raises:
+        InputError: K is not one of a camera.
+    """
+    k = np.asarray(camera_info.k, dtype=float).reshape(3, 3)
+    if not (np.isfinite(k).all() and k[0, 0] > 0.0 and k[1, 1] > 0.0):
+        raise InputError(f"camera_info has fx = {k[0, 0]:g} and fy = {k[1, 1]:g}; both have to be positive")
+    there = np.array([(u - k[0, 2] - k[0, 1] * (v - k[1, 2]) / k[1, 1]) / k[0, 0], (v - k[1, 2]) / k[1, 1]])
+    k1, k2, p1, p2, k3 = [*np.asarray(camera_info.d, dtype=float).tolist(), 0.0, 0.0, 0.0, 0.0, 0.0][:5]
+    x, y = there
+    for _ in range(20):  # the distortion is small: what it did, taken away again and again
+        r2 = x * x + y * y
+        radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
+        x = (there[0] - 2.0 * p1 * x * y - p2 * (r2 + 2.0 * x * x)) / radial
+        y = (there[1] - 2.0 * p2 * x * y - p1 * (r2 + 2.0 * y * y)) / radial
+    return np.array([x, y, 1.0])
+
+
+def pixel_goal(
+    camera_info: Any,
+    pixel: Sequence[float],
+    *,
+    distance: float = 1.0,
+    min_duration: float = 0.5,
+    max_velocity: float = 1.0,
+) -> dict[str, Any]:
+    """The goal of a `control_msgs/action/PointHead` that brings what is seen at a pixel to the optical axis.
+
+        info = sim.subscribe("/head_front_camera/rgb/camera_info")
+        sim.run(0.1)
+        goal = pixel_goal(info.latest, (320, 100))
+        sim.send_goal("/head_controller/point_head_action", goal)
+
+    Args:
+        camera_info: of the picture; its `header.frame_id` is the camera's optical frame.
+        pixel: column and row.
+        distance: along the optical axis [m]; matters little as long as the camera is near the neck.
+        min_duration: how long the head takes at least [s].
+        max_velocity: of the head's joints [rad/s].
+
+    Raises:
+        InputError: `camera_info` is not one of a camera.
+    """
+    x, y, z = (float(one) for one in pixel_ray(camera_info, *pixel) * distance)
+    frame = camera_info.header.frame_id
+    return {
+        "target": {"header": {"frame_id": frame}, "point": {"x": x, "y": y, "z": z}},
+        "pointing_axis": {"x": 0.0, "y": 0.0, "z": 1.0},
+        "pointing_frame": frame,
+        "min_duration": msgs.duration(round(min_duration * 1e9)),
+        "max_velocity": max_velocity,
+    }

@@ -1,0 +1,98 @@
+"""Command and state interfaces of the hardware: named numbers that controllers read and write together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+from simkit.pose import Vector
+
+POSITION: Final = "position"
+VELOCITY: Final = "velocity"
+EFFORT: Final = "effort"
+
+
+def array_index(places: Sequence[int]) -> Any:
+    """Places of an array as an index: a slice where they follow on each other, which is the quickest."""
+    first, count = (places[0], len(places)) if len(places) else (0, 0)
+    if count and list(places) == list(range(first, first + count)):
+        return slice(first, first + count)
+    return np.array(places, dtype=np.intp)
+
+
+class InterfaceTable:
+    """All interfaces of one direction, in one array.
+
+    Attributes:
+        names: `<joint or sensor>/<interface>`, such as `arm_1_joint/position`, in the order of the description.
+        values: theirs; rad, m, rad/s, m/s, N·m, N; NaN where there is none (yet).
+        late: what is only read when somebody asks for it, such as a sensor: where it is, and what reads it.
+        late_places: all places in `values` that may be late.
+    """
+
+    def __init__(self, names: Iterable[str] = ()) -> None:
+        self.names: tuple[str, ...] = tuple(dict.fromkeys(names))
+        self._index = {name: k for k, name in enumerate(self.names)}
+        self.values: Vector = np.full(len(self.names), np.nan)
+        self.late: list[tuple[Any, Callable[[], Any]]] = []
+        self.late_places: frozenset[int] = frozenset()
+
+    def catch_up(self, wanted: frozenset[int]) -> None:
+        """Reads what is late and wanted."""
+        now: list[tuple[Any, Callable[[], Any]]] = []
+        later: list[tuple[Any, Callable[[], Any]]] = []
+        for one in self.late:
+            (later if wanted.isdisjoint(one[0].tolist()) else now).append(one)
+        self.late[:] = later
+        for places, read in now:
+            self.values[places] = read()
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._index
+
+    def index(self, name: str) -> int:
+        """Where a name is in `values`. Raises InputError naming the closest."""
+        found = self._index.get(name)
+        if found is None:
+            near = did_you_mean(name, self.names)
+            raise InputError(f"there is no interface {name!r}{near and '; ' + near}")
+        return found
+
+    def select(self, names: Sequence[str]) -> InterfaceSelection:
+        """Some of them, in the order asked for. Raises InputError."""
+        return InterfaceSelection(self, names)
+
+
+class InterfaceSelection:
+    """Some interfaces of a table, in the order in which a controller has them."""
+
+    def __init__(self, table: InterfaceTable, names: Sequence[str]) -> None:
+        self._table = table
+        self.names = tuple(names)
+        places = [table.index(name) for name in names]
+        self._wanted = frozenset(places)
+        self._where = array_index(places)
+        self._is_view = isinstance(self._where, slice)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> InterfaceSelection:
+        return self
+
+    @property
+    def values(self) -> Vector:
+        """A copy of their values."""
+        table = self._table
+        if table.late and not table.late_places.isdisjoint(self._wanted):
+            table.catch_up(self._wanted)
+        found: Vector = table.values[self._where]
+        return found.copy() if self._is_view else found
+
+    @values.setter
+    def values(self, values: Vector | Sequence[float]) -> None:
+        self._table.values[self._where] = values

@@ -1,0 +1,298 @@
+"""What moves the joints of the hardware: one actuator of the engine for each, which is a servo or a motor by turns.
+
+An actuator's force is its state − kp · position − kv · velocity, within the effort limit. As a servo its state is
+kp · reference + kv · the reference's velocity + what holds the joint against gravity and dry friction, and it goes on
+with the reference by itself; as a motor it is the effort. So everything between two updates of the controllers is the
+engine's, and a hundred commands a second make no staircase: a position is commanded for the end of the period that
+begins, and the reference moves there from the last one. A velocity servo's reference is where the commanded velocities
+have led, at most one whole effort from the joint: it loses nothing under load, and stands where it stands.
+
+A file's joint damping and dry friction stand for losses inside the drive (40 N·m·s/rad on an arm whose motors give
+43 N·m at up to 1.95 rad/s). A servo makes up for them, and its effort is what reaches the link: so the joint has
+neither while a servo drives it. Under an effort command or a PID of the file's, and where nothing drives it, it has
+both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops
+from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
+from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
+from simkit.plugins.ros2_control.velocity_references import advance_references
+from simkit.pose import Vector
+from simkit.runtime.engine.physics import CONTROL
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.plugins.ros2_control.hardware import HardwareJoint
+    from simkit.plugins.ros2_control.hardware_description import PidGains
+    from simkit.runtime import Simulation
+
+_LARGEST_CONTROL: Final = 9e9  # controls of 1e10 or more are none for the engine
+
+
+@dataclass(slots=True)
+class JointActuators:
+    """The actuators of all joints that can be commanded.
+
+    Attributes:
+        joints: which.
+        actuators: theirs.
+        pids: loops by joint and interface that take a servo's place.
+        modes: how each is driven now.
+        targets: references of servos [rad or m]; what they hold where nothing is commanded.
+        integrals: of loops with an integral part [N·m or N].
+        groups: number of the controller that has claimed each joint; 0 for none.
+    """
+
+    joints: tuple[HardwareJoint, ...] = ()
+    actuators: tuple[Any, ...] = ()
+    pids: Mapping[str, Mapping[str, PidGains]] = field(default_factory=dict)
+    modes: Any = field(default_factory=lambda: np.zeros(0, np.intp))
+    targets: Vector = field(default_factory=lambda: np.zeros(0))
+    integrals: Vector = field(default_factory=lambda: np.zeros(0))
+    groups: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    _sim: Any = None
+    _model: Any = None
+    _ids: Any = None
+    _states: Any = None  # addresses of the actuators' states
+    _qpos: Any = None
+    _dofs: Any = None
+    _loops: Any = None
+    _leaders: Any = None
+    _leads: Any = None
+    _law: Any = None  # multiplier and offset (2, joints)
+    _ends: Any = None  # lower and upper (2, joints)
+    _fastest: Any = None
+    _follows: bool = False
+    _weights: Any = None
+    _cached: ActiveModes | None = None
+
+    @classmethod
+    def prepare(
+        cls,
+        builder: SpecBuilder,
+        owner: str,
+        joints: Sequence[HardwareJoint],
+        pids: Mapping[str, Mapping[str, PidGains]],
+    ) -> JointActuators:
+        """Adds the actuators to the spec; `pids`: loops by joint and interface that take a servo's place."""
+        actuators = [
+            builder.add_drive(
+                j.scoped,
+                max_effort=j.max_effort,
+                max_velocity=j.max_velocity,
+                owner=owner,
+                has_rotor=bool({POSITION, VELOCITY} & set(j.command_interfaces)),
+            )
+            for j in joints
+        ]
+        return cls(tuple(joints), tuple(actuators), pids)
+
+    def load(self, sim: Simulation) -> None:
+        """Ties them to a simulation; everything with a position interface holds where it is."""
+        self._sim, self._weights = sim, GravityEfforts(sim, [joint.scoped for joint in self.joints])
+        count = len(self.joints)
+        self.integrals, self.groups = np.zeros(count), np.zeros(count, np.intp)
+        self._bind()
+        self.targets = np.array(sim.mj_data.qpos[self._qpos])
+        idle = [POSITION_MODE if POSITION in joint.command_interfaces else FREE for joint in self.joints]
+        self.modes = np.full(count, -1)
+        self.switch(np.array(idle, np.intp))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> JointActuators:
+        return self
+
+    def _bind(self) -> None:
+        """Finds itself in the engine's model, another one after every change of structure."""
+        sim = self._sim
+        self._model = model = sim.mj_model
+        self._cached = None
+        bindings = [sim.names.joint(joint.scoped) for joint in self.joints]
+        self._ids = np.array([sim.names.actuator(ref) for ref in self.actuators], np.intp)
+        self._states = np.array(model.actuator_actadr[self._ids], np.intp)
+        self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
+        self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
+        if self._loops is None:
+            self._take_limits()
+            ids = np.array([b.joint_ids[0] for b in bindings], np.intp)
+            self._loops = ControlLoops.choose(model, ids, self.joints, self.pids)
+
+    def _take_limits(self) -> None:
+        """Limits and laws of mimics, as arrays."""
+        joints = self.joints
+        index = {joint.name: k for k, joint in enumerate(joints)}
+        self._leaders = np.array([index.get(j.leader, k) for k, j in enumerate(joints)], np.intp)
+        self._leads = self._leaders == np.arange(len(joints))
+        self._law = np.array([(j.multiplier, j.offset) for j in joints], float).reshape(-1, 2).T
+        self._ends = np.array([(j.lower, j.upper) for j in joints], float).reshape(-1, 2).T
+        self._fastest = np.array([j.max_velocity for j in joints], float)
+        self._follows = not self._leads.all()
+
+    # ------------------------------------------------------------------ at work
+
+    def soften(self, springs: Mapping[str, tuple[float, float]]) -> None:
+        """Sets how joints give way in `SPRING_MODE`, in which a command is an effort that kp and kd take from.
+
+        Springs within the engine are calm at any rate of the controllers; what would ring at the engine's step is
+        weakened until it does not.
+
+        Args:
+            springs: kp [N·m/rad or N/m] and kd [N·m·s/rad or N·s/m] by joint.
+        """
+        for k, joint in enumerate(self.joints):
+            if joint.name in springs:
+                self._loops.gains[k, SPRING_MODE] = np.minimum(springs[joint.name], self._loops.calm[k])
+
+    def spring_gains(self, joints: Sequence[str]) -> tuple[Vector, Vector]:
+        """kp and kd of joints as `soften` has set them."""
+        index = {joint.name: k for k, joint in enumerate(self.joints)}
+        kp, kd = self._loops.gains[[index[name] for name in joints], SPRING_MODE].T
+        return kp.copy(), kd.copy()
+
+    def switch(self, modes: Any) -> None:
+        """Drives each joint in a mode from now on; a servo begins where its joint is."""
+        if self._sim is None or not len(self.joints) or np.array_equal(modes, self.modes):
+            return
+        self._rebind_if_needed()
+        sim = self._sim
+        changed, self.modes = modes != self.modes, np.array(modes)
+        data = sim.mj_data
+        self.integrals[changed] = 0.0
+        self.targets[changed] = data.qpos[self._qpos[changed]]
+        now = self._now()
+        biases = sim.touch("actuator_biasprm")
+        biases[self._ids, 1], biases[self._ids, 2] = -now.kp, -now.kv
+        for loss in ("dof_damping", "dof_frictionloss"):
+            losses = sim.touch(loss)
+            losses[self._dofs] = np.where(now.is_helped, 0.0, sim.original(loss)[self._dofs])
+        self._bound(now)
+        # whoever commands efforts has not spoken yet: until then the joint does not fall
+        held = now.kp * self.targets + np.maximum(now.helped, now.direct) * self._weights.now()
+        data.act[self._states[changed]] = held[changed]
+        data.ctrl[self._ids[changed]] = 0.0
+        sim.physics.changed(CONTROL)
+
+    def _bound(self, now: ActiveModes) -> None:
+        """Bounds the efforts as the present modes have it."""
+        is_bound = np.isfinite(now.lowest) | np.isfinite(now.highest)
+        if is_bound.any():
+            limited, ranges = self._sim.touch("actuator_forcelimited"), self._sim.touch("actuator_forcerange")
+            limited[self._ids] = is_bound
+            ranges[self._ids] = np.clip(np.stack((now.lowest, now.highest), 1), -_LARGEST_CONTROL, _LARGEST_CONTROL)
+
+    def _now(self) -> ActiveModes:
+        """What the present modes amount to."""
+        cached = self._cached
+        if cached is not None and cached.modes is self.modes and cached.claims is self.groups:
+            return cached
+        addresses = self._ids, self._qpos, self._dofs
+        self._cached = ActiveModes.of(self.modes, self.groups, self._loops, addresses, self._fastest)
+        return self._cached
+
+    def _rebind_if_needed(self) -> None:
+        if self._model is not self._sim.physics.model:
+            self._bind()
+
+    def write(self, commands: Vector, period: float) -> None:
+        """Sets the states of the actuators and how they go on.
+
+        Args:
+            commands: one for each joint in its mode; NaN for none: a position is held, a velocity or effort is 0.
+            period: since the last time [s].
+        """
+        if not self.joints:
+            return
+        self._rebind_if_needed()
+        now, physics = self._now(), self._sim.physics
+        data, wanted = physics.data, commands
+        if self._follows:  # a mimic has no command of its own
+            offset = np.where(now.is_position, self._law[1], 0.0)
+            wanted = np.where(self._leads, wanted, self._law[0] * wanted[self._leaders] + offset)
+        if wanted.dot(now.nothing) != 0.0:  # sooner found like this: 0 times what is not finite is not 0
+            wanted = np.where(np.isfinite(wanted), wanted, np.where(now.is_position, self.targets, 0.0))
+        reference, rate = self._follow(now, wanted, period)
+        weight = self._weights.now()
+        state = now.pull * reference
+        state += now.kv * rate
+        state += weight if now.all_helped else now.helped * weight
+        if now.has_integral:
+            state += self._integrate(now, reference, rate, period)
+        if now.has_effort:
+            state += now.direct * wanted
+        if not state.dot(state) < _LARGEST_CONTROL**2:
+            state = np.minimum(np.maximum(state, -_LARGEST_CONTROL), _LARGEST_CONTROL)
+        data.act[self._states] = state
+        data.ctrl[self._ids] = now.pull * rate
+        physics.changed(CONTROL)
+
+    def _follow(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[Vector, Vector]:
+        """Where the references are [rad or m], and how fast they move from now on [rad/s or m/s], within the limits."""
+        targets = self.targets
+        if period <= 0.0:
+            return targets, np.zeros_like(targets)
+        data = self._sim.physics.data
+        if now.period != period:
+            now.period, now.most = period, self._fastest * period
+            now.least = -now.most
+        # what is blocked, or was put elsewhere, does not whip back: its reference waits where it pulls with all it has
+        place, reach = data.qpos[self._qpos], now.reach
+        targets = np.minimum(np.maximum(targets, place - reach), place + reach)
+        move = np.minimum(np.maximum(wanted, self._ends[0]), self._ends[1])
+        move -= targets
+        move = np.minimum(np.maximum(move, now.least), now.most)
+        if now.all_position:
+            self.targets = targets + move
+            return targets, move / period
+        led, speeds = self._roll(now, wanted, period)
+        rate, ahead, reference = move / period, targets + move, targets
+        for (k, *_), place, speed in zip(now.rolling, led, speeds, strict=True):
+            reference[k] = ahead[k] = place
+            rate[k] = speed
+        self.targets = ahead
+        return reference, rate
+
+    def _roll(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[list[float], list[float]]:
+        """The same of those that are not driven by position, `now.rolling`."""
+        data = self._sim.physics.data
+        control, place, turning = data.ctrl.item, data.qpos.item, data.qvel.item
+        target, speed = self.targets.item, wanted.item
+        before, led, speeds, places, turns = [], [], [], [], []
+        for k, actuator, at, dof, stiffness, top in now.rolling:  # a few, so number by number
+            was, fast = control(actuator) / stiffness, speed(k)
+            before.append(was)
+            led.append(target(k) + was * period)
+            speeds.append(top if fast > top else -top if fast < -top else fast)
+            places.append(place(at))
+            turns.append(turning(dof))
+        return advance_references(
+            led,
+            speeds,
+            places=places,
+            turning=turns,
+            before=before,
+            slacks=now.slacks,
+            catch_up=now.catch_up,
+            groups=now.groups,
+        )
+
+    def _integrate(self, now: ActiveModes, reference: Vector, rate: Vector, period: float) -> Vector:
+        """The integral parts of the file's loops, carried on [N·m or N]."""
+        data, (ki, lowest, highest) = self._sim.physics.data, now.integral
+        error = np.where(now.is_position, reference - data.qpos[self._qpos], rate - data.qvel[self._dofs])
+        self.integrals = np.minimum(np.maximum(self.integrals + ki * error * period, lowest), highest)
+        return self.integrals
+
+    def efforts(self) -> Vector:
+        """What each gives now [N·m or N]."""
+        now, data = self._now(), self._sim.physics.data
+        force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
+        effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)
+        return effort

@@ -1,0 +1,238 @@
+"""The joints of one trajectory controller: their command and state interfaces, and the messages about their state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.params import Params
+from simkit.plugins.ros2_control.hardware import Hardware
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY, array_index
+from simkit.plugins.ros2_control.joint_pids import JointPids
+from simkit.plugins.ros2_control.parameter_block import read_names
+from simkit.plugins.ros2_control.trajectory import Setpoint
+from simkit.pose import Vector
+
+ACCELERATION: Final = "acceleration"
+_INTERFACE_ORDER: Final = (POSITION, VELOCITY, ACCELERATION, EFFORT)
+_ALLOWED_COMMANDS: Final = (
+    {POSITION},
+    {POSITION, VELOCITY},
+    {POSITION, VELOCITY, ACCELERATION},
+    {VELOCITY},
+    {EFFORT},
+    {POSITION, EFFORT},
+)
+_ALLOWED_STATES: Final = ({POSITION}, {POSITION, VELOCITY}, {POSITION, VELOCITY, ACCELERATION})
+_BAD_INTERFACES: Final = "SK-CONTROL-024"
+
+
+@dataclass(slots=True, eq=False)
+class JointGroup:
+    """Joints whose positions, velocities and accelerations are arrays (3, n).
+
+    Attributes:
+        joints: their names, in the order of the arrays.
+        commanded_joints: those it commands, by the names that their command interfaces have.
+        commands, states: interfaces by which it commands and measures.
+        places: of the commanded joints among `joints`.
+        span: the same, as the quickest index.
+        turning: which turn without end.
+        is_closed_loop: whether commands depend on what is measured, by PIDs: velocity alone or effort alone.
+        compared: shape (3, 1): 1 for what is both commanded and measured.
+    """
+
+    joints: tuple[str, ...]
+    commanded_joints: tuple[str, ...]
+    commands: tuple[str, ...]
+    states: tuple[str, ...]
+    places: Any
+    turning: Vector
+    is_closed_loop: bool
+    compared: Vector
+    span: Any
+
+    @classmethod
+    def read(
+        cls, params: Params, hardware: Hardware, commands: Sequence[str] = (), states: Sequence[str] = ()
+    ) -> JointGroup:
+        """Of a controller's parameters; what is wrong with them is recorded there.
+
+        Args:
+            params: `joints`, `command_joints`, `command_interfaces`, `state_interfaces`, `gains`.
+            hardware: what there is.
+            commands, states: interfaces where the file names none.
+        """
+        joints = tuple(read_names(params, "joints", code=_BAD_INTERFACES))
+        if not joints:
+            params.error(_BAD_INTERFACES, "'joints' parameter is empty.", "joints: [arm_1_joint, arm_2_joint]")
+        commanded, places = _commanded_joints(params, joints)
+        by = _read_interfaces(params, "command_interfaces", commands, _ALLOWED_COMMANDS)
+        measured = _read_interfaces(params, "state_interfaces", states, _ALLOWED_STATES)
+        is_closed = by in ((VELOCITY,), (EFFORT,))
+        if is_closed and VELOCITY not in measured:
+            message = (
+                f"'{by[0]}' command interface can only be used alone if 'velocity' and 'position' state interfaces"
+            )
+            params.error(_BAD_INTERFACES, f"{message} are present", "state_interfaces: [position, velocity]")
+        found = [hardware.joints.get(name) for name in commanded]
+        ends_not = [f is not None and f.is_continuous for f in found]
+        turning = np.zeros(len(joints), dtype=bool)
+        turning[places] = ends_not
+        gains = params.block("gains")  # where Humble has it
+        for j, joint in enumerate(joints):
+            block, was = gains.block(joint), bool(turning[j])
+            was = block.boolean("normalize_error", was) if block.has("normalize_error") else was
+            turning[j] = block.boolean("angle_wraparound", was)
+        velocities = VELOCITY in measured and (VELOCITY in by or EFFORT in by)
+        accelerations = ACCELERATION in measured and ACCELERATION in by
+        compared = np.array([[1.0], [float(velocities)], [float(accelerations)]])
+        return cls(joints, commanded, by, measured, places, turning, is_closed, compared, array_index(places.tolist()))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> JointGroup:
+        return self
+
+    @property
+    def command_names(self) -> tuple[str, ...]:
+        """Command interfaces: all joints' first kind, then all joints' second."""
+        return tuple(f"{joint}/{kind}" for kind in self.commands for joint in self.commanded_joints)
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """State interfaces, likewise."""
+        return tuple(f"{joint}/{kind}" for kind in self.states for joint in self.joints)
+
+    @property
+    def has_velocity_state(self) -> bool:
+        """Whether velocities are measured."""
+        return VELOCITY in self.states
+
+    @property
+    def has_effort(self) -> bool:
+        """Whether it commands efforts."""
+        return EFFORT in self.commands
+
+    def command_of(self, joint: str) -> str:
+        """The name that a joint's command interface has; the joint's own where it has none."""
+        place = self.joints.index(joint)
+        here = np.flatnonzero(self.places == place)
+        return self.commanded_joints[int(here[0])] if len(here) else joint
+
+    def state(self, values: Vector) -> Vector:
+        """Shape (3, n) of the values of the state interfaces; 0 for what is not measured."""
+        kinds, count = len(self.states), len(self.joints)
+        motion = np.zeros((3, count))
+        motion[:kinds] = values[: kinds * count].reshape(kinds, count)
+        return motion
+
+    def commanded(self, values: Vector) -> Vector | None:
+        """Positions (n,) that the command interfaces hold; None where they do not for every joint."""
+        count = len(self.joints)
+        if POSITION not in self.commands or len(self.commanded_joints) != count:
+            return None
+        positions = values[:count]
+        return positions if np.isfinite(positions).all() else None
+
+    def command(self, setpoint: Setpoint, errors: Vector, period: float, pids: JointPids | None = None) -> Vector:
+        """Values of the command interfaces.
+
+        Args:
+            setpoint: what is wanted.
+            errors: shape (3, n), wanted − measured.
+            period: since the last time [s].
+            pids: of the commanded joints, in a closed loop.
+        """
+        motion, places = setpoint.motion, self.places
+        if self.commands == (POSITION,):
+            only: Vector = motion[0][places]
+            return only
+        efforts = np.zeros(len(self.joints)) if setpoint.efforts is None else setpoint.efforts
+        if pids is not None:
+            feed = motion[1][places] * pids.feedforward + (efforts[places] if self.has_effort else 0.0)
+            driven: Vector = feed + pids.update(errors[0][places], errors[1][places], period)
+            return driven
+        rows = {POSITION: motion[0], VELOCITY: motion[1], ACCELERATION: motion[2], EFFORT: efforts}
+        return np.concatenate([rows[kind][places] for kind in self.commands])
+
+    def at_rest(self, values: Vector) -> Vector:
+        """Values of the command interfaces on release: positions as they are, the rest 0."""
+        count = len(self.commanded_joints)
+        rest = values.copy()
+        for k, kind in enumerate(self.commands):
+            if kind != POSITION:
+                rest[k * count : (k + 1) * count] = 0.0
+        return rest
+
+
+def _commanded_joints(params: Params, joints: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
+    """The commanded joints, and their places: all, under the same or other names, or some of them."""
+    commanded = tuple(read_names(params, "command_joints", code=_BAD_INTERFACES)) or joints
+    if len(commanded) == len(joints):
+        return commanded, np.arange(len(joints))
+    if set(commanded) <= set(joints):
+        return commanded, np.array([joints.index(name) for name in commanded], dtype=np.intp)
+    message = "'command_joints' parameter must have the same size as 'joints' parameter or be a subset of it."
+    params.error(_BAD_INTERFACES, message, "joints are " + ", ".join(joints))
+    return joints, np.arange(len(joints))
+
+
+def _read_interfaces(params: Params, name: str, default: Sequence[str], allowed: Sequence[set[str]]) -> tuple[str, ...]:
+    wanted = [one.value for one in params.all(name)] or list(default)
+    listed = "; ".join(", ".join(kind for kind in _INTERFACE_ORDER if kind in one) for one in allowed)
+    if not wanted:
+        params.error(_BAD_INTERFACES, f"'{name}' parameter is empty.", f"allowed is one of: {listed}")
+    elif set(wanted) not in allowed or len(set(wanted)) != len(wanted):
+        params.error(_BAD_INTERFACES, f"'{name}' are {', '.join(wanted)}", f"allowed is one of: {listed}")
+        wanted = [POSITION]
+    return tuple(kind for kind in _INTERFACE_ORDER if kind in wanted) or (POSITION,)
+
+
+TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
+_POINT: Final = "trajectory_msgs/msg/JointTrajectoryPoint"
+_MULTI_DOF_POINT: Final = "trajectory_msgs/msg/MultiDOFJointTrajectoryPoint"
+_FEEDBACK: Final = "control_msgs/action/FollowJointTrajectory_Feedback"
+
+
+class TrajectoryMessages:
+    """Makes them for one group of joints."""
+
+    STATE: Final = "control_msgs/msg/JointTrajectoryControllerState"
+
+    def __init__(self, group: JointGroup) -> None:
+        self._group, self._names = group, list(group.joints)
+        self._none = np.zeros(0)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> TrajectoryMessages:
+        return self
+
+    def feedback(self, now: int, desired: Vector, state: Vector, errors: Vector) -> Any:
+        """How far a goal is; arrays (3, n)."""
+        measured = len(self._group.states)
+        points = self._point(desired, 3), self._point(state, measured), self._point(errors, measured)
+        none = (self._no_point() for _ in range(3))
+        return msgs.type_of(_FEEDBACK)(msgs.header(now, ""), list(self._names), *points, [], *none)
+
+    def state(self, now: int, desired: Vector, state: Vector, errors: Vector, commands: Vector) -> Any:
+        """What the controller is at; arrays (3, n), and the values of its command interfaces."""
+        measured = len(self._group.states)
+        wanted, actual = self._point(desired, 3), self._point(state, measured)
+        points = wanted, actual, self._point(errors, measured), self._output(commands), wanted, actual
+        none = (self._no_point() for _ in range(6))
+        return msgs.type_of(self.STATE)(msgs.header(now, ""), list(self._names), *points, [], *none)
+
+    def _no_point(self) -> Any:
+        return msgs.type_of(_MULTI_DOF_POINT)([], [], [], msgs.duration(0))
+
+    def _point(self, motion: Vector, rows: int) -> Any:
+        fields = [motion[k] if k < rows else self._none for k in range(3)]
+        return msgs.type_of(_POINT)(*fields, self._none, msgs.duration(0))
+
+    def _output(self, values: Vector) -> Any:
+        count = len(self._group.commanded_joints)
+        found = {kind: values[k * count : (k + 1) * count] for k, kind in enumerate(self._group.commands)}
+        fields = [found.get(kind, self._none) for kind in ("position", "velocity", "acceleration", "effort")]
+        return msgs.type_of(_POINT)(*fields, msgs.duration(0))

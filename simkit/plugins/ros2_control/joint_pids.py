@@ -1,0 +1,102 @@
+"""PID controllers of several joints at once, as ros2_control's control_toolbox has them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.pose import Vector
+
+_IGNORED_CLAMPS: Final = ("antiwindup", "save_i_term")  # the clamps of the integral count in any case
+ANTIWINDUP: Final = ("none", "back_calculation", "conditional_integration")
+
+
+@dataclass(slots=True, eq=False)
+class JointPids:
+    """Command = p·e + ∫i·e dt + d·ė, each for its own joint; all arrays have shape (n,).
+
+    Attributes:
+        p, i, d: gains: command per error, per error and second, per error's rate.
+        i_low, i_high: bounds of the integral's part of the command.
+        low, high: bounds of the command.
+        feedforward: command per wanted velocity.
+        tracking: time constant of back-calculation [s]; 0 for the one that control_toolbox recommends.
+        deadband: errors up to this do not add to the integral.
+        strategy: what a command at its bounds does to the integral: "none"; "back_calculation" takes the surplus back;
+            "conditional_integration" adds nothing that would go further out.
+        integral: the integral's part now.
+    """
+
+    p: Vector
+    i: Vector
+    d: Vector
+    i_low: Vector
+    i_high: Vector
+    low: Vector
+    high: Vector
+    feedforward: Vector
+    tracking: Vector
+    deadband: Vector
+    strategy: tuple[str, ...]
+    integral: Vector
+
+    @classmethod
+    def read(cls, gains: Params, joints: tuple[str, ...]) -> JointPids:
+        """Of `gains: {<joint>: {p: …, i: …, d: …}}`; `i_clamp` bounds both ways."""
+        blocks = [gains.block(joint) for joint in joints]
+        for block in blocks:
+            for name in _IGNORED_CLAMPS:
+                block.child(name)
+
+        def each(name: str, default: float, minimum: float | None = None, *, finite: bool = True) -> Vector:
+            return np.array([b.number(name, default, minimum=minimum, finite=finite) for b in blocks])
+
+        clamp = each("i_clamp", np.inf, 0.0, finite=False)
+        clamp = np.where(clamp > 0.0, clamp, np.inf)
+        return cls(
+            p=each("p", 0.0),
+            i=each("i", 0.0),
+            d=each("d", 0.0),
+            i_low=np.maximum(each("i_clamp_min", -np.inf, finite=False), -clamp),
+            i_high=np.minimum(each("i_clamp_max", np.inf, finite=False), clamp),
+            low=each("u_clamp_min", -np.inf, finite=False),
+            high=each("u_clamp_max", np.inf, finite=False),
+            feedforward=each("ff_velocity_scale", 0.0),
+            tracking=each("tracking_time_constant", 0.0, 0.0),
+            deadband=each("error_deadband", 0.0, 0.0),
+            strategy=tuple(b.choice("antiwindup_strategy", ANTIWINDUP, "none") for b in blocks),
+            integral=np.zeros(len(joints)),
+        )
+
+    def update(self, error: Vector, rate: Vector, step: float) -> Vector:
+        """The commands for errors wanted − measured and their rates, `step` [s] after the last."""
+        wanted = self.p * error + self.integral + self.d * rate
+        command = np.clip(wanted, self.low, self.high)
+        growth = np.where(np.abs(error) > self.deadband, self.i * error, 0.0)
+        for j, strategy in enumerate(self.strategy):
+            surplus = command[j] - wanted[j]
+            if strategy == "back_calculation":
+                growth[j] += surplus / self._tracking(j) if surplus else 0.0
+            elif strategy == "conditional_integration" and surplus * error[j] < 0.0:
+                growth[j] = 0.0
+        self.integral = np.clip(self.integral + growth * step, self.i_low, self.i_high)
+        return command
+
+    def set_gain(self, name: str, joint: int, value: float) -> None:
+        """Changes p, i, d or feedforward of one joint."""
+        getattr(self, name)[joint] = value
+
+    def restart(self) -> None:
+        """Forgets what was."""
+        self.integral = np.zeros_like(self.integral)
+
+    def _tracking(self, j: int) -> float:
+        if self.tracking[j] > 0.0:
+            return float(self.tracking[j])
+        p, i, d = abs(self.p[j]), abs(self.i[j]), abs(self.d[j])
+        if i == 0.0:
+            return np.inf
+        return float(np.sqrt(d / i) if d > 0.0 else p / i) or np.inf

@@ -1,0 +1,130 @@
+"""What a robot's parameter files say that reaches nobody: controllers without a type, misspelt names, other rates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.plugins.ros2_control.parameter_files import Entry, ParameterFile, node_matches
+
+if TYPE_CHECKING:
+    from simkit.plugins.ros2_control.controller_manager import ControllerManager
+
+_MANAGER_PARAMETERS: Final = (
+    "update_rate",
+    "use_sim_time",
+    "robot_description",
+    "hardware_components_initial_state",
+    "hardware_synchronization",
+    "defaults",
+    "diagnostics",
+    "overruns",
+    "handle_exceptions",
+    "shutdown_on_initial_state_failure",
+    "enforce_command_limits",
+    "thread_priority",
+    "lock_memory",
+    "cpu_affinity",
+    "qos_overrides",
+    "start_type_description_service",
+    "service_introspection",
+)
+_DECLARATION_PARAMETERS: Final = (
+    "type",
+    "params_file",
+    "fallback_controllers",
+    "is_async",
+    "thread_priority",
+    "update_rate",
+)
+_CONTROLLER_PARAMETERS: Final = ("joint", "joints", "joint_name", "left_wheel", "left_wheel_names", "sensor_name")
+
+
+def report_unused_parameters(manager: ControllerManager, found: Diagnostics) -> None:
+    """Tells of everything in the files that has no effect, with the closest name.
+
+    Args:
+        manager: whose files they are; nothing is loaded yet.
+        found: where it goes.
+    """
+    declared, node = manager.declared(), manager.node
+    _report_misspelt_nodes(manager, declared, found)
+    if manager.is_ros_1:
+        own = manager.files.of_node(node)
+        for name, entry in (own.below or {}).items() if own is not None else ():
+            _report_in_ros_1(name, entry, declared, found)
+    nodes = [(pattern, entry) for file in manager.files.files for pattern, entry in file.nodes]
+    for pattern, entry in nodes:
+        if not pattern.endswith("*") and node_matches(pattern, node):  # a pattern's parameters are other nodes' too
+            for name, one in (entry.below or {}).items():
+                _report_in_manager(name, one, declared, manager.files.node_names(), found)
+    if not declared:
+        _report_no_controllers(manager.files.files, node, found)
+
+
+def report_high_rates(manager: ControllerManager, rate: float | None, found: Diagnostics) -> None:
+    """Tells of controllers that are to be updated more often than their manager; `rate` is its own [Hz]."""
+    for name, loaded in manager.controllers.items():
+        own = loaded.controller.update_rate
+        if rate is not None and own > rate * (1.0 + 1e-9):
+            message = f"the controller {name!r} update rate: {own} Hz should be at most the manager's: {rate:g} Hz"
+            found.warning("SK-CONTROL-017", f"{message}; it is updated at that", loaded.controller.params.where)
+
+
+def _report_misspelt_nodes(manager: ControllerManager, declared: Mapping[str, str], found: Diagnostics) -> None:
+    """Tells of nodes that the files have parameters for and that nobody is: mostly misspelt controllers."""
+    known = {manager.name, manager.plugin.name, *declared, "**", "*"}
+    for file in manager.files.files:
+        for pattern, entry in file.nodes:
+            name = pattern.rpartition("/")[2]
+            near = did_you_mean(name, declared)
+            if name not in known and near:
+                message = f"{file.path.name} has parameters for {name!r}, which no controller manager declares"
+                found.warning("SK-CONTROL-019", message, entry.where, near)
+
+
+def _report_in_manager(
+    name: str, entry: Entry, declared: Mapping[str, str], nodes: Sequence[str], found: Diagnostics
+) -> None:
+    """One name among the manager's own parameters, in ROS 2's layout."""
+    if name in declared:
+        for word, one in (entry.below or {}).items():
+            if word not in _DECLARATION_PARAMETERS:
+                message = f"{word!r} beside the type of {name!r} is not used: a controller has a node of its own"
+                found.warning("SK-CONTROL-011", message, one.where, f"{name}: {{ros__parameters: {{{word}: ...}}}}")
+    elif name in _MANAGER_PARAMETERS:
+        return
+    elif entry.form in ("block", "nothing") or name in nodes:
+        _report_no_type(name, entry, found)
+    else:
+        near = did_you_mean(name, _MANAGER_PARAMETERS)
+        found.warning("SK-CONTROL-011", f"controller manager: <{name}> is not used", entry.where, near)
+
+
+def _report_in_ros_1(name: str, entry: Entry, declared: Mapping[str, str], found: Diagnostics) -> None:
+    """One name in the robot's namespace: everything may stand there, so it has to look like a controller's."""
+    below = entry.below or {}
+    if name not in declared and any(word in below for word in _CONTROLLER_PARAMETERS):
+        _report_no_type(name, entry, found)
+
+
+def _report_no_type(name: str, entry: Entry, found: Diagnostics) -> None:
+    kind = (entry.below or {}).get("type")
+    where = entry.where if kind is None else kind.where
+    what = "is not defined" if kind is None else f"is {'empty' if kind.form in ('value', 'nothing') else 'no text'}"
+    message = f"the 'type' param of controller {name!r} {what}; it is left out"
+    near = did_you_mean("type", [word for word in entry.below or {} if word != "type"])
+    hint = f"it has {near.removeprefix('did you mean ').rstrip('?')}" if near else f"{name}: {{type: package/Class}}"
+    found.warning("SK-CONTROL-013", message, where, hint)
+
+
+def _report_no_controllers(files: Sequence[ParameterFile], node: str, found: Diagnostics) -> None:
+    """No file declares a controller where the manager looks for them."""
+    names = [pattern for file in files for pattern, _ in file.nodes]
+    names += [f"/{name}" for file in files if file.root is not None for name in file.root.below or {}]
+    if names:  # an empty file has been told of
+        which = ", ".join(file.path.name for file in files)
+        message = f"{which} declares no controller for {node or '/'!r}: none is loaded"
+        there = "there are parameters for: " + ", ".join(names[:20])
+        found.warning("SK-CONTROL-003", message, Where(str(files[0].path), 1), did_you_mean(node, names) or there)

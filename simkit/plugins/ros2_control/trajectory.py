@@ -1,0 +1,289 @@
+"""Trajectories of several joints at once: points with times, and the splines between them.
+
+The rules are those of ros2_controllers' joint_trajectory_controller: between two points that both give velocities a
+cubic, with accelerations as well a quintic, and a straight line where either gives positions only.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from simkit.pose import Vector
+
+SECOND: Final = 1_000_000_000
+_TURN: Final = 2.0 * np.pi
+_LOOK_AHEAD: Final = 32
+"""So many setpoints are worked out at once: arrays of a few numbers each take as long as one of them all."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrajectoryPoint:
+    """One point; a field that the message leaves empty is None.
+
+    Attributes:
+        time: from the start [ns].
+        positions, velocities, accelerations: shape (n,), by the controller's joints [rad or m, per s, per s²].
+        efforts: likewise [N·m or N].
+    """
+
+    time: int
+    positions: Vector | None = None
+    velocities: Vector | None = None
+    accelerations: Vector | None = None
+    efforts: Vector | None = None
+
+
+class Setpoint(NamedTuple):
+    """Where the joints are to be at one moment.
+
+    Attributes:
+        motion: shape (3, n): positions, velocities, accelerations.
+        efforts: shape (n,); None where the points have none.
+    """
+
+    motion: Vector
+    efforts: Vector | None = None
+
+
+class Spline:
+    """Where all joints are to be at every time.
+
+    Attributes:
+        times: where one piece ends and the next begins, since the start [ns]; rising.
+        last: after all.
+    """
+
+    def __init__(self, times: Sequence[int], pieces: Sequence[Vector], last: Setpoint) -> None:
+        """Made of what `through`, `held` and `stop` work out.
+
+        Args:
+            times: one more than pieces.
+            pieces: coefficients (6, n) of rising powers of the seconds since the piece's beginning.
+            last: after the last piece.
+        """
+        self.times, self.last = tuple(times), last
+        self._begins = np.array(self.times[:-1], np.int64)
+        self._table = _with_derivatives(pieces)
+        self._ahead: dict[int, Vector] = {}
+        self._efforts: tuple[tuple[Vector, Vector], ...] = ()
+        self._setpoints: tuple[Vector, ...] = ()  # of a spline that does not interpolate
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Spline:
+        return self
+
+    @property
+    def end(self) -> int:
+        """When it is over [ns since the start]."""
+        return self.times[-1]
+
+    def at(self, now: int, step: int = 0) -> Setpoint:
+        """Where the joints are to be at a time.
+
+        Args:
+            now: [ns since the start].
+            step: how much later the next time is going to be asked for [ns]; 0 where nobody knows. It changes no bit.
+        """
+        motion = self._ahead.get(now)
+        if motion is not None and not self._efforts:
+            return Setpoint(motion)
+        if now >= self.times[-1]:
+            return self.last
+        if self._efforts or self._setpoints:
+            return self._with_effort(now)
+        if step <= 0:
+            return Setpoint(self._motions(np.array([now]))[0])
+        times = np.arange(now, min(now + _LOOK_AHEAD * step, self.times[-1]), step)
+        self._ahead = dict(zip(times.tolist(), self._motions(times), strict=True))
+        return Setpoint(self._ahead[now])
+
+    def _motions(self, times: Any) -> Vector:
+        """Shape (times, 3, n); number by number, so that the same time has the same bits among whatever others."""
+        pieces = np.maximum(np.searchsorted(self._begins, times, "right") - 1, 0)
+        t = (np.maximum(times - self._begins[pieces], 0) / SECOND)[:, None]
+        table = self._table[:, pieces]
+        motions: Vector = table[-1]
+        for coefficients in table[-2::-1]:
+            motions = motions * t + coefficients
+        return motions.reshape(len(times), 3, -1)
+
+    def _with_effort(self, now: int) -> Setpoint:
+        """The same where there are efforts, or no interpolation."""
+        i = max(bisect_right(self.times, now) - 1, 0)
+        if self._setpoints:
+            return Setpoint(self._setpoints[i], self._effort(i, 1.0))
+        t = max(now - self.times[i], 0) / SECOND
+        effort = self._effort(i, t * SECOND / (self.times[i + 1] - self.times[i]))
+        return Setpoint(self._motions(np.array([now]))[0], effort)
+
+    def _effort(self, i: int, share: float) -> Vector | None:
+        if not self._efforts:
+            return None
+        a, b = self._efforts[i]
+        effort: Vector = a + (b - a) * share
+        return effort
+
+    @classmethod
+    def held(cls, positions: Vector, velocities: Vector | None = None) -> Spline:
+        """Stays at a place for ever (or gives a velocity for ever, to joints that are commanded by it)."""
+        rest = np.zeros_like(positions)
+        motion = np.stack([positions, rest if velocities is None else velocities, rest])
+        return cls((0,), (), Setpoint(motion))
+
+    @classmethod
+    def through(cls, start: TrajectoryPoint, points: Sequence[TrajectoryPoint], *, steps: bool = False) -> Spline:
+        """From a state through the points.
+
+        A point at or before the time of `start` is taken as it is: then the way begins there, and not at the state.
+
+        Args:
+            start: the state when the trajectory is taken up; its time [ns] is since the start too.
+            points: with positions, times rising.
+            steps: no interpolation: from a point's time on its successor is what is wanted.
+        """
+        count = len(_zero_if_missing(points[0].positions))
+        ends = list(points)
+        if points[0].time > start.time:
+            ends.insert(0, _match_first_point(start, points[0]))
+        times = [point.time for point in ends]
+        pairs = list(pairwise(ends))
+        pieces = [] if steps else [_hermite_piece(a, b) for a, b in pairs]
+        made = cls(times, pieces, Setpoint(_point_rows(ends[-1], count), ends[-1].efforts))
+        if steps:
+            waits = ends[0] is not points[0]
+            made._setpoints = tuple(_point_rows(a if waits and k == 0 else b, count) for k, (a, b) in enumerate(pairs))
+        if any(point.efforts is not None for point in points):
+            rest = np.zeros(count)
+            made._efforts = tuple(
+                (rest if a.efforts is None else a.efforts, rest if b.efforts is None else b.efforts) for a, b in pairs
+            )
+            if made.last.efforts is None:
+                made.last = Setpoint(made.last.motion, rest)
+        return made
+
+    @classmethod
+    def stop(cls, positions: Vector, velocities: Vector, decelerations: Vector) -> Spline:
+        """Brings each joint from its velocity to rest at its own deceleration [rad/s² or m/s²]."""
+        can_slow = decelerations > 0.0  # the others stop at once
+        velocities = np.where(can_slow, velocities, 0.0)
+        slope = -np.sign(velocities) * decelerations
+        durations = np.abs(velocities) / np.where(can_slow, decelerations, 1.0)
+        ends = sorted({round(float(d) * SECOND) for d in durations if d > 0.0})
+        times = [0, *ends] if ends else [0]
+        pieces = []
+        for begin in times[:-1]:
+            t = np.minimum(begin / SECOND, durations)
+            piece = np.zeros((6, len(positions)))
+            piece[0] = positions + velocities * t + slope * t**2 / 2.0
+            is_moving = begin / SECOND < durations - 1e-9
+            piece[1] = np.where(is_moving, velocities + slope * t, 0.0)
+            piece[2] = np.where(is_moving, slope / 2.0, 0.0)
+            pieces.append(piece)
+        rest = np.zeros_like(positions)
+        final = positions + velocities * durations + slope * durations**2 / 2.0
+        return cls(times, pieces, Setpoint(np.stack([final, rest, rest])))
+
+
+def integrate_points(start: TrajectoryPoint, points: Sequence[TrajectoryPoint]) -> list[TrajectoryPoint]:
+    """The points with the positions that their velocities (or these from their accelerations) lead to.
+
+    The mean of both ends over the time between, as ros2_controllers does.
+    """
+    done: list[TrajectoryPoint] = []
+    before = start
+    for point in points:
+        if point.positions is None:
+            t = (point.time - before.time) / SECOND
+            here = _zero_if_missing(before.positions)
+            rest = np.zeros(len(here))
+            v0, v1 = before.velocities if before.velocities is not None else rest, point.velocities
+            if v1 is None:
+                a0 = before.accelerations if before.accelerations is not None else rest
+                v1 = v0 + (a0 + _zero_if_missing(point.accelerations)) * 0.5 * t
+            point = replace(point, positions=here + (v0 + v1) * 0.5 * t, velocities=v1)
+        done.append(point)
+        before = point
+    return done
+
+
+def whole_turn_offset(here: Vector, first: Vector, turning: Vector) -> Vector:
+    """What is to be added to a trajectory so that joints that turn without end take the short way to its first point.
+
+    Args:
+        here: positions [rad].
+        first: those of the first point.
+        turning: which of the joints turn without end.
+
+    Returns:
+        Whole turns [rad], 0 for the other joints.
+    """
+    turns: Vector = np.where(turning, np.round((here - first) / _TURN) * _TURN, 0.0)
+    return turns
+
+
+def shortest_differences(errors: Vector, turning: Vector) -> Vector:
+    """Differences of angles within half a turn, for joints that turn without end [rad]."""
+    wrapped: Vector = np.where(turning, errors - np.round(errors / _TURN) * _TURN, errors)
+    return wrapped
+
+
+def _zero_if_missing(values: Vector | None) -> Vector:
+    assert values is not None
+    return values
+
+
+def _match_first_point(start: TrajectoryPoint, first: TrajectoryPoint) -> TrajectoryPoint:
+    """The state with 0 for what the first point has and a state that is measured lacks."""
+    rest = np.zeros(len(_zero_if_missing(first.positions)))
+    velocities = rest if start.velocities is None and first.velocities is not None else start.velocities
+    accelerations = rest if start.accelerations is None and first.accelerations is not None else start.accelerations
+    return replace(start, velocities=velocities, accelerations=accelerations)
+
+
+def _point_rows(point: TrajectoryPoint, count: int) -> Vector:
+    rest = np.zeros(count)
+    fields = (_zero_if_missing(point.positions), point.velocities, point.accelerations)
+    return np.stack([rest if values is None else values for values in fields])
+
+
+def _hermite_piece(a: TrajectoryPoint, b: TrajectoryPoint) -> Vector:
+    """Coefficients (6, n) of rising powers; Hermite polynomials of degree 1, 3 or 5."""
+    p0, p1 = _zero_if_missing(a.positions), _zero_if_missing(b.positions)
+    t = (b.time - a.time) / SECOND
+    piece = np.zeros((6, len(p0)))
+    rise = p1 - p0
+    piece[0] = p0
+    if a.velocities is None or b.velocities is None:
+        piece[1] = rise / t
+        return piece
+    v0, v1 = a.velocities, b.velocities
+    piece[1] = v0
+    if a.accelerations is None or b.accelerations is None:
+        piece[2] = (3.0 * rise / t - 2.0 * v0 - v1) / t
+        piece[3] = (-2.0 * rise / t + v0 + v1) / t**2
+        return piece
+    a0, a1 = a.accelerations, b.accelerations
+    piece[2] = a0 / 2.0
+    piece[3] = (20.0 * rise - (8.0 * v1 + 12.0 * v0) * t - (3.0 * a0 - a1) * t**2) / (2.0 * t**3)
+    piece[4] = (-30.0 * rise + (14.0 * v1 + 16.0 * v0) * t + (3.0 * a0 - 2.0 * a1) * t**2) / (2.0 * t**4)
+    piece[5] = (12.0 * rise - 6.0 * (v1 + v0) * t + (a1 - a0) * t**2) / (2.0 * t**5)
+    return piece
+
+
+def _with_derivatives(pieces: Sequence[Vector]) -> Vector:
+    """Coefficients (powers, pieces, 3 n) of pieces (6, n), of their first and of their second derivatives."""
+    if not len(pieces):
+        return np.zeros((1, 0, 0))
+    stacked, degrees = np.stack(pieces, 1), np.arange(6.0)[:, None, None]
+    table = np.zeros((6, len(pieces), 3, stacked.shape[2]))
+    table[:, :, 0] = stacked
+    table[:5, :, 1] = (degrees * stacked)[1:]
+    table[:4, :, 2] = (degrees * (degrees - 1.0) * stacked)[2:]
+    used = np.flatnonzero(stacked.any(axis=(1, 2)))
+    highest = int(used[-1]) if len(used) else 0
+    return table[: highest + 1].reshape(highest + 1, len(pieces), -1)

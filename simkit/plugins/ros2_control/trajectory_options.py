@@ -1,0 +1,115 @@
+"""What trajectory controllers are told: tolerances, the gains of their PIDs (both live), and how to stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.plugins.ros2_control.joint_pids import JointPids
+from simkit.plugins.ros2_control.trajectory import Spline
+from simkit.plugins.ros2_control.trajectory_goals import Tolerances
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.plugins.ros2_control.controller import Controller
+
+_GAINS: Final = {"p": "p", "i": "i", "d": "d", "ff_velocity_scale": "feedforward"}
+
+
+class LiveTolerances:
+    """The `constraints` of a controller's joints, as they are at the moment; a handle on its parameters."""
+
+    def __init__(self, controller: Controller, joints: tuple[str, ...]) -> None:
+        def live(name: str, default: float, description: str) -> Any:
+            return controller.declare(f"constraints.{name}", default, minimum=0.0, description=description)
+
+        self._stopped = live("stopped_velocity_tolerance", 0.01, "speed of a joint at the end [rad/s or m/s]")
+        self._goal_time = live("goal_time", 0.0, "how much later than planned a goal may end [s]; 0 for ever")
+        self._path = [live(f"{joint}.trajectory", 0.0, "off its way at most [rad or m]") for joint in joints]
+        self._goal = [live(f"{joint}.goal", 0.0, "off its goal at most [rad or m]") for joint in joints]
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> LiveTolerances:
+        return self
+
+    def tolerances(self) -> Tolerances:
+        """Those of a goal that has none of its own."""
+        path, goal = [p.value for p in self._path], [p.value for p in self._goal]
+        return Tolerances.of(path, goal, self._stopped.value, self._goal_time.value)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StopRule:
+    """How joints are brought to rest where a trajectory is given up.
+
+    Attributes:
+        decelerations: of each joint [rad/s² or m/s²], shape (n,); 0 stops at once.
+        duration: within which all of them come to rest [s], as in ROS 1; 0 for at once.
+    """
+
+    decelerations: Vector
+    duration: float
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> StopRule:
+        return self
+
+    @classmethod
+    def read(cls, params: Params, joints: tuple[str, ...]) -> StopRule:
+        """Of `constraints` and of `stop_trajectory_duration`."""
+        constraints = params.block("constraints")
+        slows_down = constraints.boolean("decelerate_on_cancel", False)
+        blocks = [constraints.block(joint) for joint in joints]
+        wanted = np.array([block.number("max_deceleration_on_cancel", 0.0, minimum=0.0) for block in blocks])
+        return cls(wanted if slows_down else wanted * 0.0, params.number("stop_trajectory_duration", 0.0, minimum=0.0))
+
+    def spline(self, state: Vector, *, has_velocity: bool) -> Spline:
+        """The way from a state, shape (3, n), to rest.
+
+        Args:
+            state: positions, velocities, accelerations.
+            has_velocity: whether velocities are measured.
+        """
+        position, velocity, _ = state
+        if has_velocity and self.decelerations.any():
+            return Spline.stop(position, velocity, self.decelerations)
+        if self.duration > 0.0:
+            return Spline.stop(position, velocity, np.abs(velocity) / self.duration)
+        return Spline.held(position)
+
+
+def read_timeout(params: Params, goal_time: float) -> float:
+    """`cmd_timeout` [s], 0 for none; one that a goal may be later than, `goal_time` [s], is none after a warning."""
+    timeout = params.number("cmd_timeout", 0.0, minimum=0.0)
+    if not 0.0 < timeout <= goal_time:
+        return timeout
+    message = f"Command timeout must be higher than goal_time tolerance ({timeout:f} vs. {goal_time:f})"
+    where = (params.child("cmd_timeout") or params).where
+    params.diagnostics.warning("SK-CONTROL-023", f"{message}; there is none now", where)
+    return 0.0
+
+
+def read_pids(controller: Controller, joints: tuple[str, ...], find: Callable[[], JointPids | None]) -> JointPids:
+    """PIDs of `gains`, which may be changed while they are at work.
+
+    Args:
+        controller: whose parameters they are.
+        joints: theirs.
+        find: gives the PIDs as they are at the moment of a change (restored ones are another object).
+    """
+    params = controller.params
+    pids = JointPids.read(params.block("gains"), joints)
+    feed = params.block("velocity_ff")  # where ROS 1 has it
+    for k, joint in enumerate(joints):
+        pids.feedforward[k] = feed.number(joint, float(pids.feedforward[k]))
+        for name, attribute in _GAINS.items():
+
+            def take(value: float, attribute: str = attribute, k: int = k) -> None:
+                now = find()
+                if now is not None:
+                    now.set_gain(attribute, k, value)
+
+            controller.declare(f"gains.{joint}.{name}", float(getattr(pids, attribute)[k]), on_change=take)
+    return pids

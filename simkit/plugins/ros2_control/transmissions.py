@@ -1,0 +1,148 @@
+"""Transmissions: what the actuators behind the joints do, as `<transmission>` has it.
+
+Controllers command joints, in Gazebo and here; an actuator's position, velocity and effort are state interfaces of its
+name, worked out where a controller reads them. The laws are those of ros2_control's transmission_interface, with n_a
+and n_j the reductions of actuators and joints, x the joint's position less its offset:
+
+* simple: a = n_a n_j x;
+* differential: a1 = n_a1 (n_j1 x1 + n_j2 x2), a2 = n_a2 (n_j1 x1 − n_j2 x2);
+* four-bar linkage: a1 = n_a1 n_j1 x1, a2 = n_a2 (x1 + n_j2 x2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.params import Params
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION
+from simkit.pose import Vector
+from simkit.scene.actuation import Transmission, TransmissionEnd
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneModel
+
+_KINDS: Final = {
+    "SimpleTransmission": "simple",
+    "DifferentialTransmission": "differential",
+    "FourBarLinkageTransmission": "four_bar_linkage",
+}
+_SMALLEST_REDUCTION: Final = 1e-12  # of a reduction; its inverse is the most
+
+
+@dataclass(frozen=True, slots=True)
+class TransmissionLaw:
+    """How actuators follow from joints.
+
+    Attributes:
+        actuators, joints: plain names.
+        motion: position or velocity of the actuators over that of the joints (actuators, joints).
+        force: effort of the actuators over that of the joints (actuators, joints).
+        offset: of the joints [rad or m].
+    """
+
+    actuators: tuple[str, ...]
+    joints: tuple[str, ...]
+    motion: Vector
+    force: Vector
+    offset: Vector
+
+    def actuate(self, interface: str, joints: Vector) -> Vector:
+        """An interface of the actuators, of that of the joints."""
+        if interface == EFFORT:
+            return np.asarray(self.force @ joints)
+        return np.asarray(self.motion @ (joints - self.offset if interface == POSITION else joints))
+
+
+def transmission_laws(
+    transmissions: Iterable[Transmission], joints: Sequence[str], found: Diagnostics
+) -> list[TransmissionLaw]:
+    """The laws of all transmissions whose joints the hardware has."""
+    made = []
+    for transmission in transmissions:
+        law = _transmission_law(transmission)
+        if law is None and transmission.kind not in _KINDS.values():
+            message = f"transmission {transmission.name!r} is of type {transmission.type or transmission.kind!r}"
+            message += f", which is not known; there are {', '.join(_KINDS)}; its actuators are left out"
+            near = did_you_mean(transmission.type.rpartition("/")[2], _KINDS)
+            found.warning("SK-CONTROL-008", message, transmission.where, near)
+            continue
+        if law is None:
+            counts = f"{len(transmission.joints)} joint(s) and {len(transmission.actuators)} actuator(s)"
+            message = f"transmission {transmission.name!r} ({transmission.type or 'of no type'}) has {counts}"
+            hint = "simple has one of each; the others have two of each, all different; no reduction is 0 or nearly 0"
+            found.warning("SK-CONTROL-008", f"{message}; its actuators are left out", transmission.where, hint)
+            continue
+        missing = [joint for joint in law.joints if joint not in joints]
+        for joint in missing:
+            message = f"transmission {transmission.name!r} names joint {joint!r}, which the hardware does not have"
+            found.warning(
+                "SK-CONTROL-008",
+                f"{message}; its actuators are left out",
+                transmission.where,
+                did_you_mean(joint, joints),
+            )
+        if not missing:
+            made.append(law)
+    return made
+
+
+def _transmission_law(transmission: Transmission) -> TransmissionLaw | None:
+    joints, actuators = _by_role(transmission.joints), _by_role(transmission.actuators)
+    n_j, n_a = [end.reduction for end in joints], [end.reduction for end in actuators]
+    two = len(joints) == len(actuators) == 2
+    if any(not _SMALLEST_REDUCTION <= abs(n) <= 1.0 / _SMALLEST_REDUCTION for n in (*n_j, *n_a)):
+        return None
+    if any(len({end.name for end in ends}) != len(ends) for ends in (joints, actuators)):
+        return None
+    if transmission.kind == "simple" and len(joints) == len(actuators) == 1:
+        motion = np.array([[n_a[0] * n_j[0]]])
+        force = 1.0 / motion
+    elif transmission.kind == "differential" and two:
+        motion = np.array([[n_a[0] * n_j[0], n_a[0] * n_j[1]], [n_a[1] * n_j[0], -n_a[1] * n_j[1]]])
+        force = np.linalg.inv(motion.T)
+    elif transmission.kind == "four_bar_linkage" and two:
+        motion = np.array([[n_a[0] * n_j[0], 0.0], [n_a[1], n_a[1] * n_j[1]]])
+        force = np.array([[1.0 / (n_a[0] * n_j[0]), 0.0], [1.0 / n_a[1], 1.0 / (n_a[1] * n_j[1])]])
+    else:
+        return None
+    offset = np.array([end.offset for end in joints])
+    return TransmissionLaw(tuple(a.name for a in actuators), tuple(j.name for j in joints), motion, force, offset)
+
+
+def _by_role(ends: Sequence[TransmissionEnd]) -> list[TransmissionEnd]:
+    """In the order of their roles (`joint1`, `joint2`), where they have some."""
+    return sorted(ends, key=lambda end: end.role) if all(end.role for end in ends) else list(ends)
+
+
+def transmissions_of(scene: SceneModel, blocks: Iterable[Params]) -> list[Transmission]:
+    """Those in `<ros2_control>`, else those of the robot (which ROS 1 reads)."""
+    found = [_read_transmission(element) for block in blocks for element in block.all("transmission")]
+    return found or list(scene.transmissions)
+
+
+def _read_transmission(element: Params) -> Transmission:
+    plugin = element.text("plugin", "")
+    kind = _KINDS.get(plugin.rpartition("/")[2], plugin)
+    return Transmission(
+        name=element.attribute("name"),
+        kind=kind,
+        type=plugin,
+        joints=tuple(_read_end(one) for one in element.all("joint")),
+        actuators=tuple(_read_end(one) for one in element.all("actuator")),
+        params=element,
+        where=element.where,
+    )
+
+
+def _read_end(element: Params) -> TransmissionEnd:
+    return TransmissionEnd(
+        name=element.attribute("name"),
+        reduction=element.number("mechanical_reduction", 1.0),
+        offset=element.number("offset", 0.0),
+        role=element.attribute("role"),
+    )

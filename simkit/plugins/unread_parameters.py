@@ -1,0 +1,83 @@
+"""Report the elements and attributes of a plugin that it did not read."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import inspect
+import sys
+from collections.abc import Iterator
+from types import ModuleType
+from typing import Any
+
+from simkit.diagnostics import did_you_mean
+from simkit.plugins.base import Plugin
+
+_READERS = frozenset(
+    ("all", "attribute", "block", "boolean", "child", "choice", "declare", "each", "has", "integer", "number")  # noqa: RUF005
+    + ("pose", "text", "vector", "vector3")
+    + ("find_element", "has_element")  # and `get_…`: how systems of gz read
+)
+
+
+def _is_reader(method: str) -> bool:
+    return method in _READERS or method.startswith("get_")
+
+
+def names_read(cls: Any) -> frozenset[str]:
+    """Names of elements and attributes that the modules of a class and its bases ask for; the source is only parsed."""
+    own = (c for c in cls.__mro__ if c is not Plugin and not c.__module__.startswith("simkit.plugins.base"))
+    modules = dict.fromkeys(c.__module__ for c in own if c is not object)
+    return frozenset(name for module in modules for name in _names_in_module(module))
+
+
+def _names_in_module(module: str) -> frozenset[str]:
+    try:
+        return _names_in_source(inspect.getsource(sys.modules[module]))
+    except (KeyError, OSError, TypeError, SyntaxError, ValueError):
+        return frozenset()  # made without a source: then nothing is known
+
+
+@functools.lru_cache(maxsize=256)
+def _names_in_source(source: str) -> frozenset[str]:
+    return frozenset(_names_in_tree(ast.parse(source)))
+
+
+def _names_in_tree(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and _is_reader(node.func.attr):
+            for value in (*node.args[:1], *(k.value for k in node.keywords if k.arg in ("name", "element"))):
+                if isinstance(value, ast.Constant) and isinstance(value.value, str):
+                    yield value.value
+
+
+def report_unread(plugin: Plugin) -> None:
+    """Warns about each element and attribute of a plugin that it did not read."""
+    params, owner = plugin.params, f"plugin {plugin.name!r}"
+    names = _KnownNames(plugin)
+    for element, suggestion in params.unread():
+        text = f"{owner}: <{element.name}> is not used"
+        if suggestion.endswith(" is"):  # it comes twice
+            hint = suggestion
+        elif element.name in names.known:
+            hint = "the plugin reads it only under a condition that does not hold here, or later"
+        else:
+            hint = did_you_mean(element.name, names.known) or suggestion
+        params.diagnostics.warning("SK-PARAM-003", text, element.where, hint)
+    for element, attribute in params.unread_attributes():
+        text = f"{owner}: attribute {attribute!r} of <{element.name}> is not used"
+        hint = did_you_mean(attribute, (*element.attributes_asked, *names.known)) if element.attributes_asked else ""
+        params.diagnostics.warning("SK-PARAM-007", text, element.where, hint)
+
+
+class _KnownNames:
+    """What the class's source reads, looked up once it is needed."""
+
+    def __init__(self, plugin: Plugin) -> None:
+        self._of = getattr(plugin, "system", plugin) or plugin
+
+    @property
+    def known(self) -> frozenset[str]:
+        if isinstance(self._of, ModuleType):
+            return _names_in_module(self._of.__name__)
+        return names_read(type(self._of))

@@ -1,0 +1,61 @@
+"""Set the place on Earth of a world or of an entity for services."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, Final
+
+from simkit.plugins.world.entities import RequestRefused, require_finite
+from simkit.pose import Pose, quat_from_rpy
+from simkit.scene import SphericalCoordinates
+
+_MOON: Final = 1737400.0, 1737400.0  # semi-axes [m], as `<surface_model>MOON_SCS</surface_model>` has them
+_EARTH: Final = 6378137.0, 6356752.314245  # of WGS 84
+
+
+def set_world_location(sim: Any, request: Any) -> None:
+    """Lays the world's origin somewhere else; sensors of position and field go by it from now on. Raises Refused."""
+    latitude, longitude, elevation, heading = _numbers(request)
+    surface = int(request.surface_model)
+    if surface not in (0, 1):
+        raise RequestRefused(f"found surface_model {surface}, allowed is 0 (EARTH_WGS84) or 1 (MOON_SCS)")
+    name, (equatorial, polar) = ("EARTH_WGS84", _EARTH) if surface == 0 else ("MOON_SCS", _MOON)
+    before = sim.site.place or SphericalCoordinates(where=sim.world.where)
+    sim.site.move(
+        replace(
+            before,
+            latitude=latitude,
+            longitude=longitude,
+            elevation=elevation,
+            heading=heading,
+            surface=name,
+            equatorial=equatorial,
+            polar=polar,
+        )
+    )
+
+
+def set_entity_location(sim: Any, handle: Any, request: Any) -> None:
+    """Puts a model or a light at a place on the planet, upright, turned by the heading about z. Raises Refused."""
+    from simkit.sensors.environment.geodesy import WorldOnPlanet
+
+    if sim.site.place is None:
+        raise RequestRefused("the world has no spherical coordinates, by which an entity could be placed")
+    latitude, longitude, elevation, heading = _numbers(request)
+    planet = WorldOnPlanet(sim.site.place)
+    position = planet.axes.T @ (planet.ellipsoid.cartesian(latitude, longitude, elevation) - planet.origin)
+    handle.set_pose(Pose(position, quat_from_rpy(0.0, 0.0, heading)))
+
+
+def _numbers(request: Any) -> tuple[float, float, float, float]:
+    """Latitude, longitude [rad], elevation [m], heading [rad]."""
+    latitude = require_finite(request.latitude_deg, "latitude_deg")
+    longitude = require_finite(request.longitude_deg, "longitude_deg")
+    if not -90.0 <= latitude <= 90.0:
+        raise RequestRefused(f"found latitude_deg {latitude:g}, allowed is a number from -90 to 90")
+    elevation, heading = (
+        require_finite(request.elevation, "elevation"),
+        require_finite(request.heading_deg, "heading_deg"),
+    )
+    return math.radians(latitude), math.radians(longitude), elevation, math.radians(heading)

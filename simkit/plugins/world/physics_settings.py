@@ -1,0 +1,79 @@
+"""Read and change the settings of the physics for services."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from simkit.plugins.world.entities import RequestRefused, require_finite, vector_fields, vector_of
+
+_SAME: Final = 1e-9  # of two step sizes, relative
+_OF_ODE: Final = (
+    "auto_disable_bodies",
+    "sor_pgs_precon_iters",
+    "sor_pgs_iters",
+    "sor_pgs_w",
+    "sor_pgs_rms_error_tol",
+    "contact_surface_layer",
+    "contact_max_correcting_vel",
+    "cfm",
+    "erp",
+    "max_contacts",
+)
+
+
+def set_physics(sim: Any, request: Any, *, keeps_gravity: bool = False) -> str:
+    """Changes gravity and the pace; a step of another length is refused, and then nothing is changed.
+
+    Args:
+        sim: the simulation.
+        request: a `gazebo_msgs/srv/SetPhysicsProperties_Request`.
+        keeps_gravity: leaves gravity as it is.
+
+    Returns:
+        What of the request has no meaning here; empty where all has.
+
+    Raises:
+        Refused: the step is another than that of the world, or a number cannot be used.
+    """
+    step, rate = (
+        require_finite(request.time_step, "time_step", 0.0),
+        require_finite(request.max_update_rate, "max_update_rate"),
+    )
+    gravity = vector_of(request.gravity, "gravity")
+    if step and abs(step - sim.timestep) > _SAME * sim.timestep:
+        raise RequestRefused(
+            f"found time_step {step:g}, it is {sim.timestep:g} and cannot change while a world runs: servos, contacts "
+            "and the times of all samples are made for it; load the world with --set physics.max_step_size=... "
+            "(overrides=)"
+        )
+    if not keeps_gravity:
+        sim.gravity = gravity
+    sim.pausing.pace = rate * sim.timestep if rate > 0.0 else None
+    own = _config_fields(sim)
+    asked = {name: getattr(request.ode_config, name) for name in own}
+    given = [name for name, value in asked.items() if value and value != own[name]]
+    return f"not used, for the engine is another: {', '.join(given)}" if given else ""
+
+
+def _config_fields(sim: Any) -> dict[str, float]:
+    """The fields of an `ODEPhysics` message: what has a counterpart here, the rest zero."""
+    return {
+        **dict.fromkeys(_OF_ODE, 0),
+        "auto_disable_bodies": bool(sim.physics.sleep.enabled),
+        "sor_pgs_iters": int(sim.mj_model.opt.iterations),
+        "sor_pgs_rms_error_tol": float(sim.mj_model.opt.tolerance),
+        "max_contacts": int(sim.world.physics.max_contacts),
+    }
+
+
+def physics_fields(sim: Any) -> dict[str, Any]:
+    """The fields of a `gazebo_msgs/srv/GetPhysicsProperties_Response`; of ODE's settings those with a counterpart."""
+    pace = sim.pausing.pace or 0.0  # none: as fast as it goes, which is a rate of 0 in Gazebo
+    return {
+        "time_step": sim.timestep,
+        "pause": sim.paused,
+        "max_update_rate": pace / sim.timestep,
+        "gravity": vector_fields(sim.gravity),
+        "ode_config": _config_fields(sim),
+        "status_message": "GetPhysicsProperties: got properties",
+    }

@@ -1,0 +1,172 @@
+"""The sun by date, time and place: a world plugin that moves a directional light."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from simkit.params import LARGEST, Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.lookups import find_light
+from simkit.plugins.world.sun_position import Site, SunPath, clear_sky
+from simkit.pose import Pose
+from simkit.scene import Atmosphere
+from simkit.sensors.environment.atmosphere import air_column
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.runtime import Light, Simulation
+    from simkit.runtime.handles.light import LightState
+    from simkit.scene import SceneWorld, SphericalCoordinates
+    from simkit.scene.geometry import Vec3
+
+_DISTANCE = 149_597_870_700.0  # [m], one astronomical unit
+_MOST_KELVIN = 1000.0
+_FASTEST = 1e6  # times the true course of the sun: a year in half a minute
+_LOWEST, _HIGHEST = -500.0, 11_000.0  # [m]
+_INSTALL = "pip install 'simkit-robotics[sun]'"
+_DATE = "a date and time such as 2024-06-21T10:30:00Z (UTC where no offset is given)"
+
+
+class Sun(WorldPlugin):
+    """Moves a directional light as the sun moves: its pose, its direction, whether it shines, and its irradiance.
+
+    `<start>` (required): the date and time at t = 0, ISO 8601, UTC where no offset is given; never the machine's clock.
+    `<light_name>`: default the world's first directional light. `<time_scale>`: seconds of the sun's time in one of the
+    simulation, default 1. The place is the world's `<spherical_coordinates>`; `<latitude_deg>`, `<longitude_deg>`,
+    `<elevation>` [m] and `<heading_deg>` here come before it. `<irradiance>`: `clear_sky` (default), or a number
+    [W/m²]. `<pressure>` [Pa] and `<temperature>` [K] of the air, for refraction and for the clear sky; defaults are the
+    standard atmosphere's pressure at the elevation and 285.15 K. `<update_rate>` [Hz], default 10: how often the drawn
+    light moves; whatever measures the light has the sun of its own time, exactly.
+    """
+
+    names = ("simkit::Sun",)
+    filenames = ("simkit-sun",)
+
+    def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
+        self._start = _start(params)
+        self._scale = params.number("time_scale", 1.0, minimum=0, maximum=_FASTEST)
+        self.before_step_rate = params.number("update_rate", 10.0, minimum=0)
+        self._site = _site(params, scene.spherical_coordinates)
+        self._irradiance = _irradiance(params)
+        self._path: SunPath | None = None
+        try:
+            self._path = SunPath(self._site)
+        except ImportError as error:
+            params.diagnostics.error("SK-SENSOR-084", f"the sun's position needs pvlib: {error}", self.where, _INSTALL)
+
+    def load(self, parent: Simulation, params: Params) -> None:
+        self._light = _find_sun(self.sim, params)
+        self._known: tuple[int, LightState] | None = None
+        if self._light is None or self._path is None:
+            return
+        self._outshone = self._light.state
+        self._light.follow(self.state)
+
+    def before_step(self) -> None:
+        if self._light is not None:
+            self.sim.place_light(self._light)
+
+    def state(self, time_ns: int) -> LightState:
+        """How the light stands and shines at a simulated time [ns]."""
+        from simkit.runtime.handles.light import LightState
+
+        if self._known is None or self._known[0] != time_ns:
+            assert self._path is not None and self._light is not None
+            place = self._path.at(self._start + self._scale * time_ns * 1e-9)
+            shines = place.elevation > 0.0
+            irradiance = self._irradiance
+            if irradiance is None:
+                irradiance = clear_sky(place.elevation, self._site.pressure)
+            x, y, z = place.direction.tolist()
+            turn = _shortest_rotation(self._light.scene.direction, (-x, -y, -z))
+            pose = Pose(_DISTANCE * place.direction, turn)
+            on = shines and self._outshone.on
+            self._known = time_ns, LightState(pose, on, irradiance if shines else 0.0)
+        return self._known[1]
+
+
+def _start(params: Params) -> float:
+    """`<start>` in seconds since 1970-01-01 UTC."""
+    text = params.text("start", "")
+    if not text:
+        params.error("SK-PARAM-001", f"<{params.name}> needs <start>: {_DATE}")
+        return 0.0
+    try:
+        found = datetime.fromisoformat(text)
+        return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
+    except (ValueError, OverflowError):
+        params.block("start").error("SK-PARAM-002", f"found <start>{text}</start>, allowed is {_DATE}")
+        return 0.0
+
+
+def _site(params: Params, world: SphericalCoordinates | None) -> Site:
+    """The plugin's own place, or the world's."""
+    own = params.has("latitude_deg"), params.has("longitude_deg")
+    if world is None and not all(own):
+        hint = "or give the world <spherical_coordinates>"
+        params.error("SK-PARAM-001", f"<{params.name}> needs <latitude_deg> and <longitude_deg> [degrees]", hint)
+    elif world is not None and world.surface != "EARTH_WGS84":
+        message = f"the sun is that of the Earth, whatever <surface_model> says: {world.surface}"
+        params.diagnostics.warning("SK-SENSOR-085", message, world.where)
+
+    def angle(name: str, default: float, most: float) -> float:
+        return math.radians(params.number(name, math.degrees(default), minimum=-most, maximum=most))
+
+    elevation = params.number("elevation", world.elevation if world else 0.0, minimum=_LOWEST, maximum=_HIGHEST)
+    if not params.has("elevation") and not _LOWEST <= elevation <= _HIGHEST:
+        message = f"the world's <elevation> is {elevation:g} m, allowed for a sun is {_LOWEST:g} to {_HIGHEST:g} m"
+        params.error("SK-PARAM-002", message, "or give the plugin an <elevation> of its own")
+        elevation = 0.0
+    return Site(
+        latitude=angle("latitude_deg", world.latitude if world else 0.0, 90),
+        longitude=angle("longitude_deg", world.longitude if world else 0.0, 360),
+        elevation=elevation,
+        heading=angle("heading_deg", world.heading if world else 0.0, 360),
+        pressure=params.number("pressure", air_column(Atmosphere()).at(elevation).pressure, minimum=0, maximum=1e6),
+        temperature=params.number("temperature", 285.15, minimum=1, maximum=_MOST_KELVIN),
+    )
+
+
+def _irradiance(params: Params) -> float | None:
+    """`<irradiance>` [W/m²], or None for a clear sky's."""
+    text = params.text("irradiance", "clear_sky")
+    if text == "clear_sky":
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if 0 <= value <= LARGEST:
+        return value
+    allowed = f"clear_sky, or a number from 0 to {LARGEST:g} [W/m²]"
+    message = f"found <irradiance>{text}</irradiance>, allowed is {allowed}"
+    params.block("irradiance").error("SK-PARAM-002", message)
+    return None
+
+
+def _find_sun(sim: Simulation, params: Params) -> Light | None:
+    """The light to move, or None after an error."""
+    name = params.text("light_name", "")
+    suns = [light for light in sim.lights.values() if light.scene.type == "directional" and not light.scene.link]
+    if not name:
+        if not suns:
+            params.error("SK-PLUGIN-003", "the world has no directional light to be the sun", "add model://sun")
+        return suns[0] if suns else None
+    light = find_light(sim, name, params)
+    if light is None or light in suns:
+        return light
+    what = f"on the link {light.scene.link!r}" if light.scene.link else f"a {light.scene.type} light"
+    params.error("SK-PLUGIN-003", f"light {name!r} is {what}; the sun is a directional light of the world")
+    return None
+
+
+def _shortest_rotation(start: Vec3, end: Vec3) -> tuple[float, float, float, float]:
+    """The shortest turn (w, x, y, z), of any length, of one unit vector to another."""
+    (ax, ay, az), (bx, by, bz) = start, end
+    w = 1.0 + ax * bx + ay * by + az * bz
+    if w < 1e-12:
+        # half a turn, about any axis at right angles
+        return (0.0, 0.0, az, -ay) if abs(ax) < 0.9 else (0.0, -az, 0.0, ax)
+    return (w, ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)

@@ -1,0 +1,352 @@
+"""Services that gz's server, UserCommands and SceneBroadcaster offer for every world: `/world/<world>/...`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Container
+from dataclasses import replace
+from typing import Any, Final
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.drives.wheel_slip import set_compliances
+from simkit.plugins.world.entities import (
+    KINDS,
+    RequestRefused,
+    answer_handler,
+    colour_of,
+    command_handler,
+    entity_id,
+    entity_of,
+    find_entity,
+    frame_of,
+    handle_of,
+    pose_fields,
+    pose_of,
+    require_finite,
+    scoped_names,
+    spawn_entities,
+    vector_of,
+)
+from simkit.plugins.world.physics_settings import set_physics
+from simkit.pose import IDENTITY, Pose
+
+LIGHT: Final = "ros_gz_interfaces/msg/Light"
+MATERIAL: Final = "ros_gz_interfaces/msg/MaterialColor"
+_LIGHTS: Final = ("point", "spot", "directional")
+_REQUEST: Final = "simkit_msgs/srv/EntityRequest"
+_TABLE: Final = {
+    "control": "ros_gz_interfaces/srv/ControlWorld",
+    "create": "ros_gz_interfaces/srv/SpawnEntity",
+    "create_multiple": "simkit_msgs/srv/SpawnEntities",
+    "remove": "ros_gz_interfaces/srv/DeleteEntity",
+    "set_pose": "ros_gz_interfaces/srv/SetEntityPose",
+    "set_pose_vector": "simkit_msgs/srv/SetEntityPoses",
+    "set_physics": "gazebo_msgs/srv/SetPhysicsProperties",
+    "light_config": "simkit_msgs/srv/SetLight",
+    "visual_config": "simkit_msgs/srv/SetMaterialColor",
+    "wheel_slip": "simkit_msgs/srv/SetWheelSlip",
+    "enable_collision": _REQUEST,
+    "disable_collision": _REQUEST,
+    "set_spherical_coordinates": "simkit_msgs/srv/SetSphericalCoordinates",
+}
+_ALSO_BLOCKING: Final = frozenset(_TABLE) - {"control"}
+
+
+class WorldServices(WorldPlugin):
+    """Offers `/world/<world>/control`, `create`, `remove`, `set_pose` and the rest; part of every world.
+
+    What is asked for is done when the answer comes, so each but `control` is also there under `<name>/blocking`, as in
+    gz. `docs/services.md` says what each takes and does.
+    """
+
+    on_error = "stop"
+
+    def load(self, parent: Any, params: Params) -> None:
+        self._prefix = prefix = valid_topic(f"/world/{self.sim.world.name}")
+        offer = self.sim.service_table.offer_by_default
+        for short, type_name in _TABLE.items():
+            does: Callable[[Any], Any] = getattr(self, f"_{short}")
+            name = f"{prefix}/{short}"
+            says_why = type_name.startswith(("simkit_msgs", "gazebo_msgs"))
+            handler = answer_handler(self.sim, name, does, says_why)
+            offer(name, type_name, handler)
+            if short in _ALSO_BLOCKING:
+                offer(f"{name}/blocking", type_name, handler)
+        offer(f"{prefix}/scene/info", "simkit_msgs/srv/GetScene", self._scene_info)
+        writing = answer_handler(self.sim, f"{prefix}/generate_world_sdf", lambda _: {"sdf": self.sim.to_sdf()})
+        offer(f"{prefix}/generate_world_sdf", "simkit_msgs/srv/GenerateWorldSdf", writing)
+        inputs = {"light_config": (LIGHT, self._configure_light), "material_color": (MATERIAL, self._paint)}
+        for short, (type_name, does) in inputs.items():
+            topic = f"{prefix}/{short}"
+            self.sim.bus.aside.add(topic)
+            self.sim.bus.unlisted.add(topic)
+            self.sim.bus.listen(topic, (type_name,), command_handler(self.sim, topic, does))
+
+    # ------------------------------------------------------------------ running
+
+    def _control(self, request: Any) -> None:
+        asked, sim = request.world_control, self.sim
+        pausing, reset, seed = sim.pausing, asked.reset, int(asked.seed)
+        time_ns = msgs.stamp_ns(asked.run_to_sim_time)
+        starts_over = bool(reset.all or reset.time_only)
+        if time_ns and time_ns <= (0 if starts_over else sim.time_ns):
+            raise RequestRefused(f"run_to_sim_time {time_ns / 1e9:g} s lies in the past, it is {sim.time:g} s")
+        if starts_over:
+            sim.reset(seed or None)
+        elif seed:
+            sim.reseed(seed)
+        if reset.model_only and not starts_over:
+            sim.reset_models()
+        count = int(asked.multi_step) or int(bool(asked.step))
+        if time_ns:
+            pausing.run_to(time_ns)
+        elif count:
+            pausing.step(count)
+        else:
+            sim.paused = bool(asked.pause)
+        pausing.catch_up()
+
+    def _set_physics(self, request: Any) -> str:
+        # gz's own message says nothing of gravity: none is no wish for weightlessness here
+        gravity = request.gravity
+        return set_physics(self.sim, request, keeps_gravity=not (gravity.x or gravity.y or gravity.z))
+
+    # ------------------------------------------------------------------ entities
+
+    def _create(self, request: Any) -> None:
+        self._spawn(request.entity_factory)
+
+    def _create_multiple(self, request: Any) -> None:
+        with self.sim.all_or_none():
+            waiting: dict[str, tuple[str, Pose | None]] = {}
+            for factory in request.entity_factories:
+                if factory.clone_name or factory.relative_to not in ("", "world"):  # may be of one that waits
+                    self._spawn_waiting(waiting)
+                    self._spawn(factory)
+                else:
+                    source, name, pose = self._wanted(factory, waiting)
+                    if name is None:
+                        name = self._free_name(self.sim.name_in_file(source), False, waiting)
+                    waiting[name] = source, pose
+            self._spawn_waiting(waiting)
+
+    def _spawn_waiting(self, waiting: dict[str, tuple[str, Pose | None]]) -> None:
+        """Spawns models by name, compiled once for all of them."""
+        if waiting:
+            spawn_entities(self.sim.spawn_all, [(source, name, pose) for name, (source, pose) in waiting.items()])
+            waiting.clear()
+
+    def _spawn(self, factory: Any) -> None:
+        if factory.clone_name:
+            pose = self._asked_pose(factory)
+            _, old = find_entity(self.sim, factory.clone_name, ("model",))
+            spawn_entities(self.sim.clone, old, self._free_name(factory.name or old, True), pose)
+        else:
+            spawn_entities(self.sim.spawn, *self._wanted(factory))
+
+    def _wanted(self, factory: Any, waiting: Container[str] = ()) -> tuple[str, str | None, Pose | None]:
+        """The source, name and pose of a model to be spawned, as `sim.spawn` takes them."""
+        pose = self._asked_pose(factory)
+        source, name = factory.sdf or factory.sdf_filename, factory.name or None
+        if factory.allow_renaming:
+            name = self._free_name(name or self.sim.name_in_file(source), True, waiting)
+        elif name is not None:
+            self._free_name(name, False, waiting)
+        return source, name, pose
+
+    def _asked_pose(self, factory: Any) -> Pose | None:
+        """Where a model is to be spawned; None for the file's own."""
+        ways = {"sdf": factory.sdf, "sdf_filename": factory.sdf_filename, "clone_name": factory.clone_name}
+        given = [way for way, value in ways.items() if value]
+        if len(given) != 1:
+            raise RequestRefused(
+                f"found {' and '.join(given) or 'none'} of sdf, sdf_filename and clone_name, allowed is one"
+            )
+        asked = pose_of(factory.pose)
+        # the message cannot leave its pose out: where there is nothing in it, the file's own is meant
+        if asked == IDENTITY and not factory.relative_to:
+            return None
+        return frame_of(self.sim, factory.relative_to) @ asked
+
+    def _free_name(self, name: str, may_rename: bool, waiting: Container[str] = ()) -> str:
+        """The name, or with a number behind it where it is taken, as gz does; raises Refused."""
+        models = self.sim.models
+        if (name in models or name in waiting) and not may_rename:
+            raise RequestRefused(f"there is a model {name!r} already, and allow_renaming is false")
+        wanted, number = name, 0
+        while name in models or name in waiting:
+            name, number = f"{wanted}_{number}", number + 1
+        return name
+
+    def _remove(self, request: Any) -> None:
+        kind, name = entity_of(self.sim, request.entity, ("model", "light"))
+        if kind == "light":
+            raise RequestRefused(f"the light {name!r} cannot be removed; light_config can darken it")
+        if "::" in name:
+            raise RequestRefused(f"{name!r} is not a direct child of the world; remove {name.split('::')[0]!r}")
+        self.sim.remove(name)
+
+    def _set_pose(self, request: Any) -> None:
+        self._place(request.entity, pose_of(request.pose))
+
+    def _set_pose_vector(self, request: Any) -> None:
+        if len(request.entities) != len(request.poses):
+            raise RequestRefused(
+                f"found {len(request.entities)} entities and {len(request.poses)} poses, allowed are as many"
+            )
+        poses = [pose_of(pose) for pose in request.poses]
+        for entity in request.entities:  # all of them or none
+            entity_of(self.sim, entity, ("model", "light"))
+        for entity, pose in zip(request.entities, poses, strict=True):
+            self._place(entity, pose)
+
+    def _place(self, entity: Any, pose: Pose) -> None:
+        handle_of(self.sim, *entity_of(self.sim, entity, ("model", "light"))).set_pose(pose)
+
+    def _enable_collision(self, request: Any) -> None:
+        self._switch_collision(request.entity, True)
+
+    def _disable_collision(self, request: Any) -> None:
+        self._switch_collision(request.entity, False)
+
+    def _switch_collision(self, entity: Any, enabled: bool) -> None:
+        kind, name = entity_of(self.sim, entity, ("collision", "link", "model"))
+        if kind == "model":
+            self.sim.enable_collisions([link.scoped for link in self.sim.model(name).scene.all_links()], enabled)
+        elif kind == "link":
+            self.sim.enable_collisions([name], enabled)
+        else:
+            self.sim.enable_collisions([name.rpartition("::")[0]], enabled, only=name)
+
+    def _wheel_slip(self, request: Any) -> None:
+        kind, name = entity_of(self.sim, request.entity, ("model", "link"))
+        links = {link.scoped for link in self.sim.model(name).scene.all_links()} if kind == "model" else {name}
+        values = float(request.slip_compliance_lateral), float(request.slip_compliance_longitudinal)
+        if not set_compliances(self.sim, links, *values):
+            raise RequestRefused(f"{kind} {name!r} has no wheel of a wheel slip plugin")
+
+    # ------------------------------------------------------------------ looks
+
+    def _light_config(self, request: Any) -> None:
+        self._configure_light(request.light)
+
+    def _configure_light(self, asked: Any) -> None:
+        """What is zero in the message stays as it is: ROS cannot leave a field out."""
+        sim = self.sim
+        name = asked.name
+        if not name and asked.id:
+            raise RequestRefused("a light is told by its name, not by a number of 32 bits")
+        light = sim.light(find_entity(sim, name, ("light",))[1])
+        scene = light.scene
+        kind = _LIGHTS[int(asked.type)] if 0 <= int(asked.type) < len(_LIGHTS) else ""
+        if int(asked.type) and kind != scene.type:
+            other = f"a {kind} one" if kind else f"one of type {int(asked.type)}"
+            raise RequestRefused(f"light {light.scoped!r} is a {scene.type} light, and cannot become {other}")
+        change: dict[str, Any] = {"cast_shadows": bool(asked.cast_shadows)}
+        for part in ("diffuse", "specular"):
+            colour = colour_of(getattr(asked, part), part)
+            if colour is not None:
+                change[part] = colour
+        fading = ("range", "attenuation_constant", "attenuation_linear", "attenuation_quadratic")
+        values = [require_finite(getattr(asked, field), field, 0.0) for field in fading]
+        if any(values):
+            change["attenuation"] = (values[0] or scene.attenuation[0], *values[1:])
+        spot = [require_finite(getattr(asked, f"spot_{field}"), f"spot_{field}", 0.0) for field in _SPOT]
+        if any(spot):
+            change["spot"] = tuple(spot)
+        if asked.intensity:
+            change["intensity"] = require_finite(asked.intensity, "intensity", 0.0)
+        direction = vector_of(asked.direction, "direction")
+        size = math.hypot(*direction)
+        if size > 0.0:
+            change["direction"] = tuple(part / size for part in direction)
+        pose = pose_of(asked.pose)
+        light.change(replace(scene, **change))
+        if pose != IDENTITY:
+            light.set_pose(pose)
+
+    def _visual_config(self, request: Any) -> str | None:
+        return self._paint(request.material_color)
+
+    def _paint(self, asked: Any) -> str | None:
+        sim, entity = self.sim, asked.entity
+        kind, name = entity_of(sim, entity, ("visual", "link", "model"))
+        diffuse = colour_of(asked.diffuse, "diffuse")
+        if diffuse is None:
+            raise RequestRefused("the diffuse colour is all zero, which says nothing; it is what is painted")
+        if kind == "visual":
+            painted = [name]
+            if int(asked.entity_match) == 1:
+                plain = name.rpartition("::")[2]
+                painted = [one for one in scoped_names(sim, "visual") if one.rpartition("::")[2] == plain]
+        else:
+            painted = [one for one in scoped_names(sim, "visual") if one.startswith(f"{name}::")]
+        for one in painted:
+            sim.visual(one).set_colour(*diffuse)
+        others = [part for part in ("specular", "emissive") if any(getattr(getattr(asked, part), c) for c in "rgb")]
+        if others or asked.shininess:
+            unused = " and ".join([*others, *(["shininess"] if asked.shininess else [])])
+            return f"painted; {unused} stay as they are"
+        return None
+
+    def _scene_info(self, _: Any) -> dict[str, Any]:
+        sim = self.sim
+        entities = [_entity_description(sim, kind, scoped) for kind in KINDS[1:] for scoped in scoped_names(sim, kind)]
+        around = sim.world.surroundings
+        ambient, background = (dict(zip("rgba", colour, strict=True)) for colour in (around.ambient, around.background))
+        return {
+            "name": sim.world.name,
+            "header": msgs.header(sim.time_ns, sim.world.name),
+            "entities": entities,
+            "ambient": ambient,
+            "background": background,
+            "shadows": around.shadows,
+            "grid": around.grid,
+            "sky": around.sky,
+        }
+
+    # ------------------------------------------------------------------ the place on Earth
+
+    def _set_spherical_coordinates(self, request: Any) -> None:
+        from simkit.plugins.world.earth_location import set_entity_location, set_world_location
+
+        entity = request.entity
+        if entity.name or entity.id:
+            handle = handle_of(self.sim, *entity_of(self.sim, entity, ("model", "light")))
+            set_entity_location(self.sim, handle, request)
+        else:
+            set_world_location(self.sim, request)
+
+
+_SPOT: Final = ("inner_angle", "outer_angle", "falloff")
+
+
+def _entity_description(sim: Any, kind: str, scoped: str) -> dict[str, Any]:
+    """A `SceneEntity`: what it is, what it is part of, where it is in the world."""
+    outer = scoped.rpartition("::")[0]
+    if kind == "collision":
+        link = sim.link(outer)
+        pose = link.pose @ next(c.pose_link for c in link.scene.collisions if c.scoped == scoped)
+    elif kind == "joint":
+        joint = sim.joint(scoped)
+        pose = _joint_pose(sim, joint.scene)
+    else:
+        pose = handle_of(sim, kind, scoped).pose
+    model = sim.structure.models.get(scoped.split("::")[0])
+    return {
+        "entity": {"id": entity_id(kind, scoped), "name": scoped, "type": KINDS.index(kind)},
+        "parent": outer or sim.world.name,
+        "pose": pose_fields(pose),
+        "is_static": bool(model.static) if model is not None else kind == "light",
+    }
+
+
+def _joint_pose(sim: Any, scene: Any) -> Pose:
+    """Where a joint's frame is now: it goes with its child link."""
+    if scene.child_link not in sim.entities.tables["link"]:
+        return scene.pose_world  # type: ignore[no-any-return]
+    link = sim.link(scene.child_link)
+    return link.pose @ link.scene.pose_world.inverse() @ scene.pose_world  # type: ignore[no-any-return]

@@ -1,0 +1,148 @@
+"""Publish what gz tells of a world as a whole: statistics, clock, and all poses."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit import msgs
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.plugins.base import WorldPlugin
+from simkit.plugins.drives.odometry import TRANSFORMS
+from simkit.plugins.entity_poses import EntityPoses, PosedEntity, PoseSample, pose_numbers, transforms_message
+from simkit.plugins.world.clock import TYPE as CLOCK
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneModel
+
+STATISTICS: Final = "ros_gz_interfaces/msg/WorldStatistics"
+STATISTICS_RATE: Final = 5.0
+"""[Hz], of simulated time; gz's server has it of real time."""
+CLOCK_RATE: Final = 100.0
+POSE_RATE: Final = 60.0
+"""[Hz], of simulated time, as gz's `dynamic_pose_hertz`."""
+_WINDOW: Final = 20  # statistics over which the real-time factor is taken, as gz's server takes it
+
+
+class WallClock:
+    """How long a run took, as the clock on the wall has it; nothing in a world may depend on it.
+
+    It is no part of a world's state: snapshots leave it alone, and a run that is restored does not give back the time.
+
+    Attributes:
+        real: time spent [s] while the world was not paused.
+        paused: time spent [s] while it was.
+    """
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self.real = self.paused = 0.0
+        self._last, self._was_paused = time.perf_counter(), sim.paused
+        self._recent: deque[tuple[float, float]] = deque(maxlen=_WINDOW)
+
+    def look(self) -> None:
+        """Counts the time since the last look."""
+        now = time.perf_counter()
+        if self._was_paused:
+            self.paused += now - self._last
+        else:
+            self.real += now - self._last
+        self._last, self._was_paused = now, self._sim.paused
+
+    def factor(self) -> float:
+        """Simulated time by real time over the last statistics; 0 before there are two."""
+        simulated, recent = self._sim.time, self._recent
+        if recent and simulated < recent[-1][0]:
+            recent.clear()  # the run went back
+        recent.append((simulated, self.real))
+        elapsed = recent[-1][1] - recent[0][1]
+        return (recent[-1][0] - recent[0][0]) / elapsed if elapsed > 0.0 else 0.0
+
+    def __deepcopy__(self, memo: dict[int, object]) -> WallClock:
+        return self
+
+
+class WorldStats(WorldPlugin):
+    """Publishes statistics, the clock and all poses of a world; part of every world, and free while nobody listens.
+
+    `/stats` and `/world/<world>/stats` (`ros_gz_interfaces/msg/WorldStatistics`) at 5 Hz of simulated time, and at
+    once when the world is paused or goes on. `real_time`, `pause_time` and `real_time_factor` are the clock on the
+    wall's and differ from run to run; all else is the same in every run. `/world/<world>/clock` at 100 Hz.
+    `/world/<world>/pose/info` has every model, link, visual and light, `/world/<world>/dynamic_pose/info` the models
+    and links that are not static, at 60 Hz, each in the frame of what it is part of (`tf2_msgs/msg/TFMessage`).
+    Recorders leave these topics out unless they are named; all but the statistics are listed only while somebody reads
+    them.
+    """
+
+    def load(self, parent: Any, params: Params) -> None:
+        sim, prefix = self.sim, valid_topic(f"/world/{self.sim.world.name}")
+        self._wall = WallClock(sim)
+        on_demand = sim.on_demand
+        both = {"/stats": STATISTICS, f"{prefix}/stats": STATISTICS}
+        self._stats = on_demand.broadcast(both, STATISTICS_RATE, self._statistics, is_listed=True)
+        on_demand.broadcast({f"{prefix}/clock": CLOCK}, CLOCK_RATE, self._clock)
+        on_demand.broadcast({f"{prefix}/pose/info": TRANSFORMS}, POSE_RATE, self._all_poses)
+        on_demand.broadcast({f"{prefix}/dynamic_pose/info": TRANSFORMS}, POSE_RATE, self._moving_poses)
+        sim.pausing.on_change(self._on_pause)
+
+    def _on_pause(self) -> None:
+        self._wall.look()
+        for topic, publisher in self._stats.items():
+            if publisher.wanted:
+                publisher.publish(self._statistics(topic))
+
+    def _statistics(self, _topic: str) -> Any:
+        sim, wall = self.sim, self._wall
+        wall.look()
+        step_ns = sim.clock.time_ns(1)
+        return msgs.make(
+            STATISTICS,
+            header=msgs.header(sim.time_ns, ""),
+            sim_time=msgs.time(sim.time_ns),
+            real_time=msgs.time(round(wall.real * 1e9)),
+            pause_time=msgs.time(round(wall.paused * 1e9)),
+            paused=sim.paused,
+            iterations=sim.tick,
+            model_count=len(sim.entities.tables["model"]),
+            real_time_factor=wall.factor(),
+            step_size=msgs.time(0 if sim.paused else step_ns),
+            stepping=sim.pausing.is_stepping and not sim.paused,
+        )
+
+    def _clock(self, _topic: str) -> Any:
+        return msgs.type_of(CLOCK)(msgs.time(self.sim.time_ns))
+
+    def _all_poses(self, _topic: str) -> Callable[[], Any]:
+        sim = self.sim
+        lights = [light for light in sim.lights.values() if not light.scene.link]
+        placed = [(sim.world.name, light.scoped, pose_numbers(light.pose)) for light in lights]
+        return partial(transforms_message, sim.time_ns, self._take("all poses", with_all=True), placed)
+
+    def _moving_poses(self, _topic: str) -> Callable[[], Any]:
+        return partial(transforms_message, self.sim.time_ns, self._take("moving poses", with_all=False))
+
+    def _take(self, name: str, *, with_all: bool) -> PoseSample:
+        """Where things are now: all models with their visuals, or those that may move without."""
+        poses: EntityPoses = self.sim.names.shared(name, lambda: EntityPoses(self.sim, self._parts(with_all)))
+        return poses.take()
+
+    def _parts(self, with_all: bool) -> list[PosedEntity]:
+        scenes = [s for s in self.sim.structure.models.values() if with_all or not s.static]
+        return [part for scene in scenes for part in self._of_model(scene, with_all)]
+
+    def _of_model(self, scene: SceneModel, with_visuals: bool) -> Iterator[PosedEntity]:
+        sim, outer = self.sim, scene.scoped.rpartition("::")[0]
+        model = sim.model(scene.scoped)
+        within = sim.model(outer) if outer else None
+        yield PosedEntity(outer or sim.world.name, scene.scoped, handle=model, within=within)
+        for link in scene.links:
+            yield PosedEntity(scene.scoped, link.scoped, handle=sim.link(link.scoped), within=model)
+            for visual in link.visuals if with_visuals else ():
+                yield PosedEntity(link.scoped, visual.scoped, visual.pose_link)
+        for nested in scene.models:
+            yield from self._of_model(nested, with_visuals)

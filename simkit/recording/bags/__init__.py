@@ -1,0 +1,1 @@
+"""Bags: MCAP files and rosbag2 folders written, read, mended, described and played back."""

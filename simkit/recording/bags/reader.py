@@ -1,0 +1,350 @@
+"""Reads bags: MCAP files, and rosbag2 folders with MCAP or SQLite in them, recorded by simkit or by ROS 2.
+
+with open_bag_to_read("run.mcap") as bag:
+    for message in bag.messages(["/odom"]):
+        print(message.time_ns, bag.decode(message).pose.pose.position.x)
+"""
+
+from __future__ import annotations
+
+import struct
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from simkit import msgs
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError, MessageError
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+_UNREADABLE = "SK-CLI-035"
+_UNKNOWN_TYPE = "SK-CLI-036"
+
+
+class BagMessage(NamedTuple):
+    """One message as it lies in the bag; the time is that of recording [ns]."""
+
+    time_ns: int
+    topic: str
+    type_name: str
+    data: bytes
+
+
+@dataclass(frozen=True)
+class BagTopic:
+    """One topic of a bag with one type.
+
+    Attributes:
+        definition: the type's definition as the bag has it; empty where it has none.
+        latched: whether its publisher kept the last message for those who come later.
+    """
+
+    name: str
+    type_name: str
+    count: int
+    definition: str = ""
+    latched: bool = False
+    format: str = "cdr"
+
+
+class BagReader:
+    """An open bag; a context manager.
+
+    Attributes:
+        path: what was opened.
+        files: the files that hold the messages, relative to it.
+        storage: `mcap` or `sqlite3`.
+        distro: of the ROS that recorded it, or `unknown`.
+        start, end: recording time of the first and the last message [ns]; 0 of an empty bag.
+        topics: sorted by name.
+        broken: why it cannot be read to its end; empty of a whole one.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.broken = ""
+        self._source = _open_storage(path)
+        self.files, self.storage, self.distro = _files(path)
+        self.topics = sorted(self._source.topics(), key=lambda t: (t.name, t.type_name))
+        self.broken = self._source.broken
+        self.start, self.end = self._source.span()
+        self._store: Typestore | None = None
+        self._own: dict[str, bool] = {}
+
+    def __enter__(self) -> BagReader:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Closes its files."""
+        self._source.close()
+
+    @property
+    def count(self) -> int:
+        """How many messages it holds."""
+        return sum(topic.count for topic in self.topics)
+
+    @property
+    def size(self) -> int:
+        """Bytes of its files."""
+        folder = self.path if self.path.is_dir() else self.path.parent
+        return sum((folder / name).stat().st_size for name in self.files if (folder / name).is_file())
+
+    def messages(self, topics: Sequence[str] = (), start: int | None = None) -> Iterator[BagMessage]:
+        """Its messages in the order of their times; those of some topics, from a time on [ns], where asked for.
+
+        Raises:
+            InputError: SK-CLI-030 there is no such topic; SK-CLI-035 the bag breaks off.
+        """
+        known = {topic.name for topic in self.topics}
+        for name in topics:
+            if name not in known:
+                hint = did_you_mean(name, known) or "there is " + (", ".join(sorted(known)) or "none")
+                raise InputError(f"SK-CLI-030 no topic {name!r} in {self.path}; {hint}", "SK-CLI-030")
+        yield from self._source.messages(frozenset(topics), start)
+
+    def decode(self, message: BagMessage) -> Any:
+        """The message itself.
+
+        Raises:
+            InputError: SK-CLI-036 its type is known neither to the bag nor to simkit, or the bytes are not of it.
+        """
+        store = self.store_of(message.type_name)
+        try:
+            return store.deserialize_cdr(message.data, message.type_name)
+        except (struct.error, ValueError, AssertionError, IndexError, KeyError, UnicodeDecodeError) as error:
+            text = f"SK-CLI-036 {self.path}: a message on {message.topic} is no {message.type_name}: {error}"
+            raise InputError(text, _UNKNOWN_TYPE) from None
+
+    def store_of(self, type_name: str) -> Typestore:
+        """The types by which a message is read: simkit's where the bag has the same definition or none, else its own.
+
+        Raises:
+            InputError: SK-CLI-036 nobody knows the type.
+        """
+        own = self._own.get(type_name)
+        if own is None:
+            own = self._own[type_name] = not self._is_ours(type_name)
+        return self._types() if own else msgs.type_store()
+
+    def _is_ours(self, type_name: str) -> bool:
+        bags = self._types().fielddefs
+        try:
+            msgs.full_name(type_name)
+        except MessageError:
+            if type_name in bags:
+                return False
+            text = f"SK-CLI-036 {self.path}: {type_name} is not known here, and the bag holds no definition of it"
+            raise InputError(text, _UNKNOWN_TYPE) from None
+        ours, seen, left = msgs.type_store().fielddefs, {type_name}, [type_name]
+        while left:
+            name = left.pop()
+            if name not in bags:
+                continue
+            if name not in ours or ours[name][1] != bags[name][1]:
+                return False
+            fresh = set(_used_types(bags[name][1])) - seen
+            seen |= fresh
+            left += fresh
+        return True
+
+    def _types(self) -> Typestore:
+        """What the bag itself says of its types."""
+        if self._store is None:
+            from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+            self._store = get_typestore(Stores.EMPTY)
+            found: dict[str, Any] = {}
+            for topic in self.topics:
+                if topic.definition:
+                    try:
+                        found.update(get_types_from_msg(topic.definition, topic.type_name))
+                    except Exception as error:  # noqa: BLE001 (a parser of somebody else's, fed with anything)
+                        text = f"{self.path}: the definition of {topic.type_name} cannot be read: {error}"
+                        raise InputError(f"SK-CLI-036 {text}", _UNKNOWN_TYPE) from None
+            self._store.register(found)
+        return self._store
+
+
+def open_bag_to_read(path: str | Path) -> BagReader:
+    """Opens a bag: an `.mcap` or `.db3` file, or a folder that rosbag2 wrote.
+
+    Raises:
+        InputError: SK-CLI-035 there is none, or it cannot be read.
+    """
+    return BagReader(Path(path))
+
+
+def _used_types(fields: Sequence[tuple[str, Any]]) -> Iterator[str]:
+    for _, (kind, what) in fields:
+        inner = what[0] if int(kind) in (3, 4) else (kind, what)
+        if int(inner[0]) == 2:
+            yield inner[1]
+
+
+def _files(path: Path) -> tuple[list[str], str, str]:
+    """Files, storage and distribution, as far as they are written down."""
+    if not path.is_dir():
+        return [path.name], "sqlite3" if path.suffix == ".db3" else "mcap", "unknown"
+    found = sorted([*path.glob("*.mcap"), *path.glob("*.db3"), *path.glob("*.zstd")])
+    storage = "sqlite3" if any(".db3" in f.name for f in found) else "mcap"
+    distro = "unknown"
+    if (path / "metadata.yaml").is_file():
+        from simkit.yaml_reader import NotYaml, read_yaml
+
+        try:
+            text = (path / "metadata.yaml").read_text(encoding="utf-8")
+            written = read_yaml(text)["rosbag2_bagfile_information"]
+            names = [Path(name).name for name in written["relative_file_paths"]]
+            return names, str(written["storage_identifier"]), str(written.get("ros_distro") or distro)
+        except (OSError, NotYaml, KeyError, TypeError, AttributeError, UnicodeDecodeError):
+            pass  # what is there is told by the files themselves
+    return [f.name for f in found], storage, distro
+
+
+def _open_storage(path: Path) -> _CompleteBag | _TruncatedBag:
+    """What reads the bag: rosbags, or record by record where it lacks its end."""
+    from rosbags.rosbag2 import Reader, ReaderError
+
+    try:
+        is_there = path.exists()
+    except (OSError, ValueError) as error:  # no name of a file, such as one that is too long
+        why = getattr(error, "strerror", None) or error
+        raise InputError(f"SK-CLI-035 {path} cannot be read: {why}", _UNREADABLE) from None
+    if not is_there:
+        raise InputError(f"SK-CLI-035 there is no bag {path}", _UNREADABLE)
+    if path.is_dir() and not (path / "metadata.yaml").exists() and not list(path.glob("*.mcap")):
+        raise InputError(f"SK-CLI-035 {path} is no bag: it holds neither metadata.yaml nor an MCAP file", _UNREADABLE)
+    if not path.is_dir() and path.suffix not in (".mcap", ".db3"):
+        text = f"SK-CLI-035 {path}: found the ending {path.suffix!r}, allowed is .mcap, .db3 or a folder of rosbag2"
+        raise InputError(text, _UNREADABLE)
+    if not path.is_dir() and not path.is_file():
+        raise InputError(f"SK-CLI-035 {path} is neither a file nor a folder", _UNREADABLE)
+    try:
+        reader = Reader(path)
+        reader.open()
+        return _CompleteBag(path, reader)
+    except Exception as error:  # noqa: BLE001 (a reader of somebody else's, fed with anything)
+        files = [path] if path.suffix == ".mcap" else sorted(path.glob("*.mcap")) if path.is_dir() else []
+        cut = _TruncatedBag(path, files)
+        if files and cut.has_begun:
+            return cut
+        reason = cut.broken if files else error if isinstance(error, ReaderError) else f"it is damaged ({error})"
+        raise InputError(f"SK-CLI-035 {path} cannot be read: {reason}", _UNREADABLE) from None
+
+
+class _CompleteBag:
+    """A bag that is complete."""
+
+    broken = ""
+
+    def __init__(self, path: Path, reader: Any) -> None:
+        self._path, self._reader = path, reader
+
+    def topics(self) -> list[BagTopic]:
+        return [
+            BagTopic(c.topic, c.msgtype, c.msgcount, _definition(c), _is_latched(c), c.ext.serialization_format)
+            for c in self._reader.connections
+        ]
+
+    def span(self) -> tuple[int, int]:
+        if not self._reader.message_count:
+            return 0, 0
+        return self._reader.start_time, self._reader.end_time - 1
+
+    def messages(self, topics: frozenset[str], start: int | None) -> Iterator[BagMessage]:
+        wanted = [c for c in self._reader.connections if not topics or c.topic in topics]
+        if not wanted:
+            return
+        messages = self._reader.messages(wanted, start)
+        while True:
+            try:
+                connection, time_ns, data = next(messages)
+            except StopIteration:
+                return
+            except Exception as error:  # noqa: BLE001 (damaged in the middle)
+                raise InputError(f"SK-CLI-035 {self._path} breaks off: {error}", _UNREADABLE) from None
+            yield BagMessage(time_ns, connection.topic, connection.msgtype, bytes(data))
+
+    def close(self) -> None:
+        if self._reader.is_open:
+            self._reader.close()
+
+
+def _definition(connection: Any) -> str:
+    return str(connection.msgdef.data) if connection.msgdef.format.name == "MSG" else ""
+
+
+def _is_latched(connection: Any) -> bool:
+    profiles = connection.ext.offered_qos_profiles
+    return any(p.durability.name == "TRANSIENT_LOCAL" for p in profiles)
+
+
+class _TruncatedBag:
+    """A recording whose end is missing; it is read record by record, once for what it holds and once for each use."""
+
+    def __init__(self, path: Path, files: list[Path]) -> None:
+        self._files = files
+        self._definitions: dict[str, str] = {}
+        self.broken = ""
+        self.has_begun = False
+        counts: Counter[tuple[str, str, bool]] = Counter()
+        self._span = (0, 0)
+        for time_ns, topic, type_name, _, latched in self._records():
+            first, last = self._span if counts else (time_ns, time_ns)
+            self._span = (min(first, time_ns), max(last, time_ns))
+            counts[topic, type_name, latched] += 1
+        self._topics = [BagTopic(t, k, n, self._definitions[k], kept) for (t, k, kept), n in counts.items()]
+        if self._topics:
+            hint = f"simkit bag recover {path} mends it"
+            self.broken = f"the recording was cut off ({self.broken or 'its end is missing'}); {hint}"
+        elif self.has_begun:
+            self.broken = "the recording was cut off before anything was written"
+
+    def topics(self) -> list[BagTopic]:
+        return self._topics
+
+    def span(self) -> tuple[int, int]:
+        return self._span
+
+    def messages(self, topics: frozenset[str], start: int | None) -> Iterator[BagMessage]:
+        for time_ns, topic, type_name, data, _ in self._records():
+            if (not topics or topic in topics) and (start is None or time_ns >= start):
+                yield BagMessage(time_ns, topic, type_name, data)
+
+    def close(self) -> None:
+        """Nothing is open between two uses."""
+
+    def _records(self) -> Iterator[tuple[int, str, str, bytes, bool]]:
+        from mcap.exceptions import McapError
+        from mcap.records import Channel, Message, Schema
+        from mcap.stream_reader import StreamReader
+
+        for path in self._files:
+            schemas: dict[int, Schema] = {}
+            channels: dict[int, Channel] = {}
+            with path.open("rb") as file:
+                try:
+                    for record in StreamReader(file).records:
+                        self.has_begun = True
+                        if isinstance(record, Schema):
+                            schemas[record.id] = record
+                            self._definitions[record.name] = bytes(record.data).decode(errors="replace")
+                        elif isinstance(record, Channel):
+                            channels[record.id] = record
+                        elif isinstance(record, Message):
+                            channel = channels[record.channel_id]
+                            latched = "transient_local" in channel.metadata.get("offered_qos_profiles", "")
+                            name = schemas[channel.schema_id].name
+                            yield record.log_time, channel.topic, name, bytes(record.data), latched
+                except (McapError, struct.error, ValueError, KeyError, EOFError, MemoryError) as error:
+                    self.broken = f"{type(error).__name__} {error}".strip()

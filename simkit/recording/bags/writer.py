@@ -1,0 +1,215 @@
+"""Write bags: one MCAP file, or a rosbag2 folder with its metadata."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any
+
+from simkit import msgs
+
+_FOREVER = {"sec": 9223372036, "nsec": 854775807}
+
+
+def profile(latched: bool) -> dict[str, Any]:
+    """What a publisher offers: reliable, and transient local where the last message is kept (`/tf_static`)."""
+    return {
+        "history": "keep_last",
+        "depth": 1 if latched else 10,
+        "reliability": "reliable",
+        "durability": "transient_local" if latched else "volatile",
+        "deadline": dict(_FOREVER),
+        "lifespan": dict(_FOREVER),
+        "liveliness": "automatic",
+        "liveliness_lease_duration": dict(_FOREVER),
+        "avoid_ros_namespace_conventions": False,
+    }
+
+
+def as_yaml(profiles: list[dict[str, Any]]) -> str:
+    """The text that belongs into a channel's metadata."""
+    import yaml
+
+    # Anchors would be valid YAML, but some readers of bags do not know them.
+    plain = [{k: dict(v) if isinstance(v, dict) else v for k, v in p.items()} for p in profiles]
+    return str(yaml.safe_dump(plain, sort_keys=False)).strip()
+
+
+_SECOND = 1_000_000_000
+_CHUNK_BYTES = 4 << 20
+
+
+@dataclass
+class Channel:
+    """One topic with one type, and what was written of it."""
+
+    id: int
+    topic: str
+    type_name: str
+    latched: bool
+    count: int = 0
+
+
+@dataclass
+class Span:
+    """First and last log time [ns] of what was written."""
+
+    start: int = 0
+    end: int = 0
+    count: int = field(default=0)
+
+    def add(self, time_ns: int) -> None:
+        self.start = time_ns if self.count == 0 else min(self.start, time_ns)
+        self.end = max(self.end, time_ns)
+        self.count += 1
+
+
+class McapBag:
+    """Writes messages to one MCAP file with the ROS 2 profile.
+
+    Args:
+        path: the file; made anew.
+        overwrite: whether an existing file may be replaced.
+
+    Raises:
+        FileExistsError: the file exists and may not be replaced.
+        OSError: it cannot be written.
+    """
+
+    def __init__(self, path: Path, *, overwrite: bool = False) -> None:
+        from mcap.writer import CompressionType, Writer
+
+        self.path = path
+        self.span = Span()
+        self.channels: dict[tuple[str, str], Channel] = {}
+        self._schemas: dict[str, int] = {}
+        self._second = -1
+        self._file: IO[bytes] = path.open("wb" if overwrite else "xb")
+        # Half a minute of an RGB-D camera is two gigabytes; what is drawn without noise shrinks to a tenth.
+        self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._writer.start(profile="ros2", library="simkit")
+        self._file.flush()
+
+    def channel(self, topic: str, type_name: str, latched: bool) -> Channel:
+        """The channel of a topic and a type, registered when first asked for."""
+        found = self.channels.get((topic, type_name))
+        if found is None:
+            schema = self._schemas.get(type_name)
+            if schema is None:
+                text = msgs.definition(type_name).encode()
+                schema = self._schemas[type_name] = self._writer.register_schema(type_name, "ros2msg", text)
+            metadata = {
+                "offered_qos_profiles": as_yaml([profile(latched)]),
+                "topic_type_hash": msgs.rihs(type_name),
+            }
+            number = self._writer.register_channel(topic, "cdr", schema, metadata)
+            found = self.channels[(topic, type_name)] = Channel(number, topic, type_name, latched)
+        return found
+
+    def write_raw(self, channel: Channel, data: bytes, time_ns: int) -> None:
+        """Appends one serialised message."""
+        second = time_ns // _SECOND
+        if second != self._second:
+            if self._second >= 0:
+                self.flush()
+            self._second = second
+        self._writer.add_message(channel.id, time_ns, data, time_ns, channel.count)
+        channel.count += 1
+        self.span.add(time_ns)
+
+    def flush(self) -> None:
+        """Completes the chunk and hands everything to the operating system."""
+        self._writer.flush()
+
+    def close(self) -> None:
+        """Writes the summary; the file is complete afterwards."""
+        if self._file.closed:
+            return
+        try:
+            self._writer.finish()
+        finally:
+            self._file.close()
+
+
+_VERSION = 9  # of the rosbag2 metadata format; the one of ROS 2 Jazzy
+
+
+class Rosbag2Folder(McapBag):
+    """Writes messages to `folder/<name>_0.mcap`; `metadata.yaml` comes with `close()`.
+
+    Raises:
+        FileExistsError: the folder exists and may not be replaced, or is no bag.
+        OSError: it cannot be written.
+    """
+
+    def __init__(self, folder: Path, *, overwrite: bool = False) -> None:
+        if folder.exists():
+            if not overwrite:
+                raise FileExistsError(folder)
+            if any(folder.iterdir()) and not (folder / "metadata.yaml").exists() and not list(folder.glob("*.mcap")):
+                raise FileExistsError(f"{folder} is not a bag and is left alone")
+            shutil.rmtree(folder)
+        folder.mkdir(parents=True)
+        self.folder = folder
+        super().__init__(folder / f"{folder.name}_0.mcap")
+
+    def close(self) -> None:
+        """Completes the file and writes the metadata."""
+        super().close()
+        import yaml
+
+        target = self.folder / "metadata.yaml"
+        draft = target.with_suffix(".yaml.tmp")
+        draft.write_text(
+            yaml.dump({"rosbag2_bagfile_information": self._information()}, Dumper=_plain_dumper(), sort_keys=False)
+        )
+        draft.replace(target)
+
+    def _information(self) -> dict[str, Any]:
+        start = {"nanoseconds_since_epoch": self.span.start}
+        duration = {"nanoseconds": self.span.end - self.span.start}
+        return {
+            "version": _VERSION,
+            "storage_identifier": "mcap",
+            "duration": duration,
+            "starting_time": start,
+            "message_count": self.span.count,
+            "topics_with_message_count": [
+                {
+                    "topic_metadata": {
+                        "name": channel.topic,
+                        "type": channel.type_name,
+                        "serialization_format": "cdr",
+                        "offered_qos_profiles": [profile(channel.latched)],
+                        "type_description_hash": msgs.rihs(channel.type_name),
+                    },
+                    "message_count": channel.count,
+                }
+                for channel in self.channels.values()
+            ],
+            "compression_format": "",
+            "compression_mode": "",
+            "relative_file_paths": [self.path.name],
+            "files": [
+                {
+                    "path": self.path.name,
+                    "starting_time": start,
+                    "duration": duration,
+                    "message_count": self.span.count,
+                }
+            ],
+            "custom_data": None,
+            "ros_distro": "jazzy",
+        }
+
+
+def _plain_dumper() -> Any:
+    """A dumper that repeats equal values instead of using anchors."""
+    import yaml
+
+    class Plain(yaml.SafeDumper):
+        def ignore_aliases(self, data: Any) -> bool:
+            return True
+
+    return Plain

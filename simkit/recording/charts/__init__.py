@@ -1,0 +1,1 @@
+"""Charts: numbers of message fields over time, drawn as SVG or PNG."""

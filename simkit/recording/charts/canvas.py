@@ -1,0 +1,152 @@
+"""Lines and texts on a white sheet, as SVG or as PNG; the same calls give the same bytes."""
+
+from __future__ import annotations
+
+import io
+from html import escape
+from typing import Any, Final, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Anchor = Literal["start", "middle", "end"]
+Points = NDArray[np.float64]
+
+_FONT: Final = "Helvetica,Arial,'DejaVu Sans',sans-serif"
+_LETTER: Final = 0.56  # mean width of a letter, in parts of the size
+_NO_LETTER = {"²": "^2", "³": "^3", "µ": "u"}  # that the font of pictures lacks
+_PNG_SCALE = 2  # [px] of a picture for one of the sheet
+_SUBPIXEL_BITS = 2  # times larger is it drawn, so that thin lines come out smooth
+_INK: Final = "#222222"
+_UNPRINTABLE = dict.fromkeys((*range(32), 0xFFFE, 0xFFFF), " ")  # what XML has no word for
+
+
+class Canvas(Protocol):
+    """A sheet; places and sizes in pixels from its upper left corner."""
+
+    def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
+        """A line through points, shape (n, 2)."""
+
+    def dots(self, points: Points, colour: str, radius: float) -> None:
+        """A disc at each of some points, shape (n, 2)."""
+
+    def text(
+        self, x: float, y: float, text: str, size: float, anchor: Anchor = "start", *, upright: bool = False
+    ) -> None:
+        """A text whose letters stand on (x, y); `upright` reads from below to above."""
+
+    def result(self) -> bytes:
+        """The file."""
+
+
+def text_width(text: str, size: float) -> float:
+    """About how wide a text is [px]."""
+    return len(text) * _LETTER * size
+
+
+class SvgCanvas:
+    """A sheet that becomes an SVG file."""
+
+    def __init__(self, width: int, height: int) -> None:
+        self._parts = [
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+            f'viewBox="0 0 {width} {height}" font-family="{_FONT}">',
+            f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
+        ]
+
+    def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
+        """A line through points, shape (n, 2)."""
+        path = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.tolist())
+        dashes = f' stroke-dasharray="{" ".join(f"{d:g}" for d in dash)}"' if dash else ""
+        self._parts.append(
+            f'<path d="{path}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linejoin="round"{dashes}/>'
+        )
+
+    def dots(self, points: Points, colour: str, radius: float) -> None:
+        """A disc at each of some points, shape (n, 2)."""
+        for x, y in points.tolist():
+            self._parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:g}" fill="{colour}"/>')
+
+    def text(
+        self, x: float, y: float, text: str, size: float, anchor: Anchor = "start", *, upright: bool = False
+    ) -> None:
+        """A text whose letters stand on (x, y); `upright` reads from below to above."""
+        turned = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if upright else ""
+        shown = escape(text.translate(_UNPRINTABLE), quote=False)
+        self._parts.append(
+            f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size:g}" text-anchor="{anchor}" fill="{_INK}"{turned}>'
+            f"{shown}</text>"
+        )
+
+    def result(self) -> bytes:
+        """The file."""
+        return ("\n".join([*self._parts, "</svg>"]) + "\n").encode("utf-8", "replace")
+
+
+class PngCanvas:
+    """A sheet that becomes a PNG file of twice as many pixels."""
+
+    def __init__(self, width: int, height: int) -> None:
+        from PIL import Image, ImageDraw
+
+        self._scale = _PNG_SCALE * _SUBPIXEL_BITS
+        self._image: Any = Image.new("RGB", (width * self._scale, height * self._scale), "#ffffff")
+        self._draw: Any = ImageDraw.Draw(self._image)
+
+    def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
+        """A line through points, shape (n, 2)."""
+        thick = max(1, round(width * self._scale))
+        for piece in _dash(points, dash) if dash else [points]:
+            flat = [(x * self._scale, y * self._scale) for x, y in piece.tolist()]
+            self._draw.line(flat, fill=colour, width=thick, joint="curve")
+
+    def dots(self, points: Points, colour: str, radius: float) -> None:
+        """A disc at each of some points, shape (n, 2)."""
+        for x, y in points.tolist():
+            box = [(c + r) * self._scale for r in (-radius, radius) for c in (x, y)]
+            self._draw.ellipse(box, fill=colour)
+
+    def text(
+        self, x: float, y: float, text: str, size: float, anchor: Anchor = "start", *, upright: bool = False
+    ) -> None:
+        """A text whose letters stand on (x, y); `upright` reads from below to above."""
+        from PIL import Image, ImageDraw, ImageFont
+
+        font = ImageFont.load_default(size * self._scale)
+        where: Any = {"start": "ls", "middle": "ms", "end": "rs"}[anchor]
+        text = text.translate(_UNPRINTABLE | str.maketrans(_NO_LETTER))
+        if not upright:
+            self._draw.text((x * self._scale, y * self._scale), text, fill=_INK, font=font, anchor=where)
+            return
+        left, top, right, bottom = font.getbbox(text, anchor="ls")
+        strip = Image.new("L", (max(1, round(right - left)), max(1, round(bottom - top))), 0)
+        ImageDraw.Draw(strip).text((-left, -top), text, fill=255, font=font, anchor="ls")
+        turned = strip.transpose(Image.Transpose.ROTATE_90)
+        up = {"start": turned.height, "middle": turned.height / 2, "end": 0}[anchor]
+        self._image.paste(_INK, (round(x * self._scale + top), round(y * self._scale - up)), turned)
+
+    def result(self) -> bytes:
+        """The file."""
+        from PIL import Image
+
+        size = (self._image.width // _SUBPIXEL_BITS, self._image.height // _SUBPIXEL_BITS)
+        file = io.BytesIO()
+        self._image.resize(size, Image.Resampling.BOX).save(file, "PNG")
+        return file.getvalue()
+
+
+def _dash(points: Points, dash: tuple[float, ...]) -> list[Points]:
+    """The pieces of a line that are drawn."""
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    along = np.concatenate(([0.0], np.cumsum(steps)))
+    edges = np.cumsum(np.tile(dash, int(along[-1] / sum(dash)) + 1))
+    starts = np.concatenate(([0.0], edges[1::2]))
+    found = []
+    for start, end in zip(starts, edges[::2], strict=False):
+        if start >= along[-1]:
+            break
+        end = min(end, along[-1])
+        inside = points[(along > start) & (along < end)]
+        ends = [[float(np.interp(at, along, points[:, i])) for i in (0, 1)] for at in (start, end)]
+        found.append(np.vstack((ends[0], inside, ends[1])))
+    return found

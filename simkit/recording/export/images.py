@@ -1,0 +1,265 @@
+"""Pictures of a topic as files: a PNG each, the numbers as they are, or a film."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from simkit.errors import InputError
+
+_ENCODINGS: Final = {
+    "mono8": ("u1", 1),
+    "mono16": ("u2", 1),
+    "rgb8": ("u1", 3),
+    "bgr8": ("u1", 3),
+    "rgba8": ("u1", 4),
+    "bgra8": ("u1", 4),
+    "rgb16": ("u2", 3),
+    "bgr16": ("u2", 3),
+    "rgba16": ("u2", 4),
+    "bgra16": ("u2", 4),
+}
+_SIZES: Final = {"8U": "u1", "8S": "i1", "16U": "u2", "16S": "i2", "32S": "i4", "32F": "f4", "64F": "f8"}
+_MM: Final = 1000.0
+_SAMPLE = 8  # pictures that a film's rate is taken from
+_RATE: Final = 30.0  # [Hz] of a film of one picture
+_LONGEST_STILL: Final = 600  # times that a picture is repeated at most where none comes
+_CODECS: Final = ("vp09", "mp4v")  # the first plays in browsers, the second is built in nearly everywhere
+
+
+class ImageWriter(Protocol):
+    """Writes the pictures of one topic.
+
+    Attributes:
+        notes: what is other than one would think, in words.
+    """
+
+    notes: list[str]
+
+    def take(self, time_ns: int, message: Any) -> str:
+        """Writes one; the name of its file, relative to the export."""
+
+    def close(self) -> None:
+        """Behind the last."""
+
+
+def read_pixels(message: Any) -> tuple[np.ndarray[Any, Any], str]:
+    """The values of an image, shape (height, width) or (height, width, channels), and their order: gray, rgb or bgr.
+
+    Raises:
+        ValueError: its encoding is not known, or it has too few bytes.
+    """
+    encoding = str(message.encoding)
+    kind, channels = _layout(encoding)
+    dtype = np.dtype(kind).newbyteorder(">" if message.is_bigendian else "<")
+    height, width = int(message.height), int(message.width)
+    row, step = width * channels * dtype.itemsize, int(message.step) or width * channels * dtype.itemsize
+    data = np.asarray(message.data).view(np.uint8).ravel()
+    if step < row or data.size < step * (height - 1) + row or not height or not width:
+        raise ValueError(f"a picture of {width} × {height} {encoding} has {data.size} bytes")
+    rows = np.lib.stride_tricks.as_strided(data, (height, row), (step, 1))
+    found = np.ascontiguousarray(rows).view(dtype).astype(dtype.newbyteorder("="), copy=False)
+    order = "rgb" if encoding.startswith("rgb") else "gray" if channels == 1 else "bgr"
+    return found.reshape((height, width) if channels == 1 else (height, width, channels)), order
+
+
+def _layout(encoding: str) -> tuple[str, int]:
+    found = _ENCODINGS.get(encoding)
+    if found is not None:
+        return found
+    if encoding.startswith("bayer_"):
+        return ("u2" if encoding.endswith("16") else "u1"), 1
+    size, _, channels = encoding.partition("C")
+    if size in _SIZES and (channels in ("", "1", "2", "3", "4")):
+        return _SIZES[size], int(channels or 1)
+    raise ValueError(f"the encoding {encoding!r} is not known")
+
+
+def png_pixels(message: Any) -> np.ndarray[Any, Any]:
+    """The picture as PNG holds it, blue first: numbers of 8 or 16 bits; a depth [m] becomes millimetres (REP 118).
+
+    Raises:
+        ValueError: PNG has no place for its numbers.
+    """
+    values, order = read_pixels(message)
+    if values.ndim == 3 and values.shape[2] == 2:
+        raise ValueError(f"PNG has no pictures of two channels ({message.encoding})")
+    if values.dtype.kind == "f":
+        if values.ndim == 3:
+            raise ValueError(f"PNG has no place for the numbers of {message.encoding}")
+        values = np.where(np.isfinite(values), values * _MM, 0.0)
+        return np.clip(np.rint(values), 0, 65535).astype(np.uint16)
+    if values.dtype.kind == "i":
+        raise ValueError(f"PNG has no place for the numbers of {message.encoding}")
+    if order == "rgb":
+        values = values[:, :, [2, 1, 0, 3][: values.shape[2]]]
+    return np.ascontiguousarray(values)
+
+
+def is_depth(message: Any) -> bool:
+    """Whether a picture's numbers are lengths."""
+    return str(getattr(message, "encoding", "")) in ("32FC1", "64FC1")
+
+
+class PngFiles:
+    """A file for each picture; compressed ones as they are."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._count = folder, 0
+        self.notes: list[str] = []
+        folder.mkdir()
+
+    def take(self, time_ns: int, message: Any) -> str:
+        """Writes one; the name of its file, relative to the export."""
+        import cv2
+
+        if not hasattr(message, "encoding"):
+            data = bytes(message.data)
+            ending = ".jpg" if data[:2] == b"\xff\xd8" else ".png" if data[:4] == b"\x89PNG" else ".bin"
+            target = self._folder / f"{self._count:06d}{ending}"
+            target.write_bytes(data)
+        else:
+            if not self._count and is_depth(message):
+                self.notes.append(
+                    "depths are in mm, 0 where there is none (REP 118); --images npz has them as they are"
+                )
+            written, coded = cv2.imencode(".png", png_pixels(message))
+            if not written:
+                raise ValueError(f"PNG cannot hold a picture of {message.encoding}")
+            target = self._folder / f"{self._count:06d}.png"
+            target.write_bytes(coded.tobytes())
+        self._count += 1
+        return f"{self._folder.name}/{target.name}"
+
+    def close(self) -> None:
+        """All are written."""
+
+
+class NpzFile:
+    """An array for each picture."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._count = folder, 0
+        self.notes: list[str] = []
+        folder.mkdir()
+
+    def take(self, time_ns: int, message: Any) -> str:
+        """Writes one; the name of its file, relative to the export."""
+        target = self._folder / f"{self._count:06d}.npz"
+        with target.open("wb") as file:
+            np.savez_compressed(
+                file, pixels=read_pixels(message)[0] if hasattr(message, "encoding") else _decode_compressed(message)
+            )
+        self._count += 1
+        return f"{self._folder.name}/{target.name}"
+
+    def close(self) -> None:
+        """All are written."""
+
+
+class VideoFile:
+    """One MP4; a picture stays until the next one, so that the film goes by the bag's times."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.notes: list[str] = []
+        self._early: list[tuple[int, np.ndarray[Any, Any]]] = []
+        self._writer: Any = None
+        self._rate, self._start, self._frames = _RATE, 0, 0
+        self._last: np.ndarray[Any, Any] | None = None
+        self._size = (0, 0)
+
+    def take(self, time_ns: int, message: Any) -> str:
+        """Writes one; the name of the film."""
+        frame = _video_pixels(message)
+        if not self._early and self._writer is None:
+            self._size, self._start = (frame.shape[1], frame.shape[0]), time_ns
+        if (frame.shape[1], frame.shape[0]) != self._size:
+            raise ValueError("a film has pictures of one size")
+        if self._writer is None:
+            self._early.append((time_ns, frame))
+            if len(self._early) == _SAMPLE:
+                self._open()
+        else:
+            self._add(time_ns, frame)
+        return self._path.name
+
+    def close(self) -> None:
+        """Completes the film."""
+        if self._writer is None and self._early:
+            self._open()
+        if self._writer is not None:
+            if self._last is not None:
+                self._writer.write(self._last)
+            self._writer.release()
+
+    def _open(self) -> None:
+        import cv2
+
+        steps = np.diff([time_ns for time_ns, _ in self._early])
+        steps = steps[steps > 0]
+        if steps.size:
+            self._rate = min(max(round(1e9 / float(np.median(steps)), 2), 0.1), 240.0)
+        for codec in _CODECS:
+            self._writer = cv2.VideoWriter(str(self._path), cv2.VideoWriter.fourcc(*codec), self._rate, self._size)
+            if self._writer.isOpened():
+                break
+        else:
+            self._writer = None
+            self._early = []
+            raise InputError(
+                "SK-BAG-014 --images mp4: OpenCV has no encoder for films here\n    help: --images png", "SK-BAG-014"
+            )
+        early, self._early = self._early, []
+        for time_ns, frame in early:
+            self._add(time_ns, frame)
+
+    def _add(self, time_ns: int, frame: np.ndarray[Any, Any]) -> None:
+        """Shows the last picture until this one's time."""
+        at = math.floor((time_ns - self._start) * 1e-9 * self._rate + 0.5)
+        if self._last is not None:
+            wait = at - self._frames
+            if wait > _LONGEST_STILL:
+                self.notes.append(
+                    f"a gap of {wait / self._rate:.0f} s is {_LONGEST_STILL / self._rate:.0f} s in the film"
+                )
+                self._start += round((wait - _LONGEST_STILL) * 1e9 / self._rate)
+                wait = _LONGEST_STILL
+            for _ in range(max(0, wait)):
+                self._writer.write(self._last)
+                self._frames += 1
+        self._last = frame
+
+
+def _decode_compressed(message: Any) -> np.ndarray[Any, Any]:
+    """The pixels of a compressed picture, blue first.
+
+    Raises:
+        ValueError: nothing that is known.
+    """
+    import cv2
+
+    found = cv2.imdecode(np.frombuffer(bytes(message.data), np.uint8), cv2.IMREAD_UNCHANGED)
+    if found is None:
+        raise ValueError(f"a compressed picture of the format {str(message.format)!r} cannot be read")
+    return np.asarray(found)
+
+
+def _video_pixels(message: Any) -> np.ndarray[Any, Any]:
+    """Three channels of 8 bits, blue first; numbers of more bits and depths from black for 0 to white for the most."""
+    if not hasattr(message, "encoding"):
+        values = _decode_compressed(message)
+    elif is_depth(message) or str(message.encoding) in ("16UC1", "mono16"):
+        values, _ = read_pixels(message)
+        finite = np.where(np.isfinite(values), values, 0).astype(np.float64)
+        values = np.clip(finite * 255.0 / (finite.max() or 1.0), 0, 255).astype(np.uint8)
+    else:
+        values = png_pixels(message)
+    if values.dtype == np.uint16:
+        values = (values >> 8).astype(np.uint8)
+    if values.ndim == 2:
+        return np.repeat(values[:, :, None], 3, axis=2)
+    return np.ascontiguousarray(values[:, :, :3])

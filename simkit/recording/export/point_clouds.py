@@ -1,0 +1,108 @@
+"""Point clouds of a topic as files: NumPy arrays or PLY."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+_KINDS: Final = ("", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")  # sensor_msgs/msg/PointField
+_PLY: Final = {
+    "i1": "char",
+    "u1": "uchar",
+    "i2": "short",
+    "u2": "ushort",
+    "i4": "int",
+    "u4": "uint",
+    "f4": "float",
+    "f8": "double",
+}
+
+
+def read_points(message: Any) -> np.ndarray[Any, Any]:
+    """The points of a cloud, those that are nowhere too, as a structured array with the cloud's fields.
+
+    Raises:
+        ValueError: its fields and its bytes do not belong together.
+    """
+    order = ">" if message.is_bigendian else "<"
+    names, formats, offsets = [], [], []
+    for one in message.fields:
+        if not 1 <= int(one.datatype) < len(_KINDS):
+            raise ValueError(f"a field {one.name!r} of a cloud is of the unknown kind {one.datatype}")
+        for number in range(max(1, int(one.count))):
+            kind = np.dtype(order + _KINDS[int(one.datatype)])
+            names.append(str(one.name) if int(one.count) <= 1 else f"{one.name}_{number}")
+            formats.append(kind)
+            offsets.append(int(one.offset) + number * kind.itemsize)
+    height, width, step = int(message.height), int(message.width), int(message.point_step)
+    row = int(message.row_step) or width * step
+    data = np.asarray(message.data).view(np.uint8).ravel()
+    ends = [offset + kind.itemsize for offset, kind in zip(offsets, formats, strict=True)]
+    if (
+        len(set(names)) != len(names)
+        or (ends and max(ends) > step)
+        or (height and data.size < row * (height - 1) + width * step)
+    ):
+        raise ValueError(f"a cloud of {width} × {height} points of {step} bytes has {data.size} bytes")
+    layout = np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": max(step, 1)})
+    if not height or not width or not names:
+        return np.empty(0, dtype=layout)
+    rows = np.lib.stride_tricks.as_strided(data, (height, width * step), (row, 1))
+    return np.ascontiguousarray(rows).reshape(-1).view(layout)
+
+
+class CloudFiles:
+    """A file for each cloud.
+
+    Args:
+        folder: made for them.
+        ending: `npz`, an array a field; or `ply`, binary, with colours where there is a field `rgb`.
+
+    Attributes:
+        notes: what is other than one would think.
+    """
+
+    def __init__(self, folder: Path, ending: str) -> None:
+        self._folder, self._ending, self._count = folder, ending, 0
+        self.notes: list[str] = []
+        folder.mkdir()
+
+    def take(self, time_ns: int, message: Any) -> str:
+        """Writes one; the name of its file, relative to the export."""
+        target = self._folder / f"{self._count:06d}.{self._ending}"
+        found = read_points(message)
+        with target.open("wb") as file:
+            if self._ending == "ply":
+                file.write(_ply_bytes(found))
+            else:
+                arrays = {name: np.ascontiguousarray(found[name]) for name in found.dtype.names or ()}
+                np.savez_compressed(file, allow_pickle=False, **arrays)
+        self._count += 1
+        return f"{self._folder.name}/{target.name}"
+
+    def close(self) -> None:
+        """All are written."""
+
+
+def _ply_bytes(found: np.ndarray[Any, Any]) -> bytes:
+    """The points that are somewhere, as binary PLY."""
+    names = found.dtype.names or ()
+    if {"x", "y", "z"} <= set(names):
+        found = found[np.isfinite(found["x"]) & np.isfinite(found["y"]) & np.isfinite(found["z"])]
+    parts: list[tuple[str, str, Any]] = []
+    for name in names:
+        values = found[name]
+        if name in ("rgb", "rgba") and values.dtype.itemsize == 4:
+            packed = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("=")).view(np.uint32)
+            for colour, shift in (("red", 16), ("green", 8), ("blue", 0)):
+                parts.append((colour, "u1", (packed >> shift) & 255))
+        else:
+            parts.append((name, values.dtype.str[1:], values))
+    packed_points = np.empty(len(found), dtype=[(name, "<" + kind) for name, kind, _ in parts])
+    for name, _, values in parts:
+        packed_points[name] = values
+    lines = [f"property {_PLY[kind]} {name}" for name, kind, _ in parts]
+    header = "\n".join(("ply", "format binary_little_endian 1.0", f"element vertex {len(found)}", *lines, "end_header"))
+    return header.encode() + b"\n" + packed_points.tobytes()

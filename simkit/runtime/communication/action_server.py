@@ -1,0 +1,331 @@
+"""Actions within the process: goals that take time, with feedback, a result, and a way to call them off.
+
+    goal = sim.send_goal("/arm_controller/follow_joint_trajectory", {"trajectory": …})
+    sim.run(3.0)
+    goal.status, goal.result
+
+A goal, and the wish to cancel one, reach the plugin between two steps, in the order in which they were sent.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from simkit import msgs
+from simkit.diagnostics import did_you_mean
+from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
+from simkit.msgs.actions import ACTIONS
+from simkit.runtime.communication.subscription import callback_name
+from simkit.runtime.communication.topic_bus import absolute_name
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+
+class GoalStatus(enum.IntEnum):
+    """How far a goal is; the numbers are those of `action_msgs/msg/GoalStatus`, REJECTED is ours.
+
+    UNKNOWN is a goal that has not reached its plugin yet, or that a restore went back before.
+    """
+
+    REJECTED = -1
+    UNKNOWN = 0
+    ACCEPTED = 1
+    EXECUTING = 2
+    CANCELING = 3
+    SUCCEEDED = 4
+    CANCELED = 5
+    ABORTED = 6
+
+
+_FINAL_STATES = frozenset({GoalStatus.REJECTED, GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED})
+
+
+class GoalHandle:
+    """A goal, as the one who sent it sees it and as the plugin that works on it does.
+
+    Attributes:
+        id: 1, 2, … in the order in which goals were sent.
+        request: the goal message.
+        status: see `GoalStatus`.
+        result: the result message, once there is one.
+        feedback: the newest feedback message.
+        reason: why it was rejected, or anything else that was said with its end.
+        sent_ns: simulated time at which it was sent [ns].
+    """
+
+    def __init__(self, action: Action, number: int, request: Any, sent_ns: int) -> None:
+        self._action, self.id, self.request, self.sent_ns = action, number, request, sent_ns
+        self.status = GoalStatus.UNKNOWN
+        self.result: Any = None
+        self.feedback: Any = None
+        self.reason = ""
+        self._on_feedback: Callable[[Any], None] | None = None
+        self._on_done: Callable[[GoalHandle], None] | None = None
+
+    # ------------------------------------------------------------------ for the one who sent it
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it was rejected, succeeded, was cancelled or aborted."""
+        return self.status in _FINAL_STATES
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the plugin is at work on it."""
+        return self.status in (GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING)
+
+    def cancel(self) -> None:
+        """Asks for it to be called off; the plugin hears of it before the next step, and may go on."""
+        bus = self._action.sim.bus
+        if bus.journal is None:
+            bus.enqueue(lambda: self._action.ask_to_cancel(self))
+            return
+        with bus.journal.passing("cancel", {"goal": self.id}):
+            bus.enqueue(lambda: self._action.ask_to_cancel(self))
+
+    # ------------------------------------------------------------------ for the plugin
+
+    def reject(self, reason: str = "") -> None:
+        """Does not take the goal; only while it is being offered."""
+        if self.status in (GoalStatus.EXECUTING, GoalStatus.CANCELING):
+            raise ActionError(f"goal {self.id} of {self._action.name!r} was taken already; abort it")
+        self._end(GoalStatus.REJECTED, None, reason)
+
+    def publish_feedback(self, feedback: Any) -> None:
+        """Tells how far it is, by a message or a dict of its fields; nobody, once it has ended."""
+        if self.is_done:
+            return
+        self.feedback = self._made(feedback, "Feedback")
+        self._tell(self._on_feedback, self.feedback, "feedback")
+
+    def succeed(self, result: Any = None, reason: str = "") -> None:
+        """Ends it well."""
+        self._end(GoalStatus.SUCCEEDED, result, reason)
+
+    def abort(self, result: Any = None, reason: str = "") -> None:
+        """Ends it short of its aim."""
+        self._end(GoalStatus.ABORTED, result, reason)
+
+    def canceled(self, result: Any = None, reason: str = "") -> None:
+        """Ends it because that was asked for."""
+        self._end(GoalStatus.CANCELED, result, reason)
+
+    def _end(self, status: GoalStatus, result: Any, reason: str) -> None:
+        if self.is_done:
+            raise ActionError(f"goal {self.id} of {self._action.name!r} has ended already ({self.status.name})")
+        self.result = None if status is GoalStatus.REJECTED else self._made(result, "Result")
+        self.status, self.reason = status, reason
+        self._tell(self._on_done, self, "get_result")
+
+    def _tell(self, callback: Callable[[Any], None] | None, what: Any, part: str) -> None:
+        """Calls the one who sent it back; what they raise is not the plugin's fault."""
+        if callback is None:
+            return
+        try:
+            callback(what)
+        except Exception as error:
+            if isinstance(error, SimkitError) and not isinstance(error, InputError):
+                raise
+            topic, now = f"{self._action.name}/_action/{part}", self._action.sim.time
+            raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
+
+    def _made(self, value: Any, part: str) -> Any:
+        wanted = f"{self._action.type_name}_{part}"
+        if value is None or isinstance(value, Mapping):
+            return msgs.make(wanted, **(value or {}))
+        if msgs.type_name(value) != wanted:
+            raise MessageError(f"{self._action.name!r} gives {wanted}, got {msgs.type_name(value)}")
+        return value
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> GoalHandle:
+        return self
+
+
+class Action:
+    """One action, as the plugin behind it opened it.
+
+    Attributes:
+        name: absolute.
+        type_name: such as `control_msgs/action/FollowJointTrajectory`.
+        owner: whose it is; it is there as long as its owner is.
+    """
+
+    def __init__(
+        self,
+        sim: Simulation,
+        name: str,
+        type_name: str,
+        on_goal: Callable[[GoalHandle], None],
+        on_cancel: Callable[[GoalHandle], bool | None] | None,
+    ) -> None:
+        self.sim, self.name, self.type_name, self.owner = sim, name, type_name, sim.bus._owner
+        self.active = True
+        self._on_goal, self._on_cancel = on_goal, on_cancel
+
+    def offer(self, goal: GoalHandle) -> None:
+        """Hands a goal to the plugin, which works on it unless it rejects it at once."""
+        if goal.is_done:
+            return  # its plugin raised before it got the goal
+        if not self.active:
+            goal._end(GoalStatus.REJECTED, None, "the action is gone")
+            return
+        goal.status = GoalStatus.ACCEPTED
+        self._guarded(self._on_goal, goal)
+        if goal.status is GoalStatus.ACCEPTED:
+            goal.status = GoalStatus.EXECUTING
+
+    def ask_to_cancel(self, goal: GoalHandle) -> None:
+        """Hands the wish to cancel to the plugin; one that has no way to do so, or gives False, goes on."""
+        if not goal.is_active or goal.status is GoalStatus.CANCELING or self._on_cancel is None:
+            return
+        before, goal.status = goal.status, GoalStatus.CANCELING
+        if self._guarded(self._on_cancel, goal) is False and goal.status is GoalStatus.CANCELING:
+            goal.status = before
+
+    def _guarded(self, call: Callable[[GoalHandle], Any], goal: GoalHandle) -> Any:
+        owner, hook = self.owner, f"action {self.name}"
+        if hasattr(owner, "on_error"):
+            return self.sim.faults.guard(owner, hook, call)(goal)
+        try:
+            return call(goal)
+        except SimkitError:
+            raise
+        except Exception as error:
+            name, where = getattr(owner, "name", "") or self.name, str(getattr(owner, "where", ""))
+            raise PluginError(name, hook, self.sim.time, where, repr(error)) from error
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Action:
+        return self
+
+
+class ActionTable:
+    """All actions of a simulation, and the goals that were sent."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._actions: dict[str, list[Action]] = {}
+        self._goals: list[GoalHandle] = []
+        self._sent = 0
+
+    def act(
+        self,
+        name: str,
+        type_name: str,
+        on_goal: Callable[[GoalHandle], None],
+        on_cancel: Callable[[GoalHandle], bool | None] | None = None,
+    ) -> Action:
+        """Opens an action; whatever opens it within `bus.owned_by(owner)` belongs to that owner.
+
+        Raises:
+            ActionError: there is one of that name.
+            MessageError: an unknown type.
+        """
+        name = absolute_name(name)
+        if type_name not in ACTIONS:  # what is in there is read when a goal comes
+            msgs.full_name(f"{type_name}_Goal")
+        if self._find(name) is not None:
+            raise ActionError(f"there is an action {name!r} already")
+        if self._sim.bus.journal is not None:
+            with self._sim.bus.journal.passing("act", {"action": name}):
+                pass
+        action = Action(self._sim, name, type_name, on_goal, on_cancel)
+        self._actions.setdefault(name, []).append(action)
+        return action
+
+    def names(self) -> dict[str, str]:
+        """Action -> type, sorted."""
+        found = ((name, self._find(name)) for name in sorted(self._actions))
+        return {name: action.type_name for name, action in found if action is not None}
+
+    def send(
+        self,
+        name: str,
+        goal: Any = None,
+        on_feedback: Callable[[Any], None] | None = None,
+        on_done: Callable[[GoalHandle], None] | None = None,
+    ) -> GoalHandle:
+        """Sends a goal; the plugin has it before the next step.
+
+        Args:
+            name: absolute, or taken as such.
+            goal: a message, a dict of its fields, or None for all zero.
+            on_feedback: called with each feedback message.
+            on_done: called with the handle once it has ended.
+
+        Raises:
+            ActionError: there is no such action; names the closest.
+            MessageError: the goal does not fit.
+        """
+        name = absolute_name(name)
+        action = self._find(name)
+        if action is None:
+            there = self.names()
+            hint = did_you_mean(name, there) or "there is " + (", ".join(there) or "none")
+            raise ActionError(f"no action {name!r}; {hint}")
+        wanted = f"{action.type_name}_Goal"
+        request = msgs.from_dict([wanted], goal or {}) if goal is None or isinstance(goal, Mapping) else goal
+        if msgs.type_name(request) != wanted:
+            raise MessageError(f"{name!r} takes {wanted}, got {msgs.type_name(request)}")
+        journal = self._sim.bus.journal
+        if journal is None:
+            return self._send(action, request, on_feedback, on_done)
+        on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)
+        words = {"action": action.name, "goal": request, "on_feedback": on_feedback, "on_done": on_done}
+        with journal.passing("send_goal", words):
+            return self._send(action, request, on_feedback, on_done)
+
+    def _send(
+        self,
+        action: Action,
+        request: Any,
+        on_feedback: Callable[[Any], None] | None,
+        on_done: Callable[[GoalHandle], None] | None,
+    ) -> GoalHandle:
+        self._sent += 1
+        handle = GoalHandle(action, self._sent, request, self._sim.time_ns)
+        handle._on_feedback, handle._on_done = on_feedback, on_done
+        self._goals = [g for g in self._goals if not g.is_done]
+        self._goals.append(handle)
+        self._sim.bus.enqueue(lambda: action.offer(handle))
+        return handle
+
+    def set_active(self, owners: Sequence[object]) -> None:
+        """Leaves only the actions of these owners (and those without one) in use."""
+        living = {id(owner) for owner in owners}
+        for action in (a for opened in self._actions.values() for a in opened):
+            action.active = action.owner is None or id(action.owner) in living
+
+    def forget(self, owners: Sequence[object]) -> None:
+        """Takes every action of these owners away for good."""
+        gone = {id(owner) for owner in owners}
+        self._actions = {n: [a for a in opened if id(a.owner) not in gone] for n, opened in self._actions.items()}
+
+    def abandon(self, owner: object, reason: str) -> None:
+        """Ends every goal of a plugin that is left out."""
+        for goal in [g for g in self._goals if g._action.owner is owner and not g.is_done]:
+            goal.abort(reason=reason)
+
+    def abandon_gone(self) -> None:
+        """Ends every goal whose plugin has left the world."""
+        for goal in [g for g in self._goals if not g._action.active and g.is_active]:
+            goal.abort(reason="the action is gone")
+
+    def get_state(self) -> tuple[int, tuple[tuple[GoalHandle, tuple[Any, ...]], ...]]:
+        """How far each goal is."""
+        goals = [(g, (g.status, g.result, g.feedback, g.reason)) for g in self._goals]
+        return self._sent, tuple(goals)
+
+    def set_state(self, state: tuple[int, tuple[tuple[GoalHandle, tuple[Any, ...]], ...]]) -> None:
+        """Back to a state from `get_state`; goals sent since are unknown again."""
+        for goal in self._goals:
+            goal.status, goal.result, goal.feedback, goal.reason = GoalStatus.UNKNOWN, None, None, ""
+        self._sent = state[0]
+        self._goals = [goal for goal, _ in state[1]]
+        for goal, values in state[1]:
+            goal.status, goal.result, goal.feedback, goal.reason = values
+
+    def _find(self, name: str) -> Action | None:
+        return next((a for a in self._actions.get(name, ()) if a.active), None)

@@ -1,0 +1,73 @@
+"""The doors of a simulation: what comes in from outside goes through them, and who writes a journal hears of it.
+
+Outside is whoever makes the steps, and whoever is called back by a topic without being a plugin of the world. What
+plugins do themselves comes again when the run is repeated, and is not told.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+from typing import Any, ParamSpec, Protocol, TypeVar
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Journal(Protocol):
+    """Hears of all that comes in; it is `TopicBus.journal` while it does."""
+
+    def passing(self, door: str, words: Mapping[str, Any]) -> AbstractContextManager[Any]:
+        """A context manager around what is done by somebody who may be outside; `words` are the arguments."""
+        ...
+
+    def called_back(self, subscription: Any) -> AbstractContextManager[None]:
+        """A context manager around a callback that is no plugin's."""
+        ...
+
+    def hears(self, topic: str, subscription: Any) -> None:
+        """Told before somebody subscribes with a callback that is no plugin's."""
+        ...
+
+    def outside(self, callback: Callable[[Any], Any] | None) -> Callable[[Any], Any] | None:
+        """A callback that somebody hands over who may be outside, to be called instead of it."""
+        ...
+
+    def before_steps(self) -> None:
+        """Told before steps are made."""
+        ...
+
+    def after_steps(self) -> None:
+        """Told after them, also where they ended in an error."""
+        ...
+
+
+def journal_of(part: Any) -> Journal | None:
+    """The journal of a simulation, or of one of its tables."""
+    bus = getattr(part, "bus", None)
+    found: Journal | None = (part._sim.bus if bus is None else bus).journal
+    return found
+
+
+def journaled(method: Callable[P, R]) -> Callable[P, R]:
+    """Has a journal hear of each call of a method of a simulation or of one of its tables."""
+    signature = inspect.signature(method)
+    name = method.__name__.lstrip("_")
+
+    @functools.wraps(method)
+    def through(*args: P.args, **kwargs: P.kwargs) -> R:
+        journal = journal_of(args[0])
+        if journal is None:
+            return method(*args, **kwargs)
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        words = dict(list(bound.arguments.items())[1:])
+        with journal.passing(name, words) as told:
+            result = method(*args, **kwargs)
+            if told is not None:
+                told(result)
+            return result
+
+    return through

@@ -1,0 +1,296 @@
+"""Live parameters: values of a plugin that may be changed while it runs, typed and bounded, as those of a ROS 2 node.
+
+    sim.parameters["/tb3/gain_tuner"]["p_gain"].value
+    sim.set_parameter("/tb3/gain_tuner", "p_gain", 12.0)
+
+A change takes effect between two steps.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import ParameterError
+from simkit.runtime.communication.journal import journaled
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+
+ParameterValue = bool | int | float | str | tuple[float, ...]
+T = TypeVar("T", bound=ParameterValue)
+
+_INTEGER_LIMIT = 2**63  # ROS has integers of 64 bits
+_TYPE_NAMES = {bool: "a boolean", int: "an integer", float: "a number", str: "text", tuple: "numbers"}
+
+
+class Parameter(Generic[T]):
+    """A value that may be changed while the simulation runs.
+
+    Attributes:
+        node: the node it is a parameter of, such as `/tb3/diff_drive`.
+        name: its name.
+        value: the present value.
+        minimum, maximum: bounds of a number; None where there is none.
+        choices: what is allowed, where that is a list; empty otherwise.
+        description: what it is, with its unit.
+        owner: the plugin.
+        active: whether that is part of the simulation now; False of one that a restore may bring back.
+    """
+
+    def __init__(
+        self,
+        node: str,
+        name: str,
+        value: T,
+        *,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        choices: Sequence[T] = (),
+        description: str = "",
+        on_change: Callable[[T], None] | None = None,
+        owner: object = None,
+    ) -> None:
+        self.node, self.name, self.value = node, name, value
+        self.minimum, self.maximum, self.choices = minimum, maximum, tuple(choices)
+        self.description, self.owner = description, owner
+        self._on_change = on_change
+        self.active = True
+
+    @property
+    def allowed(self) -> str:
+        """What it takes, in words."""
+        if self.choices:
+            return "one of " + ", ".join(map(repr, self.choices))
+        words = _TYPE_NAMES[type(self.value)]
+        if isinstance(self.value, tuple):
+            words = f"{len(self.value)} {words}"
+        if self.minimum is not None and self.maximum is not None:
+            return f"{words} from {self.minimum:g} to {self.maximum:g}"
+        if self.minimum is not None:
+            return f"{words} of at least {self.minimum:g}"
+        return f"{words} of at most {self.maximum:g}" if self.maximum is not None else words
+
+    def checked(self, value: Any) -> T:
+        """The value as it would be stored.
+
+        Raises:
+            ParameterError: it is of another type, or out of bounds; says what is allowed.
+        """
+        found = _convert(value, self.value)
+        if found is None or not self.is_within(found):
+            raise ParameterError(f"{self.node} {self.name}: found {value!r}, allowed is {self.allowed}")
+        return found  # type: ignore[no-any-return]
+
+    def take(self, value: T) -> None:
+        """Stores a checked value and tells the plugin."""
+        self.value = value
+        if self._on_change is not None:
+            self._on_change(value)
+
+    def is_within(self, value: Any) -> bool:
+        """Whether a value of the right type is allowed."""
+        if self.choices and value not in self.choices:
+            return False
+        if isinstance(value, (bool, str)):
+            return True
+        low = -math.inf if self.minimum is None else self.minimum
+        high = math.inf if self.maximum is None else self.maximum
+        return all(math.isfinite(v) and low <= v <= high for v in (value if isinstance(value, tuple) else (value,)))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Parameter[T]:
+        return self
+
+
+class ParameterTable:
+    """The parameters of all plugins, by node."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        # a model that comes under the name of one that is gone, and may come back, has the same node
+        self._parameters: dict[str, dict[tuple[int, str], Parameter[Any]]] = {}
+
+    def add(self, parameter: Parameter[Any]) -> None:
+        """Adds a parameter to its node."""
+        self._parameters.setdefault(parameter.node, {})[id(parameter.owner), parameter.name] = parameter
+
+    def node_of(self, owner: object, wanted: str, otherwise: str) -> str:
+        """The name of a plugin's node: of `wanted`, `otherwise`, `otherwise_2`, … the first that no other has."""
+        names = itertools.chain((wanted, otherwise), (f"{otherwise}_{i}" for i in itertools.count(2)))
+        return next(name for name in names if self._is_free(name, owner))
+
+    def _is_free(self, node: str, owner: object) -> bool:
+        return all(p.owner is owner or not p.active for p in self._parameters.get(node, {}).values())
+
+    def nodes(self) -> dict[str, dict[str, Parameter[Any]]]:
+        """Node -> name -> parameter, sorted by node."""
+        active = ((n, [p for p in self._parameters[n].values() if p.active]) for n in sorted(self._parameters))
+        return {node: {p.name: p for p in found} for node, found in active if found}
+
+    def find(self, node: str, name: str) -> Parameter[Any]:
+        """A parameter.
+
+        Raises:
+            ParameterError: there is none of that name; names the closest.
+        """
+        nodes = self.nodes()
+        if node not in nodes:
+            hint = did_you_mean(node, nodes) or "there is " + (", ".join(nodes) or "none")
+            raise ParameterError(f"no node {node!r} has parameters; {hint}")
+        if name not in nodes[node]:
+            hint = did_you_mean(name, nodes[node]) or "it has " + ", ".join(nodes[node])
+            raise ParameterError(f"{node!r} has no parameter {name!r}; {hint}")
+        return nodes[node][name]
+
+    @journaled
+    def set(self, node: str, name: str, value: Any) -> None:
+        """Changes a parameter before the next step; at once where no step is under way.
+
+        Raises:
+            ParameterError: there is none of that name, or it does not take the value.
+        """
+        parameter = self.find(node, name)
+        checked = parameter.checked(value)
+        if self._sim.is_stepping:
+            self._sim.bus.enqueue(lambda: parameter.take(checked))
+        else:
+            parameter.take(checked)
+
+    def set_active(self, owners: Sequence[object]) -> None:
+        """Leaves only the parameters of these plugins in use."""
+        living = {id(owner) for owner in owners}
+        for parameter in (p for found in self._parameters.values() for p in found.values()):
+            parameter.active = id(parameter.owner) in living
+
+    def forget(self, owners: Sequence[object]) -> None:
+        """Takes every parameter of these plugins away for good."""
+        gone = {id(owner) for owner in owners}
+        for node, found in list(self._parameters.items()):
+            kept = {key: p for key, p in found.items() if id(p.owner) not in gone}
+            if kept:
+                self._parameters[node] = kept
+            else:
+                del self._parameters[node]
+
+    def get_state(self) -> tuple[tuple[Parameter[Any], Any], ...]:
+        """Every parameter with its value."""
+        return tuple((p, p.value) for found in self._parameters.values() for p in found.values())
+
+    def set_state(self, state: tuple[tuple[Parameter[Any], Any], ...]) -> None:
+        """Back to values from `get_state`; the plugins are not told, their own state goes back as well."""
+        for parameter, value in state:
+            parameter.value = value
+
+
+def _convert(value: Any, like: Any) -> Any:
+    """A value as the type of `like`; None where it is of another."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
+    if isinstance(like, (bool, str)):
+        return value if isinstance(value, type(like)) else None
+    if isinstance(like, tuple):
+        if not isinstance(value, (list, tuple)) or len(value) != len(like):
+            return None
+        found = tuple(_convert(v, 0.0) for v in value)
+        return None if None in found else found
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    if isinstance(like, int):
+        is_whole = isinstance(value, int) or value.is_integer()
+        return int(value) if is_whole and abs(value) < _INTEGER_LIMIT else None
+    try:
+        return float(value)
+    except OverflowError:
+        return None
+
+
+# rcl_interfaces/msg/ParameterType
+_ROS_TYPES = {bool: 1, int: 2, float: 3, str: 4, tuple: 8}
+_VALUE_FIELDS = {
+    1: "bool_value",
+    2: "integer_value",
+    3: "double_value",
+    4: "string_value",
+    6: "bool_array_value",
+    7: "integer_array_value",
+    8: "double_array_value",
+    9: "string_array_value",
+}
+
+
+def offer_parameter_services(sim: Simulation, node: str) -> None:
+    """Opens the six parameter services of a node."""
+    services: dict[str, Callable[[Any], Any]] = {
+        "GetParameters": lambda request: {
+            "values": [_value_message(_find_or_none(sim, node, n)) for n in request.names]
+        },
+        "GetParameterTypes": lambda request: {
+            "types": [_value_message(_find_or_none(sim, node, n))["type"] for n in request.names]
+        },
+        "SetParameters": lambda request: {"results": [_set_parameters(sim, node, [p]) for p in request.parameters]},
+        "SetParametersAtomically": lambda request: {"result": _set_parameters(sim, node, request.parameters)},
+        "ListParameters": lambda request: {"result": {"names": _list_names(sim, node, request.prefixes)}},
+        "DescribeParameters": lambda request: {
+            "descriptors": [_descriptor(_find_or_none(sim, node, n)) for n in request.names]
+        },
+    }
+    for name, handler in services.items():
+        snake = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
+        sim.offer(f"{node}/{snake}", f"rcl_interfaces/srv/{name}", handler)
+
+
+def _find_or_none(sim: Simulation, node: str, name: str) -> Parameter[Any] | None:
+    return sim.parameter_table.nodes().get(node, {}).get(name)
+
+
+def _list_names(sim: Simulation, node: str, prefixes: list[str]) -> list[str]:
+    names = list(sim.parameter_table.nodes().get(node, {}))
+    return [n for n in names if not prefixes or any(n == p or n.startswith(f"{p}.") for p in prefixes)]
+
+
+def _value_message(parameter: Parameter[Any] | None) -> dict[str, Any]:
+    """A `ParameterValue`; type 0 where there is no such parameter."""
+    if parameter is None:
+        return {"type": 0}
+    kind = _ROS_TYPES[type(parameter.value)]
+    value = parameter.value
+    return {"type": kind, _VALUE_FIELDS[kind]: list(value) if isinstance(value, tuple) else value}
+
+
+def _set_parameters(sim: Simulation, node: str, wanted: list[Any]) -> dict[str, Any]:
+    """Changes all of them or none."""
+    try:
+        checked = []
+        for one in wanted:
+            parameter = sim.parameter_table.find(node, one.name)
+            field = _VALUE_FIELDS.get(int(one.value.type))
+            checked.append((parameter.name, parameter.checked(getattr(one.value, field) if field else None)))
+    except ParameterError as error:
+        return {"successful": False, "reason": str(error)}
+    for name, value in checked:
+        sim.parameter_table.set(node, name, value)
+    return {"successful": True}
+
+
+def _descriptor(parameter: Parameter[Any] | None) -> dict[str, Any]:
+    if parameter is None:
+        return {}
+    found: dict[str, Any] = {
+        "name": parameter.name,
+        "type": _ROS_TYPES[type(parameter.value)],
+        "description": parameter.description,
+        "additional_constraints": parameter.allowed,
+    }
+    if parameter.minimum is not None and parameter.maximum is not None and not isinstance(parameter.value, tuple):
+        bounds = {"from_value": parameter.minimum, "to_value": parameter.maximum}
+        if isinstance(parameter.value, int):
+            found["integer_range"] = [{k: int(v) for k, v in bounds.items()}]
+        else:
+            found["floating_point_range"] = [bounds]
+    return found

@@ -1,0 +1,1 @@
+"""Forces between bodies in contact: contact law, friction, slip, moving surfaces, speculative contacts."""

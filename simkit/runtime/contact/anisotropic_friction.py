@@ -1,0 +1,303 @@
+"""Friction that differs along and across a direction, and contacts that slip with the force on them.
+
+MuJoCo's contacts have two coefficients, along two tangents that it chooses by the normal alone. Gazebo's have them
+along `<fdir1>`, which turns with a link: a wheel with rollers holds along them and rolls across. And Gazebo's contacts
+may slip: their surfaces pass each other at a speed of compliance times force (ODE's `slip1`, `slip2` [m/s/N]).
+
+So between the engine's pass over positions and velocities and its solving for forces, the contacts of such collisions
+get their tangents and coefficients, and their friction the softness that lets it slip. It is done in every forward
+pass (`Physics.shaper`), whoever asks for it: no reader makes a difference. `softness` makes them soft.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import mujoco
+import numpy as np
+
+from simkit.compiler.contact_friction import directional_friction, directional_slip, has_directional_friction
+from simkit.diagnostics import NOWHERE, Where
+from simkit.runtime.contact.contact_slip import ContactSlip
+from simkit.runtime.contact.friction_tangents import FrictionRow, FrictionTangents, RowContacts
+from simkit.runtime.contact.moving_surface import (
+    Belt,
+    BeltMotion,
+    FrictionContactArrays,
+    FrictionContacts,
+    MovingSurfaces,
+    find_friction_contacts,
+)
+from simkit.runtime.engine.physics import STALE
+
+if TYPE_CHECKING:
+    from simkit.compiler.name_map import LinkBinding, NameMap
+    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.simulation import Simulation
+    from simkit.scene import SceneCollision
+
+Numbers = list[float]
+Pair = tuple[float, float]
+
+_ELLIPTIC = mujoco.mjtCone.mjCONE_ELLIPTIC
+_DISCRETE = mujoco.mjtIntegrator.mjINT_DISCRETE
+_NO_ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+_SHARED_KEY = "directed friction"
+
+
+@dataclass(frozen=True, slots=True)
+class SlippingWheel:
+    """A wheel whose contacts slip the more the faster it turns.
+
+    Attributes:
+        link, joint: scoped names of the wheel and of the joint that it turns on.
+    """
+
+    link: str
+    joint: str
+
+
+WheelSlips = Callable[[], list[Pair]]
+"""Of each wheel the compliances across (along its axle) and ahead, per turning rate [m/N]."""
+
+
+class ContactRequest(NamedTuple):
+    """What plugins ask of contacts at one tick: how belts run, and the slips of the wheels of each plugin."""
+
+    runs: list[BeltMotion | None]
+    slips: list[list[Pair]]
+
+
+class AnisotropicFriction:
+    """The directed and slipping contacts of a simulation; where there are none it costs nothing."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._is_told = False
+        self._wheels: weakref.WeakKeyDictionary[Any, tuple[tuple[SlippingWheel, ...], WheelSlips]]
+        self._wheels = weakref.WeakKeyDictionary()
+        self._belts: weakref.WeakKeyDictionary[Any, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
+
+    def bind(self, structure: WorldStructure) -> None:
+        """Finds what collides in a directed way in a structure."""
+        table = self._table(structure)
+        there = {id(plugin) for part in structure.parts.values() for plugin, _ in part.plugins}
+        for owner, (wheels, slips) in self._wheels.items():
+            if id(owner) in there:
+                table.add_wheels(owner, wheels, slips)
+        for owner, belts in self._belts.items():
+            if id(owner) in there:
+                table.add_belts(owner, belts())
+        self._install(table)
+
+    def add_belts(self, owner: Any, belts: Callable[[], Sequence[Belt]]) -> None:
+        """Has surfaces run from now on, for as long as their plugin is there.
+
+        Args:
+            owner: the plugin.
+            belts: gives them in the present engine model.
+        """
+        self._belts[owner] = belts
+        table = self._table(self._sim.structure)
+        table.add_belts(owner, belts())
+        self._install(table)
+        self._sim.physics.changed(STALE)
+
+    def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
+        """Has the contacts of wheels slip from now on, for as long as their plugin is there.
+
+        Args:
+            owner: the plugin.
+            wheels: of its model.
+            slips: asked in every forward pass, so that they are part of the plugin's state.
+        """
+        self._wheels[owner] = tuple(wheels), slips
+        table = self._table(self._sim.structure)
+        table.add_wheels(owner, wheels, slips)
+        self._install(table)
+        self._sim.physics.changed(STALE)
+
+    def _install(self, table: _ModelFriction) -> None:
+        """Have the physics use it, if there is anything in it and the engine's integrator lets it."""
+        physics, has_place = self._sim.physics, table.model.opt.integrator != _DISCRETE
+        physics.shaper = table if table and has_place else None
+        if table and not has_place and not self._is_told:
+            self._is_told = True
+            message = (
+                "directions and slip of friction, and surfaces that run, have no effect: the engine's integrator is "
+                "discrete, which has no place for them between velocities and forces"
+            )
+            self._sim.reports.warning("SK-PHYS-030", message, table.where(), 'integrator="implicitfast" in <option>')
+
+    def owners(self) -> list[Any]:
+        """The plugins whose wheels slip, of those that are there."""
+        there = {id(plugin) for part in self._sim.structure.parts.values() for plugin, _ in part.plugins}
+        return [owner for owner in self._wheels if id(owner) in there]
+
+    def _table(self, structure: WorldStructure) -> _ModelFriction:
+        compiled = structure.compiled
+        made: _ModelFriction = compiled.names.shared(
+            _SHARED_KEY, lambda: _ModelFriction(compiled.model, compiled.names)
+        )
+        return made
+
+
+class _ModelFriction:
+    """What one compiled model has of them, and how its contacts are changed."""
+
+    def __init__(self, model: Any, names: NameMap) -> None:
+        self.model, self._names = model, names
+        self._rows: dict[str, FrictionRow] = {}
+        self._sources: dict[int, tuple[list[str], WheelSlips]] = {}
+        self._softness = ContactSlip(model)
+        self.surfaces, self._belts = MovingSurfaces(model), set[int]()
+        for link in names.links.values():
+            for collision in link.scene.collisions:
+                surface = collision.surface
+                if has_directional_friction(surface) or any(directional_slip(surface)):
+                    self._rows[collision.scoped] = self._of_surface(link, collision)
+        self._arrange()
+
+    def __bool__(self) -> bool:
+        return bool(self._rows or self._belts)
+
+    def where(self) -> Where:
+        """Of the first link that it is about."""
+        geoms = {geom for geom, concerned in enumerate(self._concerns) if concerned}
+        return next((link.scene.where for link in self._names.links.values() if geoms & set(link.geoms)), NOWHERE)
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is anything that may have to be done."""
+        return bool(self._rows) or self.surfaces.run
+
+    def add_belts(self, owner: Any, belts: Sequence[Belt]) -> None:
+        """Surfaces that run; a second time nothing more."""
+        if id(owner) not in self._belts:
+            self._belts.add(id(owner))
+            for belt in belts:
+                self.surfaces.add(belt)
+                self._rub(belt)
+            self._arrange()
+
+    def _rub(self, belt: Belt) -> None:
+        """Gives the collisions of a belt the friction that its plugin asks for."""
+        if belt.friction is None:
+            return
+        for scoped in dict.fromkeys(self._names.geom_owner(geom)[1] for geom in belt.geoms):
+            geoms = [geom for geom in belt.geoms if self._names.geom_owner(geom)[1] == scoped]
+            old = self._rows.get(scoped)
+            slip = (0.0, 0.0) if old is None else old.slip
+            tree = int(self.model.body_treeid[belt.body])
+            self._rows[scoped] = FrictionRow(geoms, belt.body, list(belt.axle), belt.friction, slip, tree)
+
+    def _of_surface(self, link: LinkBinding, collision: SceneCollision) -> FrictionRow:
+        surface = collision.surface
+        frame = _direction_link(surface.fdir1_frame, link.scoped, self._names)
+        body, offset = (link.body, link.offset @ collision.pose_link) if frame is None else (frame.body, frame.offset)
+        axis = (offset.matrix @ np.array(surface.fdir1)).tolist()
+        tree = int(self.model.body_treeid[link.body])
+        return FrictionRow(
+            self._geoms(link, collision), body, axis, directional_friction(surface), directional_slip(surface), tree
+        )
+
+    def _geoms(self, link: LinkBinding, collision: SceneCollision) -> list[int]:
+        return [geom for geom in link.geoms if self._names.geom_owner(geom)[1] == collision.scoped]
+
+    def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
+        """Lets them slip; a second time nothing more."""
+        if id(owner) in self._sources:
+            return
+        keys = []
+        for wheel in wheels:
+            link, joint = self._names.link(wheel.link), self._names.joint(wheel.joint)
+            collision = link.scene.collisions[0]
+            row = self._rows.get(collision.scoped)
+            number = joint.joint_ids[0]
+            body, axis = int(self.model.jnt_bodyid[number]), self.model.jnt_axis[number].tolist()
+            if row is None:
+                mu, tree = directional_friction(collision.surface), int(self.model.body_treeid[link.body])
+                row = FrictionRow(self._geoms(link, collision), body, axis, mu, (0.0, 0.0), tree)
+                self._rows[collision.scoped] = row
+            elif not has_directional_friction(collision.surface):
+                row.body, row.axis = body, axis
+            row.dof = joint.dofs[0]
+            keys.append(collision.scoped)
+        self._sources[id(owner)] = (keys, slips)
+        self._arrange()
+
+    def _arrange(self) -> None:
+        self._list = rows = list(self._rows.values())
+        self._row_of = [-1] * (self.model.ngeom + 1)  # the last for -1: no geom
+        for number, row in enumerate(rows):
+            for geom in row.geoms:
+                self._row_of[geom] = number
+        self._concerns = [a >= 0 or b for a, b in zip(self._row_of, self.surfaces.concerns, strict=True)]
+        is_belt = [any(self.surfaces.concerns[geom] for geom in row.geoms) for row in rows]
+        self._contacts = FrictionTangents(self.model, rows, self._row_of, is_belt)
+        self._slip = [row.slip for row in rows]
+        order = {key: number for number, key in enumerate(self._rows)}
+        self._wheels = [[(order[key], self._rows[key].dof) for key in keys] for keys, _ in self._sources.values()]
+        self._may_slip = bool(self._sources) or any(map(any, self._slip))
+
+    # ------------------------------------------------------------------ in a forward pass
+
+    def request(self) -> ContactRequest:
+        """Return what plugins ask for now."""
+        return ContactRequest(self.surfaces.runs(), [slips() for _, slips in self._sources.values()])
+
+    def shape(self, data: Any, request: Any = None) -> None:
+        """Gives the contacts of such collisions their tangents, coefficients and softness."""
+        model, surfaces = self.model, self.surfaces
+        runs, wheels = self.request() if request is None else request
+        found = find_friction_contacts(data, self._concerns) if data.ncon else None
+        flow = surfaces.look(data, found, runs)
+        if found is None:
+            return
+        places = self._contacts.find(found)
+        if not len(places):
+            if flow is not None:
+                surfaces.carry(data, found.frames)
+                mujoco.mj_referenceConstraint(model, data)
+            return
+        self._contacts.turn(data, found, places, flow)
+        surfaces.carry(data, found.frames)
+        mujoco.mj_makeConstraint(model, data)
+        soft = self._soft(data, found, places, wheels) if self._may_slip else []
+        is_elliptic = model.opt.cone == _ELLIPTIC
+        if is_elliptic and soft:
+            self._softness.soften(data, soft)
+        if not model.opt.disableflags & _NO_ISLANDS:
+            mujoco.mj_island(model, data)
+        mujoco.mj_projectConstraint(model, data)
+        mujoco.mj_referenceConstraint(model, data)
+        if soft and not is_elliptic:
+            for number, _, slip in soft:
+                self._softness.soften_pyramid(data, number, slip)
+
+    def _soft(
+        self, data: Any, found: FrictionContacts | FrictionContactArrays, places: RowContacts, wheels: list[list[Pair]]
+    ) -> list[tuple[int, int, Pair]]:
+        """The contacts that slip, with the tree that does and their compliances [m/s/N]."""
+        slips = self._slip
+        if self._wheels:
+            slips = slips.copy()
+            qvel = data.qvel
+            for those, own in zip(self._wheels, wheels, strict=True):
+                for (row, dof), (one, two) in zip(those, own, strict=True):
+                    (a, b), rate = slips[row], abs(qvel.item(dof))
+                    slips[row] = a + rate * one, b + rate * two
+        listed = places if isinstance(places, list) else places.tolist()
+        numbers = found.numbers
+        return [(int(numbers[place]), self._list[row].tree, slips[row]) for place, row, _ in listed if any(slips[row])]
+
+
+def _direction_link(name: str, link: str, names: NameMap) -> LinkBinding | None:
+    """The link that a direction is given in, by its name in the scope of the collision's link; None for its own."""
+    if not name:
+        return None
+    scope = link.rpartition("::")[0]
+    return names.links.get(f"{scope}::{name}" if scope else name)

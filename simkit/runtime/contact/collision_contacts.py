@@ -1,0 +1,106 @@
+"""What touches what: the engine's contacts, by the collisions of the files they belong to."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.integer[Any]]
+Bools = npt.NDArray[np.bool_]
+
+mj_contact_force, any_of = mujoco.mj_contactForce, np.logical_or.reduce  # looked up once
+
+
+@dataclass(frozen=True, eq=False)
+class CollisionTable:
+    """The collisions of a compiled model, numbered in the order of their first geoms.
+
+    Attributes:
+        names: scoped, by number; a geom that no file's collision stands behind counts by its own name.
+        of_geom: number by geom id, shape (ngeom + 1,); the last one, -1, is for what is no geom.
+    """
+
+    names: tuple[str, ...]
+    of_geom: Ints
+
+    def mask(self, scoped: Collection[str]) -> Bools:
+        """Which geoms belong to these collisions, shape (ngeom + 1,); the last one never does."""
+        numbers = [i for i, name in enumerate(self.names) if name in scoped]
+        return np.isin(self.of_geom, numbers)
+
+
+def collision_table(compiled: Any) -> CollisionTable:
+    """The collisions of a compiled model; found once for all who ask."""
+    names = compiled.names
+    found: CollisionTable = names.shared("collisions", lambda: _build_collision_table(names, compiled.model))
+    return found
+
+
+def _build_collision_table(names: Any, model: Any) -> CollisionTable:
+    number: dict[str, int] = {}
+    of_geom = np.full(model.ngeom + 1, -1, dtype=np.intp)
+    for geom in range(model.ngeom):
+        _, scoped, is_visual = names.geom_owner(geom)
+        if not is_visual:
+            name = scoped or mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_GEOM, geom) or f"geom{geom}"
+            of_geom[geom] = number.setdefault(name, len(number))
+    return CollisionTable(tuple(number), of_geom)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CollisionContacts:
+    """Contacts that some collisions take part in, k of them, in the engine's order.
+
+    Attributes:
+        geoms: the two geoms of each, shape (k, 2).
+        positions: [m], world, shape (k, 3); half way between the two surfaces.
+        frames: axes of each contact as rows, world, shape (k, 3, 3); the first points from geom 0 to geom 1.
+        depths: how deep the two are in each other [m], shape (k,).
+        wrenches: force [N] and torque [N·m] on geom 1 at the position, in those axes, shape (k, 6).
+    """
+
+    geoms: Ints
+    positions: Floats
+    frames: Floats
+    depths: Floats
+    wrenches: Floats
+
+
+def find_contacts(model: Any, data: Any, mine: Bools) -> CollisionContacts | None:
+    """The contacts that geoms of `mine` take part in; None where there are none.
+
+    A contact is where two surfaces touch or overlap, or where one pushes the other before that. What only comes within
+    the engine's margin is none.
+
+    Args:
+        data: with everything computed.
+        mine: by geom id, shape (ngeom + 1,).
+    """
+    if not data.ncon:
+        return None
+    contact = data.contact
+    pairs = contact.geom
+    # the usual few contacts cost less as Python's numbers than as arrays
+    rows = any_of(mine.take(pairs), axis=1).nonzero()[0]
+    if not rows.size:
+        return None
+    acts = contact.efc_address[rows]
+    if min(acts.tolist()) < 0:
+        rows = rows[acts >= 0]
+    wrenches = np.empty((rows.size, 6))
+    for row, wrench in zip(rows.tolist(), wrenches, strict=True):
+        mj_contact_force(model, data, row, wrench)
+    depths = -contact.dist[rows]
+    if min(depths.tolist(), default=0.0) < 0.0:
+        real = (depths >= 0.0) | (wrenches[:, 0] != 0.0)
+        rows, wrenches, depths = rows[real], wrenches[real], depths[real]
+    if not rows.size:
+        return None
+    frames = contact.frame[rows].reshape(-1, 3, 3)
+    return CollisionContacts(pairs[rows], contact.pos[rows], frames, depths, wrenches)

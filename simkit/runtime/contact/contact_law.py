@@ -1,0 +1,253 @@
+"""The contact law: what slides stays in contact, what hits comes to rest, what overlaps parts slowly.
+
+MuJoCo solves for contact forces f with R f + J a - aref in the dual of the friction cone. That cone is convex, so a
+contact that slides is asked for a normal acceleration of mu times the tangential one that friction could not give, 250
+times g at 3 m/s. It is lifted off, falls back, and hops. De Saxce and Feng (1998) take just that part off the normal
+row: with u = aref - J a - R f along the tangents, the normal reference becomes aref_n - s, s = |mu u|. Normal force and
+friction are then Coulomb's, mu N against the slip. As u depends on the solution, s is found by repetition: the first
+guess is the acceleration of the step before, which is part of the state; in steady sliding one solution is enough.
+
+Two more corrections of the normal row, for contacts that are rigid (not for a `<kp>` that makes them soft):
+a contact that closes fast is stopped within the step, as Gazebo's engines do it, and not over two time constants;
+and one that opens, or overlaps, is pushed apart at no more than `EXIT_SPEED`.
+
+`docs/physics.md` has the formulas, the limits, and what was measured.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final, Protocol
+
+import mujoco
+import numpy as np
+
+from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
+from simkit.runtime.contact.centripetal_friction import CentripetalFriction
+from simkit.runtime.contact.contact_correction import (
+    ARRAY_THRESHOLD,
+    DEEP_PENETRATION,
+    ArrayContactCorrection,
+    ContactConditions,
+    ContactCorrection,
+    find_array_correction,
+    find_correction,
+)
+from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
+from simkit.runtime.contact.wheel_contacts import WheelContacts
+
+TOLERANCE: Final = 0.02
+"""Accuracy of the correction, in units of g: a contact is lost from about 0.1 g on, which its softness bears."""
+
+MAX_SOLUTIONS: Final = 10
+"""Solutions a step at most; wheels much lighter than what they carry need several while they begin to skid."""
+
+MAX_STEP_WITH_EDGES: Final = 0.0025
+"""Step [s] up to which a wheel that does not slip may hold by both its edges.
+
+At 4 ms the edges of a TurtleBot3's wheels push against each other and turn it by 0.6 degrees on a metre straight ahead.
+"""
+
+QUIET_SPEED: Final = 1e-4
+"""Root sum square [m/s, rad/s] of the velocities along all constraints below which nothing slides."""
+
+FAST_SPEED: Final = 0.5
+"""Speed [m/s] of a body from which it may hit something within a window; what rolls along touches, but slides not.
+
+The engine's own contacts throw it back with a sixth of its speed, three times `EXIT_SPEED` at most from here down.
+"""
+
+_MIN_GRAVITY: Final = 1.0  # [m/s²]; without weight there is no scale for the tolerance
+_AFTER_VELOCITIES: Final = int(mujoco.mjtStage.mjSTAGE_VEL)
+_PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
+
+mj_forward_skip, mj_mul_jac_vec = mujoco.mj_forwardSkip, mujoco.mj_mulJacVec
+
+
+def window_length(timestep: float) -> int:
+    """Return for how many steps one look at the contacts decides whether they follow the law.
+
+    A look costs 3 to 6 µs: at 16 steps 1 to 4 % of what they take, at 8 twice that. Longer steps have the shorter
+    window, as what begins to slide within it is lifted until it ends.
+    """
+    return 16 if timestep <= 0.001 else 8
+
+
+class ContactShaper(Protocol):
+    """Changes contacts in every forward pass, once velocities are known and before forces are."""
+
+    model: Any
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is anything to change; else the engine's contacts stay as they are."""
+
+    def shape(self, data: Any, request: Any = None) -> None:
+        """Change the contacts of data of its model, as is asked for now or as was once asked for by `request`."""
+
+    def request(self) -> Any:
+        """Return what is asked of contacts now, for `shape`."""
+
+
+class ContactLaw:
+    """Forces of the contacts of one compiled model.
+
+    Args:
+        model: of the engine.
+    """
+
+    def __init__(self, model: Any) -> None:
+        self.model = model
+        self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
+        self._product = np.empty(0)
+        constant = contact_time_constant(float(model.opt.timestep))
+        softest = constant * (1.0 + 1e-9)
+        self._around = ContactConditions(float(model.opt.timestep), [], 0.0, None, softest=softest)
+        self._least_reference = (DEEP_PENETRATION / (constant * constant)) ** 2
+        self._fields = HeightFieldContacts(model)
+        self._wheels, self._carried = WheelContacts(model), CentripetalFriction(model)
+        self._always_merges = bool(self._wheels) and model.opt.timestep > MAX_STEP_WITH_EDGES
+        trees = np.append(model.body_treeid[model.geom_bodyid], -1)  # the last for contacts without a geom
+        collides = (model.geom_contype | model.geom_conaffinity) != 0
+        self._tree_of = np.where(trees >= 0, trees, model.ntree)
+        self._colliding = np.unique(trees[:-1][collides & (trees[:-1] >= 0)])
+        free = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
+        free = free[np.isin(model.body_treeid[model.jnt_bodyid[free]], self._colliding)]
+        self._free = (model.jnt_dofadr[free][:, None] + np.arange(3)).reshape(-1).astype(np.intp)
+        self._is_on = collides.sum() > 1 and not has_engine_contacts(model)
+
+    @property
+    def changes_contacts(self) -> bool:
+        """Whether `solve` may change the constraints, so that they have to be made anew for other velocities."""
+        return bool(self._wheels)
+
+    def is_needed(self, data: Any) -> bool:
+        """Return whether some contact slides, hits or overlaps, or some model flies or is fast and may hit something.
+
+        Never in a world that asks for the engine's own contacts.
+
+        Args:
+            data: of the engine, with positions and velocities up to date.
+        """
+        if not self._is_on:
+            return False
+        if data.ncon and (self._always_merges or (not self._is_quiet(data) and self._finds(data))):
+            return True
+        return self._has_flying(data) or self._has_fast(data) or bool(self._carried.find(data))
+
+    def solve(
+        self,
+        data: Any,
+        closing: list[float] | None = None,
+        *,
+        keeps_references: bool = False,
+        probes: bool = False,
+    ) -> bool:
+        """Solve for accelerations and forces.
+
+        Args:
+            data: of the engine, with positions and velocities up to date.
+            closing: speed [m/s] with which each geom may still close after it was stopped, in a window with speculative
+                contacts; None in others.
+            keeps_references: whether the references of constraints stay corrected, for the engine to solve once more;
+                else they are put back as they were.
+            probes: whether contacts that do not slide yet may be pushed into it by a new control or force.
+
+        Returns:
+            Whether some contact was corrected.
+        """
+        if not (data.ncon and self._is_on):
+            mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+            return False
+        found, carried = None, self._carried.find(data)
+        if self._always_merges:
+            self._wheels.merge(data)
+            has_to_look = not self._is_quiet(data)
+        else:
+            has_to_look = not self._is_quiet(data) and not (self._wheels.merge(data) and self._is_quiet(data))
+        if probes:
+            mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+            residual = data.efc_aref - self._multiplied(data, data.qacc) - data.efc_R * data.efc_force
+            found = self._find(data, closing, residual)
+        elif has_to_look:
+            found = self._find(data, closing)
+        before = self._carried.correct(data, carried) if carried else []
+        if found is not None:
+            self._repeat(data, found)
+        elif before or not probes:
+            mj_forward_skip(self.model, data, _AFTER_VELOCITIES, 1)
+        if not keeps_references:
+            if found is not None:
+                found.restore()
+            for row, reference in before:
+                data.efc_aref[row] = reference
+        return found is not None
+
+    def _finds(self, data: Any) -> bool:
+        """Return whether some contact has to be corrected; leaves the references as they were."""
+        found = self._find(data, None)
+        if found is None:
+            return False
+        found.restore()
+        return True
+
+    def _has_flying(self, data: Any) -> bool:
+        """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
+        trees = self._colliding
+        # what lies exactly on a surface has a contact without rows, and no force yet
+        if len(trees) < 2 or data.nefc == data.ne + data.nf + data.nl:
+            return len(trees) > 0 and data.nefc == data.ne + data.nf + data.nl
+        contact = data.contact
+        touching = contact.geom[contact.efc_address >= 0]
+        touches = np.zeros(self.model.ntree + 1, bool)
+        touches[self._tree_of[touching]] = True
+        return bool((~touches[trees] & (data.tree_asleep[trees] < 0)).any())
+
+    def _has_fast(self, data: Any) -> bool:
+        """Return whether some body that moves freely is so fast that a hit within the window counts."""
+        velocities = data.qvel
+        if velocities.dot(velocities) <= FAST_SPEED * FAST_SPEED:  # nothing at all is
+            return False
+        return bool((np.abs(velocities[self._free]) > FAST_SPEED).any())
+
+    def _is_quiet(self, data: Any) -> bool:
+        """Return whether all constraints are nearly at rest and none is asked to part fast."""
+        velocity, reference = data.efc_vel, data.efc_aref
+        if velocity.dot(velocity) > QUIET_SPEED * QUIET_SPEED:
+            return False
+        return bool(reference.dot(reference) < self._least_reference)
+
+    def _find(
+        self, data: Any, closing: list[float] | None, residual: Any = None
+    ) -> ContactCorrection | ArrayContactCorrection | None:
+        """Return the contacts whose normal reference has to be corrected."""
+        gravity: list[float] = self._gravity.tolist()
+        around = self._around
+        if gravity != around.gravity:
+            around.gravity = gravity
+            around.tolerance = TOLERANCE * max(_MIN_GRAVITY, math.hypot(*gravity))
+        around.closing = closing
+        if self._fields:
+            around.inner = self._fields.inner(data)
+        if data.ncon > ARRAY_THRESHOLD or self.model.opt.cone == _PYRAMID:
+            return find_array_correction(self.model, data, around, residual)
+        return find_correction(data, around, residual)
+
+    def _repeat(self, data: Any, found: ContactCorrection | ArrayContactCorrection) -> None:
+        """Solve, correct the normal references by the solution, and solve again until they stay."""
+        model = self.model
+        found.guess(self._multiplied(data, data.qacc_warmstart))
+        for _ in range(MAX_SOLUTIONS - 1):
+            mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+            if found.correct(self._multiplied(data, data.qacc), data.efc_force):
+                break
+        else:
+            found.settle()
+            mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
+
+    def _multiplied(self, data: Any, acceleration: Any) -> Any:
+        """Return J a, shape (nefc,); the array is used again at the next call."""
+        if self._product.size != data.nefc:
+            self._product = np.empty(data.nefc)
+        mj_mul_jac_vec(self.model, data, self._product, acceleration)
+        return self._product

@@ -1,0 +1,121 @@
+"""Contacts that slip with the force on them.
+
+A row of friction obeys R f = aref - a, with aref = -B v. ODE's slip is v' = -c f of the velocity after the step, so
+R = c/dt and B = 1/dt. Under MuJoCo's elliptic cone R of the two tangents is tied (R·mu² is one number), so for two
+compliances one R is chosen and B is R/c for each: at a constant force both slip exactly, and after a change of it they
+get there at ODE's pace as long as R is not small beside the inverse of the mass that is pushed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+Numbers = list[float]
+Pair = tuple[float, float]
+SlippingContact = tuple[int, int, Pair]
+"""A contact, the kinematic tree that slips, and its compliances along its two tangents [m/s/N]."""
+
+_STIFF_FACTOR = 4.0  # times what contacts yield: an R beside which they do not count
+_MIN_COMPLIANCE_SHARE = (
+    0.02  # of the larger of two compliances: so much both have, so that the softer one is not sluggish
+)
+
+
+class ContactSlip:
+    """Makes contacts of one compiled model soft, once its constraints are made."""
+
+    def __init__(self, model: Any) -> None:
+        self.model = model
+
+    def soften(self, data: Any, soft: Sequence[SlippingContact]) -> None:
+        """Makes the friction of elliptic contacts soft."""
+        contact, step = data.contact, float(self.model.opt.timestep)
+        firsts, dims, frictions = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
+        yields = self._yields(data, [one for one in soft if not _is_isotropic(one[2], frictions[one[0]])], firsts)
+        all_r, all_d, terms, mus = data.efc_R, data.efc_D, data.efc_KBIP, contact.mu
+        for number, tree, slip in soft:
+            first, friction = firsts[number], frictions[number][: dims[number] - 1]
+            by_friction = [(by := friction[0] / one) * by for one in friction]
+            normal, base = all_r.item(first), all_r.item(first + 1)
+            # by more it would overshoot, where there is next to no compliance
+            most = [1.0 / step, 1.0 / step]
+            if _is_isotropic(slip, friction):
+                base = max(base, slip[0] / step)
+            else:
+                both = yields[tree]
+                base = max(base, _shared_resistance(slip, by_friction, both, step))
+                most = [(y + base * by) / (y * step) for y, by in zip(both, by_friction[:2], strict=True)]
+            resistance = [base * by for by in by_friction]
+            for row, one in enumerate(resistance, first + 1):
+                all_r[row], all_d[row] = one, 1.0 / one
+            mus[number] = friction[0] * math.sqrt(base / normal)
+            for tangent, one in enumerate(slip):
+                damping = resistance[tangent] / one if one > 0.0 else math.inf
+                terms[first + 1 + tangent, 1] = min(damping, most[tangent])
+
+    def _yields(self, data: Any, soft: Sequence[SlippingContact], firsts: Sequence[int]) -> dict[int, Numbers]:
+        """How much all contacts of a tree yield to forces along their two tangents at most, summed [1/kg].
+
+        A sum of diagonal elements is no less than any eigenvalue.
+        """
+        found: dict[int, Numbers] = {}
+        if not soft:
+            return found
+        model = self.model
+        places = [firsts[number] + 1 + tangent for number, _, _ in soft for tangent in (0, 1)]
+        unit, along = np.zeros(data.nefc), np.zeros((len(places), model.nv))
+        for row, place in zip(along, places, strict=True):
+            unit[place] = 1.0
+            mujoco.mj_mulJacTVec(model, data, row, unit)
+            unit[place] = 0.0
+        solved = np.empty_like(along)
+        mujoco.mj_solveM(model, data, solved, along)
+        given = [float(one @ other) for one, other in zip(along, solved, strict=True)]
+        for index, (_, tree, _) in enumerate(soft):
+            both = found.setdefault(tree, [1e-12, 1e-12])
+            both[0] += given[2 * index]
+            both[1] += given[2 * index + 1]
+        return found
+
+    def soften_pyramid(self, data: Any, number: int, slip: Pair) -> None:
+        """Takes of the damping of a pyramid's edges what is too much along each tangent.
+
+        Their R holds up the load as well and stays, so it takes longer until they slip as they are to.
+        """
+        contact, velocity, aref = data.contact, data.efc_vel, data.efc_aref
+        first, friction = int(contact.efc_address[number]), contact.friction[number].tolist()
+        for tangent, one in enumerate(slip):
+            edge = first + 2 * tangent
+            damping, resistance = float(data.efc_KBIP[edge, 1]), float(data.efc_R[edge])
+            resistance /= 2.0 * (friction[tangent] * friction[tangent])
+            excess = max(0.0, damping - resistance / one) if one > 0.0 else 0.0
+            apart = (velocity.item(edge) - velocity.item(edge + 1)) / 2.0
+            aref[edge] += excess * apart
+            aref[edge + 1] -= excess * apart
+
+
+def _is_isotropic(slip: Pair, friction: Sequence[float]) -> bool:
+    """Whether a contact is the same along both tangents."""
+    return slip[0] == slip[1] and friction[0] == friction[1]
+
+
+def _shared_resistance(slip: Pair, by_friction: Numbers, yields: Numbers, step: float) -> float:
+    """R of the first tangent, where the second has `by_friction` as much of it and the two slip differently.
+
+    The larger it is beside what the contacts yield, S, the sooner the softer one slips as it is to. But the stiffer one
+    slips with S dt R / (S + R) at least, as damping by more than that would overshoot; that is not to be more than its
+    own compliance, or a fiftieth of the other's.
+    """
+    wanted = [one / step / by for one, by in zip(slip, by_friction[:2], strict=True)]
+    softer = int(wanted[1] > wanted[0])
+    stiffer = 1 - softer
+    least = max(slip[stiffer], _MIN_COMPLIANCE_SHARE * slip[softer])
+    room = yields[stiffer] * step - least
+    exact = least * yields[stiffer] / room / by_friction[stiffer] if room > 0.0 else math.inf
+    soft_enough = min(wanted[softer], _STIFF_FACTOR * yields[softer] / by_friction[softer], exact)
+    return max(min(wanted), soft_enough)

@@ -1,0 +1,219 @@
+"""Giving contacts the tangents and coefficients that their collisions ask for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from simkit.runtime.contact.moving_surface import (
+    BeltContactArrays,
+    BeltContacts,
+    FrictionContactArrays,
+    FrictionContacts,
+)
+from simkit.runtime.contact.moving_surface_arrays import Floats, Ints, rotate_frames, rotate_surface_velocities
+
+Numbers = list[float]
+Pair = tuple[float, float]
+RowContact = tuple[int, int, int]
+RowContacts = list[RowContact] | Ints
+"""Of each contact its place among the touches, its row, and the other geom; an array (k, 3) for
+`FrictionContactArrays`.
+"""
+
+_MIN_TANGENT_SHARE = 1e-2  # of the square of a direction: with less of it along a surface it has none there
+
+
+@dataclass(slots=True)
+class FrictionRow:
+    """What a collision asks for; the first direction is `axis` in the frame of `body`.
+
+    Attributes:
+        mu: friction along and across.
+        slip: compliances along and across [m/s/N].
+        tree: the kinematic tree that it is part of.
+        dof: of the wheel's turning, whose rate its slips are multiplied with; -1 for none.
+    """
+
+    geoms: list[int]
+    body: int
+    axis: Numbers
+    mu: Pair
+    slip: Pair
+    tree: int
+    dof: int = -1
+
+
+class FrictionTangents:
+    """Those of one compiled model.
+
+    Args:
+        model: of the engine.
+        rows: what collisions ask for.
+        row_of: number of the row of each geom, -1 for none; the last is for -1: no geom.
+        is_belt: of each row, whether it is of a surface that can run.
+    """
+
+    def __init__(self, model: Any, rows: Sequence[FrictionRow], row_of: Sequence[int], is_belt: Sequence[bool]) -> None:
+        self._model, self._rows, self._row_of, self._is_belt = model, rows, row_of, is_belt
+        self._rows_of: Ints = np.array(row_of)
+        self._belts = np.array(is_belt, dtype=bool)
+        self._bodies: Ints = np.array([row.body for row in rows], dtype=int)
+        self._axes: Floats = np.array([row.axis for row in rows]).reshape(-1, 3)
+        self._mus: Floats = np.array([row.mu for row in rows]).reshape(-1, 2)
+
+    def find(self, found: FrictionContacts | FrictionContactArrays) -> RowContacts:
+        """The contacts that have a row."""
+        if isinstance(found, FrictionContacts):
+            return self._find(found)
+        first, second = self._rows_of[found.geoms].T
+        places = ((first >= 0) | (second >= 0)).nonzero()[0]
+        first, second = first[places], second[places]
+        other = found.geoms[places, np.where(first >= 0, 1, 0)]
+        return np.stack((places, np.where(first >= 0, first, second), other), axis=1)
+
+    def _find(self, found: FrictionContacts) -> list[RowContact]:
+        row_of, places = self._row_of, []
+        for place, (first, second) in enumerate(found.geoms):
+            row = row_of[first]
+            if row >= 0:
+                places.append((place, row, second))
+            elif (row := row_of[second]) >= 0:
+                places.append((place, row, first))
+        return places
+
+    def turn(
+        self,
+        data: Any,
+        found: FrictionContacts | FrictionContactArrays,
+        places: RowContacts,
+        flow: BeltContacts | BeltContactArrays | None,
+    ) -> None:
+        """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well.
+
+        Args:
+            data: of the engine, with positions.
+            found: contacts.
+            places: of them that have a row, as `find` gives them.
+            flow: of them that are with surfaces that run.
+        """
+        if isinstance(found, FrictionContacts) and isinstance(places, list):
+            self._turn(data, found, places, flow)
+        elif isinstance(found, FrictionContactArrays) and not isinstance(places, list):
+            self._turn_many(data, found, places, flow)
+
+    def _turn(
+        self,
+        data: Any,
+        found: FrictionContacts,
+        places: list[RowContact],
+        flow: BeltContacts | BeltContactArrays | None,
+    ) -> None:
+        """Turns the tangents of contacts and sets their coefficients; the frames of the touches are turned as well."""
+        contact, ground, least = data.contact, self._model.geom_friction, mujoco.mjMINMU
+        which: Any = [found.numbers[place] for place, _, _ in places]
+        if len(which) == data.ncon:
+            which = slice(None)  # a view is quicker
+        flows = contact.surfacevel[which].tolist() if self._model.flg_surfacevel else None
+        # a belt's friction is along its own way, not along its <fdir1>; a roller's stays its own on a belt too
+        along = {} if flow is None else dict(zip(flow.places, flow.directions, strict=True))
+        turns: dict[int, Numbers] = {}
+        frames, frictions = [], []
+        for index, (place, row, other) in enumerate(places):
+            asked, frame = self._rows[row], found.frames[place]
+            axis: Sequence[float] | None = along.get(place) if self._is_belt[row] else None
+            if axis is None:
+                turn = turns.get(asked.body)
+                if turn is None:
+                    turn = turns[asked.body] = data.xmat[asked.body].tolist()
+                axis = _rotate_vector(turn, asked.axis)
+            turned = _rotate_frame(frame, axis)
+            # what is there may be less: what velocity control carries slides freely
+            most = ground.item(other, 0) if other >= 0 else math.inf
+            one, two = asked.mu
+            if turned is frame:  # no direction there: as where the file gives none
+                one = two = min(one, two)
+            elif flows is not None:
+                _rotate_surface_velocity(flows[index], frame, turned)
+            found.frames[place] = turned
+            frames.append(turned)
+            frictions.append((one, two, most))
+        contact.frame[which] = frames
+        there = contact.friction[which].tolist()
+        for each, (one, two, most) in zip(there, frictions, strict=True):
+            most = min(each[0], each[1], most)
+            each[0], each[1] = max(min(one, most), least), max(min(two, most), least)
+        contact.friction[which] = there
+        if flows is not None:
+            contact.surfacevel[which] = flows
+
+    def _turn_many(
+        self, data: Any, found: FrictionContactArrays, asked: Ints, flow: BeltContacts | BeltContactArrays | None
+    ) -> None:
+        """The same on arrays, with the same bits."""
+        contact, least = data.contact, mujoco.mjMINMU
+        places, rows, others = asked.T
+        which: Any = slice(None) if len(places) == data.ncon else found.numbers[places]
+        frames = found.frames[places]
+        axes = _rotate_vectors(data.xmat[self._bodies], self._axes)[rows]
+        if flow is not None:
+            along: Floats = np.full((len(found.numbers), 3), math.nan)
+            along[flow.places] = flow.directions
+            along = along[places]
+            runs = self._belts[rows] & ~np.isnan(along[:, 0])
+            axes[runs] = along[runs]
+        after, lies = rotate_frames(frames, axes, _MIN_TANGENT_SHARE)
+        mu = self._mus[rows]
+        mu = np.where(lies[:, None], mu, np.minimum(mu[:, :1], mu[:, 1:]))
+        if self._model.flg_surfacevel:
+            flows = contact.surfacevel[which]
+            contact.surfacevel[which] = np.where(lies[:, None], rotate_surface_velocities(flows, frames, after), flows)
+        found.frames[places] = contact.frame[which] = after
+        there = contact.friction[which, :2]
+        most = np.where(others >= 0, self._model.geom_friction[others, 0], math.inf)
+        most = np.minimum(most, np.minimum(there[:, 0], there[:, 1]))
+        contact.friction[which, :2] = np.maximum(np.minimum(mu, most[:, None]), least)
+
+
+def _rotate_frame(frame: Numbers, wanted: Sequence[float]) -> Numbers:
+    """A contact's frame (normal and two tangents, (9,)) whose first tangent is along a direction.
+
+    The frame as it was where the direction stands on the surface.
+    """
+    nx, ny, nz = frame[:3]
+    x, y, z = wanted
+    over = x * nx + y * ny + z * nz
+    fx, fy, fz = x - over * nx, y - over * ny, z - over * nz
+    square = fx * fx + fy * fy + fz * fz
+    if square <= _MIN_TANGENT_SHARE * (x * x + y * y + z * z):
+        return frame
+    length = math.sqrt(square)
+    fx, fy, fz = fx / length, fy / length, fz / length
+    return [nx, ny, nz, fx, fy, fz, ny * fz - nz * fy, nz * fx - nx * fz, nx * fy - ny * fx]
+
+
+def _rotate_surface_velocity(flow: Numbers, before: Numbers, after: Numbers) -> None:
+    """Takes the speed of a surface along the tangents of one frame over to those of another."""
+    one, two = flow[:2]
+    over = [one * a + two * b for a, b in zip(before[3:6], before[6:], strict=True)]
+    flow[0] = sum(a * b for a, b in zip(over, after[3:6], strict=True))
+    flow[1] = sum(a * b for a, b in zip(over, after[6:], strict=True))
+
+
+def _rotate_vector(matrix: Numbers, vector: Numbers) -> Numbers:
+    """A row-major matrix (9,) times a vector (3,)."""
+    a, b, c, d, e, f, g, h, i = matrix
+    x, y, z = vector
+    return [a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z]
+
+
+def _rotate_vectors(matrices: Floats, vectors: Floats) -> Floats:
+    """Row-major matrices (k, 9) times vectors (k, 3)."""
+    a, b, c, d, e, f, g, h, i = matrices.T
+    x, y, z = vectors.T
+    return np.stack((a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z), axis=1)

@@ -1,0 +1,302 @@
+"""Surfaces that run while what they belong to stays where it is: conveyor belts and tracks.
+
+A contact with such a surface is held not at rest but at the surface's velocity, up to friction. MuJoCo carries that in
+`mjContact.surfacevel`. It is set here for each contact and not once for a geom, since a belt runs round its collision:
+what its upper side carries ahead, its lower side carries back, and its ends carry up and down.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from simkit.runtime.contact.contact_correction import ARRAY_THRESHOLD
+from simkit.runtime.contact.moving_surface_arrays import MIN_SINE, Floats, Ints, along_tangents, find_belt_contacts
+
+Point = tuple[float, float, float]
+Numbers = list[float]
+
+ZERO_VECTOR = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class BeltMotion:
+    """How a belt runs now.
+
+    Attributes:
+        speed: [m/s]; a positive one carries what lies on top along x, where x, the axle and up are right-handed.
+        centre: of the circle, in the world, that its contacts are carried along [m]; None where it runs straight.
+    """
+
+    speed: float
+    centre: Point | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Belt:
+    """A surface that can run, in one compiled model.
+
+    Attributes:
+        geoms: ids of its geoms.
+        body: that they move with.
+        axle: unit vector in the body's frame that the belt runs round.
+        now: asked in every forward pass, so that it is part of its plugin's state; None while it stands still.
+        friction: coefficients along and across its way; None where they are those of the file.
+    """
+
+    geoms: tuple[int, ...]
+    body: int
+    axle: Point
+    now: Callable[[], BeltMotion | None]
+    friction: tuple[float, float] | None = None
+
+
+class FrictionContacts(NamedTuple):
+    """Contacts that rub, k of them; plain numbers where there are few, as arrays of three are slow, else `FrictionContactArrays`.
+
+    Attributes:
+        numbers: among the contacts.
+        geoms: the two geoms of each; -1 for none.
+        frames: normal (from the first geom to the second) and two tangents of each, 9 numbers.
+    """
+
+    numbers: list[int]
+    geoms: list[list[int]]
+    frames: list[Numbers]
+
+
+class FrictionContactArrays(NamedTuple):
+    """The same of many contacts, on arrays."""
+
+    numbers: Ints
+    geoms: Ints
+    frames: Floats
+
+
+def find_friction_contacts(data: Any, concerns: Sequence[bool]) -> FrictionContacts | FrictionContactArrays | None:
+    """The contacts that rub among those that are about certain geoms; None where there is none.
+
+    Args:
+        data: of the engine, with positions.
+        concerns: for each geom whether it is about it; the last is for -1.
+    """
+    contact = data.contact
+    if data.ncon > ARRAY_THRESHOLD:
+        one_side, other_side = np.array(concerns)[contact.geom].T
+        rubs = (contact.efc_address >= 0) & (contact.dim > 1) & (one_side | other_side)
+        many: Ints = rubs.nonzero()[0]
+        if many.size > ARRAY_THRESHOLD:
+            which: Any = slice(None) if many.size == data.ncon else many  # a slice is quicker
+            return FrictionContactArrays(many, contact.geom[which], contact.frame[which].copy())
+        numbers = many.tolist()
+        return FrictionContacts(numbers, contact.geom[rubs].tolist(), contact.frame[rubs].tolist()) if numbers else None
+    pairs = contact.geom.tolist()
+    numbers = [number for number, (one, other) in enumerate(pairs) if concerns[one] or concerns[other]]
+    if not numbers:
+        return None
+    rows, dims = contact.efc_address.tolist(), contact.dim.tolist()
+    numbers = [number for number in numbers if rows[number] >= 0 and dims[number] > 1]
+    if not numbers:
+        return None
+    if len(numbers) == len(pairs):
+        return FrictionContacts(numbers, pairs, contact.frame.tolist())
+    return FrictionContacts(numbers, [pairs[number] for number in numbers], contact.frame[numbers].tolist())
+
+
+class BeltContacts(NamedTuple):
+    """The contacts with running surfaces, k of them.
+
+    Attributes:
+        numbers: among the contacts.
+        places: among the touches that they were found in.
+        directions: of friction, unit vectors in the world.
+        velocities: of the second geom's surface less the first's [m/s], world.
+    """
+
+    numbers: list[int]
+    places: list[int]
+    directions: list[Point]
+    velocities: list[Point]
+
+
+class BeltContactArrays(NamedTuple):
+    """The same of contacts among many, on arrays."""
+
+    numbers: Ints
+    places: Ints
+    directions: Floats
+    velocities: Floats
+
+
+class MovingSurfaces:
+    """The belts of a compiled model.
+
+    Attributes:
+        concerns: for each geom whether it is part of one; the last is for -1: no geom.
+    """
+
+    def __init__(self, model: Any) -> None:
+        self.model = model
+        self._belts: list[Belt] = []
+        self._owner = [-1] * (model.ngeom + 1)
+        self.concerns = [False] * (model.ngeom + 1)
+        self._owners: Ints = np.array(self._owner)
+        self._flow: BeltContacts | BeltContactArrays | None = None
+
+    def add(self, belt: Belt) -> None:
+        """A belt more."""
+        self.model.flg_surfacevel = True
+        for geom in belt.geoms:
+            self._owner[geom], self.concerns[geom] = len(self._belts), True
+        self._belts.append(belt)
+        self._owners = np.array(self._owner)
+
+    @property
+    def run(self) -> bool:
+        """Whether one of them runs."""
+        return any(belt.now() is not None for belt in self._belts)
+
+    def runs(self) -> list[BeltMotion | None]:
+        """How each of them runs now."""
+        return [belt.now() for belt in self._belts]
+
+    # ------------------------------------------------------------------ contacts
+
+    def look(
+        self, data: Any, found: FrictionContacts | FrictionContactArrays | None, runs: Sequence[BeltMotion | None]
+    ) -> BeltContacts | BeltContactArrays | None:
+        """Finds the contacts with belts that run; also for `carry`.
+
+        Args:
+            data: of the engine, with positions.
+            found: its contacts that may be with belts.
+            runs: how belts run.
+        """
+        if found is None or not any(runs):
+            self._flow = None
+        elif isinstance(found, FrictionContacts):
+            self._flow = self._found(data, found, runs)
+        else:
+            self._flow = self._found_many(data, found, runs)
+        return self._flow
+
+    def _found_many(
+        self, data: Any, found: FrictionContactArrays, runs: Sequence[BeltMotion | None]
+    ) -> BeltContactArrays | None:
+        axles = [
+            ZERO_VECTOR if run is None else _world_axle(data, one) for one, run in zip(self._belts, runs, strict=True)
+        ]
+        points = data.contact.pos[found.numbers]
+        places, directions, velocities = find_belt_contacts(
+            self._owners[found.geoms], found.frames, points, runs, axles
+        )
+        return BeltContactArrays(found.numbers[places], places, directions, velocities) if places.size else None
+
+    def _found(self, data: Any, found: FrictionContacts, runs: Sequence[BeltMotion | None]) -> BeltContacts | None:
+        owner, flow = self._owner, BeltContacts([], [], [], [])
+        axles: dict[int, Point] = {}
+        known: dict[Any, tuple[Point, Point]] = {}  # what lies flat on a straight belt has one normal
+        for place, (first, second) in enumerate(found.geoms):
+            one, other = owner[first], owner[second]
+            into = runs[other] if other >= 0 else None
+            out = runs[one] if one >= 0 else None
+            if into is None and out is None:
+                continue
+            nx, ny, nz = found.frames[place][:3]
+            key = one, other, nx, ny, nz
+            both = known.get(key)
+            if both is None:
+                belts = [(b, r, sign) for b, r, sign in ((other, into, 1.0), (one, out, -1.0)) if r is not None]
+                is_bent = any(run.centre is not None for _, run, _ in belts)
+                point = data.contact.pos[found.numbers[place]].tolist() if is_bent else ZERO_VECTOR
+                both = self._way(data, belts, (nx, ny, nz), point, axles)
+                if not is_bent:
+                    known[key] = both
+            flow.numbers.append(found.numbers[place])
+            flow.places.append(place)
+            flow.directions.append(both[0])
+            flow.velocities.append(both[1])
+        return flow if flow.numbers else None
+
+    def _way(
+        self,
+        data: Any,
+        belts: Sequence[tuple[int, BeltMotion, float]],
+        normal: Point,
+        place: Sequence[float],
+        axles: dict[int, Point],
+    ) -> tuple[Point, Point]:
+        """Direction of friction and velocity at a contact with one belt or two.
+
+        Args:
+            data: of the engine.
+            belts: numbers, how they run, and 1 where the normal is into the belt, -1 where it is out of it.
+            normal, place: of the contact.
+            axles: those in the world that are known, by belt.
+        """
+        direction, (vx, vy, vz) = ZERO_VECTOR, ZERO_VECTOR
+        for belt, run, inwards in belts:
+            if belt not in axles:
+                axles[belt] = _world_axle(data, self._belts[belt])
+            into = inwards * normal[0], inwards * normal[1], inwards * normal[2]
+            direction = _unit(_cross(into, axles[belt]))
+            if run.centre is not None:
+                direction = _circular_direction(direction, into, place, run.centre)
+            speed, (dx, dy, dz) = inwards * run.speed, direction
+            vx, vy, vz = vx + speed * dx, vy + speed * dy, vz + speed * dz
+        return direction, (vx, vy, vz)
+
+    def carry(self, data: Any, frames: Sequence[Numbers] | Floats) -> None:
+        """Gives the contacts found by `look` their surface velocity.
+
+        Args:
+            data: of the engine.
+            frames: of all touches as they are now, whose tangents count.
+        """
+        flow = self._flow
+        if flow is None:
+            return
+        surface = data.contact.surfacevel
+        if isinstance(flow, BeltContactArrays):
+            those: Any = slice(None) if len(flow.places) == len(surface) else flow.numbers
+            surface[those, :2] = along_tangents(np.asarray(frames)[flow.places], flow.velocities)
+            return
+        for number, place, (x, y, z) in zip(flow.numbers, flow.places, flow.velocities, strict=True):
+            _, _, _, ax, ay, az, bx, by, bz = frames[place]
+            surface[number, 0] = ax * x + ay * y + az * z
+            surface[number, 1] = bx * x + by * y + bz * z
+
+
+def _world_axle(data: Any, belt: Belt) -> Point:
+    """What a belt runs round, in the world."""
+    a, b, c, d, e, f, g, h, i = data.xmat[belt.body].tolist()
+    x, y, z = belt.axle
+    return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
+
+
+def _circular_direction(along: Point, normal: Point, place: Sequence[float], centre: Point) -> Point:
+    """The way round a centre that is not against the straight one; that one where there is none round it."""
+    (x, y, z), (cx, cy, cz) = place, centre
+    circle = _unit(_cross(normal, (x - cx, y - cy, z - cz)))
+    if circle == ZERO_VECTOR:
+        return along
+    (rx, ry, rz), (ax, ay, az) = circle, along
+    over = rx * ax + ry * ay + rz * az
+    ahead = math.copysign(1.0, over) if over else 0.0
+    return rx * ahead, ry * ahead, rz * ahead
+
+
+def _cross(a: Point, b: Point) -> Point:
+    (ax, ay, az), (bx, by, bz) = a, b
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+def _unit(vector: Point) -> Point:
+    """A vector of length 1; zero for one that has nearly none."""
+    x, y, z = vector
+    length = math.sqrt(x * x + y * y + z * z)
+    return (x / length, y / length, z / length) if length > MIN_SINE else ZERO_VECTOR

@@ -1,0 +1,311 @@
+"""Detection of bodies that move so far in one step that they could pass through what they meet.
+
+MuJoCo's speculative contacts sweep geoms along their velocities and stop them before they touch. They cost 1.1 to 2.7
+times a step even where nothing is fast, so they are switched on for windows of some steps (`window_length`), by a rule that
+looks at positions and velocities alone. In such a window all steps follow the contact law, which stops within one step
+what closes fast: a body that strikes with an edge begins to spin, and its other corners would sink through a soft
+contact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
+from simkit.diagnostics import NOWHERE
+from simkit.runtime.contact.contact_law import window_length
+from simkit.runtime.contact.travel_bounds import (
+    Floats,
+    allowed_travel,
+    can_collide,
+    can_touch,
+    half_thickness,
+    is_filtered,
+    rotational_symmetries,
+    velocity_levers,
+)
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+
+SPECULATIVE_FLAG: Final = int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
+"""What is set in `model.opt.enableflags` for such a window."""
+
+_GROWTH: Final = 2.0
+"""Share by which speeds may grow within a window."""
+
+_MAX_TILTED_TRAVEL: Final = 3.0
+"""Half thicknesses of both in a step; beyond it up to 13 of 100 boxes and capsules that strike tilted pass."""
+
+_SAFE_SHARE: Final = 0.25
+"""Share of half the thickness of both within the stopping time, with which a contact may still close."""
+
+_MAX_DENSE_SIZE: Final = 20_000
+_MAX_PAIRS: Final = 4_000_000
+_PLANE, _HFIELD = int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD)
+_RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
+
+
+_multiply = np.multiply
+
+
+class FastApproach(NamedTuple):
+    """Two geoms of which one may pass through the other within the next window.
+
+    Attributes:
+        geom, other: the one that is fast, and what it comes towards.
+        speed: of the fastest points towards each other [m/s].
+        thickness: of the thinner one [m].
+        step: length of a step [s] with which they would not.
+        is_height_field: whether `other` is a height field.
+    """
+
+    geom: int
+    other: int
+    speed: float
+    thickness: float
+    step: float
+    is_height_field: bool
+
+
+class FastBodyDetector:
+    """Detector of bodies that are too fast for the step, in one compiled model.
+
+    Args:
+        model: `MjModel`; masks, sizes and the step are read once.
+
+    Attributes:
+        closing: speed [m/s] with which each geom may still close once it has been stopped, the last for no geom;
+            so a body that is stopped ahead of a wall gets there.
+        tell: is given what cannot be helped, at each look that finds something; it may change no state.
+    """
+
+    def __init__(self, model: Any) -> None:
+        self.model = model
+        self.tell: Callable[[list[FastApproach]], None] | None = None
+        step = float(model.opt.timestep)
+        self._window = window_length(step)
+        # so long a body goes on into a soft contact, and twice as long into one that bounces
+        bounces = bool((model.geom_solref[can_collide(model), 0] < 0.0).any())
+        self._time = max(_GROWTH * step, contact_time_constant(step) / (1.0 if bounces else 2.0))
+        self._half = half_thickness(model)
+        self.closing: list[float] = (_SAFE_SHARE / self._time * self._half).tolist()
+        tree = model.body_treeid[model.geom_bodyid]
+        solid = can_collide(model)
+        moving = np.flatnonzero(solid & (tree >= 0))
+        allowed = allowed_travel(model, self._half, moving)
+        self._moving, self._allowed = moving[np.isfinite(allowed)], allowed[np.isfinite(allowed)]
+        self._others = np.flatnonzero(solid & (model.geom_type != _PLANE))
+        self._bodies = model.geom_bodyid[self._moving]
+        self._roots = model.body_rootid[self._bodies]
+        self._is_ball, is_round = rotational_symmetries(model)
+        self._spin_radius = np.where(self._is_ball, 0.0, model.geom_rbound)[self._moving]
+        self._turns_freely = is_round[self._moving, None].astype(float)
+        self._scratch: Any = None
+        self._data: Any = None
+        self._velocities_now = np.zeros(0)
+        self._weigh()
+
+    def _weigh(self) -> None:
+        """Compute the weights of velocities by which `wants` finds at once that nothing is fast."""
+        model, nv = self.model, self.model.nv
+        rows, dofs, lever = velocity_levers(model, self._moving)
+        share = lever * self._time / self._allowed[rows]
+        weights = np.zeros(nv)
+        np.maximum.at(weights, dofs, share)
+        self._share = np.zeros((0, 0))
+        if len(self._moving) * nv <= _MAX_DENSE_SIZE:
+            self._share = np.zeros((len(self._moving), nv))
+            np.add.at(self._share, (rows, dofs), share)
+        self._weights = weights
+        # |Σ w v| ≤ 1 within a tree where its n terms have Σ (w v)² ≤ 1/n
+        trees = model.dof_treeid
+        counts = np.bincount(trees, minlength=max(model.ntree, 1)) if nv else np.ones(1)
+        self._rooted = weights * np.sqrt(counts[trees]) if nv else weights
+        self._terms = np.empty(nv)
+        self._starts = model.tree_dofadr.astype(np.intp)
+        self._can_be_fast = bool(len(self._moving)) and bool(weights.any()) and not has_engine_contacts(model)
+
+    # ------------------------------------------------------------------ the look
+
+    def wants(self, data: Any) -> bool:
+        """Return whether the next window needs speculative contacts, by `qpos`, `qvel` and mocap poses alone."""
+        if not self._can_be_fast:
+            return False
+        if data is not self._data:  # the same one at every look; its arrays stay where they are
+            self._data, self._velocities_now = data, data.qvel
+        terms = _multiply(self._velocities_now, self._rooted, self._terms)
+        if terms.dot(terms) <= 1.0 or self._is_slow(self._velocities_now):
+            return False
+        return self._meets(data)
+
+    def _is_slow(self, velocities: Floats) -> bool:
+        """Check that no geom can be fast, by the sum over its chain of joints."""
+        speeds = np.abs(velocities)
+        if self._share.size:
+            return bool((self._share @ speeds).max() <= 1.0)
+        return bool(np.add.reduceat(speeds * self._weights, self._starts).max() <= 1.0)
+
+    def _meets(self, data: Any) -> bool:
+        """Check whether a fast geom may pass through another within a window."""
+        model, moving = self.model, self._moving
+        scratch = self._positions(data)
+        linear, turning = self._velocities(scratch)
+        speeds = np.sqrt(np.einsum("ij,ij->i", linear, linear)) + turning
+        is_fast = ~(speeds * self._time <= self._allowed)
+        if not is_fast.any():
+            return False
+        fast = moving[is_fast]
+        if len(fast) * len(self._others) > _MAX_PAIRS:
+            return True
+        all_speeds, all_linear = np.zeros(model.ngeom), np.zeros((model.ngeom, 3))
+        all_speeds[moving], all_linear[moving] = speeds, linear
+        one, other = self._near(scratch.geom_xpos, fast, all_speeds)
+        if not len(one):
+            return False
+        half, both = self._half, all_speeds[one] + all_speeds[other]
+        keep = (both * self._time > half[one] + half[other]) & (model.geom_bodyid[one] != model.geom_bodyid[other])
+        one, other, both = one[keep], other[keep], both[keep]
+        bodies = model.geom_bodyid
+        cleared = {
+            pair: is_filtered(model, *pair)
+            for pair in set(zip(bodies[one].tolist(), bodies[other].tolist(), strict=True))
+        }
+        keep = np.array([not cleared[int(bodies[a]), int(bodies[b])] for a, b in zip(one, other, strict=True)], bool)
+        if not keep.any():
+            return False
+        if self.tell is not None:
+            self._find_helpless(scratch, one[keep], other[keep], both[keep], all_linear)
+        return True
+
+    def _positions(self, data: Any) -> Any:
+        """Compute positions and velocities of bodies aside: those in `data` are as old as its last forward pass."""
+        model, scratch = self.model, self._scratch
+        if scratch is None:
+            scratch = self._scratch = mujoco.MjData(model)
+        scratch.qpos[:], scratch.qvel[:] = data.qpos, data.qvel
+        if model.nmocap:
+            scratch.mocap_pos[:], scratch.mocap_quat[:] = data.mocap_pos, data.mocap_quat
+        options = model.opt
+        flags = options.enableflags
+        options.enableflags = flags & ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)  # with it, what never moves is left out
+        try:
+            mujoco.mj_kinematics(model, scratch)
+            mujoco.mj_comPos(model, scratch)
+            mujoco.mj_comVel(model, scratch)
+        finally:
+            options.enableflags = flags
+        return scratch
+
+    def _velocities(self, scratch: Any) -> tuple[Floats, Floats]:
+        """Return velocities of the moving geoms' centres, and speeds of their farthest points around them [m/s]."""
+        motion = scratch.cvel.take(self._bodies, 0)
+        spin, arm = motion[:, :3], scratch.geom_xpos.take(self._moving, 0) - scratch.subtree_com.take(self._roots, 0)
+        linear = motion[:, 3:].copy()
+        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # np.cross takes several times as long
+            linear[:, i] += spin[:, j] * arm[:, k] - spin[:, k] * arm[:, j]
+        axes = scratch.geom_xmat.take(self._moving, 0)[:, 2::3] * self._turns_freely
+        spin = spin - np.einsum("ij,ij->i", spin, axes)[:, None] * axes
+        turning: Floats = np.sqrt(np.einsum("ij,ij->i", spin, spin)) * self._spin_radius
+        return linear, turning
+
+    def _near(self, places: Floats, fast: Any, speeds: Floats) -> tuple[Any, Any]:
+        """Find pairs of a fast geom and one that it may reach within a window, whatever it bounces off on the way."""
+        model, others = self.model, self._others
+        radius = model.geom_rbound
+        reach = (speeds[fast, None] + speeds[None, others]) * (self._window * _GROWTH * model.opt.timestep)
+        reach += radius[fast, None]
+        difference = places[fast, None] - places[None, others]
+        distance = np.sqrt(np.einsum("ijk,ijk->ij", difference, difference))
+        rows, columns = np.nonzero(
+            (distance <= reach + radius[None, others]) & can_touch(model, fast[:, None], others[None])
+        )
+        one, other = fast[rows], others[columns]
+        local = self._inside(places[one], other)
+        gap = np.linalg.norm(np.maximum(np.abs(local) - model.geom_aabb[other, 3:], 0.0), axis=1)
+        keep = (gap <= reach[rows, columns]) & (one != other)
+        return one[keep], other[keep]
+
+    def _inside(self, points: Floats, geoms: Any) -> Floats:
+        """Transform points of the world into the frames of the boxes around geoms."""
+        scratch = self._scratch
+        turned = scratch.geom_xmat[geoms].reshape(-1, 3, 3)
+        local: Floats = np.einsum("nji,nj->ni", turned, points - scratch.geom_xpos[geoms])
+        local -= self.model.geom_aabb[geoms, :3]
+        return local
+
+    # ------------------------------------------------------------------ what cannot be helped
+
+    def _find_helpless(self, scratch: Any, one: Any, other: Any, both: Floats, linear: Floats) -> None:
+        """Report pairs on a course through each other that speculative contacts do not stop for sure."""
+        model, step, half = self.model, float(self.model.opt.timestep), self._half
+        together = half[one] + half[other]
+        is_field = model.geom_type[other] == _HFIELD
+        most = 1.0 if model.opt.integrator == _RK4 else _MAX_TILTED_TRAVEL
+        is_tilted = ~self._is_ball[one] & (both * step > most * together)
+        chosen = np.flatnonzero((is_field | is_tilted) & self._is_on_course(scratch, one, other, linear))
+        found = []
+        for i in chosen.tolist():
+            speed, field = float(both[i]), bool(is_field[i])
+            thick = 2.0 * float(min(half[one[i]], half[other[i]]))
+            enough = float(together[i]) / speed * (1.0 / _GROWTH if field else most)
+            found.append(FastApproach(int(one[i]), int(other[i]), speed, thick, enough, field))
+        if found and self.tell is not None:
+            self.tell(found)
+
+    def _is_on_course(self, scratch: Any, one: Any, other: Any, linear: Floats) -> npt.NDArray[np.bool_]:
+        """Check whether straight on, within a window, the sphere around the one meets the box around the other."""
+        model = self.model
+        start = self._inside(scratch.geom_xpos[one], other)
+        turned = scratch.geom_xmat[other].reshape(-1, 3, 3)
+        way = np.einsum("nji,nj->ni", turned, linear[one] - linear[other]) * (self._window * model.opt.timestep)
+        box = model.geom_aabb[other, 3:] + model.geom_rbound[one][:, None]
+        way = np.where(np.abs(way) < 1e-12, 1e-12, way)
+        ends = np.stack([(-box - start) / way, (box - start) / way])
+        enters, leaves = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
+        found: npt.NDArray[np.bool_] = (enters <= leaves) & (leaves >= 0.0) & (enters <= 1.0)
+        return found
+
+
+class FastBodyWarnings:
+    """Warns of what may pass through something else, once for each pair of collisions."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._told: set[frozenset[str]] = set()
+
+    def __call__(self, approaches: list[FastApproach]) -> None:
+        """Warn of the pairs that are new."""
+        sim = self._sim
+        names = sim.structure.compiled.names
+        for found in approaches:
+            link, one, _ = names.geom_owner(found.geom)
+            _, other, _ = names.geom_owner(found.other)
+            one, other = one or "a geom", other or "a geom"
+            pair = frozenset((one, other))
+            if pair in self._told:
+                continue
+            self._told.add(pair)
+            what = f"the height map {other}" if found.is_height_field else other
+            travel = found.speed * sim.timestep
+            message = (
+                f"{one} may pass through {what}: it comes at {found.speed:.3g} m/s, {travel:.3g} m in a step of "
+                f"{sim.timestep:g} s, and the thinner of the two is {found.thickness:.3g} m thick"
+            )
+            where = names.link(link).scene.where if link in names.links else NOWHERE
+            sim.reports.warning(
+                "SK-PHYS-031", message, where, f"<max_step_size>{_round_down(found.step):g}</max_step_size>"
+            )
+
+
+def _round_down(value: float) -> float:
+    """Return a positive number with one digit that is not larger."""
+    unit = 10.0 ** math.floor(math.log10(value))
+    return math.floor(value / unit * (1.0 + 1e-12)) * unit

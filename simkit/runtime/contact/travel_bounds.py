@@ -1,0 +1,178 @@
+"""Bounds on how far collision geoms move per unit of joint velocity, and on the travel that each of them may have.
+
+All are computed once from the compiled model. Indices of geoms and degrees of freedom are those of MuJoCo.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.intp]
+
+_PLANE, _HFIELD, _SPHERE = (int(getattr(mujoco.mjtGeom, f"mjGEOM_{n}")) for n in ("PLANE", "HFIELD", "SPHERE"))
+_ROUND = [int(getattr(mujoco.mjtGeom, f"mjGEOM_{n}")) for n in ("CAPSULE", "CYLINDER")]
+_ELLIPSOID = int(mujoco.mjtGeom.mjGEOM_ELLIPSOID)
+_FREE, _BALL, _SLIDE, _HINGE = (int(getattr(mujoco.mjtJoint, f"mjJNT_{n}")) for n in ("FREE", "BALL", "SLIDE", "HINGE"))
+_UNLIMITED_SPAN: Final = 1e3
+"""[m] of a slide joint without limits, for the levers of the joints above it."""
+
+_MAX_COMPARED_BODIES: Final = 64
+"""Bodies of one kinematic tree up to which its pairs are looked at one by one."""
+
+
+def half_thickness(model: Any) -> Floats:
+    """Return half the least extent [m] of each geom; infinite for a plane, half the base for a height field.
+
+    One entry more than there are geoms: an infinite one, for contacts of no geom (index -1).
+    """
+    half = np.append(model.geom_aabb[:, 3:6].min(axis=1), np.inf)
+    half[:-1][model.geom_type == _PLANE] = np.inf
+    for geom in np.flatnonzero(model.geom_type == _HFIELD):
+        half[geom] = model.hfield_size[model.geom_dataid[geom], 3] / 2
+    return half
+
+
+def rotational_symmetries(model: Any) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Return which geoms no rotation about their centre changes, and which none about their z axis does."""
+    size, kind = model.geom_size, model.geom_type
+    is_round = np.isin(kind, _ROUND) | ((kind == _ELLIPSOID) & (size[:, 0] == size[:, 1]))
+    return kind == _SPHERE, is_round
+
+
+def can_collide(model: Any) -> npt.NDArray[np.bool_]:
+    """Return which geoms may touch anything at all."""
+    found: npt.NDArray[np.bool_] = (model.geom_contype | model.geom_conaffinity) != 0
+    return found
+
+
+def can_touch(model: Any, one: Any, other: Any) -> Any:
+    """Return whether geoms may touch by their masks alone; the arguments are indices that broadcast."""
+    types, affinities = model.geom_contype, model.geom_conaffinity
+    return ((types[one] & affinities[other]) | (types[other] & affinities[one])) != 0
+
+
+def allowed_travel(model: Any, half: Floats, geoms: Ints) -> Floats:
+    """Return the travel [m] up to which moving geoms pass through nothing.
+
+    Two geoms can pass through each other once they travel, together, more than half the thickness of both. So what
+    meets moving geoms may travel half its own thickness, and what meets static ones half of the thinnest of them more.
+    """
+    kinds: dict[tuple[int, int], list[int]] = defaultdict(list)  # masks -> geoms
+    for geom in np.flatnonzero(can_collide(model)).tolist():
+        kinds[int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])].append(geom)
+    tree = model.body_treeid[model.geom_bodyid]
+    static_least = {key: _minimum(half[[g for g in own if tree[g] < 0]]) for key, own in kinds.items()}
+    trees = {key: {int(tree[g]) for g in own} - {-1} for key, own in kinds.items()}
+    touchy: dict[int, bool] = {}
+    allowed = np.empty(len(geoms))
+    by_kind: dict[tuple[int, int, int], float] = {}
+    for place, geom in enumerate(geoms.tolist()):
+        mine = int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])
+        own = int(tree[geom])
+        if (*mine, own) not in by_kind:
+            met = [key for key in kinds if (mine[0] & key[1]) | (key[0] & mine[1])]
+            least = min((static_least[key] for key in met), default=np.inf)
+            if any(len(trees[key]) > 1 or (trees[key] and own not in trees[key]) for key in met):
+                least = 0.0
+            elif any(own in trees[key] for key in met):
+                if own not in touchy:
+                    touchy[own] = _can_touch_itself(model, own)
+                least = 0.0 if touchy[own] else least
+            by_kind[(*mine, own)] = least
+        allowed[place] = half[geom] + by_kind[(*mine, own)]
+    return allowed
+
+
+def _minimum(values: Floats) -> float:
+    return float(values.min()) if len(values) else np.inf
+
+
+def _can_touch_itself(model: Any, tree: int) -> bool:
+    """Check whether two bodies of a kinematic tree may touch each other."""
+    solid = np.unique(model.geom_bodyid[can_collide(model)])
+    bodies = solid[model.body_treeid[solid] == tree].tolist()
+    if len(bodies) > _MAX_COMPARED_BODIES:
+        return True
+    return any(not is_filtered(model, a, b) for n, a in enumerate(bodies) for b in bodies[:n])
+
+
+def is_filtered(model: Any, one: int, other: int) -> bool:
+    """Return whether the engine leaves out contacts between two bodies, whatever their masks."""
+    weld, parent = model.body_weldid, model.body_parentid
+    a, b = int(weld[one]), int(weld[other])
+    if a == b:
+        return True
+    if not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
+        above_a, above_b = int(weld[parent[a]]), int(weld[parent[b]])
+        if a and b and (a == above_b or b == above_a):
+            return True
+    low, high = sorted((one, other))
+    signatures = model.exclude_signature
+    return bool(len(signatures)) and bool(
+        ((signatures == (low << 16) + high) | (signatures == (high << 16) + low)).any()
+    )
+
+
+def velocity_levers(model: Any, geoms: Ints) -> tuple[Ints, Ints, Floats]:
+    """Return rows of (place in `geoms`, degree of freedom, lever): surface points move by at most lever · |velocity|.
+
+    The lever is 1 for a translation and a length [m] for a rotation, over all configurations.
+    """
+    rows: list[Ints] = []
+    dofs: list[Ints] = []
+    found: list[Floats] = []
+    is_ball, is_round = rotational_symmetries(model)
+    places, body = np.arange(len(geoms)), model.geom_bodyid[geoms].astype(np.intp)
+    offset = model.geom_pos[geoms]
+    reach = np.linalg.norm(offset, axis=1)
+    radius = np.where(is_ball[geoms], 0.0, model.geom_rbound[geoms])
+    axis_of = np.array([_z_axis(q) for q in model.geom_quat[geoms]]).reshape(-1, 3)
+    is_own = True
+    while len(places):
+        extra = np.linalg.norm(model.body_pos[body], axis=1)
+        for k in range(int(model.body_jntnum[body].max(initial=0))):
+            some = np.flatnonzero(model.body_jntnum[body] > k)
+            joint = model.body_jntadr[body[some]] + k
+            kind, at = model.jnt_type[joint], model.jnt_pos[joint]
+            where = places[some]
+            anchor = np.linalg.norm(at, axis=1)
+            lever = reach[some] + anchor + radius[where]
+            exact = (kind == _HINGE) & is_own & (model.body_jntnum[body[some]] == 1)
+            arm, axis = offset[where] - at, model.jnt_axis[joint]
+            across = np.linalg.norm(np.cross(arm, axis), axis=1)
+            spin = np.where(is_round[geoms[where]], np.linalg.norm(np.cross(axis_of[where], axis), axis=1), 1.0)
+            lever = np.where(exact, across + radius[where] * spin, lever)
+            first = model.jnt_dofadr[joint]
+            for chosen, count, shift, value in (
+                (kind == _HINGE, 1, 0, lever),
+                (kind == _SLIDE, 1, 0, np.ones(len(some))),
+                (kind == _BALL, 3, 0, lever),
+                (kind == _FREE, 3, 0, np.ones(len(some))),
+                (kind == _FREE, 3, 3, reach[some] + radius[where]),
+            ):
+                for i in range(count):
+                    rows.append(where[chosen])
+                    dofs.append(first[chosen] + shift + i)
+                    found.append(value[chosen])
+            slack = np.where((kind == _HINGE) | (kind == _BALL), 2.0 * anchor, 0.0)
+            span = np.where(model.jnt_limited[joint] != 0, np.abs(model.jnt_range[joint]).max(axis=1), _UNLIMITED_SPAN)
+            extra[some] += np.where(kind == _SLIDE, span, slack)
+        reach = reach + extra
+        body = model.body_parentid[body].astype(np.intp)
+        is_own = False
+        goes_on = model.body_treeid[body] >= 0
+        places, body, reach = places[goes_on], body[goes_on], reach[goes_on]
+    if not rows:
+        return np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0)
+    return np.concatenate(rows).astype(np.intp), np.concatenate(dofs).astype(np.intp), np.concatenate(found)
+
+
+def _z_axis(q: Any) -> tuple[float, float, float]:
+    w, x, y, z = (float(v) for v in q)
+    return 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)

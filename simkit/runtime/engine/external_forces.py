@@ -1,0 +1,65 @@
+"""Wrenches that persist on links from step to step, and the velocity of the air."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit.scene import SceneWorld
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+
+class PersistentWrenches:
+    """Who pushes which links how; force [N] and torque [N·m], world frame, at the centre of mass."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._by_owner: dict[int, tuple[Any, dict[str, Any]]] = {}
+
+    def set(self, owner: Any, wrenches: Mapping[str, Any], *, are_applied: bool) -> None:
+        """All that the plugin `owner` pushes from now on, by scoped link name."""
+        self._by_owner[id(owner)] = owner, dict(wrenches)
+        if not are_applied:  # while a state is restored, what others push is still that of before
+            self.push(are_applied=False)
+
+    def push(self, *, are_applied: bool) -> None:
+        """Hands the sums to the physics, for the links and plugins that are there now.
+
+        A plugin that went is forgotten: should a restore bring it back, its state brings what it pushes.
+        """
+        living = set(map(id, self._sim.faults.living(self._sim.structure)))
+        self._by_owner = {key: found for key, found in self._by_owner.items() if key in living}
+        links = self._sim.names.links
+        total: dict[int, Any] = {}
+        for _, wrenches in self._by_owner.values():
+            for name, wrench in wrenches.items():
+                if name in links and links[name].body > 0:
+                    total[links[name].body] = total.get(links[name].body, 0.0) + np.asarray(wrench, float)
+        self._sim.physics.stand(total, are_applied=are_applied)
+
+
+Velocity = tuple[float, float, float]
+
+
+class Wind:
+    """The velocity of the air: the world's `<wind>`, or what a plugin makes of it. A handle.
+
+    Attributes:
+        source: gives the velocity [m/s], world frame, that holds in the step from a tick on; None: the world's.
+    """
+
+    def __init__(self, world: SceneWorld) -> None:
+        x, y, z = world.wind
+        self._steady: Velocity = float(x), float(y), float(z)
+        self.source: Callable[[int], Velocity] | None = None
+
+    def at(self, tick: int) -> Velocity:
+        """Velocity of the air [m/s], world frame, in the step that follows a tick."""
+        return self._steady if self.source is None else self.source(tick)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Wind:
+        return self

@@ -1,0 +1,164 @@
+"""Accurate integration of long chains without damping and of bodies that spin fast.
+
+The engine's implicit integrators are of first order. A chain of 50 links that falls gains energy under them until it
+diverges; a top of 400 rad/s on a ball joint falls over and diverges. An arm with servos or damping does not notice.
+So these kinematic trees are integrated by the Runge-Kutta method of fourth order, in substeps that follow the fastest
+joint, on a second `MjData`. Trees without constraint forces do not depend on each other, so all others keep their bits.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+MIN_CHAIN_LENGTH: Final = 8
+"""Passive joints in a row from which on a tree counts as a chain; arms have seven."""
+
+MIN_TURN: Final = 0.005
+"""[rad] of turn in a step from which on a body that may spin, which is no chain, is integrated here."""
+
+MAX_SUBSTEP_TURN: Final = 0.05
+"""[rad] by which the fastest joint turns within a substep; 0.05 keeps the energy of 50 links within 0.03 %."""
+
+MAX_SUBSTEPS: Final = 16
+
+_STATE: Final = int(mujoco.mjtState.mjSTATE_INTEGRATION)
+_NO_CONSTRAINTS: Final = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+_SLEEP: Final = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+_RUNGE_KUTTA: Final = int(mujoco.mjtIntegrator.mjINT_RK4)
+_FREE, _BALL, _HINGE = (
+    int(kind) for kind in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_HINGE)
+)
+
+
+class PassiveTree:
+    """Degrees of freedom and positions of one kinematic tree.
+
+    Attributes:
+        turning: those degrees of freedom whose velocity is in rad/s.
+        is_chain: whether it holds a chain; else it holds a body that may spin.
+    """
+
+    def __init__(self, model: Any, number: int, is_chain: bool) -> None:
+        self.number, self.is_chain = number, is_chain
+        self.dofs = _index_range(model.tree_dofadr, model.tree_dofnum, number)
+        joints = model.dof_jntid[self.dofs]
+        kinds = model.jnt_type[joints]
+        offset = np.arange(self.dofs.start, self.dofs.stop) - model.jnt_dofadr[joints]
+        turns = (kinds == _BALL) | (kinds == _HINGE) | ((kinds == _FREE) & (offset >= 3))
+        self.turning = self.dofs.start + np.flatnonzero(turns)
+        first, last = int(joints[0]), int(joints[-1])
+        width = {_FREE: 7, _BALL: 4}.get(int(model.jnt_type[last]), 1)
+        self.coordinates = slice(int(model.jnt_qposadr[first]), int(model.jnt_qposadr[last]) + width)
+
+
+class FreeMotionIntegrator:
+    """Integrator of the trees of one compiled model that the engine's own integrator does not suit.
+
+    Usage in every step: `prepare`, the engine's own step, `correct`.
+    """
+
+    def __init__(self, model: Any, trees: list[PassiveTree]) -> None:
+        self.model, self.trees = model, trees
+        self._data = mujoco.MjData(model)
+        self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
+        self._moving: list[PassiveTree] = []
+
+    @classmethod
+    def of(cls, model: Any) -> FreeMotionIntegrator | None:
+        """Return the integrator of a model; None where no tree needs it."""
+        driven, lengths = _driven_trees(model), _chain_lengths(model)
+        found = []
+        for number in range(model.ntree):
+            is_chain = lengths.get(number, 0) >= MIN_CHAIN_LENGTH
+            if number not in driven and (is_chain or _may_spin(model, number)):
+                found.append(PassiveTree(model, number, is_chain))
+        return cls(model, found) if found else None
+
+    def prepare(self, data: Any) -> None:
+        """Integrate over the coming step, from data that are not stepped yet."""
+        model, own, option = self.model, self._data, self.model.opt
+        step, velocity = float(option.timestep), data.qvel
+        fastest, self._moving = 0.0, []
+        for tree in self.trees:
+            turn = float(np.abs(velocity[tree.turning]).max()) * step
+            if math.isfinite(turn) and (tree.is_chain or turn > MIN_TURN) and data.tree_asleep[tree.number] < 0:
+                self._moving.append(tree)
+                fastest = max(fastest, turn)
+        if not self._moving:
+            return
+        mujoco.mj_getState(model, data, self._state, _STATE)
+        mujoco.mj_setState(model, own, self._state, _STATE)
+        count = min(MAX_SUBSTEPS, max(1, math.ceil(fastest / MAX_SUBSTEP_TURN)))
+        integrator, disabled, enabled = option.integrator, option.disableflags, option.enableflags
+        option.timestep, option.integrator = step / count, _RUNGE_KUTTA
+        option.disableflags, option.enableflags = disabled | _NO_CONSTRAINTS, enabled & ~_SLEEP
+        try:
+            mujoco.mj_step(model, own, count)
+        finally:
+            option.timestep, option.integrator = step, integrator
+            option.disableflags, option.enableflags = disabled, enabled
+
+    def correct(self, data: Any) -> None:
+        """Write the integrated states of all trees that no constraint has acted on to the stepped data."""
+        own, forces = self._data, data.qfrc_constraint
+        for tree in self._moving:
+            dofs, at = tree.dofs, tree.coordinates
+            if forces[dofs].any() or not (np.isfinite(own.qvel[dofs]).all() and np.isfinite(own.qpos[at]).all()):
+                continue
+            data.qvel[dofs] = own.qvel[dofs]
+            data.qpos[at] = own.qpos[at]
+
+
+def _index_range(starts: Any, counts: Any, index: int) -> slice:
+    return slice(int(starts[index]), int(starts[index]) + int(counts[index]))
+
+
+def _resisting_dofs(model: Any) -> npt.NDArray[np.bool_]:
+    """Return which degrees of freedom have damping, friction or armature."""
+    found: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (model.dof_frictionloss != 0) | (model.dof_armature != 0)
+    return found
+
+
+def _chain_lengths(model: Any) -> dict[int, int]:
+    """Return how many bodies in a row move on passive joints alone, at most, by tree."""
+    resisting = _resisting_dofs(model)
+    longest: dict[int, int] = {}
+    length = np.zeros(model.nbody, int)
+    for body in range(1, model.nbody):
+        length[body] = length[model.body_parentid[body]]
+        dofs = _index_range(model.body_dofadr, model.body_dofnum, body)
+        tree = int(model.body_treeid[body])
+        if dofs.start < 0 or dofs.start == dofs.stop or tree < 0:
+            continue
+        length[body] = 0 if resisting[dofs].any() else length[body] + 1
+        longest[tree] = max(longest.get(tree, 0), int(length[body]))
+    return longest
+
+
+def _may_spin(model: Any, tree: int) -> bool:
+    """Check whether a tree is passive and turns on a ball joint, or flies and has nothing that collides."""
+    dofs = _index_range(model.tree_dofadr, model.tree_dofnum, tree)
+    kinds = set(model.jnt_type[model.dof_jntid[dofs]].tolist())
+    if _resisting_dofs(model)[dofs].any():
+        return False
+    if _BALL in kinds:
+        return True
+    own = model.body_treeid[model.geom_bodyid] == tree
+    return _FREE in kinds and not (model.geom_contype[own] | model.geom_conaffinity[own]).any()
+
+
+def _driven_trees(model: Any) -> set[int]:
+    """Return the trees with a joint that an actuator moves; every other kind of actuator drives all of them."""
+    driven: set[int] = set()
+    joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
+    for kind, target in zip(model.actuator_trntype.tolist(), model.actuator_trnid[:, 0].tolist(), strict=True):
+        if kind in joints:
+            driven.add(int(model.body_treeid[model.jnt_bodyid[target]]))
+        else:
+            driven.update(range(model.ntree))
+    return driven

@@ -1,0 +1,251 @@
+"""What becomes of a plugin that raises: it stops the run, or it is left out from then on.
+
+Everything of a plugin that is called while the run goes, hooks and callbacks, is called through `Faults.guard`. Who
+watches from another thread finds what is being called in the stack (`active_plugin_calls`), so that watching costs nothing.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from types import CodeType, FrameType, TracebackType
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged
+
+if TYPE_CHECKING:
+    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.runtime.simulation import Simulation
+
+
+PluginErrorPolicy = Literal["stop", "disable"]
+PLUGIN_ERROR_POLICIES: Final[tuple[PluginErrorPolicy, ...]] = ("stop", "disable")
+
+
+@dataclass(frozen=True, slots=True)
+class PluginCall:
+    """A plugin's hook or callback that is at work.
+
+    Attributes:
+        plugin: whose.
+        hook: which, in words.
+        frame: its frame, another for another call.
+        line: file:line where it is now, and the function.
+    """
+
+    plugin: Any
+    hook: str
+    frame: FrameType
+    line: str
+
+
+class PluginFaults:
+    """Calls what plugins are made of, and knows which of them are left out.
+
+    Args:
+        sim: whose plugins.
+        on_error: what the user asked for, which goes over what files and classes say; None leaves it to them.
+    """
+
+    def __init__(self, sim: Simulation, on_error: PluginErrorPolicy | None = None) -> None:
+        self._sim, self.on_error = sim, on_error
+        self._disabled: dict[int, Any] = {}
+
+    # ------------------------------------------------------------------ who is at work
+
+    def is_disabled(self, plugin: Any) -> bool:
+        """Whether a plugin raised and is left out."""
+        return id(plugin) in self._disabled
+
+    def living(self, structure: WorldStructure) -> list[Any]:
+        """The sensors and plugins of a structure, without the plugins that are left out."""
+        plugins = structure.all_plugins()
+        return [*structure.all_sensors(), *(p for p in plugins if id(p) not in self._disabled)]
+
+    def policy(self, plugin: Any) -> PluginErrorPolicy:
+        """What becomes of this plugin when it raises: what the user asked for, else the file, else the class."""
+        found: PluginErrorPolicy | None = self.on_error or plugin.on_error
+        return found or "stop"
+
+    # ------------------------------------------------------------------ calling
+
+    def guard(self, plugin: Any, hook: str, method: Callable[..., Any]) -> Callable[..., Any]:
+        """A hook or callback as something to call: what it raises stops the run, or takes the plugin out of it.
+
+        Of a plugin that is left out it does nothing and gives None.
+        """
+        disabled, key = self._disabled, id(plugin)
+
+        def call(*values: Any) -> Any:
+            if key in disabled:
+                return None
+            try:
+                return method(*values)
+            except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+                self.meet(plugin, hook, error)
+
+        return call
+
+    def task(self, plugin: Any, hook: str) -> Callable[[int], None]:
+        """A hook without arguments as a task of the scheduler."""
+        disabled, key, method = self._disabled, id(plugin), getattr(plugin, hook)
+
+        def call(_: int = 0) -> None:
+            if key in disabled:
+                return
+            try:
+                method()
+            except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+                self.meet(plugin, hook, error)
+
+        return call
+
+    def meet(self, plugin: Any, hook: str, error: Exception) -> None:
+        """Stops the run, or goes on without the plugin; to be called while the exception is being handled.
+
+        Raises:
+            PluginError: the run is to stop; the exception is its `__cause__`.
+            SimkitError: the exception itself, where it is not of the plugin's making: the physics diverged, there is
+                no renderer, another plugin stopped the run.
+        """
+        if isinstance(error, SimkitError) and not isinstance(error, InputError):
+            raise error
+        if self.policy(plugin) == "stop":
+            raise PluginError(plugin.name, hook, self._sim.time, str(plugin.where), repr(error)) from error
+        if (
+            isinstance(error, RecursionError)
+            and sum(c.plugin is plugin for c in active_plugin_calls(sys._getframe())) > 1
+        ):
+            raise error  # there is no room left to do anything in; the outermost call of it meets it again
+        self.disable(plugin, hook, error)
+
+    def state_of(self, plugin: Any) -> Any:
+        """What a snapshot keeps of a plugin; None of one that raised over it and is left out."""
+        try:
+            return call_plugin(plugin, "get_state", plugin.get_state)
+        except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+            if not self.is_disabled(plugin):
+                self.meet(plugin, "get_state", error)
+        return None
+
+    def take_back(self, plugin: Any, state: Any) -> None:
+        """Brings a plugin back to what `state_of` gave."""
+        if state is None:
+            return
+        try:
+            call_plugin(plugin, "set_state", plugin.set_state, state)
+        except Exception as error:  # noqa: BLE001 - a plugin may raise anything
+            if not self.is_disabled(plugin):
+                self.meet(plugin, "set_state", error)
+
+    # ------------------------------------------------------------------ leaving out
+
+    def disable(self, plugin: Any, hook: str, error: BaseException) -> None:
+        """Leaves a plugin out from now on: no hook of it runs, nothing it opened is there, its servos let go."""
+        sim = self._sim
+        if id(plugin) in self._disabled:
+            return
+        self._disabled[id(plugin)] = plugin
+        last = " ".join(traceback.format_exception_only(error)[-1].split())
+        message = f"plugin {plugin.name!r} raised in {hook} at t={sim.time:.6g} s and is left out from then on: {last}"
+        place = innermost_frame(error.__traceback__)
+        sim.reports.warning("SK-PLUGIN-020", message, plugin.where, f"raised at {place}" if place else "")
+        sim.log.warning("%s: %s (%s)", plugin.where, message, place)
+        self._apply()
+        sim.action_table.abandon(plugin, f"plugin {plugin.name!r} is left out: {last}")
+        release_servos(sim, plugin)
+        sim.reschedule()
+
+    def _apply(self) -> None:
+        self._sim.set_active(self.living(self._sim.structure))
+
+    # ------------------------------------------------------------------ state
+
+    def get_state(self) -> tuple[Any, ...]:
+        """Who is left out."""
+        return tuple(self._disabled.values())
+
+    def set_state(self, state: Iterable[Any]) -> None:
+        """Back to a state from `get_state`: a plugin that raised since is at work again."""
+        before = set(self._disabled)
+        self._disabled.clear()
+        self._disabled.update({id(plugin): plugin for plugin in state})
+        if set(self._disabled) != before:
+            self._apply()
+
+
+def release_servos(sim: Simulation, plugin: Any) -> None:
+    """Lets go of the joints that a plugin's servos and motors hold; snapshots and reset bring them back."""
+    there = {name for record in sim.structure.builder.records.values() for name in (r.name for r in record.actuators)}
+    refs = [ref for ref in plugin._actuators if ref.name in there]
+    if refs:
+        gains, biases = sim.touch("actuator_gainprm"), sim.touch("actuator_biasprm")
+        for ref in refs:
+            index = sim.names.actuator(ref)
+            gains[index], biases[index] = 0.0, 0.0
+
+
+def innermost_frame(trace: TracebackType | None) -> str:
+    """Where a traceback ends: file:line and function."""
+    frames = traceback.extract_tb(trace)
+    return f"{frames[-1].filename}:{frames[-1].lineno} in {frames[-1].name}" if frames else ""
+
+
+def _guard_codes() -> frozenset[CodeType]:
+    """Of the functions through which plugins are called."""
+    makers = (PluginFaults.guard.__code__, PluginFaults.task.__code__, call_plugin.__code__)
+    inner = [c for code in makers[:2] for c in code.co_consts if isinstance(c, CodeType) and c.co_name == "call"]
+    return frozenset((*inner, call_plugin.__code__))
+
+
+def is_guarded(callback: object) -> bool:
+    """Whether it is of `Faults.guard`: what still comes out of it is to go on upwards."""
+    return getattr(callback, "__code__", None) in _guard_codes()
+
+
+def call_plugin(plugin: Any, hook: str, method: Callable[..., Any], *values: Any) -> Any:  # noqa: ARG001 - `active_plugin_calls` reads
+    """Calls something of a plugin that is not guarded (`prepare`, `load`), so that `active_plugin_calls` finds it."""
+    return method(*values)
+
+
+def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
+    """The calls of plugins in a stack, the innermost first; none where no plugin is at work.
+
+    Args:
+        frame: the innermost frame of the stack, such as `sys._current_frames()` gives of a thread.
+    """
+    codes, found, now = _guard_codes(), [], frame
+    while frame is not None and now is not None:
+        if frame.f_code in codes:
+            line = f"{now.f_code.co_filename}:{now.f_lineno} in {now.f_code.co_name}"
+            names = frame.f_locals
+            if hasattr(names.get("plugin"), "where"):  # not a service that nobody's plugin offers
+                found.append(PluginCall(names["plugin"], names["hook"], frame, line))
+            now = frame.f_back
+        frame = frame.f_back
+    return found
+
+
+_MAX_EXPLANATIONS = 3
+
+
+def add_driver_hints(sim: Simulation, error: SimulationDiverged) -> None:
+    """Adds to the error what plugins have to do with it.
+
+    Those are asked that have a method `explain_divergence(name) -> str`: with the joint where it happened, and where
+    none of them drives that, with the model.
+    """
+    found = _explanations(sim, error.joint) or _explanations(sim, error.joint.split("::")[0])
+    if found:
+        more = "; ".join(found[:_MAX_EXPLANATIONS]) + (
+            f"; and {len(found) - _MAX_EXPLANATIONS} more" if len(found) > _MAX_EXPLANATIONS else ""
+        )
+        error.hint = f"{error.hint}; {more}"
+        error.args = (f"{error.args[0]}; {more}",)
+
+
+def _explanations(sim: Simulation, name: str) -> list[str]:
+    asked = (getattr(plugin, "explain_divergence", None) for plugin in sim.structure.all_plugins())
+    return [text for explain in asked if explain is not None and (text := explain(name))]

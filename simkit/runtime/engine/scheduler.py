@@ -1,0 +1,128 @@
+"""Who is due when. Due ticks follow from the rate alone, so nothing here needs saving or restoring."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Callable, Sequence
+from typing import Literal, Protocol
+
+from simkit.runtime.engine.clock import Clock, TickGrid
+
+Phase = Literal["before", "sense", "after"]
+Task = Callable[[int], None]
+NEVER = 1 << 62
+_LONGEST_CYCLE = 10_000  # ticks
+
+
+class Timetable(Protocol):
+    """When something is due."""
+
+    def next(self, tick: int) -> int:
+        """First due tick after a tick."""
+        ...
+
+
+class Agenda:
+    """The tasks of one phase, in the order they were added.
+
+    Attributes:
+        every: tasks of every step.
+        next: the next tick at which a periodic task is due.
+    """
+
+    def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        self._tasks: list[tuple[Task, Timetable | None]] = []
+        self.every: list[Task] = []
+        self._heap: list[tuple[int, int]] = []
+        self._cycle = 0
+        self._plan: dict[int, tuple[list[Task], int]] = {}
+        self.next = NEVER
+
+    def add(self, task: Task, grid: Timetable | None) -> None:
+        self._tasks.append((task, grid))
+
+    def rewind(self, tick: int) -> None:
+        """What is due after `tick`."""
+        self.every = [task for task, grid in self._tasks if grid is None]
+        self._heap = [(grid.next(tick), order) for order, (_, grid) in enumerate(self._tasks) if grid is not None]
+        heapq.heapify(self._heap)
+        self.next = self._heap[0][0] if self._heap else NEVER
+        self._cycle, self._plan = _common_cycle([grid for _, grid in self._tasks if grid is not None]), {}
+
+    def due(self, tick: int) -> list[Task]:
+        """Every task due at `tick`, in order of addition; periodic ones move on to their next tick."""
+        if self.next > tick:
+            return self.every
+        if self._cycle and tick > 1:  # the first tick has more than the rates alone say
+            planned = self._plan.get(tick % self._cycle)
+            if planned is None:
+                planned = self._plan[tick % self._cycle] = self._work_out(tick)
+            self.next = tick + planned[1]
+            return planned[0]
+        return self._by_heap(tick)
+
+    def _work_out(self, tick: int) -> tuple[list[Task], int]:
+        """What is due at `tick`, and how long it is then to the next."""
+        due = [task for task, grid in self._tasks if grid is None or grid.next(tick - 1) == tick]
+        return due, min(grid.next(tick) for _, grid in self._tasks if grid is not None) - tick
+
+    def _by_heap(self, tick: int) -> list[Task]:
+        heap, tasks = self._heap, self._tasks
+        order = heap[0][1]
+        heapq.heapreplace(heap, (tasks[order][1].next(tick), order))  # type: ignore[union-attr]
+        self.next = heap[0][0]
+        if self.next > tick and not self.every:
+            return [tasks[order][0]]
+        orders = [order]
+        while heap[0][0] <= tick:
+            order = heap[0][1]
+            heapq.heapreplace(heap, (tasks[order][1].next(tick), order))  # type: ignore[union-attr]
+            orders.append(order)
+        self.next = heap[0][0]
+        if self.every:
+            orders += [i for i, (_, grid) in enumerate(self._tasks) if grid is None]
+            orders.sort()
+        return [self._tasks[i][0] for i in orders]
+
+
+def _common_cycle(timetables: Sequence[Timetable]) -> int:
+    """After how many ticks it all repeats; 0 where that is too long to remember, or not so."""
+    periods = [grid.cycle for grid in timetables if isinstance(grid, TickGrid)]
+    if not periods or len(periods) < len(timetables):
+        return 0
+    cycle = math.lcm(*periods)
+    return cycle if cycle <= _LONGEST_CYCLE else 0
+
+
+class Scheduler:
+    """Tasks before a step, and sensors and hooks after it."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.before, self.sense, self.after = Agenda(), Agenda(), Agenda()
+
+    def clear(self) -> None:
+        """Forgets every task."""
+        for agenda in (self.before, self.sense, self.after):
+            agenda.clear()
+
+    def every(self, rate: float | None, task: Task, phase: Phase) -> None:
+        """Calls `task(tick)` at `rate` [Hz] (None or 0: at every step); takes effect at the next `rewind`.
+
+        Sensors have a first sample after the first step, then both they and hooks keep to k/rate.
+        """
+        getattr(self, phase).add(task, self.clock.grid(rate or 0.0, from_start=phase == "sense"))
+
+    def on(self, timetable: Timetable | None, task: Task, phase: Phase) -> None:
+        """The same by a timetable of its own; None is every step."""
+        getattr(self, phase).add(task, timetable)
+
+    def rewind(self, tick: int) -> None:
+        """Says that the readings of `tick` have been dealt with, the commands before its step have not."""
+        self.before.rewind(max(tick - 1, 0))
+        self.sense.rewind(tick)
+        self.after.rewind(tick)

@@ -1,0 +1,193 @@
+"""The one loop in the house: commands in, the engine on, readings out, and only when something is due."""
+
+from __future__ import annotations
+
+import atexit
+import threading
+import weakref
+from collections.abc import Callable
+from typing import Any
+
+from simkit.errors import InputError
+from simkit.runtime.communication.topic_bus import TopicBus
+from simkit.runtime.engine.physics import Physics
+from simkit.runtime.engine.scheduler import Scheduler
+
+ScheduleFiller = Callable[[Scheduler], None]
+
+_LONGEST_WAIT = 5.0  # [s] of wall time, for what runs on other threads at the end of the program
+
+
+class StepLoop:
+    """Advances the physics from one due tick to the next.
+
+    Args:
+        physics: what is advanced.
+        bus: whose queued commands are delivered between two steps.
+        fill: puts every task into the scheduler, in document order.
+    """
+
+    def __init__(self, physics: Physics, bus: TopicBus, fill: ScheduleFiller) -> None:
+        self.scheduler = Scheduler(physics.clock)
+        self._physics, self._bus, self._fill = physics, bus, fill
+        self.jumped = self._target = 0
+        self._running = self._is_outdated = self._is_served = self._halts = False
+        self._promises: list[Callable[[], None]] = []
+        self._idle = threading.Event()
+        self._idle.set()
+        _loops.add(self)
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it is advancing."""
+        return self._running
+
+    def reschedule(self) -> None:
+        """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
+        self._is_outdated = True
+        if not self._running:
+            self._refill()
+
+    def promise(self, call: Callable[[], None]) -> None:
+        """Has something done at the end of the step under way, once all that is due at its tick has been done."""
+        self._promises.append(call)
+        self._is_outdated = True
+
+    def break_promises(self) -> None:
+        """Says that the step under way will not end: the state is set to another one."""
+        self._promises.clear()
+
+    def halt(self) -> None:
+        """Ends the run with the step under way, where it is one that heeds this."""
+        self._halts = self._is_served
+
+    def advance(self, target: int, *, is_served: bool = False) -> None:
+        """Runs up to the tick `target`; where a hook goes back or forth in time on the way, as many steps all the same.
+
+        Args:
+            target: where to.
+            is_served: whether `halt` ends the run earlier.
+
+        Raises:
+            InputError: it is advancing already.
+            SystemExit: the program has ended, and this is a thread that nobody waits for.
+        """
+        if self._running:
+            message = "a step is under way: a hook or callback cannot step the simulation, nor a second thread"
+            raise InputError(message, "SK-CORE-003")
+        self._running, self._is_served, self._halts = True, is_served, False
+        self._target = target
+        self._idle.clear()
+        try:
+            self._run()
+        finally:
+            self._running = self._is_served = self._halts = False
+            self._promises.clear()
+            self._idle.set()
+
+    def jump(self, ticks: int) -> None:
+        """Told that the run was taken so many ticks further, or back, by a restore or a reset."""
+        self.jumped += ticks
+        self._target += ticks
+
+    def _refill(self) -> None:
+        promises, self._promises = self._promises, []
+        for call in promises:
+            call()
+        self._is_outdated = False
+        self.scheduler.clear()
+        self._fill(self.scheduler)
+        self.scheduler.rewind(self._physics.tick)
+
+    def _run(self) -> None:
+        physics, bus = self._physics, self._bus
+        before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
+        while physics.tick < self._target and not self._halts:
+            _exit_if_ending()
+            tick = physics.tick
+            stop = min(self._target, before.next, sense.next, after.next)
+            has_every = bool(before.every or after.every or sense.every)
+            if has_every and stop - tick > 1 and not bus.inbox:
+                self._walk(stop - 1)
+                continue
+            if bus.inbox:
+                bus.deliver_inputs()
+                if self._is_outdated:  # what an input changes counts from this step on, whatever else is due when
+                    self._refill()
+                    tick, has_every = physics.tick, bool(before.every or after.every or sense.every)
+                    stop = min(self._target, before.next, sense.next, after.next)
+                if bus.inbox:  # what an input sent is taken with the next step
+                    stop = tick + 1
+            if before.every or before.next <= tick:
+                for task in before.due(tick):
+                    task(tick)
+                if physics.tick == tick and not (self._is_outdated or bus.inbox):
+                    # what was due is dealt with: on to what is due next, in one go
+                    stop = min(self._target, before.next, sense.next, after.next)
+            physics.advance(1 if has_every or self._halts else max(1, stop - tick))
+            tick = physics.tick
+            # nothing is measured or published of a state with bad numbers
+            physics.check()
+            # who is called back may reset or restore: then the rest of this tick is not to be
+            if sense.next <= tick or sense.every:
+                for task in sense.due(tick):
+                    task(tick)
+                    if physics.tick != tick:
+                        break
+            if physics.tick == tick and (after.next <= tick or after.every):
+                for task in after.due(tick):
+                    task(tick)
+                    if physics.tick != tick:
+                        break
+            if self._is_outdated:
+                self._refill()
+
+    def _walk(self, stop: int) -> None:
+        """Up to the tick `stop`, through steps at which only what runs at every step is due."""
+        physics, bus = self._physics, self._bus
+        before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]
+        tick = physics.tick
+        while tick < stop and not (self._is_outdated or self._halts or bus.inbox):
+            _exit_if_ending()
+            for task in before:
+                task(tick)
+            physics.single()
+            tick += 1
+            physics.check()
+            for task in after:
+                task(tick)
+                if physics.tick != tick:
+                    break
+        if self._is_outdated:
+            self._refill()
+
+
+_loops: weakref.WeakSet[StepLoop] = weakref.WeakSet()
+_ending: int | None = None
+"""The thread that ends the program, once it does."""
+
+
+def _exit_if_ending() -> None:
+    if _ending is not None and _ending != threading.get_ident():
+        raise SystemExit  # ends this thread, without a word
+
+
+def stop_other_loops() -> None:
+    """Ends the loops of other threads: the engine must not be at work when the interpreter goes away under it."""
+    global _ending
+    _ending = threading.get_ident()
+    for loop in list(_loops):
+        if not loop._idle.wait(_LONGEST_WAIT):
+            break
+
+
+atexit.register(stop_other_loops)
+
+
+def guarded_hook(sim: Any, plugin: Any, hook: str) -> Callable[..., None]:
+    """A plugin's hook as a task; whatever it raises becomes a PluginError with name, place and time.
+
+    Of a plugin that may be left out (`on_error="disable"`) the run goes on without it: see `simkit.runtime.engine.plugin_faults`.
+    """
+    found: Callable[..., None] = sim.faults.task(plugin, hook)
+    return found

@@ -1,0 +1,1 @@
+"""Handles of the entities of a simulation: Model, Link, Joint, Light, Visual."""

@@ -1,0 +1,51 @@
+"""What all handles share: they stay valid while the engine's objects change under them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+
+class Handle:
+    """A name in a simulation.
+
+    Attributes:
+        name: as in the file.
+        scoped: from the world down, joined with `::`.
+    """
+
+    def __init__(self, sim: Simulation, name: str, scoped: str) -> None:
+        self._sim = sim
+        self.name, self.scoped = name, scoped
+        self._there = True
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+        return self
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.scoped!r}{'' if self._there else ' (removed)'}>"
+
+    def _check(self) -> None:
+        if not self._there:
+            raise InputError(f"{type(self).__name__.lower()} {self.scoped!r} was removed", "SK-NAME-002")
+
+
+class UnknownName(KeyError):
+    """No such name; the message names the closest one."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def look_up(table: dict[str, Any], name: str, what: str) -> Any:
+    """The entry, or a KeyError that names the closest one."""
+    try:
+        return table[name]
+    except KeyError:
+        near = did_you_mean(name, table) or ("there is " + ", ".join(list(table)[:20]) if table else "there is none")
+        raise UnknownName(f"no {what} {name!r}; {near}") from None

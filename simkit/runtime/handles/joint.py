@@ -1,0 +1,304 @@
+"""Handle of a joint."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+
+from simkit.errors import InputError
+from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
+from simkit.runtime.engine.physics import CONTROL, STALE, VELOCITY
+from simkit.runtime.handles.handle import Handle
+from simkit.runtime.handles.joint_mechanics import (
+    ball_quaternion,
+    ball_rotation,
+    relative_pose,
+    relative_velocity,
+    set_relative_pose,
+    set_relative_velocity,
+    stored_quaternion,
+    transmitted_wrench,
+    update_loop_joints,
+)
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+    from simkit.scene import SceneJoint
+
+JointValue = float | Vector
+
+
+class Joint(Handle):
+    """A joint. One degree of freedom is a float, more are an array; angles rad, lengths m.
+
+    Attributes:
+        type: the file's joint type.
+    """
+
+    def __init__(self, sim: Simulation, scene: SceneJoint) -> None:
+        super().__init__(sim, scene.name, scene.scoped)
+        self.scene, self.type = scene, scene.type
+        axes = scene.axes or ()
+        self._effort_limit = np.array([a.effort for a in axes] or [math.inf])
+        self._velocity_limit = np.array([a.velocity for a in axes] or [math.inf])
+
+    def _bind(self, names: Any) -> None:
+        binding = names.joint(self.scoped)
+        self._binding = binding
+        self._ids = [int(j) for j in binding.joint_ids]
+        self._qpos = np.array(binding.qpos, dtype=int)
+        self._dofs = np.array(binding.dofs, dtype=int)
+        self._plain_dofs = self._dofs.tolist()
+        self._is_ball = len(self._dofs) == 3 and len(self._qpos) == 1
+        self._is_floating = self.type == "floating"
+        self._one_qpos = int(self._qpos[0]) if len(self._qpos) == len(self._dofs) == 1 else -1
+        self._one_dof = int(self._dofs[0]) if len(self._dofs) == 1 else -1
+        self._body = int(self._sim.mj_model.dof_bodyid[self._dofs[0]]) if len(self._dofs) else 0
+
+    # ------------------------------------------------------------------ readings
+
+    @property
+    def dof(self) -> int:
+        """Degrees of freedom."""
+        return len(self._dofs)
+
+    @property
+    def mj_dofs(self) -> tuple[int, ...]:
+        """Indices among MuJoCo's degrees of freedom."""
+        return tuple(int(d) for d in self._dofs)
+
+    @property
+    def position(self) -> JointValue:
+        """Angle [rad] or length [m] of the child's joint frame in the parent's.
+
+        A rotation vector (3,) for a ball joint; x, y and angle for a planar one; x y z qw qx qy qz for a floating one.
+        """
+        self._check()
+        qpos = self._sim.mj_data.qpos
+        if self._one_qpos >= 0:
+            return float(qpos[self._one_qpos])
+        if self._is_ball:
+            out = np.zeros(3)
+            mujoco.mju_quat2Vel(out, ball_quaternion(self._binding, self._ball_quat()), 1.0)
+            return out
+        if self._is_floating:
+            pose = relative_pose(self._sim, self._binding)
+            return np.concatenate([pose.position, pose.quaternion])
+        return np.array(qpos[self._qpos])
+
+    @property
+    def velocity(self) -> JointValue:
+        """[rad/s] or [m/s]; a ball joint's in the child's joint frame.
+
+        A floating one's is that of the child's joint origin in the parent's joint frame (3), then the turning in the
+        child's joint frame (3).
+        """
+        self._check()
+        qvel = self._sim.mj_data.qvel
+        if self._one_dof >= 0:
+            return float(qvel[self._one_dof])
+        if self._is_floating:
+            return relative_velocity(self._sim, self._binding)
+        return self._to_joint(np.array(qvel[self._dofs]))
+
+    @property
+    def effort(self) -> JointValue:
+        """Sum of what is applied by commands and actuators [N·m or N], within the effort limit."""
+        self._check()
+        physics = self._sim.physics
+        data = physics.fresh()
+        pending = data.qfrc_applied if physics.one_shot else physics.last_applied
+        if self._one_dof >= 0:
+            limit = float(self._effort_limit[0])
+            return max(-limit, min(limit, float(pending[self._one_dof] + data.qfrc_actuator[self._one_dof])))
+        total = pending[self._dofs] + data.qfrc_actuator[self._dofs]
+        clipped: Vector = np.clip(self._to_joint(total), -self._limit(), self._limit())
+        return clipped
+
+    @property
+    def transmitted_wrench(self) -> tuple[Vector, Vector]:
+        """Force [N] and torque [N·m] by the parent on the child, at the joint origin, in the joint frame.
+
+        All that passes through the joint, what its motor, spring, damper and friction give along its axes included.
+        """
+        self._check()
+        physics = self._sim.physics
+        binding = self._binding
+        body = binding.moved_body
+        if not body:
+            return np.zeros(3), np.zeros(3)
+        # the engine computes no forces for a sleeper; a copy that is awake has those of rest
+        is_asleep = physics.sleep.is_asleep(body, physics.fresh())
+        data = physics.data_of(physics.hold()) if is_asleep else physics.fresh_accelerations()
+        child = self._sim.names.links.get(self.scene.child_link)
+        frame = binding.pose_child
+        if child is not None:
+            frame = Pose(data.xpos[child.body], data.xquat[child.body]) @ child.offset @ frame
+        force, torque = transmitted_wrench(self._sim.mj_model, data, binding, frame.position)
+        back = quat_conjugate(frame.quaternion)
+        return quat_rotate(back, force), quat_rotate(back, torque)
+
+    # ------------------------------------------------------------------ commands
+
+    def set_position(self, position: float | Sequence[float] | Vector) -> None:
+        """Puts the joint at a position, once; visible in every pose read afterwards.
+
+        What mimics it goes along. Raises InputError for a joint that closes a loop.
+        """
+        self._check()
+        self._check_settable()
+        qpos = self._sim.mj_data.qpos
+        values = self._shaped(position, 7 if self._is_floating else self.dof)
+        if self._is_floating:
+            set_relative_pose(self._sim, self._binding, Pose(values[:3], values[3:]))
+        elif self._is_ball:
+            quat = np.array((1.0, 0.0, 0.0, 0.0))
+            mujoco.mju_quatIntegrate(quat, values, 1.0)
+            start = int(self._qpos[0])
+            qpos[start : start + 4] = stored_quaternion(self._binding, quat)
+        else:
+            qpos[self._qpos] = values
+        for f in self._binding.followers:
+            qpos[f.qpos] = self._sim.mj_model.qpos0[f.qpos] + f.offset + f.ratio * values[f.axis]
+        update_loop_joints(self._sim)
+        self._sim.physics.changed_body(STALE, self._body)
+
+    def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
+        """Gives the joint a velocity, once. Raises InputError for a joint that closes a loop."""
+        self._check()
+        self._check_settable()
+        values = self._shaped(velocity, self.dof)
+        if self._is_floating:
+            set_relative_velocity(self._sim, self._binding, values)
+        else:
+            self._sim.mj_data.qvel[self._dofs] = self._from_joint(values)
+        for follower in self._binding.followers:
+            self._sim.mj_data.qvel[follower.dof] = follower.ratio * values[follower.axis]
+        update_loop_joints(self._sim)
+        self._sim.physics.changed_body(VELOCITY, self._body)
+
+    def set_effort(self, effort: float | Sequence[float] | Vector) -> None:
+        """Applies an effort in the next step only, clipped to the effort limit; InputError for a floating joint."""
+        self._check()
+        if self._is_floating:
+            raise InputError(f"joint {self.scoped!r} is floating; Link.apply_wrench pushes its child", "SK-JOINT-012")
+        physics = self._sim.physics
+        if self._one_dof >= 0 and isinstance(effort, float) and math.isfinite(effort):
+            most = self._effort_limit.item(0)
+            physics.data.qfrc_applied[self._one_dof] = max(-most, min(most, effort))
+        else:
+            limit = self._limit()
+            values = np.clip(self._shaped(effort, self.dof), -limit, limit)
+            physics.data.qfrc_applied[self._dofs] = self._from_joint(values)
+        physics.one_shot = True
+        physics.changed_body(CONTROL, self._body)
+
+    # ------------------------------------------------------------------ limits
+
+    @property
+    def lower(self) -> JointValue:
+        """Lower limit; -inf where there is none; settable."""
+        return self._range(0)
+
+    @lower.setter
+    def lower(self, value: float) -> None:
+        self._set_range(0, value)
+
+    @property
+    def upper(self) -> JointValue:
+        """Upper limit; inf where there is none; settable."""
+        return self._range(1)
+
+    @upper.setter
+    def upper(self, value: float) -> None:
+        self._set_range(1, value)
+
+    @property
+    def effort_limit(self) -> JointValue:
+        """[N·m or N]; settable."""
+        return float(self._effort_limit[0]) if len(self._effort_limit) == 1 else self._effort_limit.copy()
+
+    @effort_limit.setter
+    def effort_limit(self, value: float) -> None:
+        self._effort_limit[:] = value
+
+    @property
+    def velocity_limit(self) -> JointValue:
+        """[rad/s or m/s]; settable, and then exact at every step."""
+        return float(self._velocity_limit[0]) if len(self._velocity_limit) == 1 else self._velocity_limit.copy()
+
+    @velocity_limit.setter
+    def velocity_limit(self, value: float) -> None:
+        self._velocity_limit[:] = value
+        self._sim.limit_velocity(self)
+
+    def clamp_velocity(self, _tick: int = 0) -> None:
+        """Brings the velocity within its limit."""
+        # plain numbers: this is asked often, of every joint with a limit
+        qvel, limits = self._sim.physics.data.qvel, self._velocity_limit.tolist()
+        for i, dof in enumerate(self._plain_dofs):
+            velocity, limit = qvel.item(dof), limits[min(i, len(limits) - 1)]
+            if abs(velocity) > limit:
+                qvel[dof] = math.copysign(limit, velocity)
+                self._sim.physics.changed_body(VELOCITY, self._body)
+
+    def get_state(self) -> tuple[Vector, Vector]:
+        """The limits that were set, for a snapshot."""
+        return self._effort_limit.copy(), self._velocity_limit.copy()
+
+    def set_state(self, state: tuple[Vector, Vector]) -> None:
+        """Back to limits from `get_state`."""
+        self._effort_limit, self._velocity_limit = state[0].copy(), state[1].copy()
+
+    # ------------------------------------------------------------------ inside
+
+    def _limit(self) -> Vector:
+        if len(self._effort_limit) == len(self._dofs):
+            return self._effort_limit
+        return np.full(len(self._dofs), self._effort_limit[0])
+
+    def _shaped(self, value: float | Sequence[float] | Vector, count: int) -> Vector:
+        values = np.atleast_1d(np.asarray(value, dtype=float))
+        if len(values) != count or not np.isfinite(values).all():
+            raise ValueError(f"joint {self.scoped!r} takes {count} finite number(s), got {value}")
+        return values
+
+    def _check_settable(self) -> None:
+        if self._binding.is_loop:
+            raise InputError(
+                f"joint {self.scoped!r} closes a loop: it follows the other joints of the loop; set those",
+                "SK-JOINT-012",
+            )
+        if self._is_floating and not self._binding.free:
+            raise InputError(f"joint {self.scoped!r} is floating, but another joint holds its child", "SK-JOINT-012")
+
+    def _to_joint(self, stored: Vector) -> Vector:
+        """Velocities or efforts of the engine in the joint's own frame; only a ball joint's differ."""
+        return ball_rotation(self._binding, self._ball_quat()) @ stored if self._is_ball else stored
+
+    def _from_joint(self, values: Vector) -> Vector:
+        return ball_rotation(self._binding, self._ball_quat()).T @ values if self._is_ball else values
+
+    def _ball_quat(self) -> Vector:
+        start = int(self._qpos[0])
+        return np.array(self._sim.mj_data.qpos[start : start + 4])
+
+    def _range(self, side: int) -> JointValue:
+        model = self._sim.mj_model
+        ends = (-math.inf, math.inf)
+        values = [float(model.jnt_range[j][side]) if model.jnt_limited[j] else ends[side] for j in self._ids]
+        return values[0] if len(values) == 1 else np.array(values)
+
+    def _set_range(self, side: int, value: float) -> None:
+        self._check()
+        ranges, limited = self._sim.touch("jnt_range"), self._sim.touch("jnt_limited")
+        for j in self._ids:
+            if not limited[j]:
+                ranges[j] = (-1e10, 1e10)
+            ranges[j, side] = min(max(value, -1e10), 1e10)
+            limited[j] = 1
+        self._sim.physics.changed(STALE)

@@ -1,0 +1,232 @@
+"""Frames, velocities and transmitted wrench of joints: ball and floating joints, and joints that close loops."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit.compiler import JointBinding
+from simkit.pose import Pose, Vector, quat_conjugate, quat_multiply, quat_rotate
+from simkit.runtime.engine.physics import STALE
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+
+
+_XBODY: Final = int(mujoco.mjtObj.mjOBJ_XBODY)
+_MAX_ITERATIONS: Final = 30
+_LOOP_TOLERANCE: Final = 1e-13
+
+# ------------------------------------------------------------------ ball joints
+
+
+def ball_quaternion(binding: JointBinding, stored: Vector) -> Vector:
+    """The child-side frame in the parent-side frame, of the engine's quaternion of the moved body."""
+    frame = binding.pose_moved.quaternion
+    turned = quat_multiply(quat_multiply(quat_conjugate(frame), stored), frame)
+    return quat_conjugate(turned) if binding.is_reversed else turned
+
+
+def stored_quaternion(binding: JointBinding, quaternion: Vector) -> Vector:
+    """The engine's quaternion for a wanted one; the inverse of `ball_quaternion`."""
+    frame = binding.pose_moved.quaternion
+    turned = quat_conjugate(quaternion) if binding.is_reversed else quaternion
+    return quat_multiply(quat_multiply(frame, turned), quat_conjugate(frame))
+
+
+def ball_rotation(binding: JointBinding, stored: Vector) -> Vector:
+    """The orthogonal matrix (3, 3) from the engine's velocity or torque of a ball joint to those in its own frame.
+
+    That is the child-side one.
+    """
+    back = quat_conjugate(binding.pose_moved.quaternion)
+    if not binding.is_reversed:
+        return Pose((0.0, 0.0, 0.0), back).matrix
+    return -Pose((0.0, 0.0, 0.0), quat_multiply(back, stored)).matrix
+
+
+# ------------------------------------------------------------------ readings of any data
+
+
+def joint_position(binding: JointBinding, data: Any) -> Vector:
+    """Position [rad or m] of a joint that binds its links, one number per degree of freedom; of given data.
+
+    A ball joint's is a rotation vector.
+    """
+    if binding.type == "ball" and binding.qpos:
+        start, turn = binding.qpos[0], np.zeros(3)
+        mujoco.mju_quat2Vel(turn, ball_quaternion(binding, data.qpos[start : start + 4]), 1.0)
+        return turn
+    return np.array(data.qpos[list(binding.qpos)])
+
+
+def joint_velocity(binding: JointBinding, data: Any) -> Vector:
+    """Velocity [rad/s or m/s] of such a joint; a ball joint's is in the child's joint frame."""
+    velocity = np.array(data.qvel[list(binding.dofs)])
+    if binding.type == "ball" and binding.qpos:
+        start = binding.qpos[0]
+        velocity = ball_rotation(binding, np.array(data.qpos[start : start + 4])) @ velocity
+    return velocity
+
+
+# ------------------------------------------------------------------ floating joints
+
+
+def _joint_frames(sim: Simulation, binding: JointBinding) -> tuple[Pose, Pose]:
+    """World poses of the parent-side and the child-side frame."""
+    found = []
+    for link, frame in (
+        (binding.scene.parent_link, binding.pose_parent),
+        (binding.scene.child_link, binding.pose_child),
+    ):
+        found.append(frame if link not in sim.names.links else sim.link(link).pose @ frame)
+    return found[0], found[1]
+
+
+def relative_pose(sim: Simulation, binding: JointBinding) -> Pose:
+    """The child-side frame in the parent-side frame."""
+    parent, child = _joint_frames(sim, binding)
+    return parent.inverse() @ child
+
+
+def set_relative_pose(sim: Simulation, binding: JointBinding, pose: Pose) -> None:
+    """Moves the free link of a floating joint so that the child-side frame stands there."""
+    parent, child = _joint_frames(sim, binding)
+    if binding.is_reversed:
+        target = child @ pose.inverse() @ binding.pose_parent.inverse()
+    else:
+        target = parent @ pose @ binding.pose_child.inverse()
+    start, qpos = sim.names.link(binding.free).root_joint_qpos, sim.mj_data.qpos
+    qpos[start : start + 3], qpos[start + 3 : start + 7] = target.position, target.quaternion
+
+
+def _point_velocity(sim: Simulation, link: str, point: Vector) -> tuple[Vector, Vector]:
+    """Linear velocity of a point that moves with a link, and the link's angular velocity; world frame."""
+    if link not in sim.names.links:
+        return np.zeros(3), np.zeros(3)
+    body, out, data = sim.names.link(link).body, np.zeros(6), sim.physics.fresh()
+    if not body:
+        return np.zeros(3), np.zeros(3)
+    mujoco.mj_objectVelocity(sim.mj_model, data, _XBODY, body, out, 0)
+    return out[3:] + np.cross(out[:3], point - data.xpos[body]), out[:3]
+
+
+def relative_velocity(sim: Simulation, binding: JointBinding) -> Vector:
+    """Of the child-side origin in the parent-side frame [m/s], then the turning in the child-side frame [rad/s]."""
+    parent, child = _joint_frames(sim, binding)
+    v_parent, w_parent = _point_velocity(sim, binding.scene.parent_link, child.position)
+    v_child, w_child = _point_velocity(sim, binding.scene.child_link, child.position)
+    linear = quat_rotate(quat_conjugate(parent.quaternion), v_child - v_parent)
+    angular = quat_rotate(quat_conjugate(child.quaternion), w_child - w_parent)
+    return np.concatenate([linear, angular])
+
+
+def set_relative_velocity(sim: Simulation, binding: JointBinding, velocity: Vector) -> None:
+    """Gives the free link of a floating joint the velocity that makes `relative_velocity` this one."""
+    parent, child = _joint_frames(sim, binding)
+    linear, angular = quat_rotate(parent.quaternion, velocity[:3]), quat_rotate(child.quaternion, velocity[3:])
+    sign = -1.0 if binding.is_reversed else 1.0
+    other = binding.scene.child_link if binding.is_reversed else binding.scene.parent_link
+    v_other, w_other = _point_velocity(sim, other, child.position)
+    free = sim.names.link(binding.free)
+    data, dof = sim.mj_data, free.root_joint_dof
+    pose = sim.link(binding.free).pose
+    turning = w_other + sign * angular
+    data.qvel[dof : dof + 3] = v_other + sign * linear + np.cross(turning, pose.position - child.position)
+    data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(pose.quaternion), turning)
+
+
+# ------------------------------------------------------------------ loops
+
+
+def update_loop_joints(sim: Simulation) -> None:
+    """After joints were set: puts the twin of every loop joint where its link is now, and lets it move like it.
+
+    The joint's own motions are all that the twin has, so where the new state tears a loop open, the twin comes as near
+    as it can (least squares, Gauss–Newton from where it is).
+    """
+    loops = [b for b in sim.names.joints.values() if b.is_loop and b.dofs]
+    if not loops:
+        return
+    model, data = sim.mj_model, sim.mj_data
+    change = np.zeros(model.nv)
+    for _ in range(_MAX_ITERATIONS):
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        change[:] = 0.0
+        for binding in loops:
+            dofs, columns, spread = _loop_jacobian(sim, binding)
+            change[dofs] += spread @ np.linalg.lstsq(columns, _loop_error(sim, binding), rcond=None)[0]
+        mujoco.mj_integratePos(model, data.qpos, change, 1.0)
+        if float(np.abs(change).max()) < _LOOP_TOLERANCE:
+            break
+    for binding in loops:
+        dofs, columns, spread = _loop_jacobian(sim, binding)
+        data.qvel[dofs] = 0.0
+        wanted = _body_velocity(sim, sim.names.link(binding.carried).body) - _body_velocity(sim, binding.moved_body)
+        data.qvel[dofs] = spread @ np.linalg.lstsq(columns, wanted, rcond=None)[0]
+        sim.physics.changed_body(STALE, binding.moved_body)
+
+
+def _loop_jacobian(sim: Simulation, binding: JointBinding) -> tuple[list[int], Any, Any]:
+    """Degrees of freedom of a twin, its Jacobian (6, k) in the joint's free coordinates, and how those spread."""
+    model, data, body = sim.mj_model, sim.mj_data, binding.moved_body
+    hidden = [f for f in binding.followers if model.dof_bodyid[f.dof] == body]
+    dofs = [*binding.dofs, *(f.dof for f in hidden)]
+    spread = np.zeros((len(dofs), len(binding.dofs)))
+    spread[: len(binding.dofs)] = np.eye(len(binding.dofs))
+    for row, follower in enumerate(hidden, len(binding.dofs)):
+        spread[row, follower.axis] = follower.ratio
+    jacobian = np.zeros((6, model.nv))
+    mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
+    return dofs, jacobian[:, dofs] @ spread, spread
+
+
+def _loop_error(sim: Simulation, binding: JointBinding) -> Vector:
+    """From the twin to its link: a shift [m] and a rotation vector [rad], world frame."""
+    data, link, twin = sim.mj_data, sim.names.link(binding.carried).body, binding.moved_body
+    turn = np.zeros(3)
+    apart = quat_multiply(data.xquat[link], quat_conjugate(data.xquat[twin]))
+    mujoco.mju_quat2Vel(turn, apart, 1.0)
+    return np.concatenate([data.xpos[link] - data.xpos[twin], turn])
+
+
+def _body_velocity(sim: Simulation, body: int) -> Vector:
+    model, data = sim.mj_model, sim.mj_data
+    jacobian = np.zeros((6, model.nv))
+    mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
+    moved: Vector = jacobian @ data.qvel
+    return moved
+
+
+def transmitted_wrench(model: Any, data: Any, binding: JointBinding, point: Vector) -> tuple[Vector, Vector]:
+    """What the parent link does to the child link through a joint, world axes.
+
+    That is all that passes: what the joint holds, and along its own motions what motors, springs, dampers, friction and
+    stops give (gz-physics' `GetTransmittedWrench` is the same sum). It is found from the motion: what the bodies beyond
+    the joint need besides the forces that act on them from outside (Newton–Euler).
+
+    Args:
+        data: with a forward pass and `mj_rnePostConstraint`; nobody near the joint sleeps in it.
+        point: that the torque is about [m], world frame.
+
+    Returns:
+        Force [N] and torque [N·m]; zeros where the joint moves nothing (both links static, or the joint binds nothing).
+    """
+    body = binding.moved_body
+    if body <= 0:
+        return np.zeros(3), np.zeros(3)
+    # the body below the joint in the engine's tree carries the force; it may be the file's parent
+    wrench = -data.cfrc_int[body] if binding.is_reversed else data.cfrc_int[body]
+    # the engine's torques are about the centre of mass of the whole tree
+    return wrench[3:].copy(), torque_about(wrench, data.subtree_com[model.body_rootid[body]], point)
+
+
+def torque_about(wrench: Vector, centre: Vector, point: Vector) -> Vector:
+    """The torque about a point [m] of a wrench (torque, force) that is about another, `centre` [m]."""
+    fx, fy, fz = wrench[3:].tolist()
+    x, y, z = (centre - point).tolist()
+    torque: Vector = wrench[:3] + np.array((y * fz - z * fy, z * fx - x * fz, x * fy - y * fx))
+    return torque

@@ -1,0 +1,131 @@
+"""Handle of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from simkit.compiler import LinkBinding
+from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
+from simkit.runtime.engine.physics import STALE, VELOCITY
+from simkit.runtime.handles.handle import Handle, look_up
+from simkit.runtime.handles.joint import Joint
+from simkit.runtime.handles.joint_mechanics import update_loop_joints
+from simkit.runtime.handles.link import Link
+
+if TYPE_CHECKING:
+    from simkit.runtime.simulation import Simulation
+    from simkit.scene import SceneModel
+
+
+class Model(Handle):
+    """A model with its links, joints and nested models by their own names; `::` reaches further down.
+
+    Attributes:
+        static: whether the file says that it never moves by itself.
+    """
+
+    def __init__(self, sim: Simulation, scene: SceneModel) -> None:
+        super().__init__(sim, scene.name, scene.scoped)
+        self.scene, self.static = scene, scene.static
+        self.links: dict[str, Link] = {s.name: Link(sim, s) for s in scene.links}
+        self.joints: dict[str, Joint] = {s.name: Joint(sim, s) for s in scene.joints}
+        self.models: dict[str, Model] = {s.name: Model(sim, s) for s in scene.models}
+        self._rest = scene.pose_world
+        # the model frame in its canonical link's frame: fixed for ever
+        self._canonical = next((li for li in scene.all_links() if li.scoped == scene.canonical_link), None)
+        self._in_canonical = self._canonical.pose_world.inverse() @ scene.pose_world if self._canonical else None
+        self._is_canonical = self._in_canonical == IDENTITY
+
+    def everything(self) -> list[Handle]:
+        """This handle and all below it."""
+        below = [h for m in self.models.values() for h in m.everything()]
+        return [self, *self.links.values(), *self.joints.values(), *below]
+
+    def link(self, name: str) -> Link:
+        found: Link = look_up(self._below("links"), name, "link")
+        return found
+
+    def joint(self, name: str) -> Joint:
+        found: Joint = look_up(self._below("joints"), name, "joint")
+        return found
+
+    def model(self, name: str) -> Model:
+        found: Model = look_up(self._below("models"), name, "model")
+        return found
+
+    def _below(self, what: str) -> dict[str, Handle]:
+        table: dict[str, Handle] = dict(getattr(self, what))
+        for name, nested in self.models.items():
+            table.update({f"{name}::{key}": value for key, value in nested._below(what).items()})
+        return table
+
+    # ------------------------------------------------------------------ pose and velocity
+
+    @property
+    def pose(self) -> Pose:
+        """Pose of the model frame in the world."""
+        self._check()
+        if self._canonical is None or self._in_canonical is None:
+            return self._rest
+        pose = self._sim.link(self._canonical.scoped).pose
+        return pose if self._is_canonical else pose @ self._in_canonical
+
+    def set_pose(self, pose: Pose) -> None:
+        """Moves the whole model; joint positions and velocities stay. A static model may be moved too."""
+        self._check()
+        if self.static:
+            self._sim.make_movable(self.scoped.split("::")[0])
+        shift = pose @ self.pose.inverse()
+        names = self._sim.names
+        for link in self.scene.all_links():
+            binding = names.link(link.scoped)
+            self._shift_link(binding, shift)
+            self._sim.physics.changed_body(STALE, binding.body)
+        for model in self.scene.all_models():
+            handle = self._sim.model(model.scoped)
+            handle._rest = shift @ handle._rest
+        update_loop_joints(self._sim)
+        self._sim.physics.changed(STALE)
+
+    def _shift_link(self, binding: LinkBinding, shift: Pose) -> None:
+        model, data = self._sim.mj_model, self._sim.mj_data
+        mocap, start, body = binding.mocap, binding.root_joint_qpos, binding.body
+        if mocap >= 0:
+            moved = shift @ Pose(data.mocap_pos[mocap], data.mocap_quat[mocap])
+            data.mocap_pos[mocap], data.mocap_quat[mocap] = moved.position, moved.quaternion
+        elif start >= 0:
+            moved = shift @ Pose(data.qpos[start : start + 3], data.qpos[start + 3 : start + 7])
+            data.qpos[start : start + 3], data.qpos[start + 3 : start + 7] = moved.position, moved.quaternion
+        elif body and model.body_parentid[body] == 0:
+            # fixed or hinged to the world: the body's own place changes
+            positions, quaternions = self._sim.touch("body_pos"), self._sim.touch("body_quat")
+            moved = shift @ Pose(positions[body], quaternions[body])
+            positions[body], quaternions[body] = moved.position, moved.quaternion
+
+    def set_velocity(
+        self, linear: Sequence[float] | Vector, angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
+    ) -> None:
+        """Gives every free part of the model this twist about the model's origin, world frame [m/s, rad/s]."""
+        self._check()
+        data, names, origin = self._sim.mj_data, self._sim.names, self.pose.position
+        linear, angular = np.asarray(linear, float), np.asarray(angular, float)
+        for link in self.scene.all_links():
+            binding = names.link(link.scoped)
+            start = int(binding.root_joint_qpos)
+            if start < 0:
+                continue
+            dof = int(binding.root_joint_dof)
+            arm = data.qpos[start : start + 3] - origin
+            data.qvel[dof : dof + 3] = linear + np.cross(angular, arm)
+            data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(data.qpos[start + 3 : start + 7]), angular)
+            self._sim.physics.changed_body(VELOCITY, binding.body)
+        update_loop_joints(self._sim)
+
+    def set_joint_positions(self, positions: Mapping[str, float | Sequence[float]]) -> None:
+        """Puts several joints at positions, once."""
+        found = [(self.joint(name), value) for name, value in positions.items()]
+        for joint, value in found:
+            joint.set_position(value)

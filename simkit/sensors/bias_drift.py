@@ -1,0 +1,178 @@
+"""Biases that wander: first-order Gauss-Markov processes and random walks, exact for any interval between samples.
+
+A Gauss-Markov process `db = -b/T dt + K dW` goes from one sample to the next by `b = φ·b + s·n` with
+`φ = exp(-dt/T)`, `s² = K²·T/2·(1 - exp(-2·dt/T))` and a standard normal n; without end of T it is a random walk,
+`φ = 1`, `s² = K²·dt`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.runtime.engine.random_streams import RandomStreams
+
+ALLAN_FLOOR: Final = math.sqrt(2.0 * math.log(2.0) / math.pi)
+"""Allan deviation of flicker noise over its coefficient B, 0.664 (IEEE Std 952-1997, annex C)."""
+
+ALLAN_PEAK: Final = 0.6174
+"""Greatest Allan deviation of a Gauss-Markov process over its standard deviation, at 1.89 times its correlation time.
+
+The Allan variance at x = (averaging time)/T is 2σ²/x·(1 - (3 - 4·e^-x + e^-2x)/(2x)) (same annex, where the peak is
+0.437·K·√T with σ² = K²·T/2).
+"""
+
+FLICKER_TIMES: Final = tuple(10.0**k for k in range(-1, 5))
+"""Correlation times [s] of the processes that make a flat floor from 1 s to 1000 s, within 2.5 %."""
+
+_MIN_TIME: Final = 1e-100  # [s] of a correlation time; below any step it is white noise all the same
+
+
+@dataclass(frozen=True, slots=True)
+class BiasDrift:
+    """One kind of wandering bias on several channels, as one or more Gauss-Markov processes per channel.
+
+    Attributes:
+        driving: K [unit/√s], shape (processes · channels,), process by process; 0 where a channel has none.
+        time: T [s], the same shape; infinite for a random walk.
+        begins: where from, as its standard deviation, the same shape; 0 begins at zero.
+        name: of its random stream within the group.
+        processes: how many.
+    """
+
+    driving: Vector
+    time: Vector
+    begins: Vector
+    name: str
+    processes: int = 1
+
+    def factors(self, dt: float) -> tuple[Vector, Vector]:
+        """φ and s of a step of `dt` [s]."""
+        # a long correlation time is nearly a walk, and T·(1 - exp(-2dt/T)) then loses no digits
+        with np.errstate(invalid="ignore", over="ignore"):
+            aged = -dt / self.time
+            spent = np.where(np.isfinite(self.time), -0.5 * self.time * np.expm1(2.0 * aged), dt)
+        return np.exp(aged), self.driving * np.sqrt(spent)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no channel has any of it."""
+        return not self.driving.any()
+
+
+def gauss_markov_drift(driving: Sequence[float], times: Sequence[float], name: str) -> BiasDrift:
+    """From zero, with K [unit/√s] and T [s] of each channel; a T of 0 is a random walk."""
+    time = np.array(times, dtype=np.float64)
+    time[time <= 0] = np.inf
+    return BiasDrift(np.array(driving, dtype=np.float64), time, np.zeros(len(driving)), name)
+
+
+def instability_drift(coefficients: Sequence[float], times: Sequence[float], name: str) -> BiasDrift:
+    """Bias instability B [unit] of each channel, in its steady state from the start.
+
+    With a correlation time T [s] it is one Gauss-Markov process whose Allan deviation has its peak, at 1.89·T, at
+    0.664·B. Without one it is flicker noise, 0.664·B from 1 s to 1000 s: one process a decade of correlation times,
+    each of variance B²·ln(10)/π. (Their densities, 2σ²T/(1 + (ωT)²), add up to B²/(2πf), which IEEE Std 952-1997
+    takes for bias instability.)
+    """
+    wanted = np.array(coefficients, dtype=np.float64)
+    single = np.array(times, dtype=np.float64) > 0
+    rows = len(FLICKER_TIMES) if bool(((wanted > 0) & ~single).any()) else 1
+    time = np.tile(np.array(FLICKER_TIMES[:rows])[:, None], (1, len(wanted)))
+    spread = np.tile(wanted * math.sqrt(math.log(10.0) / math.pi), (rows, 1))
+    for channel in np.flatnonzero(single).tolist():
+        time[:, channel] = max(times[channel], _MIN_TIME)
+        spread[:, channel] = 0.0
+        spread[0, channel] = wanted[channel] * ALLAN_FLOOR / ALLAN_PEAK
+    return BiasDrift((spread * np.sqrt(2.0 / time)).ravel(), time.ravel(), spread.ravel(), name, rows)
+
+
+@dataclass(slots=True)
+class NoiseInterval:
+    """What noise needs of one interval between two samples; made once for each that occurs.
+
+    Attributes:
+        stddev: of the white noise, shape (channels,).
+        factors: φ and s of each wandering bias.
+        covariances: made so far, by first channel.
+    """
+
+    stddev: Vector
+    factors: tuple[tuple[Vector, Vector], ...] = ()
+    covariances: dict[int, Vector] = field(default_factory=dict)
+
+
+class NoiseState:
+    """The state of a sensor's noise at one sample; never written to, only replaced.
+
+    Attributes:
+        interval: since the sample before.
+        parts: where each wandering bias is.
+        constant: all that is added besides white noise, shape (channels,).
+    """
+
+    __slots__ = ("_numbers", "constant", "interval", "parts")
+
+    def __init__(self, interval: NoiseInterval, parts: tuple[Vector, ...], constant: Vector) -> None:
+        self.interval, self.parts, self.constant = interval, parts, constant
+        self._numbers: tuple[list[float], list[float]] | None = None
+
+    @property
+    def numbers(self) -> tuple[list[float], list[float]]:
+        """`constant` and the standard deviation of the white noise as lists."""
+        if self._numbers is None:
+            self._numbers = self.constant.tolist(), self.interval.stddev.tolist()
+        return self._numbers
+
+    def __deepcopy__(self, memo: object) -> NoiseState:
+        return self
+
+
+class BiasDriftGenerator:
+    """Draws the steps of some wandering biases.
+
+    Args:
+        wanders: those that any channel has.
+        streams: the simulation's.
+        scoped, group: name the streams.
+    """
+
+    def __init__(self, wanders: Sequence[BiasDrift], streams: RandomStreams, scoped: str, group: str) -> None:
+        self.wanders = tuple(w for w in wanders if not w.is_idle)
+        self._streams = [streams.stream(scoped, f"{group}/{w.name}", w.driving.size) for w in self.wanders]
+
+    def begin(self) -> tuple[Vector, ...]:
+        """Where they are before the first step."""
+        return tuple(
+            w.begins * s.normal(0) if w.begins.any() else w.begins
+            for w, s in zip(self.wanders, self._streams, strict=True)
+        )
+
+    def factors(self, dt: float) -> tuple[tuple[Vector, Vector], ...]:
+        return tuple(w.factors(dt) for w in self.wanders)
+
+    def step(
+        self, parts: tuple[Vector, ...], factors: tuple[tuple[Vector, Vector], ...], index: int
+    ) -> tuple[Vector, ...]:
+        """Where they are at sample `index`, one interval on."""
+        moved = []
+        for i, stream in enumerate(self._streams):
+            decay, spread = factors[i]
+            step = spread * stream.normal(index)
+            step += decay * parts[i]
+            moved.append(step)
+        return tuple(moved)
+
+    def sums(self, parts: tuple[Vector, ...]) -> list[Vector]:
+        """Each added up over its processes, shape (channels,)."""
+        return [
+            part if w.processes == 1 else np.add.reduce(part.reshape(w.processes, -1))
+            for w, part in zip(self.wanders, parts)  # noqa: B905 - at every sample, and strict costs
+        ]

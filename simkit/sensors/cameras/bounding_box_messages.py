@@ -1,0 +1,98 @@
+"""Boxes as `vision_msgs`, as ros_gz_bridge converts Gazebo's, and drawn into a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.pose import rpy_from_quat
+from simkit.sensors.cameras.bounding_boxes import Box2D, Box3D, project_edges
+from simkit.sensors.cameras.camera_model import CameraModel
+from simkit.sensors.cameras.rendering.view import View
+from simkit.sensors.cameras.shape_corners import CUBE_EDGES
+
+Picture = npt.NDArray[np.uint8]
+
+TYPE_2D: Final = "vision_msgs/msg/Detection2DArray"
+TYPE_3D: Final = "vision_msgs/msg/Detection3DArray"
+_GREEN: Final = (0, 255, 0)
+_OGRE: Final = np.array(((0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0)))
+"""From the sensor's axes (forward, left, up) to those of Ogre's cameras (right, up, backward)."""
+
+
+def detections_2d(header: Any, boxes: Sequence[Box2D]) -> Any:
+    """A `Detection2DArray`: the label is the class, in digits, with a score of 1; the model's name is the id."""
+    one, corner = msgs.type_of("vision_msgs/msg/Detection2D"), msgs.type_of("vision_msgs/msg/Point2D")
+    centre, box_of = msgs.type_of("vision_msgs/msg/Pose2D"), msgs.type_of("vision_msgs/msg/BoundingBox2D")
+    found = []
+    for box in boxes:
+        middle = centre(corner((box.left + box.right) / 2, (box.top + box.bottom) / 2), 0.0)
+        frame = box_of(middle, box.right - box.left, box.bottom - box.top)
+        found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
+    return msgs.type_of(TYPE_2D)(header, found)
+
+
+def detections_3d(header: Any, boxes: Sequence[Box3D], *, in_ogre_axes: bool = False) -> Any:
+    """A `Detection3DArray` in the sensor's frame.
+
+    Args:
+        in_ogre_axes: in the axes of Gazebo's renderer instead, x to the right, y up, z backward.
+    """
+    one, box_of = msgs.type_of("vision_msgs/msg/Detection3D"), msgs.type_of("vision_msgs/msg/BoundingBox3D")
+    point, vector = msgs.type_of("geometry_msgs/msg/Point"), msgs.type_of("geometry_msgs/msg/Vector3")
+    pose, turn = msgs.type_of("geometry_msgs/msg/Pose"), msgs.type_of("geometry_msgs/msg/Quaternion")
+    quaternion = np.empty(4)
+    found = []
+    for box in boxes:
+        centre, rotation = (_OGRE @ box.centre, _OGRE @ box.rotation) if in_ogre_axes else (box.centre, box.rotation)
+        mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).ravel())
+        w, x, y, z = quaternion.tolist()
+        frame = box_of(pose(point(*centre.tolist()), turn(x, y, z, w)), vector(*box.size.tolist()))
+        found.append(one(header, [_hypothesis(box.item.label)], frame, box.item.model))
+    return msgs.type_of(TYPE_3D)(header, found)
+
+
+def boxes_as_csv(message: Any) -> bytes:
+    """The boxes of a message as a table, in Gazebo's columns."""
+    is_flat = message.__msgtype__ == TYPE_2D
+    rows = ["label,x_center,y_center,width,height" if is_flat else "label,x,y,z,w,h,l,roll,pitch,yaw"]
+    for one in message.detections:
+        box = one.bbox
+        if is_flat:
+            at = box.center.position
+            values = [at.x, at.y, box.size_x, box.size_y]
+        else:
+            at, turn, size = box.center.position, box.center.orientation, box.size
+            angles = rpy_from_quat((turn.w, turn.x, turn.y, turn.z))
+            values = [at.x, at.y, at.z, size.x, size.y, size.z, *angles]
+        rows.append(",".join([one.results[0].hypothesis.class_id, *(f"{value:.6f}" for value in values)]))
+    return ("\n".join(rows) + "\n").encode()
+
+
+def _hypothesis(label: int) -> Any:
+    return msgs.make("vision_msgs/msg/ObjectHypothesisWithPose", hypothesis={"class_id": str(label), "score": 1.0})
+
+
+def draw_boxes(colours: Picture, boxes: Sequence[Box2D | Box3D], model: CameraModel, view: View) -> Picture:
+    """A copy of a picture with the boxes in green."""
+    import cv2
+
+    out = colours.copy()
+    corners = [box.corners() for box in boxes if isinstance(box, Box3D)]
+    if corners:
+        edges = np.concatenate([CUBE_EDGES + 8 * i for i in range(len(corners))])
+        lines = project_edges(np.concatenate(corners), edges, model, view)
+        # beyond some pictures' widths a line's slope is worth more than its end
+        farthest = 8.0 * max(model.width, model.height)
+        cv2.polylines(out, list(np.clip(np.floor(lines), -farthest, farthest).astype(np.int32)), False, _GREEN)
+    for box in boxes:
+        if isinstance(box, Box2D):
+            left, top = int(box.left), int(box.top)
+            right, bottom = max(int(np.ceil(box.right)) - 1, left), max(int(np.ceil(box.bottom)) - 1, top)
+            cv2.rectangle(out, (left, top), (right, bottom), _GREEN)
+    return out

@@ -1,0 +1,305 @@
+"""Boxes around labelled objects: by visible pixels, by projection and in space; with Gazebo's own errors where
+a world asks for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.pose import Pose, Vector
+from simkit.sensors.cameras.camera_model import CameraModel
+from simkit.sensors.cameras.labelled_objects import DrawnVisual, LabelledObject, LabelledObjects, Numbers
+from simkit.sensors.cameras.rendering.view import Ids, View
+from simkit.sensors.cameras.shape_corners import CUBE, Corners, geom_corners
+
+if TYPE_CHECKING:
+    from simkit.runtime.engine.world_structure import WorldStructure
+
+
+_PARTS_OF_EDGE = 16  # that an edge is bent in by a lens
+
+
+@dataclass(frozen=True, slots=True)
+class Box2D:
+    """Edges of a box in the picture [px]: a pixel (u, v) covers u to u + 1 and v to v + 1.
+
+    Attributes:
+        item: what it is around.
+    """
+
+    item: LabelledObject
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Box3D:
+    """A box in the sensor's frame: x forward, y left, z up.
+
+    Attributes:
+        item: what it is around.
+        centre: [m], shape (3,).
+        rotation: of its axes, shape (3, 3).
+        size: along its axes [m], shape (3,).
+    """
+
+    item: LabelledObject
+    centre: Vector
+    rotation: Vector
+    size: Vector
+
+    def corners(self) -> Vector:
+        """Shape (8, 3), in the order of `CUBE`."""
+        corners: Vector = self.centre + (CUBE * (self.size / 2)) @ self.rotation.T
+        return corners
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ShapePoses:
+    """Where labelled things stand in the sensor's frame at one time, each by its number.
+
+    Attributes:
+        positions, rotations: of each geom that wears a label, shape (k, 3) and (k, 3, 3).
+        axes: of each item's model, shape (n, 3, 3).
+    """
+
+    positions: Vector
+    rotations: Vector
+    axes: Vector
+
+
+class LabelledShapes:
+    """The shapes of labelled things, found out once for each set of labels and compiled model.
+
+    Args:
+        items: what wears which label.
+        structure: what is in the world.
+    """
+
+    def __init__(self, items: LabelledObjects, structure: WorldStructure) -> None:
+        compiled: Any = structure.compiled
+        names, model = compiled.names, compiled.model
+        self.items = items
+        self._geoms = [g for item in items.items for visual in item.visuals for g in visual.geoms]
+        self._place = {geom: i for i, geom in enumerate(self._geoms)}
+        made = names.shared("corners of drawn shapes", dict)
+        self._corners: list[Corners] = [_cached(made, model, g) for g in self._geoms]
+        frames = (names.model_frame(structure.models[item.model]) for item in items.items)
+        self._frames = [(body, frame.matrix) for body, frame in frames]
+        scenes = {v.scoped: v for m in structure.models.values() for link in m.all_links() for v in link.visuals}
+        self._alone = {
+            position: self._own_box(item.visuals[0], model, names.link(item.visuals[0].link), scenes)
+            for position, item in enumerate(items.items)
+            if len(item.visuals) == 1
+        }
+
+    def stand(self, data: Any, position: Vector, rotation: Vector) -> ShapePoses:
+        """Where the things are, seen from a sensor at a position (3,) with a rotation (3, 3) in the world."""
+        geoms = self._geoms
+        positions = (data.geom_xpos[geoms] - position) @ rotation
+        rotations = rotation.T @ data.geom_xmat[geoms].reshape(-1, 3, 3)
+        axes = [rotation.T @ data.xmat[body].reshape(3, 3) @ own for body, own in self._frames]
+        return ShapePoses(positions, rotations, np.array(axes).reshape(-1, 3, 3))
+
+    def points(self, visuals: Sequence[DrawnVisual], stand: ShapePoses) -> tuple[Vector, npt.NDArray[np.int32]]:
+        """Corners in the sensor's frame (n, 3) and their edges (m, 2) of some visuals of an item."""
+        places = [self._place[g] for visual in visuals for g in visual.geoms]
+        points = [self._corners[i].points @ stand.rotations[i].T + stand.positions[i] for i in places]
+        starts = np.cumsum([0, *(len(p) for p in points)])
+        edges = [self._corners[i].edges + start for i, start in zip(places, starts, strict=False)]
+        return np.concatenate(points), np.concatenate(edges)
+
+    def box_3d(self, position: int, stand: ShapePoses) -> Box3D:
+        """The box around an item: along the axes of its one visual, or of its model where there are several."""
+        item = self.items.items[position]
+        if position in self._alone:
+            return self._box_alone(item, position, stand)
+        points, _ = self.points(item.visuals, stand)
+        return _box_around(item, points, stand.axes[position])
+
+    def box_of_cloud(self, position: int, visuals: Sequence[DrawnVisual], stand: ShapePoses) -> Box3D:
+        """The box along the principal axes of the corners of some visuals, as Gazebo has it for several of them."""
+        item = self.items.items[position]
+        if len(visuals) == 1 and position in self._alone:
+            return self._box_alone(item, position, stand)
+        points, _ = self.points(visuals, stand)
+        _, axes = np.linalg.eigh(np.cov(points.T, bias=True))
+        axes = axes * np.where(axes[np.abs(axes).argmax(axis=0), range(3)] < 0, -1.0, 1.0)
+        axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
+        return _box_around(item, points, axes)
+
+    def _box_alone(self, item: LabelledObject, position: int, stand: ShapePoses) -> Box3D:
+        place, pose, low, high = self._alone[position]
+        turn = stand.rotations[place]
+        rotation = turn @ pose.matrix
+        centre = stand.positions[place] + turn @ pose.position + rotation @ ((low + high) / 2)
+        return Box3D(item, centre, rotation, high - low)
+
+    def _own_box(self, visual: DrawnVisual, model: Any, link: Any, scenes: Any) -> tuple[int, Pose, Vector, Vector]:
+        """Of a visual: the number of a geom, the visual's frame in that geom's, its lowest and highest corner there."""
+        in_body = link.offset @ scenes[visual.scoped].pose_link
+        low, high = np.full(3, np.inf), np.full(3, -np.inf)
+        for geom in visual.geoms:
+            own = in_body.inverse() @ Pose(model.geom_pos[geom], model.geom_quat[geom])
+            points = self._corners[self._place[geom]].points @ own.matrix.T + own.position
+            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+        first = visual.geoms[0]
+        return self._place[first], Pose(model.geom_pos[first], model.geom_quat[first]).inverse() @ in_body, low, high
+
+
+def visible_boxes(position_of: Numbers, items: Sequence[LabelledObject]) -> list[Box2D]:
+    """Around the pixels of each item.
+
+    Args:
+        position_of: at each pixel the position of its item in `items`, -1 for none, shape (h, w).
+    """
+    height, width = position_of.shape
+    # both ends of each run of pixels in a row tell as much as all of it
+    changes = np.ones((height, width + 1), bool)
+    np.not_equal(position_of[:, 1:], position_of[:, :-1], out=changes[:, 1:-1])
+    place = np.flatnonzero((changes[:, 1:] | changes[:, :-1]) & (position_of >= 0))
+    item = position_of.ravel()[place]
+    row, column = np.divmod(place, width)
+    rows, columns = np.zeros((len(items), height), bool), np.zeros((len(items), width), bool)
+    rows[item, row] = columns[item, column] = True
+    found = []
+    for i in np.flatnonzero(rows.any(axis=1)).tolist():
+        high, wide = np.flatnonzero(rows[i]), np.flatnonzero(columns[i])
+        found.append(Box2D(items[i], float(wide[0]), float(high[0]), float(wide[-1] + 1), float(high[-1] + 1)))
+    return found
+
+
+def project_shape(points: Vector, edges: npt.NDArray[np.int32], model: CameraModel, view: View) -> Vector | None:
+    """Where what is in front of the near plane of a shape is seen [px]: its corners, and points along edges that a lens
+    bends, shape (n, 2). None where nothing is in front.
+
+    Args:
+        points: corners in the sensor's frame, shape (n, 3).
+        edges: pairs of them, shape (m, 2).
+        view: what is drawn.
+    """
+    if model.distortion or points[:, 0].min() < model.near:
+        lines = project_edges(points, edges, model, view)
+        return lines.reshape(-1, 2) if len(lines) else None
+    return _project_points(points, model, view)
+
+
+def project_edges(points: Vector, edges: npt.NDArray[np.int32], model: CameraModel, view: View) -> Vector:
+    """Where the edges are seen that are not behind the near plane [px], shape (m, k, 2): as k points, two but for a
+    lens that bends."""
+    ends = _clip_to_near_plane(points[edges], model.near)
+    if model.distortion:
+        along = np.linspace(0, 1, _PARTS_OF_EDGE + 1)[:, None]
+        ends = ends[:, :1] + along * (ends[:, 1:] - ends[:, :1])
+    return _project_points(ends, model, view)
+
+
+def _project_points(points: Vector, model: CameraModel, view: View) -> Vector:
+    """Where points (..., 3) are seen; beside what is drawn a lens has no say, and they are taken to its edge."""
+    x, y = -points[..., 1] / points[..., 0], -points[..., 2] / points[..., 0]
+    if model.distortion:
+        x, y = np.clip(x, view.left, view.right), np.clip(y, -view.top, -view.bottom)
+    return np.stack(model.seen_at(x, y), axis=-1)
+
+
+def _clip_to_near_plane(ends: Vector, near: float) -> Vector:
+    """The parts of edges, shape (m, 2, 3), in front of the near plane."""
+    behind = ends[..., 0] < near
+    ends = ends[~behind.all(axis=1)]
+    behind = ends[..., 0] < near
+    for this, other in ((0, 1), (1, 0)):
+        cut = behind[:, this]
+        hidden, seen = ends[cut, this], ends[cut, other]
+        part = (near - hidden[:, :1]) / (seen[:, :1] - hidden[:, :1])
+        ends[cut, this] = hidden + part * (seen - hidden)
+    return ends
+
+
+def full_box(item: LabelledObject, pixels: Vector | None, model: CameraModel) -> Box2D | None:
+    """Around the projection of an item, within the picture; None where it is beside it."""
+    if pixels is None:
+        return None
+    left, top = np.maximum(pixels.min(axis=0), 0.0)
+    right, bottom = np.minimum(pixels.max(axis=0), (model.width, model.height))
+    if not (right > left and bottom > top):
+        return None
+    return Box2D(item, float(left), float(top), float(right), float(bottom))
+
+
+def _box_around(item: LabelledObject, points: Vector, axes: Vector) -> Box3D:
+    along = points @ axes
+    low, high = along.min(axis=0), along.max(axis=0)
+    return Box3D(item, axes @ ((low + high) / 2), axes, high - low)
+
+
+def _cached(made: dict[int, Corners], model: Any, geom: int) -> Corners:
+    if geom not in made:
+        made[geom] = geom_corners(model, geom)
+    return made[geom]
+
+
+def gazebo_boxes(
+    kind: str,
+    geoms: Ids,
+    items: LabelledObjects,
+    shapes: LabelledShapes | None,
+    stand: ShapePoses | None,
+    model: CameraModel,
+    view: View,
+) -> list[Box2D] | list[Box3D]:
+    """Boxes as Gazebo has them: what is hidden of a model does not count, and its first seen visual says the label.
+
+    A visible box ends at the last pixel's number. A full box ends one pixel before the right edge, and a visual that
+    reaches beyond both sides of the picture has none. Boxes in space around several visuals are along the principal
+    axes of their corners.
+
+    Args:
+        kind: visible_2d, full_2d or 3d.
+        geoms: at each pixel, shape (h, w); -1 for none.
+    """
+    is_seen = np.bincount(geoms.ravel() + 1, minlength=len(items.item_of))[1:] > 0
+    seen: dict[int, list[DrawnVisual]] = {}
+    for position, item in enumerate(items.items):
+        visuals = [v for v in item.visuals if is_seen[list(v.geoms)].any()]
+        if visuals:
+            seen[position] = visuals
+    told = [replace(item, label=seen[i][0].label) if i in seen else item for i, item in enumerate(items.items)]
+    if shapes is None or stand is None:
+        found = visible_boxes(items.item_of.take(geoms, mode="wrap"), told)
+        return [replace(box, right=box.right - 1, bottom=box.bottom - 1) for box in found]
+    if kind == "3d":
+        boxes = [(told[i], shapes.box_of_cloud(i, visuals, stand)) for i, visuals in seen.items()]
+        return [Box3D(item, box.centre, box.rotation, box.size) for item, box in boxes]
+    full = [_gazebo_full_box(told[i], visuals, shapes, stand, model, view) for i, visuals in seen.items()]
+    return [box for box in full if box is not None]
+
+
+def _gazebo_full_box(
+    item: LabelledObject,
+    visuals: Sequence[DrawnVisual],
+    shapes: LabelledShapes,
+    stand: ShapePoses,
+    model: CameraModel,
+    view: View,
+) -> Box2D | None:
+    size = np.array((model.width, model.height), dtype=np.float64)
+    parts: list[tuple[Vector, Vector]] = []
+    for visual in visuals:
+        pixels = project_shape(*shapes.points((visual,), stand), model, view)
+        if pixels is None:
+            continue
+        low, high = pixels.min(axis=0), pixels.max(axis=0)
+        if not ((low < 0) & (high > size)).any():
+            parts.append((np.maximum(low, 0.0), np.minimum(high, (size[0] - 1, size[1]))))
+    if not parts:
+        return None
+    left, top = np.min([low for low, _ in parts], axis=0)
+    right, bottom = np.max([high for _, high in parts], axis=0)
+    return Box2D(item, float(left), float(top), float(right), float(bottom))

@@ -1,0 +1,168 @@
+"""Bounding box cameras: a box around each labelled thing that is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics
+from simkit.sensors.base import Product
+from simkit.sensors.cameras import bounding_box_messages, image_messages, label_camera
+from simkit.sensors.cameras.bounding_boxes import (
+    Box2D,
+    Box3D,
+    LabelledShapes,
+    ShapePoses,
+    full_box,
+    gazebo_boxes,
+    project_shape,
+    visible_boxes,
+)
+from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
+from simkit.sensors.cameras.label_camera import Keyword, LabelCamera, read_keyword
+from simkit.sensors.cameras.labelled_objects import LabelledObjects
+from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneSensor
+
+_VISIBLE, _FULL, _SPACE = "visible_2d", "full_2d", "3d"
+_BOX_TYPE: Final = Keyword(
+    "box_type",
+    {
+        "2d": _VISIBLE,
+        "visible_2d": _VISIBLE,
+        "visible_box_2d": _VISIBLE,
+        "full_2d": _FULL,
+        "full_box_2d": _FULL,
+        "3d": _SPACE,
+    },
+    "2d",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class BoundingBoxOptions(CameraOptions):
+    """The `<camera>` block; depths, distances of clip planes and noise as of every camera, in m.
+
+    Attributes:
+        type: visible_2d, full_2d or 3d.
+    """
+
+    type: str = _VISIBLE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Boxes:
+    """What is seen.
+
+    Attributes:
+        boxes: in the order of the instances of their things.
+        colours: the picture that they are drawn into, shape (h, w, 3).
+    """
+
+    boxes: Sequence[Box2D | Box3D]
+    colours: npt.NDArray[np.uint8]
+
+
+class BoundingBoxCamera(LabelCamera):
+    """`boundingbox_camera`: a box around each thing that wears a label and of which at least one pixel is seen.
+
+    A thing is all that wears one label in a top-level model. Its visible box is around its pixels; its full box around
+    its projection, within the picture, whatever is in front of it; its 3-D box is in the sensor's frame.
+    """
+
+    kinds = ("boundingbox_camera", "boundingbox")
+    makes_boxes = True
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options: BoundingBoxOptions = extend_options(
+            self.options, BoundingBoxOptions, type=read_keyword(scene.params, _BOX_TYPE)
+        )
+        self._shapes: LabelledShapes | None = None
+
+    def attach(self, sim: Simulation) -> None:
+        self._is_gazebos = bool(sim.world.gazebo_quirks)
+        super().attach(sim)
+
+    def describe(self) -> dict[str, Any]:
+        return {**super().describe(), "box_type": self.options.type}
+
+    def products(self) -> dict[str, Product]:
+        kind = bounding_box_messages.TYPE_3D if self.options.type == _SPACE else bounding_box_messages.TYPE_2D
+        return {
+            "boundingbox": Product(kind, self._boxes_message),
+            "image": Product(image_messages.IMAGE_TYPE, self._image_message),
+            "camera_info": self._info_product(),
+            "picture": self._picture_product(),
+        }
+
+    def default_topics(self) -> dict[str, str]:
+        topic = self._default_topic("boundingbox")
+        return {"boundingbox": topic, "image": f"{topic}_image", "camera_info": self._info_topic(topic)}
+
+    def leave(self) -> None:
+        super().leave()
+        self._shapes = None
+
+    def saved(self) -> dict[str, str]:
+        return {"picture": label_camera.IMAGE, "boundingbox": label_camera.BOXES}
+
+    def shots(self) -> Sequence[Shot]:
+        view = self._aimed()
+        return Shot(view), Shot(view, ids=True)
+
+    def note(self, model: Any, data: Any) -> tuple[LabelledObjects, LabelledShapes | None, ShapePoses | None]:
+        items = self.items
+        if self.options.type == _VISIBLE:
+            return items, None, None
+        if self._shapes is None or self._shapes.items is not items:
+            self._shapes = LabelledShapes(items, self.structure)
+        return items, self._shapes, self._shapes.stand(data, *self._frame_in_world(data))
+
+    def develop(
+        self, films: Iterator[Film], notes: tuple[LabelledObjects, LabelledShapes | None, ShapePoses | None]
+    ) -> Boxes:
+        colours = self._picture(next(films))
+        geoms = self.seen(next(films))
+        items, shapes, stand = notes
+        if self._is_gazebos:
+            model = self.options.model
+            return Boxes(gazebo_boxes(self.options.type, geoms, items, shapes, stand, model, self._aimed()), colours)
+        if shapes is None or stand is None:
+            return Boxes(visible_boxes(items.item_of.take(geoms, mode="wrap"), items.items), colours)
+        return Boxes(self._projected(geoms, shapes, stand), colours)
+
+    def _projected(self, geoms: Ids, shapes: LabelledShapes, stand: ShapePoses) -> list[Box2D] | list[Box3D]:
+        """Boxes around all of each item of which a pixel is seen."""
+        items, model = shapes.items, self.options.model
+        positions = np.flatnonzero(np.bincount(items.item_of.take(geoms, mode="wrap").ravel() + 1)[1:])
+        if self.options.type == _SPACE:
+            return [shapes.box_3d(int(position), stand) for position in positions]
+        found = []
+        for position in positions:
+            item = items.items[position]
+            box = full_box(item, project_shape(*shapes.points(item.visuals, stand), model, self._aimed()), model)
+            if box is not None:
+                found.append(box)
+        return found
+
+    # ------------------------------------------------------------------ messages
+
+    def _boxes_message(self, reading: Boxes, time_ns: int) -> Any:
+        if self.options.type == _SPACE:
+            header = self._header(time_ns)
+            space = [box for box in reading.boxes if isinstance(box, Box3D)]
+            return bounding_box_messages.detections_3d(header, space, in_ogre_axes=self._is_gazebos)
+        flat = [box for box in reading.boxes if isinstance(box, Box2D)]
+        return bounding_box_messages.detections_2d(self._image_header(time_ns), flat)
+
+    def _image_message(self, reading: Boxes, time_ns: int) -> Any:
+        drawn = bounding_box_messages.draw_boxes(reading.colours, reading.boxes, self.options.model, self._aimed())
+        return image_messages.image_message(self._image_header(time_ns), drawn, "rgb8")

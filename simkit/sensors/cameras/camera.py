@@ -1,0 +1,21 @@
+"""Colour cameras."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from simkit.sensors.base import Product
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+
+
+class Camera(RenderedCamera):
+    """`camera`: colour or grey images with their `CameraInfo`."""
+
+    kinds: ClassVar[tuple[str, ...]] = ("camera",)
+
+    def products(self) -> dict[str, Product]:
+        return {"image": self._colour_product(), "camera_info": self._info_product()}
+
+    def default_topics(self) -> dict[str, str]:
+        topic = self._default_topic("image")
+        return {"image": topic, "camera_info": self._info_topic(topic)}

@@ -1,0 +1,196 @@
+"""Options of the `<camera>` block of a file, with the range of its depths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.sensors.cameras import image_messages
+from simkit.sensors.cameras.camera_model import MAX_PIXELS, CameraModel, read_camera_model
+from simkit.sensors.cameras.rendering.frame_buffer import clip_depths, clip_planes, depth_limits, depths_in_metres
+from simkit.sensors.cameras.rendering.view import Depths, View
+from simkit.sensors.cameras.saved_images import read_save
+from simkit.sensors.noise import NoiseModel, read_noise
+from simkit.sensors.topics_and_frames import check_topic
+from simkit.sensors.visibility_mask import ALL_VISIBLE, read_visibility_mask
+
+_DEPTH_OUTPUTS = ("depths", "points")
+
+
+def read_depth_range(block: Params, model: CameraModel) -> tuple[float, float]:
+    """Nearest and farthest depth [m] of a `<camera>` block: `<depth_camera><clip>`, else the camera's own `<clip>`."""
+    depth = block.child("depth_camera")
+    if depth is None:
+        return model.near, model.far
+    output = depth.text("output", "depths")
+    if output not in _DEPTH_OUTPUTS:
+        message = f"<output>{output}</output> has no effect: there are always depths and points"
+        hint = "reflectance and normals of Gazebo Classic are not simulated"
+        depth.diagnostics.warning("SK-SENSOR-111", message, depth.block("output").where, hint)
+    clip = depth.child("clip")
+    if clip is None:
+        return model.near, model.far
+    near, far = clip.number("near", model.near, minimum=1e-6), clip.number("far", model.far, minimum=1e-6)
+    if far > near:
+        return near, far
+    clip.error("SK-PARAM-002", f"found depths from {near:g} to {far:g} m, allowed is a <far> beyond <near>")
+    return model.near, model.far
+
+
+class DepthRange:
+    """The range of depths of one camera.
+
+    What is as far from the camera as `<clip><far>`, in a straight line, has depth +inf; so has what is farther along
+    the axis than the depths' own range. What is nearer along the axis than both ranges begin has -inf
+    (gz-rendering, depth_camera_fs.glsl; gz-sensors, RgbdCameraSensor.cc).
+
+    Args:
+        options: of the camera.
+    """
+
+    def __init__(self, options: CameraOptions) -> None:
+        model = options.model
+        self._lowest = max(model.near, options.depth_near)
+        self._ends = model.near, model.far
+        left, up = model.rays()
+        squares = left * left + (up if up.ndim == 2 else up[:, None]) ** 2
+        stretch: Depths = np.sqrt(1 + squares, dtype=np.float32)
+        stretch[np.isnan(stretch)] = np.inf  # where a lens shows nothing
+        self._limit = depth_limits(min(options.depth_far, model.far), model.far, stretch)
+        self._least = float(self._limit.min())
+
+    def planes(self) -> tuple[float, float]:
+        """Clip planes to be drawn with [m]: what is too near is to be seen as such, not to be cut away."""
+        return clip_planes(*self._ends)
+
+    def metres(self, raw: Depths, view: View, out: Depths) -> Depths:
+        """Depths [m] of raw ones, shape (h, w).
+
+        Args:
+            raw: drawn through `view`, and bent where the camera's lens bends.
+            out: contiguous, to be written to.
+        """
+        return depths_in_metres(raw, view.near, view.far, self._lowest, self._limit, out, least=self._least)
+
+    def clip(self, depths: Depths) -> Depths:
+        """The same rule again in place, for depths [m] that noise was added to."""
+        return clip_depths(depths, self._lowest, self._limit, least=self._least)
+
+
+ModelReader = Callable[[Params, int, int], CameraModel]
+
+
+@dataclass(frozen=True, slots=True)
+class CameraOptions:
+    """The `<camera>` block.
+
+    Attributes:
+        encoding: of colour images, as ROS names it.
+        noise: white noise; 1 is white for colours, 1 m for depths.
+        triggered: pictures are taken only when a message on `trigger_topic` has come in.
+        depth_near, depth_far: range of depths [m].
+        anti_aliasing: samples of each pixel; any but 0 are as many as the world's quality takes.
+        name: `<camera name="…">`, or empty.
+        pose: of the camera in the sensor's frame.
+        optical_frame_id: frame of images and their `CameraInfo`, z forward; empty where they have the sensor's.
+        visibility_mask: visuals are seen that have one of its bits among their `<visibility_flags>`.
+        save: folder where each picture is saved; None saves none.
+    """
+
+    model: CameraModel
+    encoding: str
+    noise: NoiseModel
+    triggered: bool
+    trigger_topic: str
+    info_topic: str
+    depth_near: float
+    depth_far: float
+    anti_aliasing: int = 4
+    name: str = ""
+    pose: Pose = IDENTITY
+    optical_frame_id: str = ""
+    visibility_mask: int = ALL_VISIBLE
+    save: Path | None = None
+
+
+AnyOptions = TypeVar("AnyOptions", bound=CameraOptions)
+
+
+def extend_options(options: CameraOptions, kind: type[AnyOptions], **more: Any) -> AnyOptions:
+    """The options of a camera as those of a kind that has more."""
+    return kind(**{field.name: getattr(options, field.name) for field in fields(CameraOptions)}, **more)
+
+
+def read_options(params: Params, read_model: ModelReader = read_camera_model, has_depth: bool = False) -> CameraOptions:
+    """The options of a `<sensor>` with one camera."""
+    return read_camera(params.block("camera"), read_model, has_depth)
+
+
+def read_camera(block: Params, read_model: ModelReader = read_camera_model, has_depth: bool = False) -> CameraOptions:
+    """The options in a `<camera>` block.
+
+    Args:
+        read_model: reads its optics for an image of a width and a height.
+        has_depth: whether the sensor's `<format>` may be that of its depths.
+    """
+    image = block.block("image")
+    width, height = image.integer("width", 320, minimum=1), image.integer("height", 240, minimum=1)
+    if max(width, height) > MAX_PIXELS:
+        image.error("SK-PARAM-002", f"found an image of {width}x{height}, allowed is up to {MAX_PIXELS}x{MAX_PIXELS}")
+        width, height = min(width, MAX_PIXELS), min(height, MAX_PIXELS)
+    samples = image.integer("anti_aliasing", 4, minimum=0)
+    model = read_model(block, width, height)
+    depth_near, depth_far = read_depth_range(block, model)
+    trigger_topic, info_topic = block.text("trigger_topic", ""), block.text("camera_info_topic", "")
+    check_topic(trigger_topic, block, "trigger_topic")
+    check_topic(info_topic, block, "camera_info_topic")
+    return CameraOptions(
+        model=model,
+        encoding=_read_encoding(image, has_depth),
+        noise=_read_image_noise(block),
+        triggered=block.boolean("triggered", False),
+        trigger_topic=trigger_topic,
+        info_topic=info_topic,
+        depth_near=depth_near,
+        depth_far=depth_far,
+        anti_aliasing=samples,
+        visibility_mask=read_visibility_mask(block),
+        name=block.attribute("name"),
+        pose=block.pose("pose"),
+        optical_frame_id=block.text("optical_frame_id", ""),
+        save=read_save(block),
+    )
+
+
+def _read_encoding(image: Params, has_depth: bool) -> str:
+    """What ROS calls the `<format>`."""
+    found = image.child("format")
+    given = found.value if found is not None else "R8G8B8"
+    if found is None or (has_depth and given in image_messages.DEPTH_FORMATS):
+        return "rgb8"
+    if given in image_messages.ENCODINGS:
+        return image_messages.ENCODINGS[given]
+    allowed = "allowed is one of " + ", ".join(image_messages.ENCODINGS)
+    if given in image_messages.WITHOUT_ENCODING:
+        message = f"no image message holds <format>{given}</format>; the pictures are R8G8B8"
+        image.diagnostics.warning("SK-SENSOR-120", message, found.where, allowed)
+    else:
+        message = f"found <format>{given}</format>, {allowed}"
+        found.error("SK-PARAM-002", message, did_you_mean(given.upper(), image_messages.ENCODINGS))
+    return "rgb8"
+
+
+def _read_image_noise(block: Params) -> NoiseModel:
+    noise = read_noise(block, "gaussian")
+    extras = (noise.bias_mean, noise.bias_stddev, noise.precision, noise.wanders, noise.noise_density)
+    if any(extras):
+        message = "of a camera's noise only mean and stddev are used, as in Gazebo"
+        block.diagnostics.warning("SK-SENSOR-008", message, block.block("noise").where)
+    return noise

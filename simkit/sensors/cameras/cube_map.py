@@ -1,0 +1,167 @@
+"""A picture of all directions, put together from faces of a cube around the camera."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.pose import Vector
+from simkit.sensors.cameras.rendering.view import Colours, Film, Shot, View
+from simkit.sensors.cameras.wide_angle_lens import WideAngleModel
+
+_FORWARD, _LEFT, _UP = np.eye(3)
+_FACES = tuple(
+    np.stack((forward, left, np.cross(forward, left)), axis=1)
+    for forward, left in (
+        (_FORWARD, _LEFT), (_LEFT, -_FORWARD), (-_LEFT, _FORWARD), (_UP, _LEFT), (-_UP, _LEFT), (-_FORWARD, -_LEFT),
+    )
+)  # fmt: skip
+"""Frames (x forward, y left, z up) of the faces in the camera's, shape (3, 3) each: what is in front comes first."""
+
+_ONE_FACE = 1.75  # tangent of the angle off the axis up to which a single picture costs less than several
+_MOST_TIMES = 4.0  # as many pixels as the picture has, in all faces together
+_MOST_PIXELS = 4096  # along an edge of a face
+_FINEST = 0.2  # this part of the picture may be finer than the faces
+_RIM = 0.02  # [half widths] over which Gazebo's picture fades to black at the cutoff angle
+
+
+@dataclass(frozen=True, slots=True)
+class _Face:
+    """A part of a face: which pixels of the picture it gives, and its pixels per unit of tangent."""
+
+    rotation: Vector
+    pixels: npt.NDArray[np.bool_]
+    right: Vector
+    down: Vector
+    scale: float
+
+
+class CubeMap:
+    """Draws what a wide lens sees: only the faces of a cube that it sees, only the part of each that it sees.
+
+    Every face is drawn two pixels wider than it is used, so that no pixel is interpolated across a border of two.
+
+    Args:
+        model: the camera.
+    """
+
+    def __init__(self, model: WideAngleModel) -> None:
+        x, y = model.offsets()
+        radius = np.hypot(x, y)
+        angle = model.lens.angle(radius)
+        known = np.isfinite(angle) & (angle <= model.lens.cutoff)
+        along = np.where(known, np.cos(angle, where=known, out=np.zeros_like(angle)), -1.0)
+        across = np.where(known, np.sin(angle, where=known, out=np.zeros_like(angle)), 0.0)
+        across /= np.maximum(radius, 1e-12)
+        directions = np.stack((along, -across * x, -across * y), axis=-1)  # x forward, y left, z up
+        faces = _faces(directions, known, model)
+        self._is_full = bool(known.all())
+        self._lay_out(faces, x.shape, model)
+        self._rim = _cutoff_fade(radius, known, model)
+
+    def _lay_out(self, faces: list[_Face], shape: tuple[int, ...], model: WideAngleModel) -> None:
+        """One below the other on a sheet that is looked up as a whole."""
+        import cv2
+
+        column, row = (np.full(shape, -100.0, np.float32) for _ in range(2))
+        self.shots: list[Shot] = []
+        self._places: list[tuple[int, int, int]] = []
+        first = widest = 0
+        for face in faces:
+            (left, width), (top, height) = (_pixel_bounds(values, face.scale) for values in (face.right, face.down))
+            column[face.pixels] = (face.right - left) * face.scale - 0.5
+            row[face.pixels] = (face.down - top) * face.scale - 0.5 + first
+            right, bottom = left + width / face.scale, top + height / face.scale
+            view = View(width, height, left, right, -bottom, -top, model.near, model.far)
+            self.shots.append(Shot(view, rotation=face.rotation))
+            self._places.append((first, height, width))
+            first, widest = first + height, max(widest, width)
+        self._sheet = np.zeros((max(first, 1), max(widest, 1), 3), np.uint8)
+        self._maps = cv2.convertMaps(column, row, cv2.CV_16SC2)
+
+    def develop(self, films: Iterator[Film], out: Colours) -> Colours:
+        """The picture, shape (height, width, 3), of one film of each of `shots`, in their order; black where nothing is
+        seen.
+
+        Args:
+            films: of the shots.
+            out: contiguous, to be written to.
+        """
+        import cv2
+
+        for film, (first, height, width) in zip(films, self._places, strict=True):
+            assert film.colours is not None
+            np.copyto(self._sheet[first : first + height, :width], film.colours)
+        border = cv2.BORDER_REPLICATE if self._is_full else cv2.BORDER_CONSTANT
+        cv2.remap(self._sheet, *self._maps, cv2.INTER_LINEAR, dst=out, borderMode=border)
+        if self._rim is not None:
+            rows, weights = self._rim
+            part: Any = out[rows]
+            cv2.multiply(part, weights[rows], dst=part, scale=1 / 255)
+        return out
+
+
+def _faces(directions: Vector, known: npt.NDArray[np.bool_], model: WideAngleModel) -> list[_Face]:
+    """What each face of the cube shows of the picture."""
+    in_front = known & (directions[..., 0] > 0)
+    steepest = np.abs(directions[known][:, 1:]).max(axis=1) <= _ONE_FACE * directions[known][:, 0]
+    if (in_front == known).all() and steepest.all():
+        owner = np.where(known, 0, -1)
+    else:
+        along = np.stack([directions @ rotation[:, 0] for rotation in _FACES])
+        owner = np.where(known, along.argmax(axis=0), -1)
+    found = [_face(rotation, owner == i, directions, model) for i, rotation in enumerate(_FACES) if (owner == i).any()]
+    if not found:  # of a lens that shows nothing in the middle of any pixel
+        return []
+    drawn = sum(np.ptp(face.right) * np.ptp(face.down) * face.scale**2 for face in found)
+    shrink = 1.0 if model.face_size else min(1.0, math.sqrt(_MOST_TIMES * known.size / max(drawn, 1.0)))
+    return [_Face(f.rotation, f.pixels, f.right, f.down, f.scale * shrink) for f in found]
+
+
+def _face(rotation: Vector, pixels: npt.NDArray[np.bool_], directions: Vector, model: WideAngleModel) -> _Face:
+    ahead, left, up = (directions[pixels] @ rotation).T
+    right, down = -left / ahead, -up / ahead
+    extent = max(np.abs(right).max(), np.abs(down).max(), 1e-6)
+    scale = model.face_size / 2 if model.face_size else _pixel_density(right, down, pixels)
+    return _Face(rotation, pixels, right, down, min(scale, (_MOST_PIXELS - 8) / (2 * extent)))
+
+
+def _pixel_density(right: Vector, down: Vector, pixels: npt.NDArray[np.bool_]) -> float:
+    """Pixels per unit of tangent that a face needs to be as fine as nearly all of the picture."""
+    number = np.full(pixels.shape, -1, np.int32)
+    number[pixels] = np.arange(len(right))
+    steps = []
+    every = max(1, max(pixels.shape) // 200)  # what is looked at is even
+    for one, next_one in ((number[:, :-1], number[:, 1:]), (number[:-1], number[1:])):
+        one, next_one = one[::every, ::every], next_one[::every, ::every]
+        both = (one >= 0) & (next_one >= 0)
+        i, j = one[both], next_one[both]
+        steps.append(np.hypot(right[j] - right[i], down[j] - down[i]))
+    step = np.concatenate(steps)
+    step = step[step > 1e-9]
+    return float(1 / np.quantile(step, _FINEST)) if len(step) else 8.0
+
+
+def _pixel_bounds(values: Vector, scale: float) -> tuple[float, int]:
+    """Where a part of a face begins, two pixels before the first value, and how many pixels it has."""
+    low, high = float(values.min()) - 2 / scale, float(values.max()) + 2 / scale
+    return low, math.ceil((high - low) * scale)
+
+
+def _cutoff_fade(radius: Vector, known: npt.NDArray[np.bool_], model: WideAngleModel) -> Any | None:
+    """Rows that fade at the cutoff angle, and what their colours are multiplied by [1/255]; None where none does."""
+    lens = model.lens
+    if lens.cutoff > lens.widest:
+        return None
+    end = float(lens.radius(np.array(lens.cutoff)))
+    part = np.clip((radius - (end - _RIM)) / _RIM, 0.0, 1.0)
+    weight = np.rint(255 * (1 - part * part * (3 - 2 * part))).astype(np.uint8)
+    faded = np.flatnonzero(((weight < 255) & known).any(axis=1))
+    if not len(faded):
+        return None
+    return slice(int(faded[0]), int(faded[-1]) + 1), np.repeat(weight[..., None], 3, axis=2)

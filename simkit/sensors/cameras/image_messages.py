@@ -1,0 +1,149 @@
+"""Convert arrays into `Image` messages, and camera models into `CameraInfo` messages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.sensors.cameras.camera_model import CameraModel
+
+IMAGE_TYPE = "sensor_msgs/msg/Image"
+
+ENCODINGS: Mapping[str, str] = MappingProxyType(
+    {
+        "R8G8B8": "rgb8", "RGB_INT8": "rgb8", "B8G8R8": "bgr8", "BGR_INT8": "bgr8",
+        "L8": "mono8", "L_INT8": "mono8", "L16": "mono16", "L_INT16": "mono16", "L_UINT16": "mono16",
+        "RGBA_INT8": "rgba8", "BGRA_INT8": "bgra8",
+        "R16G16B16": "rgb16", "RGB_INT16": "rgb16", "BGR_INT16": "bgr16",
+        "R_FLOAT32": "32FC1", "RGB_FLOAT32": "32FC3",
+        "BAYER_RGGB8": "bayer_rggb8", "BAYER_BGGR8": "bayer_bggr8",
+        "BAYER_GBRG8": "bayer_gbrg8", "BAYER_GRBG8": "bayer_grbg8",
+    }
+)  # fmt: skip
+"""SDF's image formats (sdformat, Camera.cc, and Classic's spellings) and what ROS calls them."""
+
+WITHOUT_ENCODING = ("R_FLOAT16", "RGB_FLOAT16", "RGB_INT32", "BGR_INT32")
+"""SDF's image formats that no `Image` message can hold."""
+
+DEPTH_FORMATS = ("R_FLOAT32", "R_FLOAT16")
+"""What files of depth cameras say of their depths; such a camera's colours are plain."""
+
+_WHITE_16 = 65535 // 255  # 8 bits to 16: white stays white
+
+
+def is_grey(encoding: str) -> bool:
+    return encoding.startswith("mono")
+
+
+def grey(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    """Brightness, shape (h, w), by the weights of Rec. 601."""
+    import cv2
+
+    return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
+
+
+def image_message(header: Any, pixels: npt.NDArray[Any], encoding: str) -> Any:
+    """A message of pixels, shape (h, w) or (h, w, n), in their own byte order (little-endian)."""
+    data = np.ascontiguousarray(pixels)
+    height, width = data.shape[:2]
+    return msgs.type_of(IMAGE_TYPE)(
+        header, height, width, encoding, 0, data.nbytes // height, data.reshape(-1).view(np.uint8)
+    )
+
+
+def colour_message(header: Any, colours: npt.NDArray[np.uint8], encoding: str) -> Any:
+    """A message of colours (h, w, 3), or of brightness (h, w) for a grey encoding.
+
+    Of 16 bits, white is 65535; of floats it is 1, and one channel alone is red, as a render target of SDF's
+    `R_FLOAT32` keeps it.
+    """
+    return image_message(header, _encode_colours(colours, encoding), encoding)
+
+
+def _encode_colours(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[Any]:
+    import cv2
+
+    if encoding.startswith("bayer_"):
+        return _bayer_mosaic(colours, encoding)
+    if encoding.startswith("bgr") and encoding != "bgra8":
+        colours = np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2BGR), dtype=np.uint8)
+    if encoding.endswith("16"):
+        return colours * np.uint16(_WHITE_16)
+    if encoding == "rgba8":
+        return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2RGBA), dtype=np.uint8)
+    if encoding == "bgra8":
+        return np.asarray(cv2.cvtColor(colours, cv2.COLOR_RGB2BGRA), dtype=np.uint8)
+    if encoding == "32FC1":
+        return colours[..., 0] * np.float32(1 / 255)
+    if encoding == "32FC3":
+        return colours * np.float32(1 / 255)
+    return colours
+
+
+def _bayer_mosaic(colours: npt.NDArray[np.uint8], encoding: str) -> npt.NDArray[np.uint8]:
+    """One colour per pixel, in squares of four named row by row."""
+    out = np.empty(colours.shape[:2], dtype=np.uint8)
+    for place, letter in enumerate(encoding[len("bayer_") : -1]):
+        row, column = divmod(place, 2)
+        out[row::2, column::2] = colours[row::2, column::2, "rgb".index(letter)]
+    return out
+
+
+_PIXELS: Mapping[str, tuple[str, int]] = MappingProxyType(
+    {
+        "rgb8": ("u1", 3), "bgr8": ("u1", 3), "rgba8": ("u1", 4), "bgra8": ("u1", 4), "mono8": ("u1", 1),
+        "8UC1": ("u1", 1), "mono16": ("<u2", 1), "16UC1": ("<u2", 1), "rgb16": ("<u2", 3), "bgr16": ("<u2", 3),
+        "32FC1": ("<f4", 1), "32FC3": ("<f4", 3),
+    }
+)  # fmt: skip
+
+
+def pixels_of(message: Any) -> npt.NDArray[Any]:
+    """The pixels of an `Image`, shape (h, w), or (h, w, n) with more channels than one."""
+    kind, channels = _PIXELS.get(message.encoding, ("u1", 1))
+    flat = np.asarray(message.data, dtype=np.uint8).view(kind)
+    shape = (message.height, message.width) + ((channels,) if channels > 1 else ())
+    return flat.reshape(shape)
+
+
+CAMERA_INFO_TYPE = "sensor_msgs/msg/CameraInfo"
+
+
+class CameraInfoMaker:
+    """Makes the same message again and again, with a new header.
+
+    Args:
+        model: the camera.
+        baseline: distance [m] to the left camera of a stereo pair; P's last column becomes -fx·baseline, with P's fx.
+    """
+
+    def __init__(self, model: CameraModel, baseline: float = 0.0) -> None:
+        model = model.told or model
+        self._size = model.height, model.width
+        self._distortion_model = model.distortion_model
+        self._d = model.coefficients
+        self._k = model.matrix
+        self._r = np.eye(3).reshape(9)
+        self._p = model.projection
+        if baseline:
+            self._p[3] = -self._p[0] * baseline
+
+    def make(self, time_ns: int, frame_id: str) -> Any:
+        """The message of one picture."""
+        height, width = self._size
+        return msgs.make(
+            CAMERA_INFO_TYPE,
+            header=msgs.header(time_ns, frame_id),
+            height=height,
+            width=width,
+            distortion_model=self._distortion_model,
+            d=self._d.copy(),
+            k=self._k.copy(),
+            r=self._r.copy(),
+            p=self._p.copy(),
+        )

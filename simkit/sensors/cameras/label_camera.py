@@ -1,0 +1,170 @@
+"""Base class of the cameras that publish labels, and the data sets that they save."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.params import Params
+from simkit.sensors.base import Product
+from simkit.sensors.cameras import image_messages
+from simkit.sensors.cameras.bounding_box_messages import TYPE_2D, TYPE_3D, boxes_as_csv
+from simkit.sensors.cameras.labelled_objects import LabelledObjects, find_labelled_objects
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendering.view import Film, Ids
+from simkit.sensors.cameras.saved_images import ImageSaver, encode_png
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation, WorldStructure
+    from simkit.scene import SceneSensor
+
+
+IMAGE, COLOURS, LABELS, BOXES = "image", "colored", "labels", "boxes"
+_FOLDERS: Final = {IMAGE: "images", COLOURS: "colored_maps", LABELS: "labels_maps", BOXES: "boxes"}
+
+
+class DatasetSaver(ImageSaver):
+    """Writes `images/image_0000000.png`, `labels_maps/labels_0000000.png`, ..., `boxes/boxes_0000000.csv`.
+
+    The numbers go on after those that lie in `images`, so that runs of several worlds make one data set.
+
+    Args:
+        folder: of the whole data set.
+        what: IMAGE, COLOURS, LABELS or BOXES.
+    """
+
+    __slots__ = ()
+
+    def __init__(self, sim: Simulation, sensor: SceneSensor, folder: Path, what: str) -> None:
+        super().__init__(sim, sensor, folder / _FOLDERS[what], what, None)
+        self._count = _count_files(folder / _FOLDERS[IMAGE])
+
+    def _file(self, message: Any) -> tuple[str, bytes]:
+        is_table = message.__msgtype__ in (TYPE_2D, TYPE_3D)
+        data, ending = (boxes_as_csv(message), "csv") if is_table else (encode_png(message), "png")
+        return f"{self._name}_{self._count:07d}.{ending}", data
+
+
+def _count_files(folder: Path) -> int:
+    try:
+        return sum(1 for _ in folder.iterdir())
+    except OSError:
+        return 0
+
+
+class LabelCamera(RenderedCamera):
+    """A camera that knows which geom it sees at each pixel, exactly: without noise, and with no edge blended."""
+
+    reads_labels: ClassVar[bool] = True
+    makes_boxes: ClassVar[bool] = False
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self._items: LabelledObjects | None = None
+        self._items_of: tuple[Any, Any] = (None, None)
+        image = scene.params.block("camera").block("image")
+        if self.options.encoding != "rgb8":
+            message = f"<format> {image.text('format')!r} is not used by a {scene.kind}: its pictures are R8G8B8"
+            diagnostics.warning("SK-SENSOR-130", message, image.block("format").where)
+            self.options = replace(self.options, encoding="rgb8")
+        noise = self.options.noise
+        if noise.mean or noise.stddev:
+            message = f"<noise> is not used by a {scene.kind}, as in Gazebo: it tells what is there"
+            diagnostics.warning("SK-SENSOR-131", message, scene.params.block("camera").block("noise").where)
+
+    @property
+    def items(self) -> LabelledObjects:
+        """What wears which label in the sample that is measured, or was measured last."""
+        items: LabelledObjects = self._around()[0]
+        return items
+
+    @property
+    def structure(self) -> WorldStructure:
+        """What was in the world at that sample."""
+        structure: WorldStructure = self._around()[1]
+        return structure
+
+    def _around(self) -> tuple[Any, Any]:
+        if self.around is None:
+            self.around = self.look_around()
+        found: tuple[Any, Any] = self.around
+        return found
+
+    def look_around(self) -> tuple[LabelledObjects, WorldStructure]:
+        """What wears which label now, and what is in the world."""
+        sim = self.sim
+        now = sim.labels.state, sim.structure
+        if self._items is None or self._items_of[0] is not now[0] or self._items_of[1] is not now[1]:
+            self._items, self._items_of = find_labelled_objects(sim, self.makes_boxes), now
+        return self._items, sim.structure
+
+    def leave(self) -> None:
+        super().leave()
+        self._items, self._items_of = None, (None, None)
+
+    def seen(self, film: Film) -> Ids:
+        """The geom at each pixel of the camera's picture, -1 where there is none."""
+        assert film.ids is not None
+        if self._distorter:
+            return self._distorter.bend_ids(film.ids)
+        return film.ids
+
+    def attach(self, sim: Simulation) -> None:
+        super().attach(sim)
+        self._report_unlabelled(sim)
+
+    def _writer(self, folder: Path, name: str) -> ImageSaver:
+        return DatasetSaver(self.sim, self.scene, folder, name)
+
+    def _picture_product(self) -> Product:
+        """The picture as it is saved beside what is told of it; it has no topic."""
+        return Product(image_messages.IMAGE_TYPE, self._colour_message)
+
+    def _picture(self, film: Film) -> npt.NDArray[np.uint8]:
+        """The colours of a film, through the lens."""
+        assert film.colours is not None
+        kept = self._spare_colours.take()
+        if self._distorter:
+            return self._distorter.bend(film.colours, kept)
+        np.copyto(kept, film.colours)
+        return kept
+
+    def perturb(self, reading: Any, index: int) -> Any:
+        return reading
+
+    def _report_unlabelled(self, sim: Simulation) -> None:
+        if not len(sim.labels) and not any(getattr(p, "gives_labels", False) for p in sim.structure.all_plugins()):
+            message = f"sensor {self.scoped!r} tells labels, and nothing in the world has one"
+            hint = '<plugin filename="gz-sim-label-system" name="gz::sim::systems::Label"><label>10</label></plugin>'
+            sim.reports.warning("SK-SENSOR-132", message, self.scene.where, f"in a <model> or <visual>: {hint}")
+
+
+@dataclass(frozen=True, slots=True)
+class Keyword:
+    """An element that says what a camera tells, and the words that it may hold: each with what it means."""
+
+    element: str
+    meanings: dict[str, str]
+    default: str
+
+
+def read_keyword(params: Params, word: Keyword) -> str:
+    """The meaning of a word in `<camera>`, or in `<sensor>`, where older files have it; in any case of letters."""
+    camera = params.block("camera")
+    place = camera if camera.has(word.element) or not params.has(word.element) else params
+    found = place.child(word.element)
+    if found is None:
+        return word.meanings[word.default]
+    asked = found.value.strip().lower()
+    if asked not in word.meanings:
+        allowed: Sequence[str] = tuple(word.meanings)
+        message = f"found <{word.element}>{found.value}</{word.element}>, allowed is one of {', '.join(allowed)}"
+        found.error("SK-PARAM-002", message, did_you_mean(asked, allowed))
+        return word.meanings[word.default]
+    return word.meanings[asked]

@@ -1,0 +1,274 @@
+"""Several cameras in one sensor, whose shutters open at one instant: stereo pairs and rigs of cameras."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.sensors.base import Product
+from simkit.sensors.cameras import image_messages
+from simkit.sensors.cameras.array_pool import ArrayPool
+from simkit.sensors.cameras.camera_model import CameraModel
+from simkit.sensors.cameras.camera_options import CameraOptions, read_camera
+from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
+from simkit.sensors.cameras.image_messages import CameraInfoMaker
+from simkit.sensors.cameras.image_noise import ImageNoise
+from simkit.sensors.cameras.lens_distortion import ImageDistorter
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.rendering.view import Film, Shot
+from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneSensor
+
+_PARALLEL = 1e-6  # [rad], and [m] of how far two cameras of a pair are one before the other
+
+
+class CameraUnit:
+    """One of the cameras.
+
+    Attributes:
+        name: in topics.
+        options: its `<camera>` block; a pose is in the sensor's frame.
+    """
+
+    def __init__(self, name: str, options: CameraOptions) -> None:
+        self.name, self.options = name, options
+        self.beside = (0.0, 0.0)  # how far left of the reference and above it, where P tells that [m]
+        self._shot: Shot | None = None
+
+    def open(self, sim: Simulation, scoped: str) -> None:
+        """Once, when the simulation is known."""
+        if sim.world.gazebo_quirks:
+            self.options = replace(self.options, model=self.options.model.as_gazebo())
+        model = self.options.model
+        self.noise = ImageNoise(
+            self.options.noise, sim.streams, f"{scoped}::{self.name}", as_ogre=sim.world.gazebo_quirks
+        )
+        self._spares = ArrayPool((model.height, model.width, 3), np.uint8)
+        self.tell()
+
+    def tell(self) -> None:
+        """After a change of what `CameraInfo` says."""
+        told = self.options.model.told or self.options.model
+        if (told.tx, told.ty) == (0.0, 0.0):
+            (left, up), p = self.beside, told.projection
+            told = replace(told, tx=p[0] * left, ty=p[5] * up)
+        self.info = CameraInfoMaker(told)
+
+    @property
+    def shot(self) -> Shot:
+        """What is drawn; found out at the first picture, since a lens takes a while."""
+        if self._shot is None:
+            model, pose = self.options.model, self.options.pose
+            self._distorter = ImageDistorter(model) if model.is_bent else None
+            view = self._distorter.view() if self._distorter else model.view()
+            self._shot = Shot(view, position=np.asarray(pose.position), rotation=pose.matrix)
+        return self._shot
+
+    def develop(self, film: Film) -> CameraReading:
+        """The picture without noise, in arrays of its own."""
+        colours = film.colours
+        assert colours is not None
+        if self._distorter:
+            colours = self._distorter.bend(colours)
+        if image_messages.is_grey(self.options.encoding):
+            return CameraReading(image_messages.grey(colours), None)
+        if not self._distorter:
+            kept = self._spares.take()
+            np.copyto(kept, colours)
+            colours = kept
+        return CameraReading(colours, None)
+
+    def perturb(self, picture: CameraReading, index: int) -> Any:
+        """The picture with the noise of a sample."""
+        if self.noise.is_silent:
+            return picture
+        return NoisyCameraReading(picture, self.noise, index)
+
+
+class MultiCamera(RenderedCamera):
+    """`multicamera`: an image and a `CameraInfo` of each `<camera name="…"><pose>`, all of the same instant.
+
+    One of them, the one with `left` in its name, else the first, is the reference: the others that look the same way
+    tell in P's last column where they are beside or below it, as ROS has it of rectified stereo pairs.
+    """
+
+    kinds = ("multicamera",)
+    example = '<camera name="left"/><camera name="right"><pose>0 -0.1 0 0 0 0</pose></camera>'
+    options: CameraOptions
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self._place()
+
+    def _read(self, scene: SceneSensor) -> CameraOptions:
+        blocks = scene.params.all("camera") or [scene.params.block("camera")]
+        self.eyes: list[CameraUnit] = []
+        for number, block in enumerate(blocks):
+            options = read_camera(block, type(self).read_model)
+            self.eyes.append(CameraUnit(_free_name(self.eyes, options.name or f"camera_{number}", block), options))
+        options = self.eyes[0].options
+        self._report_shared(scene)
+        waiting = next((eye.options for eye in self.eyes if eye.options.triggered), options)
+        saving = next((eye.options.save for eye in self.eyes if eye.options.save), None)
+        return replace(
+            options, pose=IDENTITY, triggered=waiting.triggered, trigger_topic=waiting.trigger_topic, save=saving
+        )
+
+    def _report_shared(self, scene: SceneSensor) -> None:
+        """Warns of what is one for all cameras of a sensor, and differs between these."""
+        options = [eye.options for eye in self.eyes]
+        differ: dict[str, set[Any]] = {
+            "<visibility_mask>": {o.visibility_mask for o in options},
+            "<anti_aliasing>": {o.anti_aliasing > 0 for o in options},
+            "<trigger_topic>": {o.trigger_topic for o in options if o.triggered},
+            "<path> of <save>": {o.save for o in options if o.save is not None},
+        }
+        for element, found in differ.items():
+            if len(found) > 1:
+                message = f"the cameras of one sensor have one {element}, these have {len(found)}: the first is used"
+                self.diagnostics.warning("SK-SENSOR-125", message, scene.where, "a sensor for each")
+
+    @property
+    def reference(self) -> CameraUnit:
+        """The camera that the others of a stereo rig are told against."""
+        return next((eye for eye in self.eyes if "left" in eye.name), self.eyes[0])
+
+    def _place(self) -> None:
+        """Tells each camera where it is from the reference."""
+        reference = self.reference
+        for eye in self.eyes:
+            if eye is reference:
+                continue
+            relative = reference.options.pose.inverse() @ eye.options.pose
+            if _is_parallel(relative):
+                eye.beside = relative.position[1], relative.position[2]
+            else:
+                message = f"camera {eye.name!r} does not look as {reference.name!r} does, or from a point before it"
+                says = "its projection matrix tells no baseline; images have to be rectified first"
+                self.diagnostics.note("SK-SENSOR-124", f"{message}: {says}", self.scene.where)
+
+    def set_baseline(self, baseline: float) -> None:
+        """Says how far [m] to the right of the reference the others are, whatever their poses are."""
+        for eye in self.eyes:
+            if eye is not self.reference:
+                eye.beside = -baseline, 0.0
+                eye.tell()
+
+    def tell(self, change: Callable[[CameraModel], CameraModel]) -> None:
+        for eye in self.eyes:
+            model = eye.options.model
+            eye.options = replace(eye.options, model=replace(model, told=change(model)))
+            eye.tell()
+
+    def name_frame(self, frame: str) -> None:
+        super().name_frame(frame)
+        for eye in self.eyes:
+            eye.options = replace(eye.options, optical_frame_id="")
+
+    def optical_frames(self) -> dict[str, Pose]:
+        options = [eye.options for eye in self.eyes]
+        return {o.optical_frame_id: o.pose @ OPTICAL_POSE for o in options if o.optical_frame_id}
+
+    def describe(self) -> dict[str, Any]:
+        found = super().describe()
+        found["cameras"] = [
+            {
+                "name": eye.name,
+                "pose_sensor": eye.options.pose.as_list(),
+                "width": eye.options.model.width,
+                "height": eye.options.model.height,
+                "hfov": eye.options.model.hfov,
+            }
+            for eye in self.eyes
+        ]
+        return found
+
+    def attach(self, sim: Simulation) -> None:
+        for eye in self.eyes:
+            eye.open(sim, self.scoped)
+        super().attach(sim)
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        for eye in self.eyes:
+            view = eye.options.model
+            renderer_of(self.sim).reserve(view.width, view.height)
+
+    # ------------------------------------------------------------------ pictures
+
+    def shots(self) -> Sequence[Shot]:
+        return tuple(eye.shot for eye in self.eyes)
+
+    def develop(self, films: Iterator[Film], notes: Any) -> tuple[CameraReading, ...]:
+        return tuple(eye.develop(next(films)) for eye in self.eyes)
+
+    def perturb(self, reading: Any, index: int) -> tuple[Any, ...]:
+        return tuple(eye.perturb(picture, index) for eye, picture in zip(self.eyes, reading, strict=True))
+
+    # ------------------------------------------------------------------ messages
+
+    def products(self) -> dict[str, Product]:
+        found = {}
+        for number, eye in enumerate(self.eyes):
+            found[f"{eye.name}/image"] = Product(image_messages.IMAGE_TYPE, partial(self._image_of, number))
+            found[f"{eye.name}/camera_info"] = Product(
+                image_messages.CAMERA_INFO_TYPE, partial(self._info_of, number), needs_reading=False
+            )
+        return found
+
+    def default_topics(self) -> dict[str, str]:
+        base = self._default_topic("")
+        topics = {}
+        for eye in self.eyes:
+            topics[f"{eye.name}/image"] = topic = valid_topic(f"{base}/{eye.name}/image")
+            given = eye.options.info_topic
+            topics[f"{eye.name}/camera_info"] = valid_topic(given) if given else sibling_topic(topic, "camera_info")
+        return topics
+
+    def _trigger_topic(self) -> str:
+        given = self.options.trigger_topic
+        return valid_topic(given) if given else self._default_topic("") + "/trigger"
+
+    def saved(self) -> dict[str, str]:
+        return {f"{eye.name}/image": f"{self.scoped}::{eye.name}" for eye in self.eyes if eye.options.save}
+
+    def _image_of(self, number: int, reading: Any, time_ns: int) -> Any:
+        eye = self.eyes[number]
+        header = msgs.header(time_ns, self._frame_of(eye))
+        return image_messages.colour_message(header, reading[number].colours, eye.options.encoding)
+
+    def _info_of(self, number: int, _: Any, time_ns: int) -> Any:
+        eye = self.eyes[number]
+        return eye.info.make(time_ns, self._frame_of(eye))
+
+    def _frame_of(self, eye: CameraUnit) -> str:
+        return eye.options.optical_frame_id or self.frame_id
+
+
+def _is_parallel(relative: Pose) -> bool:
+    """Whether a camera at that pose looks as one at the origin does, from a point beside it."""
+    turned = 2 * math.atan2(float(np.linalg.norm(relative.quaternion[1:])), abs(relative.quaternion[0]))
+    return turned < _PARALLEL and abs(relative.position[0]) < _PARALLEL
+
+
+def _free_name(others: Sequence[CameraUnit], name: str, block: Params) -> str:
+    """The name, or another where it is taken; that is an error."""
+    taken = {eye.name for eye in others}
+    if name not in taken:
+        return name
+    block.error("SK-PARAM-002", f"two cameras of a sensor are named {name!r}, allowed are different names")
+    return f"{name}_{len(others)}"

@@ -1,0 +1,415 @@
+"""What all rendered cameras share."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.errors import RenderError
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+from simkit.runtime.communication.topic_bus import NO_MESSAGE
+from simkit.sensors.base import Product, Sample, Sensor
+from simkit.sensors.cameras import camera_trigger, image_messages
+from simkit.sensors.cameras.array_pool import ArrayPool
+from simkit.sensors.cameras.camera_model import CameraModel, read_camera_model
+from simkit.sensors.cameras.camera_options import CameraOptions, read_options
+from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
+from simkit.sensors.cameras.camera_trigger import Trigger
+from simkit.sensors.cameras.image_messages import CameraInfoMaker
+from simkit.sensors.cameras.image_noise import ImageNoise
+from simkit.sensors.cameras.lens_distortion import ImageDistorter
+from simkit.sensors.cameras.rendering import gl_context, render_thread
+from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
+from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
+from simkit.sensors.cameras.rendering.view import Film, Shot, View
+from simkit.sensors.cameras.saved_images import ImageSaver
+from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
+from simkit.sensors.visibility_mask import hidden_geoms
+
+if TYPE_CHECKING:
+    from simkit.runtime import Publisher, Simulation
+    from simkit.runtime.communication.topic_bus import LazyMessage
+    from simkit.scene import SceneSensor
+
+
+class RenderedCamera(Sensor):
+    """A camera: looks along its x axis, y to its left, z up.
+
+    What is to be drawn is taken of the state when a sample is due; drawing, and all that is made of the pictures,
+    happens on the render thread where the simulation has one and nobody is called back with the messages.
+
+    Without a renderer it is switched off, which is said once; all else goes on.
+    """
+
+    is_deferred = True
+    has_depth: ClassVar[bool] = False
+    options: CameraOptions
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        scene.params.child("camera")
+        self.options = self._read(scene)
+        self.optical_frame_id = self.options.optical_frame_id
+        self._failure: RenderError | None = None
+        self._lost: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
+        self._is_called = False
+        self._trigger: Trigger | None = None
+        self._baseline = 0.0
+        self.around: Any = None
+
+    @staticmethod
+    def read_model(params: Params, width: int, height: int) -> CameraModel:
+        """The optics in a `<camera>` block, for an image of `width` by `height` [px]."""
+        return read_camera_model(params, width, height)
+
+    def _read(self, scene: SceneSensor) -> CameraOptions:
+        """The options of the file; a camera that stands elsewhere in its sensor takes the sensor there."""
+        options = read_options(scene.params, type(self).read_model, self.has_depth)
+        if options.pose != IDENTITY:
+            self.scene = replace(scene, pose_link=scene.pose_link @ options.pose)
+        return options
+
+    def describe(self) -> dict[str, Any]:
+        model = self.options.model
+        block = {"width": model.width, "height": model.height, "hfov": model.hfov, "near": model.near, "far": model.far}
+        return {"camera": block}
+
+    def attach(self, sim: Simulation) -> None:
+        if sim.world.gazebo_quirks:
+            self.options = replace(self.options, model=self.options.model.as_gazebo())
+            self.optical_frame_id = ""  # gz-sensors' main branch passes it over (CameraSensor.cc, OpticalFrameId)
+        options = self.options
+        self._noise = ImageNoise(options.noise, sim.streams, self.scoped, as_ogre=sim.world.gazebo_quirks)
+        self._view: View | None = None
+        self._info = CameraInfoMaker(options.model, self._baseline)
+        size = options.model.height, options.model.width
+        self._spare_colours = ArrayPool((*size, 3), np.uint8)
+        super().attach(sim)
+        if options.triggered:
+            self.trigger_on(self._trigger_topic())
+
+    def _aimed(self) -> View:
+        """The frustum; found out at the first picture, since a lens takes a while."""
+        if self._view is None:
+            model = self.options.model
+            self._distorter = ImageDistorter(model) if model.is_bent else None
+            self._view = self._distorter.view() if self._distorter else model.view()
+        return self._view
+
+    def shots(self) -> Sequence[Shot]:
+        """What is drawn for one sample."""
+        return (Shot(self._aimed()),)
+
+    def tell(self, change: Callable[[CameraModel], CameraModel]) -> None:
+        """Says in `CameraInfo` what another camera would see; the pictures stay as they are.
+
+        Args:
+            change: gives that camera for the one that there is.
+        """
+        model = self.options.model
+        self.options = replace(self.options, model=replace(model, told=change(model)))
+        self._info = CameraInfoMaker(self.options.model, self._baseline)
+
+    def rework(self, product: str, change: Callable[[Any], Any]) -> None:
+        """Publishes what `change` makes of each message of a product, instead of it; before the first."""
+        of = self._products[product]
+        made = of.make
+        changed = replace(of, make=lambda reading, time_ns: change(made(reading, time_ns)))
+        self._products = {**self._products, product: changed}
+
+    def name_frame(self, frame: str) -> None:
+        """Names the frame of all its messages."""
+        self.frame_id, self.optical_frame_id = frame, ""
+
+    def optical_frames(self) -> dict[str, Pose]:
+        return {self.optical_frame_id: OPTICAL_POSE} if self.optical_frame_id else {}
+
+    def set_baseline(self, baseline: float) -> None:
+        """Says how far [m] the left camera of a stereo pair is; it shows in the projection matrix."""
+        self._baseline = baseline
+        self._info = CameraInfoMaker(self.options.model, baseline)
+
+    def _trigger_topic(self) -> str:
+        given = self.options.trigger_topic
+        return valid_topic(given or (self.scene.topic or self.topic) + "/trigger")
+
+    def trigger_on(self, topic: str, types: Sequence[str] = camera_trigger.TRIGGER_TYPES, counts: bool = False) -> None:
+        """Takes pictures only when messages call for them, on this topic too where there is one already.
+
+        Args:
+            topic: absolute.
+            types: of the messages, whatever they say; the first is the listed one.
+            counts: as `Trigger` says.
+        """
+        if self._trigger is None:
+            self._trigger = Trigger()
+        self._trigger.counts = counts
+        self._trigger.listen(self.sim.bus, topic, types)
+
+    def accepts(self, tick: int) -> bool:
+        return self._trigger is None or self._trigger.take()
+
+    def bind(self, compiled: Any) -> None:
+        render_thread.drain()
+        self.settle()
+        super().bind(compiled)
+        self._unseen = hidden_geoms(self.options.visibility_mask, compiled.names)
+        renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
+
+    def settle(self) -> None:
+        """Measures what waits to be looked at, before something that it is made of changes."""
+        try:
+            for sample in self._kept():
+                self._settle(sample)
+        except RenderError:
+            self._drop()
+
+    def leave(self) -> None:
+        self.settle()
+        self.around = None
+
+    def measure(self, model: Any, data: Any) -> Any:
+        self.around = self.look_around()
+        return render_thread.at_once(self._exposed(model, data)).result()
+
+    def capture(self, model: Any, data: Any) -> render_thread.RenderJob:
+        """Composes what is to be drawn, and has it drawn: on the render thread, unless somebody waits for it."""
+        expose = self._exposed(model, data)
+        # the first picture of all is drawn here, so that it is known at once whether there is a renderer
+        if self._is_called or not (self.sim.render_thread and gl_context.is_open()):
+            return render_thread.at_once(expose)
+        return render_thread.submit(expose)
+
+    def capture_held(self, model: Any, data: Any, sample: Sample) -> render_thread.RenderJob:
+        # labels, temperatures, lights and what is in the world may be others by now
+        self.around, lights = sample.around
+        with use_lights(model, data, lights):
+            expose = self._exposed(model, data)
+        return render_thread.at_once(expose)
+
+    def finish(self, raw: render_thread.RenderJob) -> Any:
+        return raw.result()
+
+    def _exposed(self, model: Any, data: Any) -> Callable[[], Any]:
+        """What draws and develops the pictures of a state; it needs the state no more."""
+        renderer = renderer_of(self.sim)
+        smooth = self.options.anti_aliasing > 0
+        composition = renderer.compose(model, data, *self._frame_in_world(data), unseen=self._unseen, smooth=smooth)
+        return functools.partial(self._expose, renderer, composition, self.shots(), self.note(model, data))
+
+    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Any) -> Any:
+        films = renderer.films(composition, shots)
+        try:
+            return self.develop(films, notes)
+        except RenderError as error:
+            self._lost = error
+            raise
+        finally:
+            films.close()
+
+    def look_around(self) -> Any:
+        """What besides the physics a sample is made of, as it is now; `note` finds that of its sample in `around`."""
+        return None
+
+    def _begin(self, tick: int) -> Sample:
+        sample = super()._begin(tick)
+        self.around = self.look_around()
+        sample.around = self.around, read_lights(self.sim.mj_model)
+        return sample
+
+    def note(self, model: Any, data: Any) -> Any:
+        """What `develop` needs of the state besides pictures."""
+        return None
+
+    def develop(self, films: Iterator[Film], notes: Any) -> Any:
+        """The reading without noise, of what was drawn.
+
+        Args:
+            films: one of each shot, in their order; to be taken in turn.
+            notes: what `note` gave.
+        """
+        colours = next(films).colours
+        assert colours is not None
+        return CameraReading(self._coloured(colours), None)
+
+    def _coloured(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+        """Colours (h, w, 3) that were drawn, through the lens, in memory of their own; brightness (h, w) for grey."""
+        if self._distorter:
+            colours = self._distorter.bend(colours)
+        if image_messages.is_grey(self.options.encoding):
+            return image_messages.grey(colours)
+        if self._distorter:
+            return colours
+        kept: npt.NDArray[np.uint8] = self._spare_colours.take()
+        np.copyto(kept, colours)
+        return kept
+
+    def perturb(self, reading: CameraReading, index: int) -> Any:
+        if self._noise.is_silent:
+            return reading
+        return NoisyCameraReading(reading, self._noise, index)
+
+    def memory(self) -> Any:
+        return self._trigger.pending if self._trigger else 0
+
+    def remember(self, memory: Any) -> None:
+        if self._trigger:
+            self._trigger.pending = memory
+
+    def restart(self) -> None:
+        self.remember(0)
+
+    def close(self) -> None:
+        render_thread.drain()
+        free_renderer(self.sim)
+
+    # ------------------------------------------------------------------ when there is no renderer
+
+    def sample(self, tick: int) -> None:
+        if self._failure is not None:
+            return
+        if self._lost is not None:
+            self._switch_off(self._lost)
+            return
+        try:
+            super().sample(tick)
+        except RenderError as error:
+            self._switch_off(error)
+
+    def take_held(self) -> None:
+        try:
+            super().take_held()
+        except RenderError as error:
+            self._switch_off(error)
+
+    def _look_who_reads(self) -> None:
+        super()._look_who_reads()
+        # what has a latency is not waited for when it is taken
+        self._is_called = self._flight is None and any(end.is_live for _, end, needs in self._wanted if needs)
+
+    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
+        put_off = super()._publish(sample, wanted)
+        drawing = self._work_on(sample)
+        # what somebody will look at is made as soon as the picture is there; what may never be seen is not
+        awaited = [later for later in put_off if later.is_awaited]
+        if drawing is not None and awaited:
+            sample.work = render_thread.submit(functools.partial(_make_messages_early, drawing, awaited))
+            for later in put_off:
+                later.work = sample.work
+        return put_off
+
+    def _work_on(self, sample: Sample) -> render_thread.RenderJob | None:
+        drawing: render_thread.RenderJob | None = sample.raw
+        return None if drawing is None or drawing.is_at_once else drawing
+
+    def _message(self, sample: Sample, product: str) -> Any:
+        if sample.work is not None and self._products[product].needs_reading:
+            sample.work.wait()
+        return super()._message(sample, product)
+
+    def _message_later(self, sample: Sample, product: str) -> Any:
+        try:
+            return super()._message_later(sample, product)
+        except RenderError:
+            return NO_MESSAGE  # it has been said why
+
+    @property
+    def latest(self) -> Any | None:
+        """The newest picture, or None before the first; raises RenderError where there is no renderer."""
+        if self._failure is not None:
+            raise self._failure
+        return super().latest
+
+    @property
+    def truth(self) -> Any | None:
+        """The newest picture without noise; raises RenderError where there is no renderer."""
+        if self._failure is not None:
+            raise self._failure
+        return super().truth
+
+    def _settle(self, sample: Sample) -> None:
+        if sample.work is not None:
+            sample.work.wait()
+        try:
+            super()._settle(sample)
+        except RenderError as error:
+            self._switch_off(error)
+            raise
+
+    def _switch_off(self, error: RenderError) -> None:
+        if self._failure is not None:
+            return
+        self._failure = error
+        self._drop()
+        why = str(error).removeprefix(error.code).strip()
+        is_known = any(d.code == error.code and d.message.endswith(why) for d in self.sim.reports)
+        message = f"camera {self.scoped!r} is switched off: {why}"
+        self.sim.reports.warning(error.code, message, self.scene.where)
+        if not is_known:  # what ails all cameras is said aloud once
+            self.sim.log.error("%s %s", error.code, message)
+
+    # ------------------------------------------------------------------ saved pictures
+
+    def saved(self) -> dict[str, str]:
+        """Image product -> name of the files that it is saved in, where the file says so."""
+        names = (
+            name
+            for name in (*self._topics, *self._products)
+            if self._products[name].type_name == image_messages.IMAGE_TYPE
+        )
+        return dict.fromkeys([next(names)], self.scoped)
+
+    def _open(self, topics: Mapping[str, str]) -> None:
+        super()._open(topics)
+        folder = self.options.save
+        if folder is None or any(isinstance(end, ImageSaver) for _, end, _ in self._ends):
+            return
+        for product, name in self.saved().items():
+            self._ends.append((product, self._writer(folder, name), True))
+
+    def _writer(self, folder: Path, name: str) -> ImageSaver:
+        """What writes a product's pictures to files."""
+        far = self.options.depth_far if self.has_depth else None
+        return ImageSaver(self.sim, self.scene, folder, name, far)
+
+    # ------------------------------------------------------------------ messages
+
+    def _header(self, time_ns: int) -> Any:
+        return msgs.header(time_ns, self.frame_id)
+
+    def _colour_product(self) -> Product:
+        return Product(image_messages.IMAGE_TYPE, self._colour_message)
+
+    def _info_product(self) -> Product:
+        return Product(image_messages.CAMERA_INFO_TYPE, self._info_message, needs_reading=False)
+
+    def _image_header(self, time_ns: int) -> Any:
+        """Of images, whose axes are optical."""
+        return msgs.header(time_ns, self.optical_frame_id or self.frame_id)
+
+    def _colour_message(self, reading: Any, time_ns: int) -> Any:
+        return image_messages.colour_message(self._image_header(time_ns), reading.colours, self.options.encoding)
+
+    def _info_message(self, _: Any, time_ns: int) -> Any:
+        return self._info.make(time_ns, self.optical_frame_id or self.frame_id)
+
+    def _info_topic(self, beside: str) -> str:
+        given = self.options.info_topic
+        return valid_topic(given) if given else sibling_topic(beside, "camera_info")
+
+
+def _make_messages_early(work: render_thread.RenderJob, messages: Sequence[LazyMessage]) -> None:
+    """Makes messages of a picture that was drawn before."""
+    work.result()
+    for message in messages:
+        message.get()

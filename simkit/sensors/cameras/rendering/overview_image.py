@@ -1,0 +1,73 @@
+"""A view of a simulation from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit.pose import Vector
+from simkit.sensors.cameras.rendering import render_thread
+from simkit.sensors.cameras.rendering.renderer import renderer_of
+from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+
+def render_view(
+    sim: Simulation,
+    width: int,
+    height: int,
+    *,
+    eye: Vector | None = None,
+    target: Vector | None = None,
+    vertical_fov: float = 0.8,
+    decorate: Callable[[Any], None] | None = None,
+) -> Colours:
+    """A picture of the simulation as it is now.
+
+    Args:
+        width, height: [px].
+        eye: where it is seen from, in the world [m]; by default from the side and above, so that all is in view.
+        target: point in the middle of the picture [m]; by default the middle of the scene.
+        vertical_fov: opening angle [rad].
+        decorate: called with the `MjvScene`, to add geoms.
+
+    Returns:
+        Colours, rows from the top, shape (height, width, 3).
+
+    Raises:
+        RenderError: there is no renderer.
+    """
+    model = sim.mj_model
+    extent = float(model.stat.extent)
+    middle = np.array(model.stat.center if target is None else target, dtype=np.float64)
+    place = middle + extent * np.array((-1.1, -1.4, 1.1)) if eye is None else np.asarray(eye, dtype=np.float64)
+    half = np.tan(vertical_fov / 2)
+    wide = half * width / height
+    distance = max(float(np.linalg.norm(middle - place)), 1e-6)
+    view = View(width, height, -wide, wide, -half, half, min(0.01 * extent, 0.1 * distance), distance + 50.0 * extent)
+    is_dark = model.nlight == 0
+
+    def prepare(scene: Any) -> None:
+        if is_dark:
+            _add_headlight(scene)
+        if decorate is not None:
+            decorate(scene)
+
+    renderer = renderer_of(sim)
+    composition = renderer.compose(model, sim.fresh_data(), place, look_at(place, middle), prepare)
+    render_thread.drain()  # what it draws goes through the same buffers
+    colours = renderer.draw(composition, Shot(view)).colours
+    renderer.give_back(composition)
+    assert colours is not None
+    return colours.copy()
+
+
+def _add_headlight(scene: Any) -> None:
+    """A bare model has no sun: without one, all of its sides look the same."""
+    for light in scene.lights[: scene.nlight]:
+        if light.headlight and not light.diffuse.any():
+            light.diffuse = (0.6, 0.6, 0.6)

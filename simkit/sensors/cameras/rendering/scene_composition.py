@@ -1,0 +1,172 @@
+"""What is drawn of one state: taken from the engine without OpenGL, so that it can be drawn elsewhere and later."""
+
+from __future__ import annotations
+
+import threading
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit.compiler.geom_groups import DRAWN_COLLISION, VISUAL
+from simkit.pose import Vector
+from simkit.sensors.cameras.rendering.lights_and_shadows import convert_point_lights, keep_strongest_lights
+from simkit.sensors.cameras.rendering.view import Shot
+from simkit.sensors.cameras.rendering.view_culling import Bounds, bounds_of
+
+SOLID: Final = 0.995
+"""The engine draws what is less opaque than this as something to be seen through."""
+
+_ALL: Final = int(mujoco.mjtCatBit.mjCAT_ALL)
+_MAX_SCENES: Final = 8  # kept to be filled again
+_SPARE: Final = 16  # shapes beside those of the model
+_DECORATIONS: Final = 10_000
+_NOWHERE: Final = 0  # a group that is never drawn
+_GEOM: Final = int(mujoco.mjtObj.mjOBJ_GEOM)
+_PLANE: Final = int(mujoco.mjtGeom.mjGEOM_PLANE)  # an array is compared with a plain number a hundred times as fast
+_POINT: Final = int(mujoco.mjtLightType.mjLIGHT_POINT)
+
+
+class Composition:
+    """What is drawn of one state of a simulation: the engine's list of shapes and lights, and where the sensor is.
+
+    Attributes:
+        position: of the sensor in the world [m], shape (3,).
+        rotation: of the sensor's frame (x forward, y left, z up), shape (3, 3).
+        smooth: whether edges may be smoothed.
+        glassy: places in the list of what can be seen through.
+        planes: places in the list of planes, which have no other side.
+        bounds: around the shapes; None where they are not known, or where what is out of sight throws shadows.
+    """
+
+    __slots__ = ("bounds", "glassy", "is_spare", "model", "planes", "position", "rotation", "scene", "smooth")
+
+    def __init__(self, model: Any, scene: Any, position: Vector, rotation: Vector) -> None:
+        self.model, self.scene, self.position, self.rotation = model, scene, position, rotation
+        self.smooth = self.is_spare = True
+        self.bounds: Bounds | None = None
+        self.glassy: list[int] = []
+        self.planes: list[int] = []
+
+    def pose_of(self, shot: Shot) -> tuple[Vector, Vector]:
+        """Position (3,) [m] and rotation (3, 3) of a shot in the world."""
+        position = self.position if shot.position is None else self.position + self.rotation @ shot.position
+        return position, self.rotation if shot.rotation is None else self.rotation @ shot.rotation
+
+
+class Composer:
+    """Takes compositions; lists of shapes are used again. Safe to be used by several threads."""
+
+    def __init__(self, flags: Sequence[mujoco.mjtRndFlag]) -> None:
+        self._flags = [int(flag) for flag in flags]
+        self._culls = mujoco.mjtRndFlag.mjRND_SHADOW not in flags
+        self._option = visuals_only_options()
+        self._aside = mujoco.MjvCamera()
+        self._turn = threading.Lock()
+        self._scenes: list[Any] = []
+        self._scenes_model: Any = None
+
+    def compose(
+        self,
+        model: Any,
+        data: Any,
+        position: Vector,
+        rotation: Vector,
+        decorate: Callable[[Any], None] | None = None,
+        unseen: Sequence[int] = (),
+        smooth: bool = True,
+    ) -> Composition:
+        """See `Renderer.compose`."""
+        scene = self._spare_scene(model) if decorate is None else self._fresh_scene(model, _DECORATIONS)
+        with keep_strongest_lights(model, data, position, rotation), _hide_geoms(model, unseen):
+            mujoco.mjv_updateScene(model, data, self._option, None, self._aside, _ALL, scene)
+            bounds = bounds_of(model, data, scene, self._option.geomgroup) if self._culls else None
+        if _POINT in model.light_type:
+            convert_point_lights(scene)
+        if decorate is not None:
+            decorate(scene)
+        found = Composition(model, scene, np.array(position, dtype=np.float64), np.array(rotation, dtype=np.float64))
+        found.smooth, found.is_spare, found.bounds = smooth, decorate is None, bounds
+        if decorate is not None or _has_transparent_geoms(model):
+            found.glassy = [i for i, g in enumerate(scene.geoms[: scene.ngeom]) if g.rgba[3] < SOLID]
+        for geom in np.flatnonzero(model.geom_type == _PLANE):
+            found.planes += _scene_index(scene, int(geom))
+        return found
+
+    def give_back(self, composition: Composition) -> None:
+        """Says that nothing more is drawn of it."""
+        with self._turn:
+            if (
+                composition.is_spare
+                and composition.model is self._scenes_model
+                and len(self._scenes) < _MAX_SCENES
+                and all(composition.scene is not scene for scene in self._scenes)
+            ):
+                self._scenes.append(composition.scene)
+
+    def _spare_scene(self, model: Any) -> Any:
+        """A list of shapes to be filled."""
+        with self._turn:
+            if model is not self._scenes_model:
+                self._scenes, self._scenes_model = [], model
+            if self._scenes:
+                return self._scenes.pop()
+        return self._fresh_scene(model, _SPARE)
+
+    def _fresh_scene(self, model: Any, more: int) -> Any:
+        scene = mujoco.MjvScene(model, model.ngeom + model.nflex + model.nskin + more)
+        scene.flags[:] = 0
+        scene.flags[self._flags] = 1
+        return scene
+
+
+@contextmanager
+def _hide_geoms(model: Any, geoms: Sequence[int]) -> Iterator[None]:
+    """While it lasts, these are in no group that is drawn."""
+    if not len(geoms):
+        yield
+        return
+    groups = model.geom_group
+    kept = groups[geoms]
+    groups[geoms] = _NOWHERE
+    try:
+        yield
+    finally:
+        groups[geoms] = kept
+
+
+def _has_transparent_geoms(model: Any) -> bool:
+    return bool((model.geom_rgba[:, 3] < SOLID).any() or (model.mat_rgba[:, 3] < SOLID).any())
+
+
+def _scene_index(scene: Any, geom: int) -> list[int]:
+    """Where a geom of the model is in the list, whose first part is in their order; empty where it is not."""
+    geoms = scene.geoms
+    place = bisect_left(range(min(geom, scene.ngeom)), geom, key=lambda i: geoms[i].objid)
+    is_there = place < scene.ngeom and geoms[place].objid == geom and geoms[place].objtype == _GEOM
+    return [place] if is_there else []
+
+
+def visuals_only_options() -> Any:
+    """Options of the engine that draw what cameras see, and nothing else."""
+    option = mujoco.MjvOption()
+    option.flags[:] = 0
+    flags = mujoco.mjtVisFlag
+    for flag in (
+        flags.mjVIS_TEXTURE,
+        flags.mjVIS_STATIC,
+        flags.mjVIS_SKIN,
+        flags.mjVIS_FLEXEDGE,
+        flags.mjVIS_FLEXSKIN,
+    ):
+        option.flags[flag] = 1
+    for groups in (option.geomgroup, option.sitegroup, option.jointgroup, option.tendongroup, option.actuatorgroup):
+        groups[:] = 0
+    for groups in (option.flexgroup, option.skingroup):  # only MuJoCo's own format has them; these are its defaults
+        groups[:] = 0
+        groups[:3] = 1
+    option.geomgroup[[DRAWN_COLLISION, VISUAL]] = 1
+    return option

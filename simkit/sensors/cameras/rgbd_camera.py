@@ -1,0 +1,282 @@
+"""Cameras with colours and depths."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.pose import IDENTITY, Pose
+from simkit.sensors.base import Product
+from simkit.sensors.cameras import depth_messages, image_messages
+from simkit.sensors.cameras.array_pool import ArrayPool
+from simkit.sensors.cameras.camera_options import DepthRange
+from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
+from simkit.sensors.cameras.depth_messages import DepthClouds
+from simkit.sensors.cameras.disparity_noise import DisparityNoise, read_disparity_noise
+from simkit.sensors.cameras.image_noise import ImageNoise
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendering.render_quality import Appearance
+from simkit.sensors.cameras.rendering.view import Colours, Depths, Film, Shot, View
+from simkit.sensors.topics_and_frames import OPTICAL_POSE
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneSensor
+
+_NO_COLOURS: Colours = np.empty((0, 0, 3), np.uint8)
+_TURNED = 1e-3  # rad; axes that differ by less are the same
+
+
+class NoisyDepths(NoisyCameraReading):
+    """Colours and depths with noise, drawn when they are first asked for: who wants no depths pays for none.
+
+    Args:
+        make_depths: gives the noisy depths of true ones and the sample's index.
+
+    Attributes:
+        true_depths: without noise.
+    """
+
+    def __init__(
+        self, picture: CameraReading, noise: ImageNoise, index: int, make_depths: Callable[[Depths, int], Depths]
+    ) -> None:
+        assert picture.depths is not None
+        super().__init__(picture, noise, index)
+        self.true_depths = picture.depths
+        self._make_depths = make_depths
+        self._depths: Depths | None = None
+
+    @property
+    def colours(self) -> Colours:
+        return self._picture.colours if self._noise.is_silent else super().colours
+
+    @property
+    def depths(self) -> Depths:
+        if self._depths is None:
+            self._depths = self._make_depths(self.true_depths, self._index)
+        return self._depths
+
+
+class RgbdCamera(RenderedCamera):
+    """Colour, depth along the optical axis, and an organised cloud, of one pass: each pixel has all three.
+
+    Depth is +inf where nothing is in range and -inf for what is nearer than the range. Noise is in metres for depths
+    and in units of white for colours. The cloud is in the sensor's frame (x forward), or in the optical one (z forward)
+    where the file names that by `<optical_frame_id>`. `<points_frame_id>` names a frame for the cloud alone, x forward;
+    `<gz:use_ros_convention>` turns the axes of its points to z forward, whatever the frame is.
+
+    Attributes:
+        points_frame_id: frame of the cloud; empty where it has that of the images.
+    """
+
+    kinds: ClassVar[tuple[str, ...]] = ("rgbd_camera",)
+    has_depth = True
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self._is_classic = False
+        self._disparity_options = read_disparity_noise(scene.params.block("camera"), self.options.model)
+        self.points_frame_id = scene.params.text("points_frame_id", "")
+        self._has_ros_axes = scene.params.block("camera").boolean("gz:use_ros_convention", False)
+        self._clouds_made: DepthClouds | None = None
+
+    def attach(self, sim: Simulation) -> None:
+        disparity, model = self._disparity_options, self.options.model
+        self._disparity = DisparityNoise(disparity, sim.streams, self.scoped) if disparity else None
+        self._spare_depths = ArrayPool((model.height, model.width), np.float32)
+        # of several samples of a pixel only one has a depth, and not in its middle
+        self._is_blended = self.options.anti_aliasing > 0 and Appearance.of(sim.world).quality.samples > 0
+        super().attach(sim)
+
+    def bound_depths(self, near: float | None, far: float | None) -> None:
+        """Sets the range of depths [m]; None leaves an end as it is."""
+        old = self.options
+        near, far = old.depth_near if near is None else near, old.depth_far if far is None else far
+        self.options = replace(old, depth_near=near, depth_far=far)
+        self._view = None
+
+    def _aimed(self) -> View:
+        if self._view is None:
+            self._range = DepthRange(self.options)
+            near, far = self._range.planes()
+            self._view = replace(super()._aimed(), near=near, far=far)
+        return self._view
+
+    def shots(self) -> Sequence[Shot]:
+        view = self._aimed()
+        if self._is_blended:
+            return Shot(view), Shot(view, depth=True, sharp=True)
+        return (Shot(view, depth=True),)
+
+    def develop(self, films: Iterator[Film], notes: Any) -> Any:
+        film = next(films)
+        colours = _NO_COLOURS if film.colours is None else self._coloured(film.colours)
+        if film.depths is None:
+            film = next(films)
+        raw = film.depths
+        assert raw is not None
+        if self._distorter:
+            raw = self._distorter.bend_depths(raw)
+        return CameraReading(colours, self._range.metres(raw, film.view, self._spare_depths.take()))
+
+    def products(self) -> dict[str, Product]:
+        return {
+            "image": self._colour_product(),
+            "depth_image": Product(image_messages.IMAGE_TYPE, self._depth_message),
+            "points": Product(depth_messages.CLOUD_TYPE, self._cloud),
+            "camera_info": self._info_product(),
+            "depth_camera_info": self._info_product(),
+        }
+
+    def default_topics(self) -> dict[str, str]:
+        base = self._default_topic("")
+        topics = {product: f"{base}/{product}" for product in ("image", "depth_image", "points")}
+        return {**topics, "camera_info": self._info_topic(base + "/image")}
+
+    def turn_clouds(self) -> None:
+        """Gives clouds as Gazebo Classic does: z forward, x right, y down, 32 bytes a point, whatever the frame is.
+
+        Where they are published in the frame of a link of the same model that has other axes, that is noted.
+        """
+        self._is_classic = True
+        self._clouds_made = None
+
+    def cut_depths(self, near: float, far: float, *, in_millimetres: bool) -> None:
+        """Gives depth images as drivers do: NaN where depth is not between `near` and `far` [m], or 16UC1 and 0."""
+        change = depth_messages.depths_in_millimetres if in_millimetres else depth_messages.depths_with_nan
+        self.rework("depth_image", functools.partial(change, near=near, far=far))
+
+    def cut_clouds(self, near: float, far: float) -> None:
+        """Gives clouds whose points are NaN where depth, along z, is not between `near` and `far` [m]."""
+        self.rework("points", functools.partial(depth_messages.crop_cloud, near=near, far=far))
+
+    def publish_on(self, topics: Mapping[str, str]) -> None:
+        super().publish_on(topics)
+        if not (self._is_classic and "points" in topics) or self._turned_from_frame() < _TURNED:
+            return
+        frame = self._cloud_frame
+        message = f"sensor {self.scoped!r}: its cloud has z forward, as in Gazebo Classic, but its frame is {frame!r}"
+        hint = "name a link by <frame_name> that is turned to the sensor's by an rpy of -1.5708 0 -1.5708"
+        says = f"{message}, a link with other axes: it shows turned"
+        self.sim.reports.note("SK-SENSOR-112", says, self.scene.where, hint)
+
+    # ------------------------------------------------------------------ readings
+
+    @property
+    def depth(self) -> Depths | None:
+        """Depths along the optical axis of the newest picture [m], shape (h, w), or None before the first."""
+        return _locked(self._newest_depths(self._noisy_reading()))
+
+    @property
+    def true_depth(self) -> Depths | None:
+        """The same without noise."""
+        return _locked(self._newest_depths(self._true_reading()))
+
+    @property
+    def points(self) -> npt.NDArray[np.float32] | None:
+        """Where each pixel's point is [m], shape (h, w, 3), as in the cloud's message, or None before the first."""
+        reading = self._noisy_reading()
+        return None if reading is None else self._clouds.points(reading.depths, self._shift(reading))
+
+    def _noisy_reading(self) -> Any | None:
+        if self._failure is not None:
+            raise self._failure
+        sample = self._sample
+        if sample is None:
+            return None
+        self._settle(sample)
+        return sample.noisy
+
+    def _newest_depths(self, reading: Any | None) -> Depths | None:
+        return None if reading is None else reading.depths
+
+    def perturb(self, reading: CameraReading, index: int) -> Any:
+        if self._noise.is_silent and (self._disparity is None or self._disparity.is_silent):
+            return reading
+        return NoisyDepths(reading, self._noise, index, self._noisy_depths)
+
+    def _noisy_depths(self, depths: Depths, index: int) -> Depths:
+        """Noise of disparities, noise of depths, then the range's rule again, as in Gazebo."""
+        if self._disparity is not None and not self._disparity.is_silent:
+            depths = self._disparity.on_depths(depths, index)
+        if not self._noise.is_silent:
+            depths = self._noise.on_depths(depths, index)
+        return self._range.clip(depths)
+
+    # ------------------------------------------------------------------ messages
+
+    def _depth_message(self, reading: Any, time_ns: int) -> Any:
+        return image_messages.image_message(self._image_header(time_ns), reading.depths, "32FC1")
+
+    def _cloud(self, reading: Any, time_ns: int) -> Any:
+        header = msgs.header(time_ns, self._cloud_frame)
+        return self._clouds.message(header, reading.depths, self._cloud_colours(reading), self._shift(reading))
+
+    @property
+    def _clouds(self) -> DepthClouds:
+        if self._clouds_made is None:
+            step = depth_messages.CLASSIC_POINT_STEP if self._is_classic else depth_messages.GZ_POINT_STEP
+            self._clouds_made = DepthClouds(self.options.model, self._is_cloud_optical, step)
+        return self._clouds_made
+
+    def _shift(self, reading: Any) -> Depths | None:
+        """Gazebo adds its noise to all three coordinates alike, not along the ray (gaussian_noise_depth_fs.glsl)."""
+        if not self.sim.world.gazebo_quirks or not isinstance(reading, NoisyDepths):
+            return None
+        with np.errstate(invalid="ignore"):
+            shift: Depths = reading.depths - reading.true_depths
+        return shift
+
+    def _cloud_colours(self, reading: Any) -> Colours:
+        colours: Colours = reading.colours
+        return colours
+
+    # ------------------------------------------------------------------ frames
+
+    @property
+    def _cloud_frame(self) -> str:
+        return self.points_frame_id or self.optical_frame_id or self.frame_id
+
+    @property
+    def _is_cloud_optical(self) -> bool:
+        """Whether z of the cloud's points is forward."""
+        is_with_images = bool(self.optical_frame_id) and not self.points_frame_id
+        return self._is_classic or self._has_ros_axes or is_with_images
+
+    def name_frame(self, frame: str) -> None:
+        super().name_frame(frame)
+        self.points_frame_id = ""
+
+    def optical_frames(self) -> dict[str, Pose]:
+        found = super().optical_frames()
+        if self.points_frame_id:
+            found[self.points_frame_id] = OPTICAL_POSE if self._is_cloud_optical else IDENTITY
+        return found
+
+    def _turned_from_frame(self) -> float:
+        """By how much the frame's axes are turned from optical ones [rad]; 0 where it is no link of the model."""
+        frame, (owner, _, _) = self._cloud_frame, self.scene.parent.rpartition("::")
+        links = [link for model in self.sim.models.values() for link in model.scene.all_links()]
+        named = [link for link in links if link.name == frame and link.scoped.rpartition("::")[0] == owner]
+        own = [link for link in links if link.scoped == self.scene.parent]
+        if not (named and own):
+            return 0.0
+        pose = named[0].pose_world.inverse() @ own[0].pose_world @ self.scene.pose_link @ OPTICAL_POSE
+        return 2 * math.acos(min(abs(float(pose.quaternion[0])), 1.0))
+
+
+def _locked(array: Depths | None) -> Depths | None:
+    """A view that cannot be written to: messages share the memory."""
+    if array is None:
+        return None
+    view = array.view()
+    view.flags.writeable = False
+    return view

@@ -1,0 +1,199 @@
+"""The colours of coloured label maps: those of Gazebo, which draws them from a generator seeded with the number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics
+from simkit.sensors.base import Product
+from simkit.sensors.cameras import image_messages, label_camera
+from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
+from simkit.sensors.cameras.label_camera import Keyword, LabelCamera, read_keyword
+from simkit.sensors.cameras.labelled_objects import LabelledObjects
+from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+
+Colour = tuple[int, int, int]
+
+BACKGROUND: Final[Colour] = (0, 0, 0)
+_FACTOR, _MODULUS = 16807, 2147483647
+_BUCKET: Final = (_MODULUS - 2) // 256
+
+
+def label_colours(numbers: Iterable[int]) -> dict[int, Colour]:
+    """A colour for each number, no two the same and none black.
+
+    Gazebo draws a number's red, green and blue one after the other from C++'s `default_random_engine`, seeded with
+    that number, through `uniform_int_distribution` from 0 to 255 (gz-rendering, Ogre2SegmentationMaterialSwitcher.cc):
+    with GNU's library Lehmer's generator with the factor 16807, in 256 equal parts. Where two numbers give one colour,
+    the later goes on drawing.
+    """
+    taken = {BACKGROUND}
+    found: dict[int, Colour] = {}
+    for number in numbers:
+        if number in found:
+            continue
+        draws = _random_channels(number)
+        colour = BACKGROUND
+        while colour in taken:
+            red, green, blue = islice(draws, 3)
+            colour = red, green, blue
+        taken.add(colour)
+        found[number] = colour
+    return found
+
+
+def _random_channels(seed: int) -> Iterator[int]:
+    """Numbers from 0 to 255."""
+    state = seed % _MODULUS or 1
+    while True:
+        state = state * _FACTOR % _MODULUS
+        part = (state - 1) // _BUCKET
+        if part < 256:
+            yield part
+
+
+Pixels = npt.NDArray[np.uint8]
+
+_SEGMENTATION_TYPE: Final = Keyword(
+    "segmentation_type", {"semantic": "semantic", "instance": "panoptic", "panoptic": "panoptic"}, "semantic"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentationOptions(CameraOptions):
+    """The `<camera>` block; depths, distances of clip planes and noise as of every camera, in m.
+
+    Attributes:
+        type: semantic tells labels, panoptic also tells things of one label apart.
+    """
+
+    type: str = "semantic"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Palette:
+    """What the pixels of each geom hold: bytes of four, the last for no geom, each as one number."""
+
+    labels: npt.NDArray[np.uint32]
+    colours: npt.NDArray[np.uint32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segmentation:
+    """What is seen.
+
+    Attributes:
+        geoms: the model's geom at each pixel, shape (h, w); -1 where there is none.
+        palette: what is written for each geom.
+        colours: the picture, shape (h, w, 3), where pictures are saved as well.
+    """
+
+    geoms: Ids
+    palette: Palette
+    colours: Pixels | None = None
+
+    @property
+    def labels(self) -> Pixels:
+        """The map of labels, shape (h, w, 3)."""
+        return _paint(self.palette.labels, self.geoms)
+
+    @property
+    def coloured(self) -> Pixels:
+        """The map of colours, shape (h, w, 3)."""
+        return _paint(self.palette.colours, self.geoms)
+
+
+class SegmentationCamera(LabelCamera):
+    """`segmentation_camera`: a map of labels and one of colours.
+
+    Semantic: the label in all three channels. Panoptic: red and green are the low and the high byte of the number of
+    the thing among those of its label, from 1; blue is the label. What has no label is 0, and black.
+    """
+
+    kinds = ("segmentation_camera", "segmentation")
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options: SegmentationOptions = extend_options(
+            self.options, SegmentationOptions, type=read_keyword(scene.params, _SEGMENTATION_TYPE)
+        )
+        self._palette: Palette | None = None
+        self._palette_of: LabelledObjects | None = None
+
+    def describe(self) -> dict[str, Any]:
+        return {**super().describe(), "segmentation_type": self.options.type}
+
+    def products(self) -> dict[str, Product]:
+        return {
+            "labels_map": Product(image_messages.IMAGE_TYPE, self._labels_message),
+            "colored_map": Product(image_messages.IMAGE_TYPE, self._colours_message),
+            "camera_info": self._info_product(),
+            "picture": self._picture_product(),
+        }
+
+    def default_topics(self) -> dict[str, str]:
+        base = self._default_topic("segmentation")
+        topics = {product: f"{base}/{product}" for product in ("labels_map", "colored_map")}
+        return {**topics, "camera_info": self._info_topic(base + "/labels_map")}
+
+    def shots(self) -> Sequence[Shot]:
+        view = self._aimed()
+        ids = Shot(view, ids=True)
+        return (Shot(view), ids) if self.options.save is not None else (ids,)
+
+    def saved(self) -> dict[str, str]:
+        return {
+            "picture": label_camera.IMAGE,
+            "colored_map": label_camera.COLOURS,
+            "labels_map": label_camera.LABELS,
+        }
+
+    def note(self, model: Any, data: Any) -> Palette:
+        items = self.items
+        if self._palette is None or items is not self._palette_of:
+            self._palette, self._palette_of = make_palette(items, self.options.type), items
+        return self._palette
+
+    def develop(self, films: Iterator[Film], notes: Palette) -> Segmentation:
+        colours = self._picture(next(films)) if self.options.save is not None else None
+        return Segmentation(np.array(self.seen(next(films))), notes, colours)
+
+    def _labels_message(self, reading: Segmentation, time_ns: int) -> Any:
+        return image_messages.image_message(self._image_header(time_ns), reading.labels, "rgb8")
+
+    def _colours_message(self, reading: Segmentation, time_ns: int) -> Any:
+        return image_messages.image_message(self._image_header(time_ns), reading.coloured, "rgb8")
+
+
+def make_palette(items: LabelledObjects, kind: str) -> Palette:
+    """What is written for each geom in a semantic or panoptic map."""
+    labels, instances = np.maximum(items.label_of, 0), items.instance_of
+    written = np.zeros((len(labels), 4), np.uint8)
+    if kind == "semantic":
+        numbers = labels
+        written[:, :3] = labels[:, None]
+    else:
+        numbers = np.where(labels > 0, labels * 65536 + instances % 65536, 0)
+        told = np.where(labels > 0, instances, 0)
+        written[:, 0], written[:, 1], written[:, 2] = told & 255, told >> 8 & 255, labels
+    found = {0: BACKGROUND, **label_colours(sorted({int(n) for n in numbers} - {0}))}
+    colours = np.zeros_like(written)
+    colours[:, :3] = [found[int(n)] for n in numbers]
+    return Palette(written.view(np.uint32)[:, 0], colours.view(np.uint32)[:, 0])
+
+
+def _paint(palette: npt.NDArray[np.uint32], geoms: Ids) -> Pixels:
+    import cv2
+
+    picked = palette.take(geoms, mode="wrap").view(np.uint8).reshape(*geoms.shape, 4)
+    return np.asarray(cv2.cvtColor(picked, cv2.COLOR_RGBA2RGB), dtype=np.uint8)

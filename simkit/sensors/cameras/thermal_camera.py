@@ -1,0 +1,208 @@
+"""Thermal cameras: how warm what is seen at each pixel is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.diagnostics import Diagnostics
+from simkit.pose import Vector
+from simkit.scene import Atmosphere
+from simkit.sensors.base import Product
+from simkit.sensors.cameras import image_messages
+from simkit.sensors.cameras.camera_options import CameraOptions, extend_options
+from simkit.sensors.cameras.rendered_camera import RenderedCamera
+from simkit.sensors.cameras.rendering.view import Film, Shot, View
+from simkit.sensors.cameras.temperature_map import Kelvins, TemperatureMap, make_temperature_map
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+_FINE, _COARSE = 0.01, 3.0
+"""[K] of one step, as in Gazebo, of pictures with 16 and with 8 bits."""
+
+_BITS_BY_FORMAT: Final = {"L8": 8, "L_INT8": 8, "L16": 16, "L_INT16": 16}
+_NEARER: Final = 0.1
+"""Gazebo does not cut away what is nearer than the near plane; this much of the way to it is cut away here."""
+
+
+@dataclass(frozen=True, slots=True)
+class ThermalOptions(CameraOptions):
+    """The `<camera>` block; distances of clip planes in m, noise as a part of the largest number of a pixel.
+
+    Attributes:
+        bits: of a pixel.
+        resolution: temperature [K] of one step.
+        coldest, hottest: what can be told [K].
+    """
+
+    bits: int = 16
+    resolution: float = _FINE
+    coldest: float = 0.0
+    hottest: float = math.inf
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ThermalState:
+    """What it needs to know of a state beside the picture.
+
+    Attributes:
+        views: place [m] and rotation of the camera in the frame of each surface with a picture of temperatures.
+    """
+
+    heat: TemperatureMap
+    views: tuple[tuple[Vector, Vector], ...]
+
+
+class ThermalCamera(RenderedCamera):
+    """`thermal_camera`: temperatures, as multiples of a resolution, in 16 bits or in 8.
+
+    What has a temperature of its own shows that, evenly or by its heat signature. All else, and the sky, has that of
+    the air; the colour of things shifts it a little, as in Gazebo: by half a span down for black, by half a span up for
+    white. The span is what the air's temperature gradient makes over the height of the view at its far plane.
+    """
+
+    kinds = ("thermal_camera", "thermal")
+    reads_temperatures = True
+    options: ThermalOptions
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        bits = _read_bits(scene, diagnostics)
+        resolution = _COARSE if bits == 8 else _FINE
+        self.options = extend_options(self.options, ThermalOptions, bits=bits, resolution=resolution)
+        self._heat: TemperatureMap | None = None
+        self._heat_of: tuple[Any, Any] = (None, None)
+
+    def describe(self) -> dict[str, Any]:
+        """Temperatures in K."""
+        options = self.options
+        return {**super().describe(), "thermal": {"bits": options.bits, "resolution": options.resolution}}
+
+    def set_temperatures(self, coldest: float, hottest: float, resolution: float | None = None) -> None:
+        """Says what it can tell [K]; a resolution of None stays as it is."""
+        old = self.options
+        self.options = replace(old, coldest=coldest, hottest=hottest, resolution=resolution or old.resolution)
+
+    def prepare(self) -> None:
+        air = self.sim.world.atmosphere or Atmosphere()
+        self._air = air.temperature
+        self._quirks = self.sim.world.gazebo_quirks
+        self._ways: Vector | None = None
+        self._span = abs(air.temperature_gradient) * self._height_of_view()
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        self._heat = None
+
+    def leave(self) -> None:
+        super().leave()
+        self._heat, self._heat_of = None, (None, None)
+
+    def _height_of_view(self) -> float:
+        """Of the frustum at its far plane [m]; Gazebo divides width by height in whole numbers (Sensors.cc)."""
+        model = self.options.model
+        aspect = model.width // model.height if self._quirks else model.width / model.height
+        half = math.tan(model.hfov / 2)
+        return 2.0 * model.far * (half / aspect if aspect else math.tan(math.pi / 2))
+
+    def products(self) -> dict[str, Product]:
+        return {"image": Product(image_messages.IMAGE_TYPE, self._thermal_message), "camera_info": self._info_product()}
+
+    def default_topics(self) -> dict[str, str]:
+        topic = self._default_topic("image")
+        return {"image": topic, "camera_info": self._info_topic(topic)}
+
+    # ------------------------------------------------------------------ measuring
+
+    def _aimed(self) -> View:
+        view = super()._aimed()
+        return replace(view, near=view.near * _NEARER)
+
+    def shots(self) -> Sequence[Shot]:
+        return (Shot(self._aimed(), ids=True),)
+
+    def look_around(self) -> TemperatureMap:
+        """What is how warm now."""
+        sim = self.sim
+        state, structure = sim.temperatures.state, sim.structure
+        if self._heat is None or self._heat_of[0] is not state or self._heat_of[1] is not structure:
+            self._heat = make_temperature_map(sim, self._air, self._span)
+            self._heat_of = state, structure
+            table = self._heat.table
+            if self._quirks:
+                table[-1] -= self._span / 2  # the sky is black
+                table[self._heat.is_source] = self._coarse(table[self._heat.is_source])
+        return self._heat
+
+    def note(self, model: Any, data: Any) -> ThermalState:
+        heat: TemperatureMap = self.around
+        views = []
+        if heat.surfaces:
+            position, rotation = self._frame_in_world(data)
+            for surface in heat.surfaces:
+                turn = data.xmat[surface.body].reshape(3, 3) @ surface.pose.matrix
+                place = data.xpos[surface.body] + data.xmat[surface.body].reshape(3, 3) @ surface.pose.position
+                views.append((turn.T @ (position - place), turn.T @ rotation))
+        return ThermalState(heat, tuple(views))
+
+    def develop(self, films: Iterator[Film], notes: ThermalState) -> Kelvins:
+        """Temperatures [K], shape (height, width)."""
+        film = next(films)
+        assert film.ids is not None
+        ids = self._distorter.bend_ids(film.ids) if self._distorter else film.ids
+        kelvins = notes.heat.table.take(ids, mode="wrap")
+        if notes.views:
+            self._wear(kelvins, ids, notes)
+        options = self.options
+        np.clip(kelvins, options.coldest, options.hottest, out=kelvins)
+        return kelvins
+
+    def _wear(self, kelvins: Kelvins, ids: npt.NDArray[np.int32], notes: ThermalState) -> None:
+        """Puts pictures of temperatures on what wears them."""
+        if self._ways is None:
+            x, y = self.options.model.directions()
+            ways = np.stack((np.ones_like(x), -x, -y), axis=-1).reshape(-1, 3)
+            self._ways = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        flat = kelvins.reshape(-1)
+        for place, pixels in notes.heat.seen(ids):
+            found = notes.heat.surfaces[place].temperatures(*notes.views[place], self._ways[pixels])
+            flat[pixels] = self._coarse(found) if self._quirks else found
+
+    def _coarse(self, kelvins: Kelvins) -> Kelvins:
+        """As Gazebo hands temperatures on: in 256 steps from 0 to the largest that a pixel can tell."""
+        full = self._largest() * self.options.resolution
+        coarse: Kelvins = np.rint(np.clip(kelvins / full, 0, 1) * 255).astype(np.float32) * np.float32(full / 255)
+        return coarse
+
+    def perturb(self, reading: Any, index: int) -> Any:
+        if self._noise.is_silent or self._quirks:  # Gazebo adds none
+            return reading
+        draws = self._noise.on_depths(np.zeros_like(reading), index)
+        return reading + draws * np.float32(self._largest() * self.options.resolution)
+
+    # ------------------------------------------------------------------ messages
+
+    def _largest(self) -> int:
+        return (1 << self.options.bits) - 1
+
+    def _thermal_message(self, reading: Kelvins, time_ns: int) -> Any:
+        options = self.options
+        steps = np.clip(np.rint(reading / np.float32(options.resolution)), 0, self._largest())
+        pixels = steps.astype(np.uint8 if options.bits == 8 else "<u2")
+        return image_messages.image_message(self._image_header(time_ns), pixels, f"mono{options.bits}")
+
+
+def _read_bits(scene: SceneSensor, diagnostics: Diagnostics) -> int:
+    """Of a pixel, by its format; 16 without one, and where it is another's, which is said."""
+    image = scene.params.block("camera").block("image")
+    asked = image.text("format", "").strip()
+    if asked and asked not in _BITS_BY_FORMAT:
+        message = f"<format> {asked!r} is not used by a thermal camera: its pictures are L16, or L8"
+        diagnostics.warning("SK-SENSOR-140", message, image.block("format").where)
+    return _BITS_BY_FORMAT.get(asked, 16)

@@ -1,0 +1,53 @@
+"""Cameras with wide lenses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from simkit.params import Params
+from simkit.sensors.cameras import image_messages
+from simkit.sensors.cameras.camera import Camera
+from simkit.sensors.cameras.camera_reading import CameraReading
+from simkit.sensors.cameras.cube_map import CubeMap
+from simkit.sensors.cameras.rendering.view import Film, Shot
+from simkit.sensors.cameras.wide_angle_lens import WideAngleModel, read_wide_angle_model
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+
+class WideAngleCamera(Camera):
+    """`wide_angle_camera`: up to all directions through one of SDF's lenses, black beyond its cutoff angle."""
+
+    kinds = ("wide_angle_camera", "wideanglecamera")
+
+    @staticmethod
+    def read_model(params: Params, width: int, height: int) -> WideAngleModel:
+        return read_wide_angle_model(params, width, height)
+
+    def attach(self, sim: Simulation) -> None:
+        super().attach(sim)
+        self._cube: CubeMap | None = None
+
+    def describe(self) -> dict[str, Any]:
+        found = super().describe()
+        model = self.options.model
+        assert isinstance(model, WideAngleModel)
+        found["camera"]["lens"] = model.lens.type
+        return found
+
+    def shots(self) -> Sequence[Shot]:
+        """What is drawn for one sample; found out at the first picture, since a lens takes a while."""
+        if self._cube is None:
+            model = self.options.model
+            assert isinstance(model, WideAngleModel)
+            self._cube = CubeMap(model)
+        return self._cube.shots
+
+    def develop(self, films: Iterator[Film], notes: Any) -> CameraReading:
+        assert self._cube is not None
+        colours = self._cube.develop(films, self._spare_colours.take())
+        return CameraReading(
+            image_messages.grey(colours) if image_messages.is_grey(self.options.encoding) else colours, None
+        )

@@ -1,0 +1,225 @@
+"""SDF's lens models: how far from the middle of the picture an angle off the optical axis is seen."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.sensors.cameras.camera_model import MAX_PIXELS, CameraModel, read_clip
+
+_NARROWEST = 0.001  # [rad]
+_ALL_ROUND = 6.2832  # [rad]; a file that says a whole turn in four digits says it
+_ALMOST = 1e-3  # [rad] short of a right angle, whose tangent is infinite
+_LEAST, _MOST = 1e-6, 1e6  # of the numbers of a custom function
+_INTRINSICS = 277.0, 277.0, 160.0, 120.0  # SDF's defaults [px]
+_TERMS = 4  # of the polynomial that ROS knows for wide lenses
+
+
+@dataclass(frozen=True, slots=True)
+class Lens:
+    """r = c1 · f · fun(θ / c2 + c3): an angle θ off the axis is seen r half widths from the middle.
+
+    Attributes:
+        type: SDF's name.
+        function: `sin`, `tan` or `id`.
+        cutoff: angle off the axis beyond which the picture is black [rad].
+    """
+
+    type: str
+    c1: float
+    c2: float
+    c3: float
+    f: float
+    function: str
+    cutoff: float = math.pi / 2
+
+    @property
+    def widest(self) -> float:
+        """Angle off the axis up to which r rises [rad]."""
+        if self.function == "id":
+            return math.pi
+        end = math.pi / 2 - (_ALMOST if self.function == "tan" else 0.0)
+        return min(math.pi, self.c2 * (end - self.c3))
+
+    def radius(self, angle: Vector) -> Vector:
+        """Distance from the middle [half widths] of an angle off the axis [rad]."""
+        argument = angle / self.c2 + self.c3
+        if self.function == "id":
+            return self.c1 * self.f * argument
+        return self.c1 * self.f * (np.sin(argument) if self.function == "sin" else np.tan(argument))
+
+    def angle(self, radius: Vector) -> Vector:
+        """Angle off the axis [rad] that is seen at a distance from the middle [half widths]; NaN where none is."""
+        value = radius / (self.c1 * self.f)
+        with np.errstate(invalid="ignore"):
+            if self.function == "sin":
+                value = np.arcsin(value)
+            elif self.function == "tan":
+                value = np.arctan(value)
+            angle = self.c2 * (value - self.c3)
+            return np.where((angle >= -1e-9) & (angle <= self.widest), np.maximum(angle, 0.0), np.nan)
+
+    def scaled_to(self, hfov: float) -> Lens:
+        """The same lens with the `f` that puts half of `hfov` [rad] on the left and right edge."""
+        unit = replace(self, f=1.0)
+        return replace(self, f=1.0 / float(unit.radius(np.array(hfov / 2))))
+
+
+LENSES: Final[Mapping[str, Lens]] = MappingProxyType(
+    {
+        name: Lens(name, c, c, 0.0, 1.0, function)
+        for name, c, function in (
+            ("gnomonical", 1.0, "tan"),
+            ("stereographic", 2.0, "tan"),
+            ("equidistant", 1.0, "id"),
+            ("equisolid_angle", 2.0, "sin"),
+            ("orthographic", 1.0, "sin"),
+        )
+    }
+)
+"""Lenses by SDF's names, unscaled."""
+
+
+@dataclass(frozen=True, slots=True)
+class WideAngleModel(CameraModel):
+    """A camera with any of SDF's lenses.
+
+    The focal lengths are those near the axis, and the principal point is the middle of the picture.
+
+    Attributes:
+        lens: scaled.
+        face_size: pixels along an edge of a face of the cube that the picture is made of; 0 has as many as it needs.
+        polynomial: k1 to k4 of ROS's `equidistant` model, closest to the lens.
+        given: fx, fy, cx, cy of `<intrinsics>`, which the picture does not follow, or SDF's defaults.
+    """
+
+    lens: Lens = LENSES["stereographic"]
+    face_size: int = 0
+    polynomial: tuple[float, ...] = (0.0,) * _TERMS
+    given: tuple[float, float, float, float] = _INTRINSICS
+
+    @property
+    def distortion_model(self) -> str:
+        """`plumb_bob` (without distortion) for a gnomonical lens, which is a pinhole, else `equidistant`."""
+        return "plumb_bob" if self.lens.type == "gnomonical" else "equidistant"
+
+    @property
+    def coefficients(self) -> Vector:
+        """D: k1, k2, k3, k4 of θ·(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸); five zeros for a gnomonical lens."""
+        return np.zeros(5) if self.lens.type == "gnomonical" else np.array(self.polynomial)
+
+    @property
+    def is_bent(self) -> bool:
+        return True
+
+    def offsets(self) -> tuple[Vector, Vector]:
+        """Of each pixel's middle from the picture's [half widths], to the right and downwards, (height, width)."""
+        across = (np.arange(self.width) + 0.5 - self.cx) * (2 / self.width)
+        down = (np.arange(self.height) + 0.5 - self.cy) * (2 / self.width)
+        x, y = np.meshgrid(across, down)
+        return x, y
+
+    def as_gazebo(self) -> CameraModel:
+        """What gz does with the same file: it passes over `<scale_to_hfov>` and `<cutoff_angle>`, and tells the
+        intrinsics of the file, or SDF's defaults, whatever the lens (gz-sensors, WideAngleCameraSensor.cc)."""
+        fx, fy, cx, cy = self.given
+        told = CameraModel(self.width, self.height, fx, fy, cx, cy, self.hfov, self.near, self.far)
+        lens = replace(self.lens, cutoff=math.pi / 2)
+        return replace(self, lens=lens.scaled_to(self.hfov) if self.hfov / 2 <= lens.widest else lens, told=told)
+
+
+def read_wide_angle_model(params: Params, width: int, height: int) -> WideAngleModel:
+    """The `<camera>` block's optics for an image of `width` by `height` [px]."""
+    block = params.block("lens")
+    lens, hfov = _read_lens(block), params.number("horizontal_fov", 1.047, minimum=_NARROWEST, maximum=_ALL_ROUND)
+    near, far = read_clip(params)
+    if block.boolean("scale_to_hfov", True):
+        lens, hfov = _scale_to_view(params, lens, hfov)
+    face_size = block.integer("env_texture_size", 0, minimum=8, maximum=MAX_PIXELS)
+    focal, polynomial, miss = _fit_equidistant(lens, width, height)
+    if miss > 0.5 and lens.type != "gnomonical":
+        message = f"CameraInfo describes the lens to within {miss:.1f} px only: ROS has four coefficients for it"
+        block.diagnostics.note("SK-SENSOR-102", message, block.where, "a smaller <cutoff_angle> lets them fit better")
+    distortion = params.child("distortion")
+    if distortion is not None:
+        distortion.mark_all_read()
+        message = "<distortion> is not used: a wide_angle_camera has its <lens>"
+        params.diagnostics.warning("SK-SENSOR-103", message, distortion.where, "Gazebo does not use it there either")
+    return WideAngleModel(
+        width, height, focal, focal, width / 2, height / 2, hfov, near, far,
+        lens=lens, face_size=face_size, polynomial=polynomial, given=_read_intrinsics(block),
+    )  # fmt: skip
+
+
+def _read_lens(block: Params) -> Lens:
+    """Unscaled."""
+    name = block.choice("type", (*LENSES, "custom", "gnomonic"), "stereographic")
+    name = "gnomonical" if name == "gnomonic" else name  # gz takes both
+    custom = block.child("custom_function")
+    if name == "custom":
+        source = custom or block.block("custom_function")
+        c1, c2, f = (source.number(key, 1.0, minimum=_LEAST, maximum=_MOST) for key in ("c1", "c2", "f"))
+        c3 = source.number("c3", 0.0, minimum=-_MOST, maximum=_MOST)
+        lens = Lens(name, c1, c2, c3, f, source.choice("fun", ("sin", "tan", "id"), "tan"))
+        if not (lens.widest > 0 and float(lens.radius(np.array(lens.widest))) > 0):
+            source.error("SK-PARAM-002", f"found c2 {c2:g} and c3 {c3:g}, allowed is a lens that sees something")
+            lens = LENSES["stereographic"]
+    else:
+        lens = LENSES[name]
+        if custom is not None:
+            custom.mark_all_read()
+            message = f"<custom_function> is not used: the lens is {name}"
+            block.diagnostics.warning("SK-SENSOR-103", message, custom.where, "<type>custom</type> uses it")
+    return replace(lens, cutoff=block.number("cutoff_angle", math.pi / 2, minimum=_NARROWEST, maximum=_ALL_ROUND))
+
+
+def _scale_to_view(params: Params, lens: Lens, hfov: float) -> tuple[Lens, float]:
+    """The lens that shows `hfov` [rad] across the picture, and what it is."""
+    if hfov / 2 > lens.widest + 1e-4 or not float(lens.radius(np.array(hfov / 2))) > 0:
+        found, widest = params.block("horizontal_fov"), 2 * lens.widest
+        message = f"found <horizontal_fov>{hfov:g}</horizontal_fov>, allowed for a lens of type {lens.type} is"
+        least = max(_NARROWEST, -2 * lens.c2 * lens.c3)
+        found.error("SK-PARAM-002", f"{message} a number from {least:.4g} to {widest:.4g}", "see <lens><type>")
+        hfov = widest
+    return lens.scaled_to(min(hfov, 2 * lens.widest)), hfov
+
+
+def _read_intrinsics(block: Params) -> tuple[float, float, float, float]:
+    intrinsics, projection = block.child("intrinsics"), block.child("projection")
+    for found in (intrinsics, projection):
+        if found is not None:
+            message = f"<{found.name}> is not used: <lens><type> and <horizontal_fov> say what a wide_angle_camera sees"
+            block.diagnostics.warning("SK-SENSOR-103", message, found.where, "Gazebo draws the picture so, too")
+            found.mark_all_read()
+    if intrinsics is None:
+        return _INTRINSICS
+    values = [intrinsics.number(key, value) for key, value in zip(("fx", "fy", "cx", "cy"), _INTRINSICS, strict=True)]
+    return values[0], values[1], values[2], values[3]
+
+
+def _fit_equidistant(lens: Lens, width: int, height: int) -> tuple[float, tuple[float, ...], float]:
+    """Focal length [px], k1 to k4 and the largest error [px] of ROS's `equidistant` model, which is OpenCV's `fisheye`:
+    an angle θ is seen focal · θ·(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸) from the middle.
+
+    J. Kannala and S. Brandt, IEEE Trans. Pattern Analysis and Machine Intelligence 28 (2006) 1335.
+    """
+    corner = float(lens.angle(np.array(math.hypot(width, height) / width)))
+    end = min(lens.cutoff, lens.widest, corner if math.isfinite(corner) else math.pi)
+    angles = np.linspace(0.0, end, 400)[1:]
+    radii = lens.radius(angles) * width / 2
+    if lens.function == "id" and lens.c3 == 0:
+        return float(radii[0] / angles[0]), (0.0,) * _TERMS, 0.0
+    tiny = end * 1e-4
+    focal = float(lens.radius(np.array(tiny)) - lens.radius(np.array(0.0))) / tiny * width / 2
+    powers = angles[:, None] ** np.arange(3, 3 + 2 * _TERMS, 2)
+    scale = powers[-1]
+    factors = np.linalg.lstsq(powers / scale, radii / focal - angles, rcond=None)[0]
+    miss = np.abs(powers / scale @ factors + angles - radii / focal).max() * focal
+    return focal, tuple(float(f) for f in factors / scale), float(miss)

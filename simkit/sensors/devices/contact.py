@@ -1,0 +1,280 @@
+"""Which collision a contact sensor names.
+
+In SDF that is a collision of the sensor's own link. A robot in URDF is turned into SDF by Gazebo first: links behind
+fixed joints become part of the link that carries them, and every collision gets a new name. Files are written with
+those names, so they are understood here too, although every link stays a link (sdformat, src/parser_urdf.cc).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.msgs.topics import valid_topic
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.runtime.contact.collision_contacts import CollisionTable, collision_table, find_contacts
+from simkit.scene import SceneCollision, SceneJoint, SceneLink, SceneModel
+from simkit.sensors.base import Product, Sensor
+from simkit.sensors.devices.contact_messages import contacts_message, states_message
+from simkit.sensors.devices.contact_reading import ContactReading, RawContacts
+from simkit.sensors.topics_and_frames import check_topic
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneSensor, SceneWorld
+
+
+_LUMPED_INFIX: Final = "_fixed_joint_lump__"
+_NUMBER_SUFFIX = re.compile(r"_\d+$")
+
+
+def find_collision(name: str, link: SceneLink, model: SceneModel) -> SceneCollision | None:
+    """The collision that a sensor on `link` means by `name`, or None.
+
+    Args:
+        model: the top-level model of the link.
+    """
+    for collision in link.collisions:
+        if collision.name == name or ("::" in name and f"::{collision.scoped}".endswith(f"::{name}")):
+            return collision
+    rigid = _RigidLinks(model)
+    carriers = list(rigid.carriers(link))
+    for carrier in carriers:
+        found = rigid.converted(carrier).get(name)
+        if found is not None:
+            return found
+    # the numbers count what Gazebo found on the lumped link, which a file may have wrong or from an older version
+    stem = _NUMBER_SUFFIX.sub("", name.rsplit(_LUMPED_INFIX, 1)[-1])
+    near = [c for base, c in rigid.lumped(carriers[-1]) if stem == f"{base}_collision"]
+    return near[0] if len(near) == 1 else None
+
+
+class _RigidLinks:
+    """The links of a model by the fixed joints between them."""
+
+    def __init__(self, model: SceneModel) -> None:
+        self._links = {link.scoped: link for link in model.all_links()}
+        self._above: dict[str, SceneJoint] = {}
+        self._below: dict[str, list[SceneJoint]] = {}
+        for joint in model.all_joints():
+            if joint.type == "fixed" and joint.child_link in self._links:
+                self._above.setdefault(joint.child_link, joint)
+                self._below.setdefault(joint.parent_link, []).append(joint)
+
+    def carriers(self, link: SceneLink) -> Iterator[SceneLink]:
+        """The link, the one that carries it over a fixed joint, and so on."""
+        seen: set[str] = set()
+        at: SceneLink | None = link
+        while at is not None and at.scoped not in seen:
+            seen.add(at.scoped)
+            yield at
+            above = self._above.get(at.scoped)
+            at = self._links.get(above.parent_link) if above is not None and at.name != "world" else None
+            if at is not None and at.name == "world":
+                return
+
+    def lumped(self, link: SceneLink, seen: frozenset[str] = frozenset()) -> Iterator[tuple[str, SceneCollision]]:
+        """Its collisions and those of all that it carries rigidly, in Gazebo's order, each with the base of its name.
+
+        The children come in the order of their joints' names.
+        """
+        seen |= {link.scoped}
+        for collision in link.collisions:
+            is_unnamed = re.fullmatch(rf"{re.escape(link.name)}_collision(_\d+)?", collision.name)
+            yield (link.name if is_unnamed else collision.name), collision
+        for joint in sorted(self._below.get(link.scoped, ()), key=lambda j: j.name):
+            if joint.child_link not in seen:
+                yield from self.lumped(self._links[joint.child_link], seen)
+
+    def converted(self, root: SceneLink) -> dict[str, SceneCollision]:
+        """The collisions by the names that they have in Gazebo if `root` is what carries them all."""
+        found: dict[str, SceneCollision] = {}
+        for number, (base, collision) in enumerate(self.lumped(root)):
+            name = f"{base}_collision" + (f"_{number}" if number else "")
+            found.setdefault(name if name.startswith(root.name) else f"{root.name}{_LUMPED_INFIX}{name}", collision)
+        return found
+
+
+CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
+STATES: Final = "gazebo_msgs/msg/ContactsState"
+_WORLD_FRAMES = ("", "world", "map")
+_PHYSICS_PLUGIN = "physics-system"
+
+
+@dataclass(frozen=True, slots=True)
+class ContactOptions:
+    """The `<contact>` block.
+
+    Attributes:
+        collisions: as the file names them, each with its place.
+        topic: as given, or empty.
+    """
+
+    collisions: tuple[tuple[str, Where], ...]
+    topic: str
+
+
+def read_options(params: Params) -> ContactOptions:
+    block = params.block("contact")
+    named: dict[str, Where] = {}
+    for collision in block.all("collision"):
+        named.setdefault(collision.attribute("name") or collision.value, collision.where)
+    collisions = tuple((name, where) for name, where in named.items() if name)
+    topic = block.text("topic", "").replace("__default_topic__", "")
+    check_topic(topic, block)
+    return ContactOptions(collisions, topic)
+
+
+class Contact(Sensor):
+    """`contact`: the contacts of collisions of its link, told where there are any.
+
+    It has no noise: `truth` is the same message.
+
+    Attributes:
+        collisions: scoped names of what it watches, in the order of the file.
+    """
+
+    kinds = ("contact",)
+    example = "<contact><collision>c</collision></contact>"
+    needs_acceleration = True  # what pushed in the last step is part of what presses
+    reads_contacts = True
+    is_deferred = True
+    options: ContactOptions
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = read_options(scene.params)
+        self.collisions: tuple[str, ...] = ()
+        self._states_frame: str | None = None
+
+    def describe(self) -> dict[str, Any]:
+        return {"contact": {"collisions": [name for name, _ in self.options.collisions]}}
+
+    def build(self, builder: SpecBuilder) -> None:
+        """Finds the collisions; reports those that are not there."""
+        model = builder.records[self.scene.parent.split("::")[0]].scene
+        link = next((one for one in model.all_links() if one.scoped == self.scene.parent), None)
+        if link is None:
+            return  # on a joint, which is an error already
+        listed = [c.name for c in link.collisions]
+        has = f"; the link has: {', '.join(map(repr, listed))}" if listed else "; the link has none"
+        found: dict[str, None] = {}
+        for name, where in self.options.collisions:
+            collision = find_collision(name, link, model)
+            if collision is None:
+                message = f"contact sensor {self.scoped!r}: its link has no collision {name!r}{has}"
+                self.diagnostics.warning("SK-SENSOR-040", message, where, self._hint(name, listed, model))
+            else:
+                found[collision.scoped] = None
+        self.collisions = tuple(found)
+        if not self.options.collisions:
+            message = f"contact sensor {self.scoped!r} names no <collision>; it feels nothing, as in Gazebo{has}"
+            self.diagnostics.warning("SK-SENSOR-041", message, self.scene.where, "name each: <contact><collision>...")
+
+    def _hint(self, name: str, listed: Collection[str], model: SceneModel) -> str:
+        near = did_you_mean(name, listed)
+        others = (link for link in model.all_links() if link.scoped != self.scene.parent)
+        other = next((link for link in others if any(c.name == name for c in link.collisions)), None)
+        if near or other is None:
+            return near
+        return f"link {other.scoped!r} has one of that name: a sensor feels only what its own link touches"
+
+    def prepare(self) -> None:
+        self._quirks = bool(self.sim.world.gazebo_quirks)
+        if self._quirks:
+            self.update_rate = 0.0  # Gazebo tells of contacts at every step, whatever <update_rate> says
+        self._is_named = _includes_entity_names(self.sim.world)
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        self._numbers: CollisionTable = collision_table(compiled)
+        self._mine = self._numbers.mask(self.collisions)
+        known = {name: number for number, name in enumerate(self._numbers.names)}
+        self._order = {known[name]: place for place, name in enumerate(self.collisions) if name in known}
+        self._centres = {number: self._centre_of(self._numbers.names[number], compiled) for number in self._order}
+        self._frame = self._find_frame(compiled.names)
+
+    def _centre_of(self, collision: str, compiled: Any) -> tuple[int, Vector]:
+        """Body, and centre of mass in its frame, of a collision's link."""
+        link = compiled.names.link(collision.rsplit("::", 1)[0])
+        return int(link.body), link.offset.transform(link.scene.inertial.com)
+
+    # ------------------------------------------------------------------ what Classic's bumper tells
+
+    def tell_states(self, topic: str, frame: str) -> bool:
+        """Publishes `ContactsState` instead, at every sample; False where there is no link of that name (yet).
+
+        Args:
+            frame: link that everything is told in the frame of, or `world`. While there is none it is the world.
+        """
+        self._states_frame = frame.strip("/")
+        self.update_rate = self.scene.rate
+        self._frame = self._find_frame(self.sim.names)
+        self.publish_on({"states": topic})
+        return self._frame is not None or self._states_frame in _WORLD_FRAMES
+
+    def _find_frame(self, names: Any) -> tuple[int, Vector, Vector] | None:
+        """Body, position and rotation in it of the link that states are told in; None for the world."""
+        frame = self._states_frame
+        if frame is None or frame in _WORLD_FRAMES or self._quirks:
+            return None
+        found = [scoped for scoped in names.links if f"::{scoped}".endswith(f"::{frame}")]
+        own = self.scene.parent.split("::")[0] + "::"
+        found.sort(key=lambda scoped: not scoped.startswith(own))
+        if not found:
+            return None
+        link = names.link(found[0])
+        return int(link.body), link.offset.position, link.offset.matrix
+
+    # ------------------------------------------------------------------ readings
+
+    def products(self) -> dict[str, Product]:
+        return {"contacts": Product(CONTACTS, self._contacts), "states": Product(STATES, self._states)}
+
+    def default_topics(self) -> dict[str, str]:
+        given = self.options.topic
+        return {"contacts": valid_topic(given) if given else self._default_topic("contact")}
+
+    def tells(self, product: str, raw: RawContacts) -> bool:
+        return product == "states" or raw.touches is not None
+
+    def measure(self, model: Any, data: Any) -> ContactReading:
+        return self.finish(self.capture(model, data))
+
+    def capture(self, model: Any, data: Any) -> RawContacts:
+        """The engine's contacts, and where the links are that a bumper's states need."""
+        found = find_contacts(model, data, self._mine)
+        if self._states_frame is None:
+            return RawContacts(found, self._numbers, self._order)
+        centres = {
+            number: data.xpos[body] + data.xmat[body].reshape(3, 3) @ centre
+            for number, (body, centre) in (self._centres.items() if found is not None else ())
+        }
+        if self._frame is None:
+            keeps_name = self._quirks or self._states_frame in _WORLD_FRAMES
+            frame = self._states_frame if keeps_name and self._states_frame else "world"
+            return RawContacts(found, self._numbers, self._order, centres, frame)
+        body, position, rotation = self._frame
+        axes = data.xmat[body].reshape(3, 3)
+        origin = data.xpos[body] + axes @ position
+        return RawContacts(found, self._numbers, self._order, centres, self._states_frame, origin, axes @ rotation)
+
+    def finish(self, raw: RawContacts) -> ContactReading:
+        return raw.reading()
+
+    def _contacts(self, reading: ContactReading, time_ns: int) -> Any:
+        return contacts_message(reading, msgs.header(time_ns, self.frame_id), self._is_named)
+
+    def _states(self, reading: ContactReading, time_ns: int) -> Any:
+        return states_message(reading, msgs.header(time_ns, reading.frame_id))
+
+
+def _includes_entity_names(world: SceneWorld) -> bool:
+    """`<include_entity_names>` of the Physics system that the world lists; Gazebo then tells only ids."""
+    physics = (p for p in world.plugins if p.name.endswith("::Physics") or _PHYSICS_PLUGIN in p.filename)
+    return all(p.params.block("contacts").boolean("include_entity_names", True) for p in physics)

@@ -1,0 +1,120 @@
+"""What a contact sensor reads: the engine's contacts, sorted by pairs of collisions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from simkit.pose import Vector
+from simkit.runtime.contact.collision_contacts import CollisionContacts, CollisionTable
+
+_ORIGIN, _AXES = np.zeros(3), np.eye(3)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactPair:
+    """What one collision of the sensor and another collision have in common, at k points; world frame.
+
+    Attributes:
+        collision1, collision2: scoped names, the sensor's own first.
+        ids: their numbers in the world of the moment, from 1.
+        positions: [m], shape (k, 3).
+        normals: unit vectors towards collision1, shape (k, 3).
+        depths: how deep they are in each other [m], shape (k,).
+        forces: on collision1 [N], shape (k, 3).
+        torques: on collision1 about the point [N·m], of its friction against spinning and rolling, shape (k, 3).
+        centre: centre of mass of the link of collision1 [m], shape (3,).
+    """
+
+    collision1: str
+    collision2: str
+    ids: tuple[int, int]
+    positions: Vector
+    normals: Vector
+    depths: Vector
+    forces: Vector
+    torques: Vector
+    centre: Vector
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactReading:
+    """All that the sensor's collisions touch.
+
+    Attributes:
+        pairs: by the sensor's collisions in the order of the file, then by the others in that of the world.
+        origin, axes: [m] and rotation matrix of the frame that `ContactsState` is told in.
+        frame_id: of that frame.
+    """
+
+    pairs: tuple[ContactPair, ...]
+    origin: Vector
+    axes: Vector
+    frame_id: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawContacts:
+    """What is taken from the engine at a sample.
+
+    Attributes:
+        touches: None where nothing touches.
+        collisions: those of the model at that time.
+        order: places in the file of the sensor's collisions, by number.
+        centres: centre of mass of their links, by number; where states are wanted.
+        frame_id, origin, axes: of the frame that states are told in; None for the world's.
+    """
+
+    touches: CollisionContacts | None
+    collisions: CollisionTable
+    order: Mapping[int, int]
+    centres: Mapping[int, Vector] | None = None
+    frame_id: str = "world"
+    origin: Vector | None = None
+    axes: Vector | None = None
+
+    def reading(self) -> ContactReading:
+        """What it means."""
+        pairs = () if self.touches is None else _group_by_pair(self, self.touches)
+        origin = _ORIGIN if self.origin is None else self.origin
+        return ContactReading(pairs, origin, _AXES if self.axes is None else self.axes, self.frame_id)
+
+
+def _group_by_pair(raw: RawContacts, found: CollisionContacts) -> tuple[ContactPair, ...]:
+    """The contacts by pairs of collisions; one between two collisions of the sensor is told of each."""
+    order, names = raw.order, raw.collisions.names
+    sides: list[tuple[int, int, int, int, float]] = []
+    for row, (first, second) in enumerate(raw.collisions.of_geom.take(found.geoms).tolist()):
+        # frames and wrenches are those of the engine's second geom
+        if second in order:
+            sides.append((order[second], first, second, row, 1.0))
+        if first in order:
+            sides.append((order[first], second, first, row, -1.0))
+    sides.sort()
+    rows, sign = [s[3] for s in sides], np.array([s[4] for s in sides])[:, None]
+    positions, depths, frames = found.positions[rows], found.depths[rows], found.frames[rows]
+    normals = frames[:, 0] * sign
+    # a row vector times a matrix whose rows are the axes: into the world
+    wrenches = (found.wrenches[rows] * sign).reshape(-1, 2, 3) @ frames
+    pairs, start = [], 0
+    while start < len(sides):
+        _, other, own, *_ = sides[start]
+        end = next((i for i in range(start, len(sides)) if sides[i][1:3] != (other, own)), len(sides))
+        k = slice(start, end)
+        pairs.append(
+            ContactPair(
+                collision1=names[own],
+                collision2=names[other] if other >= 0 else "",
+                ids=(own + 1, other + 1),
+                positions=positions[k],
+                normals=normals[k],
+                depths=depths[k],
+                forces=wrenches[k, 0],
+                torques=wrenches[k, 1],
+                centre=_ORIGIN if raw.centres is None else raw.centres[own],
+            )
+        )
+        start = end
+    return tuple(pairs)

@@ -1,0 +1,241 @@
+"""Joint encoders: where a joint stands, in counts, and how fast it moves, told from the counts or measured."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import mujoco
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.runtime.handles.joint_mechanics import joint_position, joint_velocity
+from simkit.sensors.base import Product, Sensor
+from simkit.sensors.noise import NoiseModel, quantise, read_noise
+
+if TYPE_CHECKING:
+    from simkit.compiler import SpecBuilder
+    from simkit.scene import SceneSensor
+
+TYPE = "sensor_msgs/msg/JointState"
+_ROTARY_TYPES = ("revolute", "continuous", "universal", "revolute2", "ball", "screw")
+_LINEAR_TYPES = ("prismatic", "planar")
+_WIDTHS = {"universal": 2, "revolute2": 2, "ball": 3, "planar": 3}
+
+CountMark = tuple[int, Vector, int, Any]  # time [ns], position, sample, and the noise of positions at that sample
+
+
+@dataclass(frozen=True, slots=True)
+class EncoderOptions:
+    """The `<encoder>` block, of our own.
+
+    Attributes:
+        resolution: of a position [rad or m per count]; 0 counts nothing.
+        absolute: whether positions are those of the joint; else from where it stood at the start.
+        from_counts: whether the velocity is told from the counts; else it is the joint's own.
+        window: shortest time [s] between the two counts that give a velocity; 0 is one sample.
+        velocity_resolution: [rad/s or m/s] per count; 0 counts nothing.
+        position_noise, velocity_noise: on every axis, before it is counted [rad and rad/s, or m and m/s].
+    """
+
+    resolution: float
+    absolute: bool
+    from_counts: bool
+    window: float
+    velocity_resolution: float
+    position_noise: NoiseModel
+    velocity_noise: NoiseModel
+
+
+@dataclass(frozen=True, slots=True)
+class JointReading:
+    """Positions [rad or m] and velocities [rad/s or m/s], one number per degree of freedom."""
+
+    position: Vector
+    velocity: Vector
+
+
+def read_options(params: Params) -> EncoderOptions:
+    block = params.block("encoder")
+    resolution = block.number("resolution", 0.0, minimum=0)
+    if block.has("counts_per_revolution"):
+        counts = block.number("counts_per_revolution", 1.0, minimum=1)
+        if block.has("resolution"):
+            block.error("SK-PARAM-002", "found <resolution> and <counts_per_revolution>, allowed is one of them")
+        resolution = 2 * math.pi / counts
+    velocity = block.block("velocity")
+    return EncoderOptions(
+        resolution=resolution,
+        absolute=block.boolean("absolute", True),
+        from_counts=velocity.choice("source", ("counts", "joint"), "counts") == "counts",
+        window=velocity.number("window", 0.0, minimum=0, maximum=60.0),
+        velocity_resolution=velocity.number("resolution", 0.0, minimum=0),
+        position_noise=read_noise(block.block("position")),
+        velocity_noise=read_noise(velocity),
+    )
+
+
+class Encoder(Sensor):
+    """`encoder` (`<sensor type="custom" gz:type="encoder">`), under a joint: its position and velocity.
+
+    A position is the nearest count to the true one with its noise. A velocity is told from two counts, as a drive does
+    that has nothing else, or is the joint's own with noise and resolution of its own. The truth is not counted.
+    """
+
+    kinds = ("encoder",)
+    example = "<encoder><counts_per_revolution>4096</counts_per_revolution></encoder>"
+    belongs_to = ("joint",)
+    options: EncoderOptions
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = read_options(scene.params)
+
+    def describe(self) -> dict[str, Any]:
+        """What it counts in."""
+        return {"encoder": {"resolution": self.options.resolution, "absolute": self.options.absolute}}
+
+    def build(self, builder: SpecBuilder) -> None:
+        joint = builder.names.joints.get(self.scene.parent)
+        if joint is None:  # left out for a fault of its own, which is said already
+            return
+        where = self.scene.where
+        if joint.type not in (*_ROTARY_TYPES, *_LINEAR_TYPES):
+            message = f"sensor {self.scoped!r}: there is nothing to count on a {joint.type} joint"
+            self.diagnostics.error("SK-SENSOR-051", message, where, "an encoder is for a joint that turns or slides")
+        elif joint.type in _LINEAR_TYPES and self.scene.params.block("encoder").has("counts_per_revolution"):
+            message = f"sensor {self.scoped!r}: <counts_per_revolution> of a {joint.type} joint, which slides"
+            self.diagnostics.error("SK-SENSOR-051", message, where, "give it a <resolution> in metres")
+
+    def prepare(self) -> None:
+        options, joint = self.options, self.sim.names.joint(self.scene.parent)
+        width = _WIDTHS.get(joint.type, 1)
+        self._names = [joint.scene.name] if width == 1 else [f"{joint.scene.name}[{i}]" for i in range(width)]
+        self._is_ball = joint.type == "ball"
+        self._joint, self._width = joint, width
+        self._start = np.zeros(width) if options.absolute else self._position_in(self.sim.mj_data)
+        self._step = np.full(width, options.resolution)
+        self._velocity_step = np.full(width, options.velocity_resolution)
+        self._position_noise = self._make_noise([options.position_noise] * width, "position")
+        self._velocity_noise = self._make_noise([options.velocity_noise] * width, "velocity")
+        self._track: CountHistory | None = None
+        if options.from_counts:
+            # last, so that the noise of a sample has moved on before its position is read
+            self._track = self._add_noise(CountHistory(self, round(options.window * 1e9)))
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        self._joint = compiled.names.joint(self.scene.parent)
+        if not self._joint.dofs:
+            message = f"sensor {self.scoped!r} reads zero: the links of joint {self._joint.scoped!r} never move"
+            self.diagnostics.warning("SK-SENSOR-050", message, self.scene.where)
+
+    def products(self) -> dict[str, Product]:
+        return {"encoder": Product(TYPE, self._message_of)}
+
+    def default_topics(self) -> dict[str, str]:
+        return {"encoder": self._default_topic("encoder")}
+
+    def measure(self, model: Any, data: Any) -> JointReading:
+        position = self._position_in(data)
+        velocity = joint_velocity(self._joint, data) if self._joint.dofs else np.zeros(self._width)
+        return JointReading(position if self.options.absolute else self.change(self._start, position), velocity)
+
+    def perturb(self, reading: JointReading, index: int) -> JointReading:
+        velocity = reading.velocity
+        if self._track is not None:
+            position, velocity = self._track.told()
+        else:
+            position = self._counted(reading.position, index)
+        if not self._velocity_noise.is_silent:
+            velocity = self._velocity_noise.apply(velocity, index)
+        return JointReading(position, quantise(velocity, self._velocity_step))
+
+    def mark(self, index: int) -> CountMark:
+        """What is needed to tell the position of this tick, as sample `index`, at any time."""
+        position = self._position_in(self.sim.mj_data)
+        return self.sim.time_ns, position, index, self._position_noise.state
+
+    def read(self, mark: CountMark) -> Vector:
+        """The position of a mark, in counts."""
+        _, position, index, state = mark
+        noise = self._position_noise
+        now, noise.state = noise.state, state
+        told = self._counted(position if self.options.absolute else self.change(self._start, position), index)
+        noise.state = now
+        return told
+
+    def change(self, before: Vector, after: Vector) -> Vector:
+        """From one position to another; of a ball joint the rotation vector between the two attitudes."""
+        if not self._is_ball:
+            return after - before
+        first, second, turn = np.empty(4), np.empty(4), np.empty(3)
+        unit = np.array((1.0, 0.0, 0.0, 0.0))
+        first[:], second[:] = unit, unit
+        mujoco.mju_quatIntegrate(first, before, 1.0)
+        mujoco.mju_quatIntegrate(second, after, 1.0)
+        mujoco.mju_subQuat(turn, second, first)
+        return turn
+
+    def _position_in(self, data: Any) -> Vector:
+        return joint_position(self._joint, data) if self._joint.dofs else np.zeros(self._width)
+
+    def _counted(self, position: Vector, index: int) -> Vector:
+        if not self._position_noise.is_silent:
+            position = self._position_noise.apply(position, index)
+        return quantise(position, self._step)
+
+    def _message_of(self, reading: JointReading, time_ns: int) -> Any:
+        header = msgs.header(time_ns, self.frame_id)
+        # each message its own arrays: who receives one may keep or change it
+        values = reading.position.copy(), reading.velocity.copy(), np.zeros(0)
+        return msgs.type_of(TYPE)(header, list(self._names), *values)
+
+
+class CountHistory:
+    """What an encoder remembers of its last counts; kept like the state of its noise, sample by sample.
+
+    Args:
+        encoder: whose.
+        window: shortest time [ns] between the two counts that give a velocity.
+
+    Attributes:
+        state: the marks that are still needed, the newest last; never written to, only replaced.
+    """
+
+    wanders: ClassVar[bool] = True
+
+    def __init__(self, encoder: Encoder, window: int) -> None:
+        self._encoder, self._window = encoder, window
+        self.state: tuple[CountMark, ...] = ()
+
+    def told(self) -> tuple[Vector, Vector]:
+        """The newest position, and the change to it from the oldest, per second; 0 where there is but one."""
+        first, last = self.state[0], self.state[-1]
+        position = self._encoder.read(last)
+        if first is last:
+            return position, np.zeros(len(position))
+        return position, self._encoder.change(self._encoder.read(first), position) / ((last[0] - first[0]) * 1e-9)
+
+    def evolve(self, index: int, dt: float) -> None:
+        """Adds the mark of sample `index`, and drops those that are older than the window needs."""
+        mark = self._encoder.mark(index)
+        now, marks = mark[0], (*self.state, mark)
+        first = max((k for k in range(len(marks) - 1) if now - marks[k][0] >= self._window), default=0)
+        self.state = marks[first:]
+
+    def restart(self) -> None:
+        self.state = ()
+
+    def set_interval(self, interval: float) -> None:
+        """Its samples tell their own time."""
+
+    def memory(self) -> Any:
+        return self.state
+
+    def remember(self, memory: Any) -> None:
+        self.state = memory

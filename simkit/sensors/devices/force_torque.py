@@ -1,0 +1,160 @@
+"""Force and torque that pass through a joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.runtime.handles.joint_mechanics import torque_about, transmitted_wrench
+from simkit.sensors.base import Product, Sensor
+from simkit.sensors.noise import Noise, ThreeAxes, read_axes
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+TYPE = "geometry_msgs/msg/WrenchStamped"
+_TYPES = TYPE, "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3"
+
+
+@dataclass(frozen=True, slots=True)
+class ForceTorqueOptions:
+    """The `<force_torque>` block.
+
+    Attributes:
+        frame: whose axes it is in, `parent`, `child` (links) or `sensor`; it is about the sensor's origin in all.
+        from_parent: the wrench by the parent on the child; else its opposite.
+        force, torque: noise per axis [N, N·m].
+    """
+
+    frame: str
+    from_parent: bool
+    force: ThreeAxes
+    torque: ThreeAxes
+
+
+@dataclass(frozen=True, slots=True)
+class Wrench:
+    """Force [N] and torque [N·m], shape (3,) each."""
+
+    force: Vector
+    torque: Vector
+
+
+def read_options(params: Params) -> ForceTorqueOptions:
+    block = params.block("force_torque")
+    direction = block.choice("measure_direction", ("child_to_parent", "parent_to_child"), "child_to_parent")
+    return ForceTorqueOptions(
+        frame=block.choice("frame", ("child", "parent", "sensor"), "child"),
+        from_parent=direction == "parent_to_child",
+        force=read_axes(block.block("force")),
+        torque=read_axes(block.block("torque")),
+    )
+
+
+class ForceTorque(Sensor):
+    """`force_torque`, under a joint: what the parent link does to the child link through it, or the opposite.
+
+    The torque is about the sensor's origin. Gazebo's formula gives that only where the sensor is not turned against the
+    joint frame or stands in its origin; a world with `<gazebo_quirks>` errs as it does.
+    """
+
+    kinds = ("force_torque",)
+    example = "<force_torque/>"
+    belongs_to = ("joint",)
+    has_dynamic_bias = True
+    needs_acceleration = True
+    # a load that sleeps on something that never moves would weigh nothing
+    reads_contacts = True
+    options: ForceTorqueOptions
+    noise: Noise
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = read_options(scene.params)
+
+    def describe(self) -> dict[str, Any]:
+        """Frame and direction."""
+        direction = "parent_to_child" if self.options.from_parent else "child_to_parent"
+        return {"force_torque": {"frame": self.options.frame, "measure_direction": direction}}
+
+    def prepare(self) -> None:
+        self.noise = self._make_noise((*self.options.force, *self.options.torque), "force_torque")
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        names = compiled.names
+        joint = self._joint = names.joint(self.scene.parent)
+        if joint.moved_body <= 0:
+            message = f"sensor {self.scoped!r} reads zero: joint {joint.scoped!r} ({joint.type}) carries nothing"
+            why = "a floating joint and a gearbox bind no body, and between links that never move nothing is computed"
+            self.diagnostics.warning("SK-SENSOR-050", message, self.scene.where, why)
+        self._link = names.link(joint.scene.child_link)
+        # the axes that the wrench is given in: a body's, turned; None: the world's
+        frame = self.options.frame
+        of = names.links.get(joint.scene.parent_link) if frame == "parent" else self._link
+        self._axes_body = of.body if of is not None else 0
+        self._axes_turn: Vector = np.eye(3) if of is None else of.offset.matrix
+        if frame == "sensor":
+            self._axes_turn = self._offset_rotation
+        # for Gazebo's formula: the joint frame in the child link's body
+        self._joint_frame = self._link.offset @ joint.pose_child
+        self._is_turned = not np.array_equal(self._axes_turn, np.eye(3))
+        self._viewed: Any = None
+
+    def products(self) -> dict[str, Product]:
+        return {"forcetorque": Product(TYPE, self._message_of)}
+
+    def default_topics(self) -> dict[str, str]:
+        return {"forcetorque": self._default_topic("forcetorque")}
+
+    def measure(self, model: Any, data: Any) -> Wrench:
+        if data is not self._viewed:
+            self._look_at(model, data)
+        if self.sim.world.gazebo_quirks or self._joint.moved_body <= 0:
+            force, torque = self._forces(model, data)
+        else:  # `transmitted_wrench`, of what is looked at
+            wrench = -self._wrench if self._joint.is_reversed else self._wrench
+            force, torque = wrench[3:], torque_about(wrench, self._centre, self._place + self._attitude @ self._arm)
+        axes = self._axes @ self._axes_turn if self._is_turned else self._axes
+        if not self.options.from_parent:
+            axes = -axes
+        return Wrench(force @ axes, torque @ axes)
+
+    def _look_at(self, model: Any, data: Any) -> None:
+        """Chooses what a measurement is made of: views of the data, which are got once."""
+        self._viewed, body, moved = data, self._body, max(self._joint.moved_body, 0)
+        self._wrench, self._centre = data.cfrc_int[moved], data.subtree_com[model.body_rootid[moved]]
+        self._place, self._attitude = data.xpos[body], data.xmat[body].reshape(3, 3)
+        self._arm, self._axes = self._offset_position, data.xmat[self._axes_body].reshape(3, 3)
+
+    def _forces(self, model: Any, data: Any) -> tuple[Vector, Vector]:
+        """What passes through the joint, about the sensor's origin, world axes."""
+        if self.sim.world.gazebo_quirks:
+            return self._as_gazebo(model, data)
+        return transmitted_wrench(model, data, self._joint, self._place + self._attitude @ self._arm)
+
+    def _as_gazebo(self, model: Any, data: Any) -> tuple[Vector, Vector]:
+        """The same, the lever arm taken in the joint's axes though the force is in the sensor's, world axes."""
+        body = data.xmat[self._body].reshape(3, 3)
+        origin = data.xpos[self._body] + body @ self._joint_frame.position
+        force, torque = transmitted_wrench(model, data, self._joint, origin)
+        turn = body @ self._offset_rotation
+        arm = (self._offset_position - self._joint_frame.position) @ self._joint_frame.matrix
+        return force, torque - turn @ np.cross(arm, force @ turn)
+
+    def perturb(self, reading: Wrench, index: int) -> Wrench:
+        if self.noise.is_silent:
+            return reading
+        values = self.noise.apply(np.concatenate((reading.force, reading.torque)), index)
+        return Wrench(values[:3], values[3:])
+
+    def _message_of(self, reading: Wrench, time_ns: int) -> Any:
+        stamped, wrench, vector = msgs.types_of(*_TYPES)
+        force, torque = vector(*reading.force.tolist()), vector(*reading.torque.tolist())
+        return stamped(msgs.header(time_ns, self.frame_id), wrench(force, torque))

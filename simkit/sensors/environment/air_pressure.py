@@ -1,0 +1,88 @@
+"""Barometer: the static pressure of the air at the sensor's height."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.sensors.base import Product
+from simkit.sensors.environment.air_sensor import AirSensor
+from simkit.sensors.noise import Noise, NoiseModel, read_noise
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+TYPE = "sensor_msgs/msg/FluidPressure"
+
+
+@dataclass(frozen=True, slots=True)
+class AirPressureOptions:
+    """The `<air_pressure>` block.
+
+    Attributes:
+        reference_altitude: height of the world's origin above sea level [m].
+        pressure: noise [Pa].
+    """
+
+    reference_altitude: float
+    pressure: NoiseModel
+
+
+def read_options(params: Params) -> AirPressureOptions:
+    block = params.block("air_pressure")
+    altitude = block.number("reference_altitude", 0.0, minimum=-1e9, maximum=1e9)
+    return AirPressureOptions(altitude, read_noise(block.block("pressure")))
+
+
+class AirPressure(AirSensor):
+    """`air_pressure`: the pressure of the world's `<atmosphere>` at the height of the sensor's origin."""
+
+    kinds = ("air_pressure",)
+    example = "<air_pressure/>"
+    options: AirPressureOptions
+    noise: Noise
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = read_options(scene.params)
+
+    def describe(self) -> dict[str, Any]:
+        """Height of the origin that the file gives [m], standard deviation [Pa]."""
+        options = self.options
+        altitude, stddev = options.reference_altitude, options.pressure.stddev
+        return {"air_pressure": {"reference_altitude": altitude, "pressure_stddev": stddev}}
+
+    def prepare(self) -> None:
+        self._enter_air(self.options.reference_altitude)
+        self.noise = self._make_noise((self.options.pressure,), "air_pressure")
+        if self.sim.world.gazebo_quirks and self.options.reference_altitude:
+            message = (
+                "<reference_altitude> is not used: the world asks for Gazebo's behaviour, and Gazebo passes it over"
+            )
+            where = self.scene.params.block("air_pressure").block("reference_altitude").where
+            self.diagnostics.warning("SK-SENSOR-062", message, where, "put the model at that height")
+
+    def products(self) -> dict[str, Product]:
+        return {"air_pressure": Product(TYPE, self._message_of)}
+
+    def default_topics(self) -> dict[str, str]:
+        return {"air_pressure": self._default_topic("air_pressure")}
+
+    def measure(self, model: Any, data: Any) -> float:
+        return self._column.at(self._height(data)).pressure
+
+    def perturb(self, reading: float, index: int) -> float:
+        if self.noise.is_silent:
+            return reading
+        return float(self.noise.apply(np.array((reading,)), index)[0])
+
+    def _message_of(self, reading: float, time_ns: int) -> Any:
+        variance = self.noise.variance()
+        if self.sim.world.gazebo_quirks:
+            variance = variance**0.25  # the root of the deviation
+        return msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading, variance)

@@ -1,0 +1,99 @@
+"""Air speed: the dynamic pressure in a tube that looks along the sensor's x, and the temperature of the air."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.sensors.base import Product
+from simkit.sensors.environment.air_sensor import AirSensor
+from simkit.sensors.environment.point_velocity import point_velocity
+from simkit.sensors.noise import Noise, NoiseModel, read_noise
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+TYPE = "ros_gz_interfaces/msg/AirSpeed"
+_HECTO = 100.0  # Gazebo adds the noise to hectopascals
+
+
+@dataclass(frozen=True, slots=True)
+class AirSpeedOptions:
+    """The `<air_speed>` block: noise of the pressure [Pa]."""
+
+    pressure: NoiseModel
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """Dynamic pressure [Pa], negative where the air comes from behind, and temperature [K]."""
+
+    pressure: float
+    temperature: float
+
+
+def read_options(params: Params) -> AirSpeedOptions:
+    return AirSpeedOptions(read_noise(params.block("air_speed").block("pressure")))
+
+
+class AirSpeed(AirSensor):
+    """`air_speed`: ½ρv·|v| with the speed v of the air along the sensor's x and its density ρ there.
+
+    The air moves with the world's wind, the gusts of a wind plugin included; the sensor's velocity is that of its own
+    origin, lever arm included.
+    """
+
+    kinds = ("air_speed",)
+    example = "<air_speed/>"
+    options: AirSpeedOptions
+    noise: Noise
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = read_options(scene.params)
+
+    def describe(self) -> dict[str, Any]:
+        """Standard deviation [Pa]."""
+        return {"air_speed": {"pressure_stddev": self.options.pressure.stddev}}
+
+    def prepare(self) -> None:
+        self._enter_air()
+        quirks = self.sim.world.gazebo_quirks
+        self._is_calm = quirks
+        self._unit = _HECTO if quirks else 1.0
+        self.noise = self._make_noise((self.options.pressure,), "air_speed")
+
+    def products(self) -> dict[str, Product]:
+        return {"air_speed": Product(TYPE, self._message_of)}
+
+    def default_topics(self) -> dict[str, str]:
+        return {"air_speed": self._default_topic("air_speed")}
+
+    def measure(self, model: Any, data: Any) -> Flow:
+        body = self._body
+        rotation = data.xmat[body].reshape(3, 3)
+        velocity = point_velocity(model, data, body, rotation @ self._offset_position)
+        speed = float((velocity - self._wind(data)) @ (rotation @ self._offset_rotation[:, 0]))
+        air = self._column.at(self._height(data))
+        return Flow(0.5 * air.density * speed * abs(speed), air.temperature)
+
+    def _wind(self, data: Any) -> Vector:
+        """Velocity of the air [m/s] in the step that led to a state, shape (3,); Gazebo's sensor knows of none."""
+        if self._is_calm:
+            return np.zeros(3)
+        return np.array(self.sim.wind.at(max(round(data.time / self.sim.timestep) - 1, 0)))
+
+    def perturb(self, reading: Flow, index: int) -> Flow:
+        if self.noise.is_silent:
+            return reading
+        pressure = float(self.noise.apply(np.array((reading.pressure / self._unit,)), index)[0])
+        return Flow(pressure * self._unit, reading.temperature)
+
+    def _message_of(self, reading: Flow, time_ns: int) -> Any:
+        return msgs.type_of(TYPE)(msgs.header(time_ns, self.frame_id), reading.pressure, reading.temperature)

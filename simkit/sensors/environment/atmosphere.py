@@ -1,0 +1,101 @@
+"""Temperature, pressure and density of the air at a height: the U.S. Standard Atmosphere of 1976, or a world's own.
+
+The air is at rest and an ideal gas; its temperature changes evenly with the geopotential height from one layer to the
+next. A world's `<atmosphere>` gives temperature and pressure at sea level and the rate of the lowest layer; the layers
+above it are the standard's. Above the standard's last layer the air has that layer's temperature.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from functools import lru_cache
+from typing import Final, NamedTuple
+
+from simkit.scene import Atmosphere
+
+GRAVITY: Final = 9.80665
+"""[m/s²] Standard gravity; geopotential heights are measured with it."""
+
+GAS_CONSTANT: Final = 8314.32
+"""[J/(kmol·K)] As the standard of 1976 has it."""
+
+MOLAR_MASS: Final = 28.9644
+"""[kg/kmol] Of air."""
+
+EARTH_RADIUS: Final = 6356766.0
+"""[m] For geopotential heights."""
+
+MIN_ALTITUDE, MAX_ALTITUDE = -5000.0, 86000.0
+"""[m] Heights that the standard's table covers; beyond them it is extended."""
+
+_LAPSE_RATES: Final = ((11e3, 0.0), (20e3, 0.001), (32e3, 0.0028), (47e3, 0.0), (51e3, -0.0028), (71e3, -0.002))
+_TOP: Final = 84852.0  # geopotential metres; 86 km
+_MIN_TEMPERATURE: Final = 1.0  # [K] no layer gets colder, so that an absurd rate ends in a vacuum and not in no number
+_MAX_EXPONENT: Final = 400.0  # largest logarithm of a pressure ratio
+_HYDROSTATIC: Final = GRAVITY * MOLAR_MASS / GAS_CONSTANT  # [K/m]
+
+
+class Layer(NamedTuple):
+    """Air from a geopotential height [m] upwards: temperature [K] and pressure [Pa] there, rate [K/m]."""
+
+    base: float
+    temperature: float
+    pressure: float
+    rate: float
+
+    def at(self, height: float) -> tuple[float, float]:
+        """Temperature [K] and pressure [Pa] at a geopotential height [m]."""
+        rise = height - self.base
+        temperature = self.temperature + self.rate * rise
+        if self.rate:
+            ratio = -_HYDROSTATIC / self.rate * math.log1p(self.rate * rise / self.temperature)
+        else:
+            ratio = -_HYDROSTATIC * rise / self.temperature
+        return temperature, self.pressure * math.exp(max(-_MAX_EXPONENT, min(ratio, _MAX_EXPONENT)))
+
+
+class AirState(NamedTuple):
+    """Temperature [K], pressure [Pa], density [kg/m³]."""
+
+    temperature: float
+    pressure: float
+    density: float
+
+
+class AirColumn:
+    """The air above (and below) sea level."""
+
+    def __init__(self, temperature: float, gradient: float, pressure: float) -> None:
+        """Args: temperature [K] and pressure [Pa] at sea level, change of the temperature with height there [K/m]."""
+        lowest = Layer(0.0, max(temperature, _MIN_TEMPERATURE), pressure, gradient)
+        layers, bounds = [lowest], []
+        if gradient > 0:  # it gets colder downwards
+            end = (_MIN_TEMPERATURE - lowest.temperature) / gradient
+            layers.insert(0, Layer(end, *lowest.at(end), 0.0))
+            bounds.append(end)
+        for base, rate in (*_LAPSE_RATES, (_TOP, 0.0)):
+            last = layers[-1]
+            end = last.base + (_MIN_TEMPERATURE - last.temperature) / last.rate if last.rate < 0 else math.inf
+            if end < base:
+                base, rate = end, 0.0
+            layers.append(Layer(base, *last.at(base), rate))
+            bounds.append(base)
+            if base == end:
+                break
+        self._layers, self._bounds = layers, bounds
+
+    def at(self, height: float) -> AirState:
+        """The air at a geometric height above sea level [m]; finite and never negative, whatever the height."""
+        # half the way to the Earth's centre nothing of this means anything any more
+        height = max(height, -0.5 * EARTH_RADIUS)
+        geopotential = EARTH_RADIUS * (height / (EARTH_RADIUS + height))
+        layer = self._layers[bisect_right(self._bounds, geopotential)]
+        temperature, pressure = layer.at(geopotential)
+        return AirState(temperature, pressure, pressure * MOLAR_MASS / (GAS_CONSTANT * temperature))
+
+
+@lru_cache(maxsize=16)
+def air_column(atmosphere: Atmosphere) -> AirColumn:
+    """The air of a world."""
+    return AirColumn(atmosphere.temperature, atmosphere.temperature_gradient, atmosphere.pressure)

@@ -1,0 +1,168 @@
+"""The Earth's magnetic field: the World Magnetic Model, evaluated where the sensor is, at a date of its own.
+
+The coefficients in `wmm/` are those that NOAA's National Centers for Environmental Information and the British
+Geological Survey publish (public domain), as they stand in the files `WMM.COF` of 2015 (second version), 2020 and 2025.
+Each holds for five years. The model has the field of the core alone: on the ground it is good to about 150 nT.
+"""
+
+from __future__ import annotations
+
+import math
+from datetime import date
+from functools import lru_cache
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from simkit.pose import Vector
+from simkit.sensors.environment.geodesy import WorldOnPlanet
+
+DEFAULT_DATE: Final = 2025.0
+"""Decimal year of the field where a file names no date."""
+
+FIRST_YEAR, LAST_YEAR = 2015.0, 2030.0
+"""Decimal years that the models cover."""
+
+MIN_HEIGHT, MAX_HEIGHT = -1e3, 850e3
+"""[m] Heights above the ellipsoid that the model is made for."""
+
+_MODELS: Final = ((2025.0, "WMM_2025.COF"), (2020.0, "WMM_2020.COF"), (2015.0, "WMM_2015v2.COF"))
+_DEGREE: Final = 12
+_RADIUS: Final = 6371200.0  # [m] of the sphere that the coefficients are for
+_CORE: Final = 3480e3  # [m] the sources of the field begin here; nearer to the centre the series means nothing
+_CELL: Final = 1000.0  # [m] within a cube of it the field is taken as linear: the error stays below 0.01 nT
+
+
+def decimal_year(text: str) -> float:
+    """`2026-07-01` or `2026.5` as a decimal year; raises ValueError."""
+    text = text.strip()
+    if text.count("-") == 2:
+        day = date.fromisoformat(text)
+        first, following = date(day.year, 1, 1), date(day.year + 1, 1, 1)
+        return day.year + (day - first).days / (following - first).days
+    year = float(text)
+    if not math.isfinite(year):
+        raise ValueError(text)
+    return year
+
+
+class MagneticModel:
+    """The model at one date.
+
+    Args:
+        year: decimal; raises ValueError outside `FIRST_YEAR` to `LAST_YEAR`.
+    """
+
+    def __init__(self, year: float) -> None:
+        if not FIRST_YEAR <= year <= LAST_YEAR:
+            raise ValueError(
+                f"no model of the Earth's field for {year:g}, there are ones from {FIRST_YEAR:g} to {LAST_YEAR:g}"
+            )
+        epoch, file = next(m for m in _MODELS if year >= m[0])
+        self._weights = _field_weights(_coefficients(file), year - epoch)
+
+    def at(self, x: float, y: float, z: float) -> Vector:
+        """The field [T] at a position [m], both in the Earth's axes (ECEF), shape (3,)."""
+        distance = math.sqrt(x * x + y * y + z * z)
+        if distance < _CORE:
+            x, y, z = (x * _CORE / distance, y * _CORE / distance, z * _CORE / distance) if distance else (_CORE, 0, 0)
+        harmonics = np.array(_harmonics(x / _RADIUS, y / _RADIUS, z / _RADIUS))
+        field: Vector = self._weights @ harmonics.view(np.float64)
+        return field
+
+
+class EarthField:
+    """The Earth's field in a world's axes, at a place in the world.
+
+    Args:
+        year: decimal.
+        place: of the world on the Earth.
+    """
+
+    def __init__(self, year: float, place: WorldOnPlanet) -> None:
+        self._model, self._place = magnetic_model(year), place
+        self._cell = lru_cache(maxsize=1024)(self._linear)
+
+    def at(self, position: Vector) -> Vector:
+        """The field [T] at a position [m], both in the world's axes, shape (3,)."""
+        cell = tuple(round(v / _CELL) for v in position.tolist())
+        centre, field, gradient = self._cell(cell)
+        found: Vector = field + gradient @ (position - centre)
+        return found
+
+    def exactly_at(self, position: Vector) -> Vector:
+        """The same without the linear pieces."""
+        field: Vector = self._model.at(*self._place.on_planet(position).tolist()) @ self._place.axes
+        return field
+
+    def _linear(self, cell: tuple[int, int, int]) -> tuple[Vector, Vector, Vector]:
+        """Centre of a cell, field there, and its change with each coordinate as columns."""
+        centre = np.array(cell, dtype=np.float64) * _CELL
+        steps = 0.5 * _CELL * np.eye(3)
+        slopes = [(self.exactly_at(centre + s) - self.exactly_at(centre - s)) / _CELL for s in steps]
+        return centre, self.exactly_at(centre), np.array(slopes).T
+
+
+@lru_cache(maxsize=8)
+def magnetic_model(year: float) -> MagneticModel:
+    """The model at a decimal year; raises ValueError where there is none."""
+    return MagneticModel(year)
+
+
+@lru_cache(maxsize=4)
+def _coefficients(file: str) -> tuple[tuple[int, int, float, float, float, float], ...]:
+    """Degree, order, g and h [nT], and their change per year, Schmidt's semi-normalisation."""
+    rows = []
+    text = (Path(__file__).parent / "wmm" / file).read_text(encoding="ascii")
+    for line in text.splitlines()[1:]:
+        words = line.split()
+        if len(words) != 6:
+            break
+        n, m = int(words[0]), int(words[1])
+        g, h, g_rate, h_rate = map(float, words[2:])
+        rows.append((n, m, g, h, g_rate, h_rate))
+    return tuple(rows)
+
+
+def _harmonic_index(n: int, m: int) -> int:
+    """Where the harmonic of degree n and order m stands."""
+    return n * (n + 1) // 2 + m
+
+
+def _harmonics(x: float, y: float, z: float) -> list[complex]:
+    """Exterior solid harmonics V + iW up to one degree more than the model has, by Cunningham's recursions.
+
+    They have no singular place but the centre; L. E. Cunningham, Celestial Mechanics 2 (1970), in the form of
+    O. Montenbruck and E. Gill, Satellite Orbits (2000), section 3.2.4.
+    """
+    inverse = 1.0 / (x * x + y * y + z * z)
+    turn, rise = complex(x, y) * inverse, z * inverse
+    found: list[complex] = [complex(math.sqrt(inverse))]
+    for n in range(1, _DEGREE + 2):
+        before, earlier = found[-n:], found[-2 * n + 1 : -n] if n > 1 else []
+        for m in range(n - 1):
+            found.append(((2 * n - 1) * rise * before[m] - (n + m - 1) * inverse * earlier[m]) / (n - m))
+        found.append((2 * n - 1) * rise * before[n - 1])
+        found.append((2 * n - 1) * turn * before[n - 1])
+    return found
+
+
+def _field_weights(rows: tuple[tuple[int, int, float, float, float, float], ...], years: float) -> Vector:
+    """What the field [T], -∇ of the potential, takes of each harmonic's real and imaginary part; shape (3, 2·count)."""
+    weights = np.zeros((3, _harmonic_index(_DEGREE + 2, 0), 2))
+    for n, m, g, h, g_rate, h_rate in rows:
+        schmidt = math.sqrt((2 if m else 1) * math.factorial(n - m) / math.factorial(n + m)) * 1e-9
+        c, s = (g + years * g_rate) * schmidt, (h + years * h_rate) * schmidt
+        outer, same = _harmonic_index(n + 1, m + 1), _harmonic_index(n + 1, m)
+        weights[2, same] += (n - m + 1) * np.array((c, s))
+        if m == 0:
+            weights[0, outer] += (c, 0.0)
+            weights[1, outer] += (0.0, c)
+            continue
+        inner, factor = _harmonic_index(n + 1, m - 1), 0.5 * (n - m + 2) * (n - m + 1)
+        weights[0, outer] += 0.5 * np.array((c, s))
+        weights[1, outer] += 0.5 * np.array((-s, c))
+        weights[0, inner] -= factor * np.array((c, s))
+        weights[1, inner] -= factor * np.array((s, -c))
+    return weights.reshape(3, -1)

@@ -1,0 +1,233 @@
+"""Solar sensor: the direction of a light, whether anything stands between, and what light and power it gives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.diagnostics import NOWHERE, Diagnostics, did_you_mean
+from simkit.params import LARGEST, Params
+from simkit.pose import quat_from_rpy, quat_rotate, rpy_from_quat
+from simkit.sensors.base import Product, Sample, Sensor
+from simkit.sensors.environment import solar_irradiance
+from simkit.sensors.environment.solar_irradiance import NO_LIGHT, SolarOptions, SolarReading, SolarView
+from simkit.sensors.noise import Noise, NoiseModel, quantise, read_noise
+
+if TYPE_CHECKING:
+    from simkit.runtime.handles.light import Light, LightMotion, LightState
+    from simkit.scene import SceneSensor
+
+TYPE = "sensor_msgs/msg/Imu"
+NUMBER = "std_msgs/msg/Float64"
+_ERRORS = np.zeros(2)  # to which the noise is added
+
+
+@dataclass(frozen=True, slots=True)
+class SolarSensorOptions:
+    """The `<solar>` block.
+
+    Attributes:
+        light_name: of the light; empty for the first directional one.
+        view: what is measured.
+        noise: of the direction, about each of the two axes at right angles to it [rad].
+    """
+
+    light_name: str
+    view: SolarOptions
+    noise: NoiseModel
+
+
+def read_options(params: Params) -> SolarSensorOptions:
+    block = params.block("solar")
+    noise, plain = read_noise(block), block.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
+    if plain > 0:
+        noise = replace(noise, stddev=math.hypot(noise.stddev, plain))
+    return SolarSensorOptions(
+        block.text("light_name", ""), solar_irradiance.read_solar_options(block, "direction"), noise
+    )
+
+
+class SolarSensor(Sensor):
+    """`solar_irradiance`: the direction of a light as an orientation whose x axis points at it.
+
+    Attributes:
+        light: the light's handle; None where there is none.
+    """
+
+    kinds = ("solar",)
+    example = "<solar/>"
+    options: SolarSensorOptions
+    noise: Noise
+    light: Light | None = None
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = options = read_options(scene.params)
+        # rounding is of the angles and not of their errors
+        self._precision = np.array((1.0, 1.0)) * options.noise.precision
+        self._motions: list[tuple[int, LightMotion | None]] = []
+        self._view: SolarView | None = None
+
+    def describe(self) -> dict[str, Any]:
+        options, view = self.options, self.options.view
+        panel = view.panel
+        return {
+            "solar": {
+                "light_name": options.light_name,
+                "shadow": view.shadow,
+                "field_of_view": view.field_of_view,
+                "irradiance": view.irradiance,
+                "panel": {"area": panel.area, "efficiency": panel.efficiency} if panel else None,
+            }
+        }
+
+    def prepare(self) -> None:
+        model = replace(self.options.noise, precision=0.0)
+        self.noise = self._make_noise((model, model), "angles")
+        self._find_light()
+        if self.light is None:
+            self._report_missing()
+        else:
+            solar_irradiance.report_unused_options(self.scene.params.block("solar"), self.options.view, self.light)
+
+    def products(self) -> dict[str, Product]:
+        number, truth_value, text = msgs.types_of(NUMBER, "std_msgs/msg/Bool", "std_msgs/msg/String")
+
+        def part(make: Callable[[Any], Any], of: Callable[[SolarReading], Any]) -> Callable[[Any, int], Any]:
+            return lambda reading, _: make(of(reading))
+
+        return {
+            "direction": Product(TYPE, self._message_of),
+            "valid": Product("std_msgs/msg/Bool", part(truth_value, lambda r: r.is_valid)),
+            "irradiance": Product(NUMBER, part(number, lambda r: r.irradiance)),
+            "power": Product(NUMBER, part(number, lambda r: r.power)),
+            "shadow": Product("std_msgs/msg/String", part(text, lambda r: r.shadow)),
+        }
+
+    def default_topics(self) -> dict[str, str]:
+        topic, view = self._default_topic("solar"), self.options.view
+        topics = {"direction": topic, "valid": topic + "/valid", "irradiance": topic + "/irradiance"}
+        if view.panel is not None:
+            topics["power"] = topic + "/power"
+        if view.shadow:
+            topics["shadow"] = topic + "/shadow"
+        return topics
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        if self.light is None or self.sim.lights.get(self.light.scoped) is not self.light:
+            self._find_light()  # it came, or went, with a model
+        if self._view is not None:
+            self._view.bind(compiled, self._link_name)
+
+    # ------------------------------------------------------------------ the light
+
+    def _find_light(self) -> None:
+        """The light that the file names, else the first directional one, else none."""
+        lights, name = self.sim.lights, self.options.light_name
+        suns = (light for light in lights.values() if light.scene.type == "directional")
+        self.light = lights.get(name) if name else next(suns, None)
+        self._view = SolarView(self.options.view, self.light) if self.light is not None else None
+
+    def _report_missing(self) -> None:
+        lights, name = self.sim.lights, self.options.light_name
+        where = self.scene.params.block("solar").block("light_name").where
+        listed = ", ".join(repr(n) for n in sorted(lights)) or "none"
+        said = f"sensor {self.scoped!r}: "
+        if not lights and self.sim.world.where == NOWHERE:
+            message = said + "a bare model has no light: readings are invalid until it stands in a world that has one"
+            self.diagnostics.note("SK-SENSOR-081", message, self.scene.where)
+        elif name:
+            message = said + f"there is no light {name!r}; lights are: {listed}"
+            self.diagnostics.error("SK-SENSOR-080", message, where, did_you_mean(name, lights))
+        else:
+            message = said + f"the world has no directional light: every reading is invalid; lights are: {listed}"
+            self.diagnostics.warning("SK-SENSOR-082", message, self.scene.where, "<light_name> names another one")
+
+    def evolve(self, index: int, dt: float) -> None:
+        super().evolve(index, dt)
+        motion, motions = self.light.motion if self.light is not None else None, self._motions
+        if motions and motions[-1][1] is motion:
+            return
+        # a sample that is measured later keeps the light of its own time
+        oldest = min((sample.index for sample in self._kept()), default=index)
+        while len(motions) > 1 and motions[1][0] <= oldest:
+            del motions[0]
+        motions.append((index, motion))
+
+    def restart(self) -> None:
+        super().restart()
+        self._motions.clear()
+
+    def memory(self) -> Any:
+        return super().memory(), tuple(self._motions)
+
+    def remember(self, memory: Any) -> None:
+        noise, motions = memory
+        super().remember(noise)
+        self._motions = list(motions)
+
+    # ------------------------------------------------------------------ measuring
+
+    def measure(self, model: Any, data: Any) -> SolarReading:
+        return self._measure(model, data, self.light.state if self.light is not None else None)
+
+    def capture_held(self, model: Any, data: Any, sample: Sample) -> SolarReading:
+        motion = next((motion for index, motion in reversed(self._motions) if index <= sample.index), None)
+        return self._measure(model, data, motion.at(sample.time_ns) if motion is not None else None)
+
+    def _measure(self, model: Any, data: Any, state: LightState | None) -> SolarReading:
+        """With the light as it was at the time of the data; None where there is none."""
+        if self._view is None or state is None:
+            return NO_LIGHT
+        return self._view.measure(model, data, state, *self._frame_in_world(data))
+
+    def perturb(self, reading: SolarReading, index: int) -> SolarReading:
+        orientation = reading.orientation
+        if not self.noise.is_silent:
+            orientation = solar_irradiance.deflect_orientation(orientation, self.noise.apply(_ERRORS, index))
+        if self._precision[0] > 0:
+            pitch, yaw = quantise(rpy_from_quat(orientation)[1:], self._precision).tolist()
+            orientation = quat_from_rpy(0.0, pitch, yaw)
+        if orientation is reading.orientation:
+            return reading
+        light = reading.irradiance, reading.power
+        return SolarReading(orientation, reading.is_valid, reading.shadow, reading.incidence, *light)
+
+    def _message_of(self, reading: SolarReading, time_ns: int) -> Any:
+        imu, vector, quaternion = msgs.types_of(TYPE, "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion")
+        w, x, y, z = (1.0, 0.0, 0.0, 0.0)
+        covariance = np.zeros(9)
+        if reading.is_valid:
+            w, x, y, z = reading.orientation.tolist()
+            variance = self.noise.variance(0)
+            if variance > 0:
+                covariance = solar_irradiance.covariance_across(
+                    quat_rotate(reading.orientation, (1.0, 0.0, 0.0)), variance
+                )
+        else:
+            covariance[0] = -1.0
+        header = msgs.header(time_ns, self.frame_id)
+        none = np.zeros(9), np.zeros(9)
+        none[0][0] = none[1][0] = -1.0
+        still = vector(0.0, 0.0, 0.0), vector(0.0, 0.0, 0.0)
+        return imu(header, quaternion(x, y, z, w), covariance, still[0], none[0], still[1], none[1])
+
+    # ------------------------------------------------------------------ truth
+
+    @property
+    def reading(self) -> SolarReading | None:
+        """What is true of the newest sample (direction, shadow, incidence, light, power), or None before the first."""
+        found: SolarReading | None = self._true_reading()
+        return found
+
+    @property
+    def shadow(self) -> str:
+        """Scoped name of the visual or collision that cast its shadow on the newest sample, or empty."""
+        reading = self.reading
+        return reading.shadow if reading is not None else ""

@@ -1,0 +1,174 @@
+"""Many inertial measurement units at once, to the same bits as one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.pose import Vector
+from simkit.sensors.batch import SensorBatch, form_batches
+from simkit.sensors.inertial.imu import TYPES, hamilton_product
+from simkit.sensors.sample import Sample
+
+if TYPE_CHECKING:
+    from simkit.sensors.inertial.imu import Imu
+    from simkit.sensors.sampler import Sampler
+
+_TYPES = *TYPES, "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
+_NUMBERS = 31  # captured of each
+_NOISE_BLOCK = 64  # samples whose noise is looked up at a time
+_NS = 1_000_000_000
+
+
+def form_imu_batches(imus: Sequence[Imu]) -> None:
+    """Has IMUs that are alike work together."""
+    form_batches(imus, ImuBatch, _batch_key)
+
+
+def _batch_key(imu: Imu) -> Hashable | None:
+    """What has to be the same for the same arithmetic; None where there is more to do than a crew does."""
+    noise = imu.noise
+    if noise.wanders or noise._is_quantised or not imu._attitude_noise.is_silent or imu._more_noise is not None:
+        return None
+    return imu.is_mounted_straight, imu.is_against_world, noise.is_silent, noise._white is None
+
+
+class ImuBatch(SensorBatch["Imu"]):
+    """IMUs that differ in place and noise alone."""
+
+    def __init__(self, members: Sequence[Imu]) -> None:
+        super().__init__(members)
+        model, first = self.model, members[0]
+        self._bodies = np.array([imu._body for imu in members], dtype=np.intp)
+        self._roots = model.body_rootid[self._bodies].astype(np.intp)
+        self._arms = np.array([imu._arm for imu in members]).T.copy()
+        self._mounts = None if first.is_mounted_straight else np.array([imu._mount for imu in members]).T.copy()
+        self._turns = np.array([imu._rotation for imu in members]).T.copy()
+        references = [imu._from_reference for imu in members]
+        self._references = None if first.is_against_world else np.array(references).T.copy()
+        self._is_silent, self._is_white = first.noise.is_silent, first.noise._white is not None
+        self._normals, self._first_index, self._seed = np.empty((0, 0, 0)), 0, self.sim.seed
+        self._index = -1
+        self._told_of: Any = None
+        self._states: list[Any] = []
+        self._told: list[tuple[str, tuple[Vector, ...], bool]] = []
+
+    def look(self, data: Any) -> None:
+        bodies, raw = self._bodies, np.empty((len(self.members), _NUMBERS))
+        raw[:, :4] = data.xquat[bodies]
+        raw[:, 4:13] = data.xmat[bodies]
+        raw[:, 13:16] = data.xpos[bodies]
+        raw[:, 16:19] = data.subtree_com[self._roots]
+        raw[:, 19:25] = data.cvel[bodies]
+        raw[:, 25:] = data.cacc[bodies]
+        self._raw, self._index = raw, -1
+        self._time_ns = self.sim.time_ns
+        self._clock = divmod(self._time_ns, _NS)
+
+    def raw_of(self, place: int) -> bytes:
+        # a copy: whoever keeps one sample does not keep those of all
+        captured: bytes = self._raw[place].tobytes()
+        return captured
+
+    def serve(self, member: Sampler, tick: int) -> bool:
+        if not self.is_ready(member, tick):
+            return False
+        index = member._index + 1
+        if self._index != index:
+            self._finish(index)
+        place = member.place_in_crew
+        sample = Sample(index, self._time_ns)
+        sample.raw = self._raw[place].tobytes()  # for `truth`
+        sample.messages["imu"] = message = self._message(place)
+        member._index, member._time_ns, member._newest = index, self._time_ns, sample
+        for _, publisher, _ in member._wanted:
+            publisher.publish(message)
+        return True
+
+    def _message(self, place: int) -> Any:
+        make, vector, quaternion, header, time = msgs.types_of(*_TYPES)
+        frame, (of_orientation, of_rate, of_force), has_attitude = self._told[place]
+        w, x, y, z, rx, ry, rz, fx, fy, fz = self._rows[place]
+        if not has_attitude:
+            w, x, y, z = 1.0, 0.0, 0.0, 0.0
+        return make(
+            header(time(*self._clock), frame),
+            quaternion(x, y, z, w),
+            of_orientation,
+            vector(rx, ry, rz),
+            of_rate,
+            vector(fx, fy, fz),
+            of_force,
+        )
+
+    # ------------------------------------------------------------------ the arithmetic
+
+    def _finish(self, index: int) -> None:
+        """The numbers of everybody's message, noise included, shape (members, 10)."""
+        attitude, motion = self._felt(np.ascontiguousarray(self._raw.T))
+        numbers = np.empty((len(self.members), 10))
+        for i, column in enumerate((*attitude, *motion)):
+            numbers[:, i] = column
+        if not self._is_silent:
+            numbers[:, 4:] = self._with_noise(numbers[:, 4:], index)
+        self._rows, self._index = numbers.tolist(), index
+        if self._told_of is not self.members[0].noise.state.interval:
+            self._tell_about()
+
+    def _tell_about(self) -> None:
+        """What of everybody's message changes with the rate alone."""
+        self._told_of, self._told = self.members[0].noise.state.interval, []
+        for imu in self.members:
+            imu._covary()
+            self._told.append((imu.frame_id, tuple(imu._covariances), imu.options.enable_orientation))
+
+    def _with_noise(self, motion: Vector, index: int) -> Vector:
+        states = [imu.noise.state for imu in self.members]
+        if states != self._states:
+            self._states = states
+            self._constants = np.array([state.constant for state in states])
+            self._deviations = np.array([state.interval.stddev for state in states])
+        out: Vector = motion + self._constants
+        if self._is_white:
+            out += self._deviations * self._white(index)
+        return out
+
+    def _white(self, index: int) -> Vector:
+        """Standard normal numbers of everybody's sample, shape (members, 6)."""
+        row = index - self._first_index
+        if not 0 <= row < len(self._normals) or self._seed != self.sim.seed:
+            streams = [imu.noise._white for imu in self.members if imu.noise._white is not None]
+            parts = [stream.normals(index, _NOISE_BLOCK) for stream in streams]
+            self._normals, self._first_index, row = np.stack(parts, axis=1), index, 0
+            self._seed = self.sim.seed
+        values: Vector = self._normals[row]
+        return values
+
+    def _felt(self, raw: Vector) -> tuple[tuple[Vector, ...], tuple[Vector, ...]]:
+        """What `Imu.finish` gives, of all members: each number a row."""
+        qw, qx, qy, qz, a, b, c, d, e, f, g, h, i, px, py, pz, ox, oy, oz, *motion = raw
+        wx, wy, wz, vx, vy, vz, dx, dy, dz, fx, fy, fz = motion
+        attitude: tuple[Vector, ...] = (qw, qx, qy, qz)
+        ax, ay, az = self._arms
+        x = px - ox + a * ax + b * ay + c * az
+        y = py - oy + d * ax + e * ay + f * az
+        z = pz - oz + g * ax + h * ay + i * az
+        vx = vx + (wy * z - wz * y)
+        vy = vy + (wz * x - wx * z)
+        vz = vz + (wx * y - wy * x)
+        fx = fx + (dy * z - dz * y + wy * vz - wz * vy)
+        fy = fy + (dz * x - dx * z + wz * vx - wx * vz)
+        fz = fz + (dx * y - dy * x + wx * vy - wy * vx)
+        wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
+        fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
+        if self._mounts is not None:
+            attitude = hamilton_product(attitude, self._mounts)
+            a, b, c, d, e, f, g, h, i = self._turns
+            wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
+            fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
+        if self._references is not None:
+            attitude = hamilton_product(self._references, attitude)
+        return attitude, (wx, wy, wz, fx, fy, fz)

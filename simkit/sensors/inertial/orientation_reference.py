@@ -1,0 +1,174 @@
+"""What an IMU's orientation is measured against: the words of `<orientation_reference_frame>`, made into a rotation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose, Vector, quat_from_rpy, quat_multiply
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.scene import SceneModel, SceneSensor
+
+WORLD = "world"
+# from east-north-up to the named axes
+_NAMED_AXES = {"ENU": (0.0, 0.0, 0.0), "NED": (math.pi, 0.0, math.pi / 2), "NWU": (0.0, 0.0, math.pi / 2)}
+_GRAVITY_SIGNS = {"GRAV_UP": 1.0, "GRAV_DOWN": -1.0}
+_PARALLEL = 1e-6  # [rad] between gravity and a direction that is to be orthogonal to it
+
+
+@dataclass(frozen=True, slots=True)
+class OrientationReference:
+    """The `<orientation_reference_frame>` block.
+
+    Attributes:
+        localization: CUSTOM, ENU, NED, NWU, GRAV_UP or GRAV_DOWN.
+        rpy: CUSTOM: roll, pitch, yaw [rad] of the reference in the parent frame.
+        x_direction: GRAV_UP, GRAV_DOWN: what its x axis points along as far as it is level, in the parent frame.
+        parent_frame: `world`, a name in the model or in the world, or empty for the sensor's own frame.
+        where: of the element that names the parent frame.
+    """
+
+    localization: str
+    rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    x_direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    parent_frame: str = ""
+    where: Where = NOWHERE
+
+
+def read_reference(imu: Params) -> OrientationReference | None:
+    """The block, or None where the file has none: the attitude at the start."""
+    block = imu.child("orientation_reference_frame")
+    if block is None:
+        return None
+    localization = block.choice("localization", ("CUSTOM", *_NAMED_AXES, *_GRAVITY_SIGNS), "CUSTOM")
+    custom, level = block.child("custom_rpy"), block.child("grav_dir_x")
+    turn = block.vector3("custom_rpy", (0.0, 0.0, 0.0))
+    direction = block.vector3("grav_dir_x", (1.0, 0.0, 0.0))
+    by_gravity = localization in _GRAVITY_SIGNS
+    given = level if by_gravity else custom
+    if not by_gravity and level is not None:
+        level.attribute("parent_frame")
+    parent = given.attribute("parent_frame").strip() if given is not None else ""
+    return OrientationReference(localization, turn, direction, parent, given.where if given else block.where)
+
+
+def reference_orientation(reference: OrientationReference | None, sensor: SceneSensor, sim: Simulation) -> Vector:
+    """The reference as a rotation (w, x, y, z) in the world, as things stand in the file.
+
+    Without a block, and where there was something to report, it is the sensor's own attitude.
+    """
+    own = sensor.pose_world.quaternion
+    if reference is None:
+        return own
+    diagnostics = sensor.params.diagnostics
+    if sim.world.gazebo_quirks and _is_unsupported_by_gazebo(reference, diagnostics):
+        return own
+    if reference.localization in _NAMED_AXES:
+        return quat_multiply(_heading(sim), quat_from_rpy(*_NAMED_AXES[reference.localization]))
+    parent = _find_parent_frame(reference, sensor, sim, diagnostics)
+    if parent is None:
+        return own
+    if reference.localization == "CUSTOM":
+        # Gazebo turns the world by the heading here too, so that the east of the map is meant
+        start = _heading(sim) if reference.parent_frame == WORLD else parent.quaternion
+        return quat_multiply(start, quat_from_rpy(*reference.rpy))
+    up = -_GRAVITY_SIGNS[reference.localization] * np.array(sim.world.gravity)
+    levelled = _level_rotation(up, parent.rotate(reference.x_direction))
+    if levelled is None:
+        if up.any():
+            message = f"orientation reference {reference.localization}: <grav_dir_x> is parallel to gravity"
+            hint = "its part orthogonal to gravity is the x axis; name another direction"
+        else:
+            message = f"orientation reference {reference.localization}: the world has no gravity"
+            hint = "ENU, NED, NWU and CUSTOM need none"
+        diagnostics.error("SK-SENSOR-071", message, reference.where, hint)
+        return own
+    return levelled
+
+
+def _is_unsupported_by_gazebo(reference: OrientationReference, diagnostics: Diagnostics) -> bool:
+    """Whether Gazebo takes the attitude at the start instead; that is said."""
+    localization, parent = reference.localization, reference.parent_frame
+    is_custom = localization == "CUSTOM"
+    if localization in _NAMED_AXES or (is_custom and parent == WORLD):
+        return False
+    if is_custom and not parent and not any(reference.rpy):
+        return True  # which is what the file says
+    what = f"CUSTOM in {parent or 'the frame of the sensor'}" if is_custom else localization
+    message = f"orientation reference {what} is taken as the attitude at the start, as in Gazebo"
+    diagnostics.warning("SK-SENSOR-002", message, reference.where, "without <gazebo_quirks> it is as the file says")
+    return True
+
+
+def _heading(sim: Simulation) -> Vector:
+    """East-north-up in the world: `<heading_deg>` turns it about z."""
+    place = sim.world.spherical_coordinates
+    return quat_from_rpy(0.0, 0.0, place.heading if place else 0.0)
+
+
+def _level_rotation(up: Vector, direction: Vector) -> Vector | None:
+    """A rotation with z along `up` and x along the part of `direction` orthogonal to it; None where there is none."""
+    size = float(np.linalg.norm(up))
+    if not size:
+        return None
+    z = up / size
+    x = direction - z * (z @ direction)
+    if np.linalg.norm(x) <= _PARALLEL * np.linalg.norm(direction):
+        return None
+    x /= np.linalg.norm(x)
+    rotation = np.empty(4)
+    mujoco.mju_mat2Quat(rotation, np.column_stack((x, np.cross(z, x), z)).reshape(9))
+    return rotation
+
+
+# ---------------------------------------------------------------------- frames by name
+
+
+def _find_parent_frame(
+    reference: OrientationReference, sensor: SceneSensor, sim: Simulation, diagnostics: Diagnostics
+) -> Pose | None:
+    """Pose of the parent frame in the world at load; None after an error."""
+    name = reference.parent_frame
+    if not name:
+        return sensor.pose_world
+    if name == WORLD:
+        return IDENTITY
+    known = dict(_named_frames(sim))
+    scope = sensor.parent.split("::")[:-1]
+    # as in SDF, a name is first looked for beside the sensor's link, then further out
+    for depth in range(len(scope), -1, -1):
+        found = known.get("::".join((*scope[:depth], name)))
+        if found is not None:
+            return found
+    model = "::".join((*scope, ""))
+    nearby = [scoped.removeprefix(model) for scoped in known if scoped.startswith(model)]
+    message = f"found parent_frame {name!r}, allowed is 'world', or the name of a link, joint, frame or model"
+    hint = did_you_mean(name, [WORLD, *nearby, *known])
+    diagnostics.error("SK-SENSOR-070", message, reference.where, hint)
+    return None
+
+
+def _named_frames(sim: Simulation) -> Iterator[tuple[str, Pose]]:
+    """Everything with a pose that a file can name, by scoped name."""
+    for frame in sim.world.frames:
+        yield frame.scoped, frame.pose_world
+    for top in sim.structure.models.values():
+        for model in top.all_models():
+            yield model.scoped, model.pose_world
+            yield from _model_frames(model)
+
+
+def _model_frames(model: SceneModel) -> Iterator[tuple[str, Pose]]:
+    yield f"{model.scoped}::__model__", model.pose_world
+    for parts in (model.frames, model.joints, model.links):
+        for part in parts:
+            yield part.scoped, part.pose_world

@@ -1,0 +1,233 @@
+"""Rays on triangles by Embree, which finds the triangle in float32; the distance is then worked out in float64.
+
+Embree's time hardly grows with the number of triangles. Its scenes are built with the robust intersector, so that no
+ray slips between two triangles that share an edge.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.pose import Vector
+from simkit.sensors.rays.numpy_rays import rotate_vectors
+from simkit.sensors.rays.ray_culling import reaches_between_cones
+from simkit.sensors.rays.ray_targets import BOX, HFIELD, MESH, Ids
+
+if TYPE_CHECKING:
+    from simkit.sensors.rays.mujoco_rays import Rays
+
+Faces = npt.NDArray[np.int32]
+
+_FLAT = 1e-2
+"""Below this cosine between ray and normal, rounding decides where a ray meets the plane of a triangle."""
+_CUBE = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+_CUBE_FACES = np.array(
+    [
+        (0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1),
+        (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3),
+    ],
+    dtype=np.int32,
+)  # fmt: skip
+
+
+class TriangleScene:
+    """Triangles in one frame, ready to be traced.
+
+    Args:
+        vertices: [m], shape (n, 3).
+        faces: shape (m, 3).
+    """
+
+    def __init__(self, vertices: Vector, faces: Faces) -> None:
+        # optional: there is no wheel for every machine
+        from embreex.mesh_construction import TriangleMesh  # type: ignore[import-untyped]
+        from embreex.rtcore_scene import EmbreeScene  # type: ignore[import-untyped]
+
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        self.centre: Vector = (low + high) / 2  # float32 is finest around zero
+        self.vertices = vertices - self.centre
+        self.radius = float(np.sqrt(np.einsum("ij,ij->i", self.vertices, self.vertices).max()))
+        self.faces = faces
+        a, b, c = (self.vertices[faces[:, i]] for i in range(3))
+        normals = np.cross(b - a, c - a)
+        length = np.linalg.norm(normals, axis=1, keepdims=True)
+        np.divide(normals, length, out=normals, where=length > 0)
+        offset = np.einsum("ij,ij->i", normals, a)
+        self._planes = np.ascontiguousarray(np.column_stack((normals, offset)))
+        self._scene = EmbreeScene(robust=True)
+        TriangleMesh(self._scene, self.vertices.astype(np.float32), np.ascontiguousarray(faces, dtype=np.int32))
+
+    def nearest(
+        self, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
+    ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
+        """The first triangle on each ray that hits one.
+
+        Args:
+            origin: shape (3,) [m].
+            directions: unit vectors, shape (n, 3).
+            start: where the rays begin [m].
+            limit: what is farther may be left out [m], shape (n,).
+
+        Returns:
+            Which rays, their distances from the origin [m], and the triangles.
+        """
+        place = origin - self.centre
+        rays = directions.astype(np.float32)
+        if start > 0:
+            begins = rays * np.float32(start)
+            begins += place.astype(np.float32)
+        else:
+            begins = np.broadcast_to(place.astype(np.float32), rays.shape)
+        # a little farther, since float32 may put a surface that is just within the limit beyond it
+        reach = (limit - np.float32(start)) * np.float32(1.000001)
+        reach += np.float32(1e-5)
+        found = self._scene.run(begins, rays, dists=reach)
+        which = np.flatnonzero(found >= 0)
+        triangles = found[which]
+        planes = self._planes.take(triangles, 0)
+        ways = directions.take(which, 0)
+        normals = planes[:, :3]
+        slope = np.einsum("ij,ij->i", normals, ways)
+        height = planes[:, 3] - np.einsum("ij,j->i", normals, place)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            distances = height / slope
+        flat = np.flatnonzero(np.abs(slope) < _FLAT)
+        if len(flat):
+            distances[flat] = self._grazing(distances[flat], place, ways[flat], triangles[flat])
+        np.maximum(distances, start, out=distances)
+        return which, distances, triangles
+
+    def _grazing(self, distances: Vector, place: Vector, ways: Vector, triangles: npt.NDArray[np.int32]) -> Vector:
+        """Keeps the distance of rays almost along their triangle between those of its corners."""
+        corners = self.vertices[self.faces[triangles]] - place
+        along = np.einsum("ijk,ik->ij", corners, ways)
+        low, high = along.min(axis=1), along.max(axis=1)
+        kept: Vector = np.clip(np.where(np.isfinite(distances), distances, low), low, high)
+        return kept
+
+
+class TriangleBody:
+    """The triangles of one carrier, in the frame of its body.
+
+    Attributes:
+        centre, radius: of the sphere around them, in the body's frame [m].
+        geoms: that they are of.
+
+    Args:
+        carrier: number among the carriers.
+        body: MuJoCo body, 0 for what stands still.
+        geoms: meshes, heightmaps and boxes.
+        scenes: those that others have made of the same triangles in the same place.
+    """
+
+    def __init__(self, model: Any, carrier: int, body: int, geoms: Ids, scenes: dict[Any, TriangleScene]) -> None:
+        self.carrier, self.body, self.geoms = carrier, body, geoms
+        parts = [triangles_of(model, int(geom)) for geom in geoms]
+        self._geom_of = np.repeat(geoms, [len(faces) for _, faces in parts]).astype(np.int32)
+        key = tuple(_geometry_key(model, int(geom)) for geom in geoms)
+        if key not in scenes:
+            starts = np.cumsum([0] + [len(vertices) for vertices, _ in parts[:-1]])
+            vertices = np.concatenate([vertices for vertices, _ in parts])
+            faces = np.concatenate([faces + start for (_, faces), start in zip(parts, starts, strict=True)])
+            scenes[key] = TriangleScene(vertices, faces)
+        self._scene = scenes[key]
+        self.centre, self.radius = self._scene.centre, self._scene.radius
+
+    def cast(
+        self, data: Any, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
+    ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
+        """Of rays in the world: which hit, their distances [m], and the geoms."""
+        if self.body > 0:
+            turn = data.xmat[self.body].reshape(3, 3)
+            origin, directions = (origin - data.xpos[self.body]) @ turn, rotate_vectors(directions, turn)
+        which, distances, triangles = self._scene.nearest(origin, directions, start, limit)
+        return which, distances, self._geom_of.take(triangles)
+
+
+class MovingBodies:
+    """Bodies of triangles that move, or have a sensor."""
+
+    def __init__(self, bodies: list[TriangleBody]) -> None:
+        self._bodies = bodies
+        self._ids = np.array([body.body for body in bodies], dtype=np.intp)
+        self._centres = np.array([body.centre for body in bodies]).reshape(-1, 3)
+        self._radii = np.array([body.radius for body in bodies])
+
+    def met(self, data: Any, rays: Rays) -> Iterator[tuple[TriangleBody, Ids]]:
+        """Each body that rays may meet, with those rays."""
+        if not self._bodies:
+            return
+        turns = data.xmat.take(self._ids, 0).reshape(-1, 3, 3)
+        places = data.xpos.take(self._ids, 0) + np.einsum("bij,bj->bi", turns, self._centres) - rays.origin
+        squares = np.einsum("ij,ij->i", places, places)
+        height = places @ rays.axis
+        side = np.sqrt(np.maximum(squares - height * height, 0.0))
+        met = reaches_between_cones(height, side, self._radii, rays.lowest, rays.highest)
+        distance = np.sqrt(squares)
+        met &= distance - self._radii <= rays.reach
+        for i in np.flatnonzero(met).tolist():
+            far, radius = float(distance[i]), float(self._radii[i])
+            if far <= radius * (1 + 1e-9):
+                yield self._bodies[i], np.arange(len(rays.directions))
+                continue
+            # the cosine between ray and centre is at least that of the sphere's edge; a hair more loses no ray
+            least = math.sqrt(max(0.0, 1.0 - (radius / far) ** 2)) * far - 1e-6 * far
+            some = np.flatnonzero(rotate_vectors(rays.directions, places[i]) >= least)
+            if some.size:
+                yield self._bodies[i], some
+
+
+def _geometry_key(model: Any, geom: int) -> tuple[Any, ...]:
+    """What the triangles of a geom follow from."""
+    kind, data = int(model.geom_type[geom]), int(model.geom_dataid[geom])
+    size = model.geom_size[geom].tobytes() if kind == BOX else b""
+    return kind, data, size, model.geom_pos[geom].tobytes(), model.geom_quat[geom].tobytes()
+
+
+def triangles_of(model: Any, geom: int) -> tuple[Vector, Faces]:
+    """Vertices [m], shape (n, 3), and faces, shape (m, 3), of a geom in its body's frame."""
+    import mujoco
+
+    kind = int(model.geom_type[geom])
+    if kind == MESH:
+        mesh = int(model.geom_dataid[geom])
+        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+        vertices = model.mesh_vert[first : first + count].astype(np.float64)
+        first, count = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+        faces = model.mesh_face[first : first + count]
+    elif kind == BOX:
+        vertices, faces = _CUBE * model.geom_size[geom], _CUBE_FACES
+    else:
+        assert kind == HFIELD
+        vertices, faces = _heightmap_triangles(model, int(model.geom_dataid[geom]))
+    turn = np.empty(9)
+    mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
+    return vertices @ turn.reshape(3, 3).T + model.geom_pos[geom], np.asarray(faces, dtype=np.int32)
+
+
+def _heightmap_triangles(model: Any, field: int) -> tuple[Vector, Faces]:
+    """The surface, each cell cut from its first to its last corner, the skirt around it and the base below."""
+    rows, columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
+    half_x, half_y, height, depth = model.hfield_size[field].tolist()
+    first = int(model.hfield_adr[field])
+    z = model.hfield_data[first : first + rows * columns].astype(np.float64) * height
+    x, y = np.meshgrid(np.linspace(-half_x, half_x, columns), np.linspace(-half_y, half_y, rows))
+    surface = np.column_stack((x.ravel(), y.ravel(), z))
+    cell = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    right, above, across = cell + 1, cell + columns, cell + columns + 1
+    tops = np.concatenate((np.column_stack((cell, right, across)), np.column_stack((cell, across, above))))
+    # around the edge, from the surface down to zero
+    grid = np.arange(rows * columns).reshape(rows, columns)
+    rim = np.concatenate((grid[0, :-1], grid[:-1, -1], grid[-1, :0:-1], grid[:0:-1, 0]))
+    foot = surface[rim] * (1.0, 1.0, 0.0)
+    low = np.arange(len(rim)) + rows * columns
+    after, low_after = np.roll(rim, -1), np.roll(low, -1)
+    skirt = np.concatenate((np.column_stack((rim, low, low_after)), np.column_stack((rim, low_after, after))))
+    base = _CUBE * (half_x, half_y, depth / 2) - (0, 0, depth / 2)
+    vertices = np.concatenate((surface, foot, base))
+    return vertices, np.concatenate((tops, skirt, _CUBE_FACES + len(surface) + len(foot))).astype(np.int32)

@@ -1,0 +1,322 @@
+"""Rays on spheres, boxes, cylinders, capsules, ellipsoids and planes, many at once in NumPy.
+
+Every shape here is convex, so a ray is inside it from one distance to another: each function gives both, in the
+shape's own frame, with the first beyond the second (or none of them a number) where the ray misses. Vectors are columns
+there, shape (3, n): an operation then runs through long rows. Of a single shape, origin and size are one column.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.pose import Vector
+from simkit.sensors.rays.ray_targets import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE, Ids
+
+Interval = tuple[Vector, Vector]
+
+_CHUNK = 32768  # pairs of ray and shape worked on at a time: they stay in the processor's cache
+_ROWS = 4096
+_LARGE_BLOCK = 256  # rays towards one shape that are worked on by themselves
+_TINY = 1e-300  # instead of a zero that would be divided by
+
+
+def rotate_vectors(vectors: Vector, matrix: Vector, out: Vector | None = None) -> Vector:
+    """`vectors @ matrix` (or a vector) on one core: with many rows at a time BLAS would wake threads for it."""
+    if len(vectors) <= _ROWS:
+        return np.matmul(vectors, matrix, out=out)
+    if out is None:
+        out = np.empty((len(vectors), *matrix.shape[1:]))
+    for i in range(0, len(vectors), _ROWS):
+        np.matmul(vectors[i : i + _ROWS], matrix, out=out[i : i + _ROWS])
+    return out
+
+
+def _quadratic(a: Vector, b: Vector, gap: Vector) -> Interval:
+    """The roots of a·t² + 2·b·t + c, by `gap`, which is c at its least: at t = -b/a."""
+    middle = -b / a
+    half = np.sqrt(-gap / a)
+    return middle - half, middle + half
+
+
+def _unit_ball(o: Vector, d: Vector, radii: Vector) -> Interval:
+    o, d = o / radii, d / radii
+    a = np.maximum(_dot(d, d), _TINY)
+    b = _dot(o, d)
+    nearest = o - (b / a) * d  # works where c - b²/a would lose its digits: far away
+    return _quadratic(a, b, _dot(nearest, nearest) - 1.0)
+
+
+def _dot(a: Vector, b: Vector) -> Vector:
+    x: Vector = a[0] * b[0]
+    x += a[1] * b[1]
+    x += a[2] * b[2]
+    return x
+
+
+def _sphere(o: Vector, d: Vector, size: Vector) -> Interval:
+    return _unit_ball(o, d, size[:1])
+
+
+def _box(o: Vector, d: Vector, size: Vector) -> Interval:
+    inverse = 1.0 / np.where(d == 0.0, _TINY, d)
+    half = np.abs(size * inverse)
+    inverse *= -o
+    return (inverse - half).max(axis=0), (inverse + half).min(axis=0)
+
+
+def _infinite_cylinder(o: Vector, d: Vector, radius: Vector) -> Interval:
+    """A cylinder without ends."""
+    a = np.maximum(d[0] * d[0] + d[1] * d[1], _TINY)
+    b = o[0] * d[0] + o[1] * d[1]
+    way = b / a
+    x, y = o[0] - way * d[0], o[1] - way * d[1]
+    return _quadratic(a, b, x * x + y * y - radius * radius)
+
+
+def _slab(o: Vector, d: Vector, half: Vector) -> Interval:
+    """What is between two planes across z."""
+    inverse = 1.0 / np.where(d[2] == 0.0, _TINY, d[2])
+    wide, middle = np.abs(half * inverse), -o[2] * inverse
+    return middle - wide, middle + wide
+
+
+def _cylinder(o: Vector, d: Vector, size: Vector) -> Interval:
+    (near, far), (low, high) = _infinite_cylinder(o, d, size[0]), _slab(o, d, size[1])
+    # a miss of the tube is not a number, and stays one
+    return np.maximum(near, low), np.minimum(far, high)
+
+
+def _capsule(o: Vector, d: Vector, size: Vector) -> Interval:
+    near, far = _cylinder(o, d, size)
+    missed = ~(near <= far)
+    near[missed], far[missed] = np.inf, -np.inf
+    for side in (-1.0, 1.0):
+        end = np.stack((o[0], o[1], o[2] + side * size[1]))
+        low, high = _unit_ball(end, d, size[:1])
+        near, far = np.fmin(near, low), np.fmax(far, high)
+    return near, far
+
+
+_INTERVALS: dict[int, Callable[[Vector, Vector, Vector], Interval]] = {
+    SPHERE: _sphere,
+    ELLIPSOID: _unit_ball,
+    BOX: _box,
+    CYLINDER: _cylinder,
+    CAPSULE: _capsule,
+}
+
+
+class FanDirections:
+    """Directions in the sensor's frame, and which of them a sphere may meet.
+
+    Args:
+        directions: unit vectors, shape (n, 3).
+        grid: elevations and azimuths [rad], ascending, where the directions are all their pairs, layer by layer.
+    """
+
+    def __init__(self, directions: Vector, grid: tuple[Vector, Vector] | None) -> None:
+        self.directions = directions
+        self.columns = np.ascontiguousarray(directions.T)
+        self._grid = None
+        if grid is not None and np.abs(grid[0]).max() <= np.pi / 2 + 1e-9:
+            self._grid = grid
+
+    def pairs(self, centres: Vector, radii: Vector) -> Iterator[tuple[Ids, Ids]]:
+        """Spheres and rays that may meet them, some thousands at a time.
+
+        Args:
+            centres: of the spheres in the sensor's frame [m], shape (m, 3).
+            radii: [m], shape (m,).
+
+        Yields:
+            Numbers of spheres and of rays, either as pairs, or one sphere and all rays towards it.
+        """
+        distance = np.sqrt(np.einsum("ij,ij->i", centres, centres))
+        within = distance <= radii * (1 + 1e-9) + 1e-9
+        # a hair wider than they are, so that rounding loses no ray
+        width = np.where(within, np.pi, np.arcsin(np.minimum(1.0, radii / np.maximum(distance, _TINY))) + 1e-6)
+        if self._grid is None:
+            for i, wide in enumerate(width.tolist()):
+                along = rotate_vectors(self.directions, centres[i])
+                yield np.array((i,)), np.flatnonzero(along >= distance[i] * np.cos(min(wide, np.pi)) - 1e-9)
+            return
+        spheres, first_row, rows, first, columns = self._blocks(centres, distance, width)
+        wide = len(self._grid[1])
+        large = rows * columns >= _LARGE_BLOCK
+        for i in np.flatnonzero(large).tolist():
+            block = np.arange(first_row[i], first_row[i] + rows[i])[:, None] * wide
+            yield spheres[i : i + 1], (block + np.arange(first[i], first[i] + columns[i])).ravel()
+        small = np.flatnonzero(~large)
+        if small.size:
+            of = np.repeat(small, rows[small])
+            row = first_row[of] + _count_within_runs(rows[small])
+            yield from _expand_runs(spheres[of], row * wide + first[of], columns[of])
+
+    def _blocks(self, centres: Vector, distance: Vector, width: Vector) -> tuple[Ids, Ids, Ids, Ids, Ids]:
+        """Blocks of the grid: of which sphere, the first row, rows, the first column, columns."""
+        assert self._grid is not None
+        elevations, azimuths = self._grid
+        height = np.arcsin(np.clip(centres[:, 2] / np.maximum(distance, _TINY), -1.0, 1.0))
+        first_row = np.searchsorted(elevations, height - width, "left")
+        rows = np.searchsorted(elevations, height + width, "right") - first_row
+        over_pole = np.abs(height) + width >= np.pi / 2
+        side = np.where(over_pole, 0.0, np.sin(width) / np.maximum(np.cos(height), _TINY))
+        half = np.where(over_pole, np.pi, np.arcsin(np.minimum(side, 1.0)) + 1e-6)
+        middle = np.arctan2(centres[:, 1], centres[:, 0])
+        low, high = float(azimuths[0]), float(azimuths[-1])
+        # the fan may lie anywhere, and go round more than once
+        turns = np.arange(np.floor((low - 2 * np.pi) / (2 * np.pi)), np.ceil((high + 2 * np.pi) / (2 * np.pi)) + 1)
+        begin = (middle - half)[:, None] + turns * (2 * np.pi)
+        end = begin + 2 * half[:, None]
+        spheres, turn = np.nonzero((end >= low) & (begin <= high) & (rows > 0)[:, None])
+        first = np.searchsorted(azimuths, begin[spheres, turn], "left")
+        columns = np.searchsorted(azimuths, end[spheres, turn], "right") - first
+        some = columns > 0
+        spheres = spheres[some]
+        return spheres, first_row[spheres], rows[spheres], first[some], columns[some]
+
+
+def _count_within_runs(counts: Ids) -> Ids:
+    """0, 1, ... for each count, one after the other."""
+    counted: Ids = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
+    return counted
+
+
+def _expand_runs(of: Ids, starts: Ids, counts: Ids) -> Iterator[tuple[Ids, Ids]]:
+    """Runs of rays as pairs of what they belong to and a ray."""
+    ends = np.cumsum(counts)
+    done = 0
+    while done < len(ends):
+        before = ends[done - 1] if done else 0
+        stop = max(done + 1, int(np.searchsorted(ends, before + _CHUNK, "right")))
+        some = counts[done:stop]
+        yield np.repeat(of[done:stop], some), np.repeat(starts[done:stop], some) + _count_within_runs(some)
+        done = stop
+
+
+@dataclass(frozen=True, slots=True)
+class Shapes:
+    """Shapes in a sensor's frame.
+
+    Attributes:
+        kinds: geom types, shape (m,).
+        sizes: as MuJoCo has them [m], shape (m, 3).
+        positions: [m], shape (m, 3).
+        turns: rotation matrices, shape (m, 3, 3).
+        radii: of the spheres around them [m], shape (m,).
+        geoms: shape (m,).
+    """
+
+    kinds: Ids
+    sizes: Vector
+    positions: Vector
+    turns: Vector
+    radii: Vector
+    geoms: npt.NDArray[np.int32]
+
+    def only(self, which: Ids) -> Shapes:
+        return Shapes(
+            self.kinds[which],
+            self.sizes[which],
+            self.positions[which],
+            self.turns[which],
+            self.radii[which],
+            self.geoms[which],
+        )
+
+
+def in_frame(places: Vector, turns: Vector, origin: Vector, rotation: Vector) -> tuple[Vector, Vector]:
+    """Positions (m, 3) and rotation matrices (m, 3, 3) in the world, in a frame or in one frame each.
+
+    Number by number, so that the bits do not depend on how many there are.
+
+    Args:
+        places, turns: in the world.
+        origin, rotation: of the frame, shapes (3,) and (3, 3), or (m, 3) and (m, 3, 3).
+    """
+    x, y, z = np.moveaxis(places - origin, -1, 0)[..., None]
+    first, second, third = np.moveaxis(rotation, -2, 0)
+    positions: Vector = x * first + y * second + z * third
+    a, b, c = np.moveaxis(turns, -2, 0)[..., None, :]
+    turned_by: Vector = first[..., None] * a + second[..., None] * b + third[..., None] * c
+    return positions, turned_by
+
+
+def cast_on_shapes(
+    fan: FanDirections,
+    shapes: Shapes,
+    reach: float,
+    start: float,
+    best: Vector,
+    hits: npt.NDArray[np.int32],
+    firsts: Ids | None = None,
+) -> None:
+    """Shortens `best` and sets `hits` where a shape is hit first.
+
+    Args:
+        fan: the rays.
+        shapes: in their frame.
+        reach: what is farther is left out [m].
+        start: where the rays begin [m].
+        best: shortest distances so far [m], shape (n,).
+        hits: the geoms at those distances, shape (n,).
+        firsts: where the rays that may meet a shape begin in `best`, shape (m,), for the same fan from many places.
+    """
+    if firsts is None:
+        firsts = np.zeros(len(shapes.geoms), dtype=np.intp)
+    distance = np.sqrt(np.einsum("ij,ij->i", shapes.positions, shapes.positions))
+    near = (distance - shapes.radii <= reach) & (distance + shapes.radii >= start)
+    for kind in np.unique(shapes.kinds[near]).tolist():
+        chosen = np.flatnonzero(near & (shapes.kinds == kind))
+        some, begin = shapes.only(chosen), firsts.take(chosen)
+        origins, sizes = -np.einsum("gi,gij->jg", some.positions, some.turns), some.sizes.T
+        function = _INTERVALS[kind]
+        for of, rays in fan.pairs(some.positions, some.radii):
+            ways = fan.columns.take(rays, 1)
+            rays = rays + begin.take(of)
+            if len(of) == 1:
+                ways = some.turns[of[0]].T @ ways
+            else:
+                ways = np.einsum("in,nij->jn", ways, some.turns.take(of, 0))
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+                enter, leave = function(origins.take(of, 1), ways, sizes.take(of, 1))
+                found = np.where(enter >= start, enter, leave)
+                is_hit = (enter <= leave) & (found >= start) & (found < best.take(rays))
+            keep = np.flatnonzero(is_hit)
+            rays, found = rays[keep], found[keep]
+            if len(of) == 1:
+                best[rays], hits[rays] = found, some.geoms[of]
+            else:
+                np.minimum.at(best, rays, found)
+                first = best[rays] == found
+                hits[rays[first]] = some.geoms.take(of[keep[first]])
+
+
+def cast_on_plane(
+    origin: Vector, directions: Vector, position: Vector, turn: Vector, size: Vector, start: float
+) -> Vector | None:
+    """Distances [m], shape (n,), infinite where a plane or rectangle is not hit from its front; None for no hit."""
+    normal = turn[:, 2]
+    height = float((origin - position) @ normal)
+    if height <= 0:
+        return None
+    sink = rotate_vectors(directions, normal)
+    out = np.full(len(directions), np.inf)
+    np.divide(-height, sink, out=out, where=sink < -1e-15)
+    if start > 0:
+        out[out < start] = np.inf
+    for axis in (0, 1):
+        if size[axis] > 0:
+            side = turn[:, axis]
+            at = rotate_vectors(directions, side)
+            with np.errstate(invalid="ignore"):
+                at *= out
+                at += float((origin - position) @ side)
+                np.abs(at, out=at)
+                # where the plane is not hit it is no number, or without end
+                out[~(at <= size[axis])] = np.inf
+    return out

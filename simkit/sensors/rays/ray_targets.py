@@ -1,0 +1,188 @@
+"""What rays can hit: the geoms that a kind of sensor sees, sorted by how they are traced."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from simkit.sensors.rays.embree_rays import TriangleBody
+    from simkit.sensors.rays.mujoco_rays import ReducedModelCaster, WholeModelCaster
+
+Ids = npt.NDArray[np.intp]
+
+_TYPE = mujoco.mjtGeom
+PLANE, HFIELD, SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = (
+    int(t)
+    for t in (
+        _TYPE.mjGEOM_PLANE,
+        _TYPE.mjGEOM_HFIELD,
+        _TYPE.mjGEOM_SPHERE,
+        _TYPE.mjGEOM_CAPSULE,
+        _TYPE.mjGEOM_ELLIPSOID,
+        _TYPE.mjGEOM_CYLINDER,
+        _TYPE.mjGEOM_BOX,
+        _TYPE.mjGEOM_MESH,
+    )
+)
+_SHAPES = (SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX)
+_TRIANGLES = (HFIELD, MESH)
+_SUPPORTED = (PLANE, *_TRIANGLES, *_SHAPES)
+
+MAX_MOVING_BODIES: Final = 64
+"""So many moving bodies at most are looked through one after the other for every ray."""
+_MANY_BOXES = 24
+"""From so many boxes on that stand still a few rays too are faster on their triangles."""
+
+
+@functools.cache
+def has_embree() -> bool:
+    """Whether `embreex`, the binding of Intel's ray tracer, is installed and loads."""
+    try:
+        importlib.import_module("embreex.rtcore_scene")
+        importlib.import_module("embreex.mesh_construction")
+    except (ImportError, OSError):
+        return False
+    return True
+
+
+class RayTargets:
+    """The geoms that are seen, each with its carrier, which is what a sensor may be told not to hit.
+
+    Carrier 0 is what stands still for good; each moving body is one, and each static link that has a sensor.
+
+    Args:
+        model: compiled.
+        names: the compiler's name map of it.
+        seen: whether a geom is seen, shape (ngeom,).
+        use_embree: False traces triangles by the engine alone.
+    """
+
+    def __init__(self, model: Any, names: Any, seen: npt.NDArray[np.bool_], use_embree: bool) -> None:
+        self.model, self.seen = model, seen
+        self.geoms: Ids = np.flatnonzero(seen)
+        self.types = model.geom_type[self.geoms].astype(np.intp)
+        self._sort_carriers(names)
+        has_triangles = bool(np.isin(self.types, _TRIANGLES).any())
+        is_known = bool(np.isin(self.types, _SUPPORTED).all())
+        self._use_embree = use_embree
+        self.needs_engine = not is_known or (has_triangles and not self.has_embree)
+
+    def _sort_carriers(self, names: Any) -> None:
+        bodies = self.model.geom_bodyid[self.geoms]
+        self.bodies = [0]
+        self._of_body: dict[int, int] = {}
+        self._of_link: dict[str, int] = {}
+        self.carriers = np.zeros(len(self.geoms), dtype=np.intp)
+        for i, (geom, body) in enumerate(zip(self.geoms.tolist(), bodies.tolist(), strict=True)):
+            if body > 0:
+                self.carriers[i] = self._carrier(self._of_body, body, body)
+            else:
+                link = names.geom_owner(geom)[0]
+                if link and names.links[link].scene.sensors:
+                    self.carriers[i] = self._carrier(self._of_link, link, 0)
+
+    def _carrier(self, known: dict[Any, int], key: Any, body: int) -> int:
+        if key not in known:
+            known[key] = len(self.bodies)
+            self.bodies.append(body)
+        return known[key]
+
+    def carrier_of(self, body: int, own_geoms: Sequence[int]) -> int:
+        """The carrier of a moving body, or of a static link by its geoms.
+
+        Returns:
+            Its number; 0 where nothing of it is seen; -1 where the geoms are no carrier of their own.
+        """
+        if body > 0:
+            return self._of_body.get(body, 0)
+        mine = {int(c) for c in self.carriers[np.isin(self.geoms, list(own_geoms))]}
+        if not mine:
+            return 0
+        return mine.pop() if len(mine) == 1 and 0 not in mine else -1
+
+    @property
+    def has_embree(self) -> bool:
+        """Whether Embree may be used; it is loaded where this is asked first."""
+        return self._use_embree and has_embree()
+
+    # ------------------------------------------------------------------ the ways to trace them, made when first used
+
+    @cached_property
+    def moving_shapes(self) -> int:
+        """Carriers of shapes that move or have a sensor."""
+        return len(np.unique(self.carriers[np.isin(self.types, _SHAPES)]))
+
+    @cached_property
+    def whole(self) -> WholeModelCaster:
+        """Everything, by the engine."""
+        from simkit.sensors.rays.mujoco_rays import WholeModelCaster
+
+        return WholeModelCaster(self.model, self.seen)
+
+    @cached_property
+    def shapes_by_engine(self) -> ReducedModelCaster | None:
+        """Planes and shapes, by the engine; None where there are none."""
+        from simkit.sensors.rays.mujoco_rays import ReducedModelCaster
+
+        which = self._select(lambda t: t in (PLANE, *_SHAPES))
+        if self._boxes_are_triangles:
+            which = np.setdiff1d(which, self._static_boxes)
+        return ReducedModelCaster(self, which) if len(which) else None
+
+    @cached_property
+    def planes(self) -> Ids:
+        """Positions in `geoms` of the planes."""
+        return self._select(lambda t: t == PLANE)
+
+    @cached_property
+    def shapes(self) -> Ids:
+        """Positions in `geoms` of the shapes that no triangles stand for exactly."""
+        boxes = self._static_boxes
+        found = self._select(lambda t: t in _SHAPES)
+        return found[~np.isin(found, boxes)]
+
+    @cached_property
+    def _static_boxes(self) -> Ids:
+        if not self.has_embree:
+            return np.empty(0, dtype=np.intp)
+        return np.flatnonzero((self.types == BOX) & (self.carriers == 0))
+
+    @cached_property
+    def _boxes_are_triangles(self) -> bool:
+        """Whether boxes that stand still are traced with the triangles even by few rays."""
+        stand = self.has_embree and bool((np.isin(self.types, _TRIANGLES) & (self.carriers == 0)).any())
+        return stand or len(self._static_boxes) >= _MANY_BOXES
+
+    @cached_property
+    def triangles_for_engine(self) -> list[TriangleBody]:
+        """What `shapes_by_engine` leaves out, one entry a carrier."""
+        if self._boxes_are_triangles:
+            return self.triangles_and_boxes
+        return self._triangle_bodies(self._select(lambda t: t in _TRIANGLES))
+
+    @cached_property
+    def triangles_and_boxes(self) -> list[TriangleBody]:
+        """Meshes, heightmaps and the boxes that stand still, one entry a carrier."""
+        which = np.append(self._select(lambda t: t in _TRIANGLES), self._static_boxes)
+        return self._triangle_bodies(np.sort(which))
+
+    def _select(self, wanted: Callable[[int], bool]) -> Ids:
+        return np.array([i for i, t in enumerate(self.types.tolist()) if wanted(t)], dtype=np.intp)
+
+    def _triangle_bodies(self, which: Ids) -> list[TriangleBody]:
+        from simkit.sensors.rays.embree_rays import TriangleBody
+
+        carriers = self.carriers[which]
+        scenes: dict[Any, Any] = {}
+        return [
+            TriangleBody(self.model, int(c), self.bodies[c], self.geoms[which[carriers == c]], scenes)
+            for c in np.unique(carriers)
+        ]

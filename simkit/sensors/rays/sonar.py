@@ -1,0 +1,209 @@
+"""Sonar: the distance of the nearest surface in a cone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from simkit import msgs
+from simkit.compiler.geom_groups import SEEN_AS_COLLISIONS
+from simkit.diagnostics import Diagnostics
+from simkit.params import Params
+from simkit.pose import Vector
+from simkit.sensors.base import Product, Sensor
+from simkit.sensors.noise import Noise, NoiseModel, read_noise
+from simkit.sensors.rays import RayFan
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+TYPE = "sensor_msgs/msg/Range"
+ULTRASOUND = 0
+MIN_RAY_ANGLE = math.radians(0.5)
+"""Between the rings of a cone, where that does not take more than `MAX_RINGS` [rad]."""
+MAX_RINGS = 24
+SPHERE_RAYS = 2000
+_GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # [rad]
+_MAX_RANGE = 3e38  # of a message's numbers, which have 32 bits
+
+
+@dataclass(frozen=True, slots=True)
+class SonarOptions:
+    """The `<sonar>` block.
+
+    Attributes:
+        half_angle: between the axis and the edge of the cone [rad]; pi for a sphere.
+        axis: of the cone, a unit vector in the sensor's frame.
+        range_min, range_max: [m].
+        noise: of the range [m].
+    """
+
+    half_angle: float
+    axis: tuple[float, float, float]
+    range_min: float
+    range_max: float
+    noise: NoiseModel
+
+
+@dataclass(frozen=True, slots=True)
+class SonarReading:
+    """The nearest surface.
+
+    Attributes:
+        range: its distance [m]; `inf` for nothing within the range, `-inf` for what is nearer than the range.
+        hit: scoped name of its collision, empty for nothing.
+    """
+
+    range: float
+    hit: str
+
+
+def read_options(params: Params) -> SonarOptions:
+    block = params.block("sonar")
+    geometry = block.choice("geometry", ("cone", "sphere"), "cone")
+    low = block.number("min", 0.0, minimum=0)
+    high = block.number("max", 1.0, minimum=0, maximum=_MAX_RANGE)
+    if not high > low:
+        block.error("SK-PARAM-002", f"found a range from {low:g} to {high:g} m, allowed is a <max> above <min>")
+        low, high = 0.0, 1.0
+    radius = block.number("radius", 0.5, minimum=0)
+    half_angle = math.atan2(radius, high) if geometry == "cone" else math.pi
+    return SonarOptions(half_angle, _read_axis(block), low, high, read_noise(block))
+
+
+def _read_axis(block: Params) -> tuple[float, float, float]:
+    x, y, z = block.vector3("axis", (0.0, 0.0, -1.0))
+    length = math.hypot(x, y, z)
+    if length == 0:
+        block.block("axis").error("SK-PARAM-002", "found an <axis> of length 0, allowed is any other")
+        return (0.0, 0.0, -1.0)
+    return (x / length, y / length, z / length)
+
+
+class Sonar(Sensor):
+    """`sonar`: one range, that of the nearest collision in a cone (or all around) whose tip is the sensor's origin.
+
+    The cone opens along the sensor's -z, as in Gazebo Classic, or along `<axis>`. Rays stand for it: one on its axis
+    and rings around it, the last one on its edge. A surface counts wherever it turns to; echoes are not modelled. The
+    sensor's own link is never hit.
+    """
+
+    kinds = ("sonar",)
+    example = "<sonar><min>0.02</min><max>4</max><radius>0.5</radius></sonar>"
+    options: SonarOptions
+    noise: Noise
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = options = read_options(scene.params)
+        self._directions = cone_directions(options.half_angle, options.axis)
+        self._fan = RayFan(self._directions, SEEN_AS_COLLISIONS, options.range_max)
+
+    def describe(self) -> dict[str, Any]:
+        o = self.options
+        return {
+            "sonar": {
+                "field_of_view": 2 * o.half_angle,
+                "axis": list(o.axis),
+                "range_min": o.range_min,
+                "range_max": o.range_max,
+            }
+        }
+
+    def prepare(self) -> None:
+        self.noise = self._make_noise((self.options.noise,), "range")
+
+    def products(self) -> dict[str, Product]:
+        return {"range": Product(TYPE, self._message_of)}
+
+    def default_topics(self) -> dict[str, str]:
+        return {"range": self._default_topic("sonar")}
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        names = compiled.names
+        self._fan.bind(compiled.model, names, self._body, names.link(self.scene.parent).ray_geoms)
+        self._geom_owner = names.geom_owner
+
+    @property
+    def hit(self) -> str:
+        """Scoped name of the collision that the newest reading is of; empty for none."""
+        reading: SonarReading | None = self._true_reading()
+        return reading.hit if reading is not None else ""
+
+    def measure(self, model: Any, data: Any) -> SonarReading:
+        options, fan = self.options, self._fan
+        origin, rotation = self._frame_in_world(data)
+        fan.cast(model, data, origin, rotation)
+        distances = np.where(fan.distances < 0, np.inf, fan.distances)
+        nearest = int(np.argmin(distances))
+        found = float(distances[nearest])
+        if found > options.range_max:
+            return SonarReading(math.inf, "")
+        owner = str(self._geom_owner(int(fan.geoms[nearest]))[1])
+        return SonarReading(found if found >= options.range_min else -math.inf, owner)
+
+    def perturb(self, reading: SonarReading, index: int) -> SonarReading:
+        if self.noise.is_silent or math.isinf(reading.range):
+            return reading
+        value = float(self.noise.apply(np.array([reading.range]), index)[0])
+        low, high = self.options.range_min, self.options.range_max
+        return SonarReading(min(max(value, low), high), reading.hit)
+
+    def _message_of(self, reading: SonarReading, time_ns: int) -> Any:
+        o = self.options
+        return msgs.make(
+            TYPE,
+            header=msgs.header(time_ns, self.frame_id),
+            radiation_type=ULTRASOUND,
+            field_of_view=2 * o.half_angle,
+            min_range=o.range_min,
+            max_range=o.range_max,
+            range=reading.range,
+            variance=min(self.noise.variance(), _MAX_RANGE),
+        )
+
+
+def cone_directions(half_angle: float, axis: tuple[float, float, float]) -> Vector:
+    """Unit vectors that stand for a cone, shape (n, 3): the axis first.
+
+    Around the axis are k = 1, 2, ... rings of 6k rays, as far from each other along a ring as the rings are, the last
+    on the edge. Every direction in the cone is less than 0.75 of that distance from a ray. From a half angle of pi on
+    (all directions) it is the axis and its opposite, two pairs across, and a Fibonacci spiral.
+
+    Args:
+        half_angle: [rad].
+        axis: unit vector.
+    """
+    if half_angle >= math.pi:
+        upright = np.vstack((np.eye(3)[[2, 0, 1]], -np.eye(3)[[2, 0, 1]], _spiral_directions(SPHERE_RAYS)))
+    else:
+        rings = min(max(math.ceil(half_angle / MIN_RAY_ANGLE), 1), MAX_RINGS) if half_angle > 0 else 0
+        number = np.concatenate([np.full(max(6 * k, 1), k) for k in range(rings + 1)])
+        place = np.concatenate([np.arange(max(6 * k, 1)) for k in range(rings + 1)])
+        away = half_angle * number / max(rings, 1)
+        # every second ring is turned by half a gap, so that no straight lines of gaps lead outwards
+        around = 2 * np.pi * (place + 0.5 * (number % 2)) / np.maximum(6 * number, 1)
+        upright = np.stack((np.sin(away) * np.cos(around), np.sin(away) * np.sin(around), np.cos(away)), axis=-1)
+    return np.asarray(upright @ _frame_along(axis), dtype=np.float64)
+
+
+def _spiral_directions(count: int) -> Vector:
+    step = np.arange(count)
+    height = 1.0 - (2.0 * step + 1.0) / count
+    across = np.sqrt(1.0 - height**2)
+    spiral: Vector = np.stack((across * np.cos(_GOLDEN * step), across * np.sin(_GOLDEN * step), height), axis=-1)
+    return spiral
+
+
+def _frame_along(axis: tuple[float, float, float]) -> Vector:
+    """Rows are three unit vectors at right angles, the last the axis."""
+    along = np.array(axis)
+    other = np.eye(3)[int(np.argmin(np.abs(along)))]
+    first = np.cross(other, along)
+    first /= np.linalg.norm(first)
+    frame: Vector = np.stack((first, np.cross(along, first), along))
+    return frame

@@ -1,0 +1,39 @@
+"""Who sees whom: the `<visibility_mask>` of a sensor against the `<visibility_flags>` of visuals."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from simkit.params import Params
+
+ALL_VISIBLE: Final = 0xFFFFFFFF
+"""The mask that hides nothing."""
+
+
+def read_visibility_mask(block: Params) -> int:
+    """`<visibility_mask>`: decimal or hexadecimal, from -1 to 4294967295."""
+    text = block.text("visibility_mask", str(ALL_VISIBLE))
+    try:
+        mask = int(text, 0) if text.isascii() and "_" not in text else -2
+    except ValueError:
+        mask = -2
+    if not -1 <= mask <= ALL_VISIBLE:
+        allowed = f"allowed is a whole number from -1 (all) to {ALL_VISIBLE}"
+        message = f"found <visibility_mask>{text}</visibility_mask>, {allowed}"
+        block.block("visibility_mask").error("SK-PARAM-002", message)
+        return ALL_VISIBLE
+    return mask & ALL_VISIBLE
+
+
+def hidden_geoms(mask: int, names: Any) -> list[int]:
+    """Ids of the geoms of visuals that have no bit in common with a mask.
+
+    Args:
+        names: the name map of a compiled model.
+    """
+    found: list[int] = []
+    for link in names.links.values():
+        hidden = {visual.scoped for visual in link.scene.visuals if not visual.visibility_flags & mask}
+        if hidden:
+            found += [geom for geom in link.visuals if names.geom_owner(geom)[1] in hidden]
+    return found

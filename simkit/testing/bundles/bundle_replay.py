@@ -1,0 +1,264 @@
+"""Repeats the run in a bundle and says whether it came out the same."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections import defaultdict
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.errors import InputError, PluginError, SimkitError
+from simkit.runtime.engine.snapshot import state_hash
+from simkit.testing.bundles.archive import Bundle, open_bundle
+from simkit.testing.bundles.bundle_recorder import failure_from_error
+from simkit.testing.bundles.journal_player import JournalPlayer
+from simkit.testing.bundles.manifest import BAG, Failure, Manifest
+from simkit.testing.bundles.message_window import MessageWindow, StateHashes, WindowMessage, topic_digests
+from simkit.testing.bundles.packed_world import load_packed_world
+from simkit.testing.run_record.fingerprint import fingerprint, fingerprint_differences
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+CODE: Final = "SK-BUNDLE-005"
+_CODE_POSITION: Final = re.compile(r"\([^()\s]*:\d+\)")
+_SLICE: Final = 0.5  # [s] of simulated time between two looks at who watches
+
+
+@dataclass(frozen=True)
+class ReplayResult:
+    """What came of a replay.
+
+    Attributes:
+        manifest: of the bundle.
+        state: hash of the physics at the end.
+        time: simulated [s] at the end.
+        failure: what it failed with.
+        differences: what is other than in the bundle, in words, the first first; empty where all is the same.
+        machine: what of the machine is other: name -> there and here.
+        refused: entries of the journal that could not be done.
+        messages: how many of the last seconds were compared, bit by bit.
+    """
+
+    manifest: Manifest
+    state: str
+    time: float
+    failure: Failure | None
+    differences: tuple[str, ...]
+    machine: Mapping[str, tuple[str, str]]
+    refused: tuple[str, ...]
+    messages: int
+
+    @property
+    def is_same(self) -> bool:
+        """Whether state, messages and the error are those of the bundle."""
+        return not self.differences
+
+
+def replay(
+    path: str | os.PathLike[str],
+    *,
+    allow_code: bool = False,
+    on_slice: Callable[[Simulation], None] | None = None,
+    record: Path | None = None,
+) -> ReplayResult:
+    """Repeats the run in a bundle.
+
+    Args:
+        path: of the bundle.
+        allow_code: whether plugins' code that came with it may run; it may do whatever you may.
+        on_slice: called now and then between two steps.
+        record: writes all topics of the replay to this bag.
+
+    Raises:
+        InputError: SK-BUNDLE-001 to SK-BUNDLE-004 the bundle is refused, SK-BUNDLE-005 it needs code that is not
+            allowed.
+        LoadError: its world has errors here.
+    """
+    with open_bundle(path) as bundle, tempfile.TemporaryDirectory(prefix="simkit-replay.") as folder:
+        if bundle.brings_code and not allow_code:
+            listed = ", ".join(name.partition("/")[2].partition("/")[2] for name in bundle.manifest.code)
+            raise InputError(
+                f"{CODE} {bundle.path} brings code of plugins, which was not run: {listed}\n"
+                "    help: look at it with simkit replay --list or --extract DIR, then allow it with --allow-code",
+                CODE,
+            )
+        bundle.extract(Path(folder), with_code=allow_code)
+        return _Replay(bundle, Path(folder)).run(on_slice, record)
+
+
+class _Replay:
+    """One replay.
+
+    Args:
+        bundle: what is repeated.
+        folder: where its files lie.
+    """
+
+    def __init__(self, bundle: Bundle, folder: Path) -> None:
+        self._bundle, self._said, self._folder = bundle, bundle.manifest, folder
+
+    def run(self, on_slice: Callable[[Simulation], None] | None, record: Path | None) -> ReplayResult:
+        """Loads the world, plays the journal, and compares."""
+        from simkit.recording.bags.recorder import Recorder
+
+        said = self._said
+        numbers = sorted({int(n) for name in said.code if (n := name.split("/")[1]).isdecimal()})
+        code = [self._folder / "code" / str(number) for number in numbers]
+        options = {"seed": said.seed, "overrides": said.overrides, "base": said.base, "sleep": said.sleep}
+        options |= {"on_error": said.on_error if said.on_error in ("stop", "disable") else None}
+        try:
+            opened = load_packed_world(self._folder, said.world, said.spawn, said.params, code, options)
+        except PluginError as error:
+            met = failure_from_error(error)
+            return ReplayResult(said, "", 0.0, met, tuple(self._failures(met)), self._machine(), (), 0)
+        with opened as sim:
+            self._read_models_here(sim)
+            window, marks = MessageWindow(sim, said.seconds, said.topics, most=1 << 62), StateHashes(sim)
+            player = JournalPlayer(sim, self._bundle.commands())
+            recorder = None if record is None else Recorder(sim, record)
+            try:
+                raised = self._played(sim, player, on_slice)
+            finally:
+                if recorder is not None:
+                    recorder.close()
+            failure = None if raised is None else failure_from_error(raised)
+            found = [*self._failures(failure), *self._states(sim, marks)]
+            streams, count = self._streams(window)
+            return ReplayResult(
+                said,
+                state_hash(sim),
+                sim.time,
+                failure,
+                (*found, *streams),
+                self._machine(),
+                tuple(player.refused),
+                count,
+            )
+
+    def _machine(self) -> dict[str, tuple[str, str]]:
+        return fingerprint_differences(self._said.fingerprint, fingerprint())
+
+    def _read_models_here(self, sim: Simulation) -> None:
+        """Models that are spawned while it runs come from the bundle, and from nowhere else."""
+        read, models = sim.models_reader, self._said.models
+
+        def packed(source: Any, *args: Any, **named: Any) -> Any:
+            text = str(source)
+            if "<" not in text:
+                if text not in models:
+                    raise InputError(f"SK-BUNDLE-006 the bundle has no model {text!r:.200}", "SK-BUNDLE-006")
+                source = self._folder / models[text]
+            return read(source, *args, **named)
+
+        sim.models_reader = packed
+
+    def _played(
+        self, sim: Simulation, player: JournalPlayer, on_slice: Callable[[Simulation], None] | None
+    ) -> SimkitError | None:
+        """Runs to the end; gives what it failed with there."""
+        end = self._said.end
+        slice_ = max(1, sim.clock.ticks(_SLICE))
+        try:
+            while True:
+                player.play_due()
+                if sim.steps >= end.steps:
+                    break
+                stop = min(sim.steps + slice_, end.steps)
+                if player.next_steps is not None:
+                    stop = min(stop, max(player.next_steps, sim.steps + 1))
+                sim.step(stop - sim.steps)
+                if on_slice is not None:
+                    on_slice(sim)
+            if end.failure is not None and end.failure.kind in ("PluginError", "SimulationDiverged"):
+                sim.step(1)  # it failed before the step was done
+        except InputError:
+            raise
+        except SimkitError as error:
+            return error
+        return None
+
+    # ------------------------------------------------------------------ comparing
+
+    def _failures(self, failure: Failure | None) -> list[str]:
+        was = self._said.end.failure
+        repeats = was is not None and was.kind in ("PluginError", "SimulationDiverged", "RenderError")
+        if (failure is None and not repeats) or _is_same_failure(failure, was):
+            return []
+        if failure is None and was is not None:
+            return [f"the run failed, the replay did not: {was.text:.300}"]
+        if was is None and failure is not None:
+            return [f"the replay failed, the run did not: {failure.text:.300}"]
+        assert failure is not None and was is not None
+        return [f"the run failed with {was.text:.300}\n    the replay with {failure.text:.300}"]
+
+    def _states(self, sim: Simulation, marks: StateHashes) -> list[str]:
+        """Whether the physics is the same, and if not, in which second it begins to be another."""
+        end = self._said.end
+        if end.state == state_hash(sim) and end.steps == sim.steps:
+            return []
+        here = dict(marks.found)
+        same, first = 0, None
+        for steps, mark in self._said.marks:
+            if here.get(steps) != mark:
+                first = steps
+                break
+            same = steps
+        step = sim.timestep
+        where = f"equal up to {same * step:g} s" if same else "nothing before the first second is known to be equal"
+        where += f", other at {first * step:g} s" if first is not None else ", other at the end"
+        if sim.steps != end.steps:
+            where += f"; {sim.steps} steps were made, not {end.steps}"
+        return [f"state {state_hash(sim)[:16]}…, in the bundle {end.state[:16]}… ({where})"]
+
+    def _streams(self, window: MessageWindow) -> tuple[list[str], int]:
+        """Whether the messages of the last seconds are the same."""
+        said = self._said
+        messages = list(window.messages(said.first))
+        here = topic_digests(iter(messages))
+        other = [topic for topic in sorted({*said.streams, *here}) if said.streams.get(topic) != here.get(topic)]
+        if not other:
+            return [], len(messages)
+        there = self._recorded()
+        mine: dict[str, list[WindowMessage]] = defaultdict(list)
+        for one in messages:
+            mine[one.topic].append(one)
+        told = [(*_first_difference(there.get(t, []), mine.get(t, [])), t) for t in other]
+        return [f"{topic}: {text}" for _, text, topic in sorted(told)], len(messages)
+
+    def _recorded(self) -> dict[str, list[WindowMessage]]:
+        from simkit.recording.bags.reader import open_bag_to_read
+
+        found: dict[str, list[WindowMessage]] = defaultdict(list)
+        with open_bag_to_read(self._folder / BAG) as bag:
+            for one in bag.messages():
+                found[one.topic].append(WindowMessage(one.time_ns, one.topic, one.type_name, one.data))
+        return found
+
+
+def _is_same_failure(a: Failure | None, b: Failure | None) -> bool:
+    """Whether two errors are the same but for where it is written what raised."""
+    if a is None or b is None:
+        return a is b
+    return (a.kind, a.code, _CODE_POSITION.sub("()", a.text)) == (b.kind, b.code, _CODE_POSITION.sub("()", b.text))
+
+
+def _first_difference(there: list[WindowMessage], here: list[WindowMessage]) -> tuple[int, str]:
+    """When two streams part, and how, in words."""
+    for number, (a, b) in enumerate(zip(there, here, strict=False)):
+        if a.type_name != b.type_name:
+            return a.time_ns, f"is {b.type_name}, in the bundle {a.type_name}"
+        if a.time_ns != b.time_ns:
+            return (
+                a.time_ns,
+                f"message {number + 1} comes at {b.time_ns / 1e9:g} s, in the bundle at {a.time_ns / 1e9:g} s",
+            )
+        if a.data != b.data:
+            return a.time_ns, f"other bits from t = {a.time_ns / 1e9:g} s on (message {number + 1} of {len(there)})"
+    last = min(len(there), len(here))
+    rest = (there if len(there) > len(here) else here)[last:]
+    return (rest[0].time_ns if rest else 0), f"{len(here)} messages, in the bundle {len(there)}"

@@ -1,0 +1,168 @@
+"""What callers change of the physics directly (`set_pose`, `apply_wrench`, `sim.mj_data`), found without asking them.
+
+The state is compared with that after the last step. So it does not matter by which way it was written.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from simkit.errors import MessageError
+from simkit.runtime.engine.physics import STALE
+from simkit.testing.bundles.journal_values import decode_array, encode_value
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_STATE_PARTS: Final = (
+    "QPOS",
+    "QVEL",
+    "ACT",
+    "CTRL",
+    "QFRC_APPLIED",
+    "XFRC_APPLIED",
+    "EQ_ACTIVE",
+    "MOCAP_POS",
+    "MOCAP_QUAT",
+)
+_SIGNATURE: Final = sum(int(getattr(mujoco.mjtState, f"mjSTATE_{part}")) for part in _STATE_PARTS)
+
+Numbers = npt.NDArray[np.float64]
+
+
+class DirectChanges:
+    """Compares a simulation's physics with what it was when it was last seen.
+
+    Args:
+        sim: the simulation.
+    """
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._model: Any = None
+        self._state = np.empty(0)
+        self._fields: dict[str, Any] = {}
+        self._edition = -1
+        self.see()
+
+    def see(self) -> None:
+        """Takes the present state for known."""
+        sim = self._sim
+        self._state, self._model = state_vector(sim), sim.mj_model
+        if self._edition != sim.physics.edition:
+            self._fields = _changeable_fields(sim)
+            self._edition = sim.physics.edition
+
+    def found(self) -> dict[str, Any] | None:
+        """What is other than when it was last seen; None for nothing, or where the world has other parts since."""
+        sim = self._sim
+        if sim.mj_model is not self._model:
+            return None
+        words: dict[str, Any] = {}
+        now = state_vector(sim)
+        if now.tobytes() != self._state.tobytes():
+            places = np.flatnonzero(now.view(np.int64) != self._state.view(np.int64))
+            words["state"] = {"size": now.size, "at": encode_value(places), "values": encode_value(now[places])}
+        if self._edition != sim.physics.edition:
+            fields = _changed_fields(self._fields, _changeable_fields(sim))
+            if fields:
+                words["fields"] = fields
+        if not words:
+            return None
+        words["one_shot"] = bool(sim.physics.one_shot)
+        return words
+
+
+def state_vector(sim: Simulation) -> Numbers:
+    """Positions, velocities, controls and forces as one vector."""
+    values = np.empty(mujoco.mj_stateSize(sim.mj_model, _SIGNATURE))
+    mujoco.mj_getState(sim.mj_model, sim.mj_data, values, _SIGNATURE)
+    return values
+
+
+def apply_changes(sim: Simulation, words: dict[str, Any]) -> None:
+    """Changes the physics as it was changed by hand.
+
+    Raises:
+        MessageError: the words are not of this world.
+    """
+    if "fields" in words:
+        _apply_fields(sim, words["fields"])
+    if "state" in words:
+        _apply_state(sim, words["state"])
+    sim.physics.one_shot = bool(words.get("one_shot"))
+
+
+def _apply_state(sim: Simulation, words: Any) -> None:
+    physics, values = sim.physics, state_vector(sim)
+    places, numbers = _indices_and_values(words, values.size)
+    values[places] = numbers
+    before = sim.mj_data.qpos.copy(), sim.mj_data.qvel.copy(), sim.mj_data.xfrc_applied.copy()
+    mujoco.mj_setState(sim.mj_model, sim.mj_data, values, _SIGNATURE)
+    data, model = sim.mj_data, sim.mj_model
+    joints = {int(j) for j, at in enumerate(model.jnt_qposadr) if _differs(before[0], data.qpos, model, j, int(at))}
+    bodies = {int(model.jnt_bodyid[j]) for j in joints}
+    bodies |= {int(model.dof_bodyid[d]) for d in np.flatnonzero(before[1] != data.qvel)}
+    bodies |= {int(b) for b in np.flatnonzero((before[2] != data.xfrc_applied).any(axis=1))}
+    bodies |= {int(model.dof_bodyid[d]) for d in np.flatnonzero(data.qfrc_applied)}
+    physics.changed(STALE)
+    for body in sorted(bodies):
+        physics.changed_body(STALE, body)
+
+
+_WIDTHS: Final = {int(mujoco.mjtJoint.mjJNT_FREE): 7, int(mujoco.mjtJoint.mjJNT_BALL): 4}
+
+
+def _differs(before: Numbers, now: Numbers, model: Any, joint: int, at: int) -> bool:
+    width = _WIDTHS.get(int(model.jnt_type[joint]), 1)
+    return bool((before[at : at + width] != now[at : at + width]).any())
+
+
+def _changeable_fields(sim: Simulation) -> dict[str, Any]:
+    """What of the model may have been changed."""
+    found = {name: getattr(sim.mj_model, name).copy() for name in sim.originals}
+    found["gravity"] = sim.mj_model.opt.gravity.copy()
+    return found
+
+
+def _changed_fields(before: dict[str, Any], now: dict[str, Any]) -> dict[str, Any]:
+    found = {}
+    for name, values in now.items():
+        old = before.get(name)
+        flat = values.reshape(-1)
+        places = np.arange(flat.size) if old is None else np.flatnonzero(old.reshape(-1) != flat)
+        if places.size:
+            found[name] = {"size": flat.size, "at": encode_value(places), "values": encode_value(flat[places])}
+    return found
+
+
+def _apply_fields(sim: Simulation, words: Any) -> None:
+    if not isinstance(words, dict):
+        raise MessageError("found no fields of the model")
+    for name, change in words.items():
+        if name == "gravity":
+            old = sim.gravity
+            places, numbers = _indices_and_values(change, 3)
+            old[places] = numbers
+            sim.gravity = old
+            continue
+        there = getattr(sim.mj_model, name, None) if name.isidentifier() and not name.startswith("_") else None
+        if not isinstance(there, np.ndarray):
+            raise MessageError(f"the model has no field {name!r:.60}")
+        places, numbers = _indices_and_values(change, there.size)
+        sim.physics.changed_model()
+        sim.touch(name).reshape(-1)[places] = numbers
+
+
+def _indices_and_values(words: Any, size: int) -> tuple[Any, Any]:
+    """Places in an array with their values."""
+    if not isinstance(words, dict) or words.get("size") != size:
+        raise MessageError(f"a state of {size} numbers was to be changed, this world's is another")
+    places, numbers = decode_array(words.get("at")).astype(np.int64), decode_array(words.get("values"))
+    if places.shape != numbers.shape or (places < 0).any() or (places >= size).any():
+        raise MessageError("a state was to be changed at places that it does not have")
+    return places, numbers

@@ -1,0 +1,217 @@
+"""Does again what a journal says: the same things through the same doors, between the same two steps."""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from simkit.errors import InputError, MessageError, SimkitError
+from simkit.pose import Pose
+from simkit.testing.bundles.direct_changes import apply_changes
+from simkit.testing.bundles.journal_values import decode_message, decode_value
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+Entry = Mapping[str, Any]
+
+
+class JournalPlayer:
+    """Plays a journal into a simulation.
+
+    Args:
+        sim: at t = 0.
+        entries: of the journal, in order.
+
+    Attributes:
+        count: how many entries were played.
+        refused: what could not be done, in words: it was refused in the run too, or the worlds differ.
+    """
+
+    def __init__(self, sim: Simulation, entries: Iterable[Entry]) -> None:
+        self._sim = sim
+        self._between: deque[Entry] = deque()
+        self._within: dict[int, deque[Entry]] = defaultdict(deque)
+        restored, cancelled = set(), set()
+        for entry in entries:
+            place = entry.get("in")
+            if place is None:
+                self._between.append(entry)
+            else:
+                self._within[_integer_field(place[0])].append(entry)
+            if entry["do"] == "restore":
+                restored.add(entry.get("number"))
+            if entry["do"] == "cancel":
+                cancelled.add(entry.get("goal"))
+        self._restored, self._cancelled = restored, cancelled
+        self._snapshots: dict[Any, Any] = {}
+        self._goals: dict[Any, Any] = {}
+        self._publishers: dict[Any, Any] = {}
+        self.count = 0
+        self.refused: list[str] = []
+
+    @property
+    def next_steps(self) -> int | None:
+        """After how many steps something is to be done next between two steps; None when all is done."""
+        return int(self._between[0]["steps"]) if self._between else None
+
+    def play_due(self) -> None:
+        """Does what is due at the present step.
+
+        Raises:
+            PluginError, SimulationDiverged: what was done had somebody raise, as it did in the run.
+        """
+        while self._between and self._between[0]["steps"] <= self._sim.steps:
+            self._play(self._between.popleft())
+
+    def _play(self, entry: Entry) -> None:
+        self.count += 1
+        was_served = self._sim.pausing.is_served
+        self._sim.pausing.is_served = entry.get("served") is True
+        try:
+            deed = _ENTRY_METHODS.get(entry["do"])
+            if deed is None:
+                raise MessageError(f"nothing is known of {entry['do']!r:.40}")
+            deed(self, entry)
+        except (InputError, KeyError, ValueError, TypeError, AttributeError) as error:
+            # the run may have had the same answer, and gone on
+            text = str(error) if isinstance(error, SimkitError) else repr(error)
+            self.refused.append(f"{entry['do']} after {entry['steps']} steps: {text:.300}")
+        finally:
+            self._sim.pausing.is_served = was_served
+
+    # ------------------------------------------------------------------ what can be done
+
+    def _publish(self, entry: Entry) -> None:
+        self._sim.bus.publish(_text_field(entry, "topic"), decode_message(entry.get("message")))
+
+    def _advertise(self, entry: Entry) -> None:
+        topic, latched = _text_field(entry, "topic"), entry.get("latched") is True
+        self._publishers[entry.get("number")] = self._sim.bus.advertise(
+            topic, _text_field(entry, "type"), latched=latched
+        )
+
+    def _send(self, entry: Entry) -> None:
+        message, publisher = decode_message(entry.get("message")), self._publishers.get(entry.get("number"))
+        if publisher is None:  # opened before the journal was
+            self._sim.bus.publish(_text_field(entry, "topic"), message)
+        else:
+            publisher.publish(message)
+
+    def _close(self, entry: Entry) -> None:
+        self._sim.bus.close(self._publishers.pop(entry.get("number")))
+
+    def _hear(self, entry: Entry) -> None:
+        """A tap where the run had a callback; only where that did something."""
+        heard = self._counting(entry.get("number"))
+        if heard is not None:
+            self._sim.bus.tap(_text_field(entry, "topic"), heard)
+
+    def _counting(self, number: Any) -> Callable[[Any], None] | None:
+        """A callback that does, the n-th time it is called, what the run's did then; None where that did nothing."""
+        deeds = self._within.get(_integer_field(number)) if number is not None else None
+        if not deeds:
+            return None
+        count = 0
+
+        def heard(_: Any) -> None:
+            nonlocal count
+            count += 1
+            while deeds and _integer_field(deeds[0]["in"][1]) <= count:
+                self._play(deeds.popleft())
+
+        return heard
+
+    def _by_hand(self, entry: Entry) -> None:
+        apply_changes(self._sim, dict(entry))
+
+    def _call(self, entry: Entry) -> None:
+        self._sim.call(_text_field(entry, "service"), decode_message(entry.get("request")))
+
+    def _send_goal(self, entry: Entry) -> None:
+        feedback, done = (self._counting(entry.get(name)) for name in ("on_feedback", "on_done"))
+        handle = self._sim.send_goal(_text_field(entry, "action"), decode_message(entry.get("goal")), feedback, done)
+        if handle.id in self._cancelled:
+            self._goals[handle.id] = handle
+
+    def _cancel(self, entry: Entry) -> None:
+        self._goals[entry.get("goal")].cancel()
+
+    def _set(self, entry: Entry) -> None:
+        value = entry.get("value")
+        value = tuple(value) if isinstance(value, list) else value
+        self._sim.set_parameter(_text_field(entry, "node"), _text_field(entry, "name"), value)
+
+    def _spawned(self, entry: Entry) -> None:
+        models = [(one["source"], one["name"], _decode_pose(one["pose"])) for one in entry["models"]]
+        self._sim.spawn_all(models)
+
+    def _remove(self, entry: Entry) -> None:
+        self._sim.remove(_text_field(entry, "name"))
+
+    def _clone(self, entry: Entry) -> None:
+        self._sim.clone(_text_field(entry, "name"), _text_field(entry, "new_name"), _decode_pose(entry.get("pose")))
+
+    def _add_sensor(self, entry: Entry) -> None:
+        self._sim.add_sensor(_text_field(entry, "name"), decode_value(entry.get("sensor")))
+
+    def _make_movable(self, entry: Entry) -> None:
+        self._sim.make_movable(_text_field(entry, "name"))
+
+    def _add_weld(self, entry: Entry) -> None:
+        self._sim.add_weld(
+            _text_field(entry, "name"), _text_field(entry, "parent_link"), _text_field(entry, "child_link")
+        )
+
+    def _set_weld(self, entry: Entry) -> None:
+        self._sim.set_weld(_text_field(entry, "name"), entry.get("closed") is True)
+
+    def _reset(self, entry: Entry) -> None:
+        seed = entry.get("seed")
+        self._sim.reset(None if seed is None else _integer_field(seed))
+
+    def _reseed(self, entry: Entry) -> None:
+        self._sim.reseed(_integer_field(entry.get("seed")))
+
+    def _reset_models(self, _: Entry) -> None:
+        self._sim.reset_models()
+
+    def _snapshot(self, entry: Entry) -> None:
+        if entry.get("number") in self._restored:
+            self._snapshots[entry.get("number")] = self._sim.snapshot()
+
+    def _restore(self, entry: Entry) -> None:
+        self._sim.restore(self._snapshots[entry.get("number")])
+
+
+_ENTRY_METHODS: dict[str, Callable[[JournalPlayer, Entry], None]] = {
+    name: getattr(JournalPlayer, f"_{name}")
+    for name in (
+        *("publish", "advertise", "send", "close", "hear", "by_hand", "call", "send_goal", "cancel", "set", "spawned"),
+        *("remove", "clone", "add_sensor", "make_movable", "add_weld", "set_weld", "reset", "reseed"),
+        *("reset_models", "snapshot", "restore"),
+    )
+}
+
+
+def _text_field(entry: Entry, name: str) -> str:
+    found = entry.get(name)
+    if not isinstance(found, str):
+        raise MessageError(f"{name}: found {found!r:.60}, allowed is a text")
+    return found
+
+
+def _integer_field(value: Any) -> int:
+    if type(value) is not int or not 0 <= value < 1 << 62:
+        raise MessageError(f"found {value!r:.60}, allowed is a whole number from 0 on")
+    return value
+
+
+def _decode_pose(values: Any) -> Pose | None:
+    if values is None:
+        return None
+    if not isinstance(values, list) or len(values) != 7:
+        raise MessageError(f"found {values!r:.80}, allowed are 7 numbers of a pose")
+    x, y, z, *rotation = (float(v) for v in values)
+    return Pose((x, y, z), tuple(rotation))

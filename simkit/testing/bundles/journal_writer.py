@@ -1,0 +1,295 @@
+"""Writes down all that comes into a simulation from outside: what, and between which two steps."""
+
+from __future__ import annotations
+
+import functools
+import json
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+from weakref import WeakKeyDictionary, finalize, ref
+
+from simkit.pose import Pose
+from simkit.scene import SceneModel
+from simkit.testing.bundles.direct_changes import DirectChanges
+from simkit.testing.bundles.journal_values import NotEncodable, encode_message, encode_value
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_MAX_BYTES_IN_MEMORY: Final = 16 << 20  # bytes; what is more goes to a temporary file
+MAX_JOURNAL_BYTES: Final = 1 << 30
+"""A journal has no more bytes than these."""
+
+AnswerCallback = Callable[[Any], None]
+
+
+class JournalWriter:
+    """The journal of a run, from its first step on; see `simkit.runtime.communication.journal.Journal`.
+
+    Args:
+        sim: at t = 0, nothing done yet.
+
+    Attributes:
+        count: how many entries it has.
+        gaps: what could not be written down, in words.
+        sources: what models were read from while it ran, in order: files and names.
+        keeper: whose it is.
+    """
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim = sim
+        self._file = tempfile.SpooledTemporaryFile(max_size=_MAX_BYTES_IN_MEMORY)  # noqa: SIM115 - lives as long as the run
+        finalize(self, self._file.close)
+        self._inside = 0
+        self._place: list[int] | None = None
+        self._heard: dict[int, list[int]] = {}
+        self._numbers: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        self._called: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        self._publishers: dict[int, tuple[Any, int]] = {}
+        self._snapshots: dict[int, tuple[ref[Any], int]] = {}
+        self._snapshot_count = 0
+        self._by_hand = DirectChanges(sim)
+        self._entries: dict[str, Callable[..., dict[str, Any] | None]] = {
+            name.removeprefix("_of_"): getattr(self, name) for name in dir(self) if name.startswith("_of_")
+        }
+        self.count = 0
+        self.gaps: list[str] = []
+        self.sources: list[str] = []
+        self.keeper: Any = None
+
+    def write_to(self, path: Path) -> None:
+        """Copies what was written so far."""
+        self._look()
+        self._file.seek(0)
+        with path.open("wb") as file:
+            while piece := self._file.read(1 << 20):
+                file.write(piece)
+        self._file.seek(0, 2)
+
+    # ------------------------------------------------------------------ who is outside
+
+    @property
+    def _is_outside(self) -> bool:
+        return not self._inside and (self._place is not None or not self._sim.is_stepping)
+
+    @contextmanager
+    def passing(self, door: str, words: Mapping[str, Any]) -> Iterator[AnswerCallback | None]:
+        """Writes down what somebody outside does; what follows from it within is not written."""
+        if not self._is_outside:
+            yield None
+            return
+        self._look()
+        told = self._told(door, words)
+        self._inside += 1
+        try:
+            yield told
+        finally:
+            self._inside -= 1
+            self._by_hand.see()
+
+    @contextmanager
+    def called_back(self, subscription: Any) -> Iterator[None]:
+        """A callback that is no plugin's: it is outside, wherever it is called from."""
+        number = self._numbers.get(subscription)
+        if number is None:  # a plugin's
+            yield
+            return
+        with self._outside_at(number):
+            yield
+
+    @contextmanager
+    def _outside_at(self, number: int) -> Iterator[None]:
+        before = self._inside, self._place
+        self._inside, self._place = 0, self._heard[number]
+        self._by_hand.see()
+        try:
+            yield
+        finally:
+            self._look()
+            self._inside, self._place = before
+
+    def outside(self, callback: Callable[[Any], Any] | None) -> Callable[[Any], Any] | None:
+        """A callback of somebody outside, whose calls are counted so that what it does has a place."""
+        if callback is None or not self._is_outside:
+            return callback
+        count = self._new_place()
+
+        @functools.wraps(callback)
+        def called(value: Any) -> Any:
+            count[1] += 1
+            with self._outside_at(count[0]):
+                return callback(value)
+
+        self._called[called] = count[0]
+        return called
+
+    def _new_place(self) -> list[int]:
+        number = len(self._heard) + 1
+        found = self._heard[number] = [number, 0]
+        return found
+
+    def hears(self, topic: str, subscription: Any) -> None:
+        """A tap before the new subscriber counts what both get, so that what it does has a place."""
+        if not self._is_outside:
+            return
+        count = self._new_place()
+        number = self._numbers[subscription] = count[0]
+
+        def heard(_: Any) -> None:
+            count[1] += 1
+
+        self._write("hear", {"number": number, "topic": topic})
+        self._sim.bus.tap(topic, heard, takes_later=True)
+
+    def before_steps(self) -> None:
+        """What was changed by hand before a step comes before it."""
+        if self._is_outside:
+            self._look()
+
+    def after_steps(self) -> None:
+        """What steps change is not by hand."""
+        if self._is_outside:
+            self._by_hand.see()
+
+    def _look(self) -> None:
+        found = self._by_hand.found()
+        if found is not None:
+            self._write("by_hand", found)
+            self._by_hand.see()
+
+    # ------------------------------------------------------------------ writing
+
+    def _told(self, door: str, words: Mapping[str, Any]) -> AnswerCallback | None:
+        """Writes an entry; what is to be told of the result comes back."""
+        try:
+            entry = self._entries[door](**words)
+        except NotEncodable as error:
+            self.gaps.append(f"{door} at t={self._sim.time:g} s was given a {error}, which a bundle cannot hold")
+            return None
+        if entry is None:
+            return None
+        then: AnswerCallback | None = entry.pop("then", None)
+        self._write(door, entry)
+        return then
+
+    def _write(self, do: str, words: Mapping[str, Any]) -> None:
+        sim = self._sim
+        entry: dict[str, Any] = {"steps": sim.steps, "tick": sim.tick, "do": do, **words}
+        if self._place is not None:
+            entry["in"] = list(self._place)
+        if sim.pausing.is_served:
+            entry["served"] = True
+        line = json.dumps(entry).encode() + b"\n"
+        if self._file.tell() + len(line) > MAX_JOURNAL_BYTES:
+            if not self.gaps or "no more" not in self.gaps[-1]:
+                self.gaps.append(
+                    f"from t={sim.time:g} s on no more commands are in it: they have {MAX_JOURNAL_BYTES >> 30} GiB"
+                )
+            return
+        self._file.write(line)
+        self.count += 1
+
+    # ------------------------------------------------------------------ the doors, by name
+
+    def _of_publish(self, topic: str, message: Any) -> dict[str, Any]:
+        return {"topic": topic, "message": encode_message(message)}
+
+    def _of_advertise(self, publisher: Any) -> dict[str, Any]:
+        number = len(self._publishers) + 1
+        self._publishers[id(publisher)] = publisher, number
+        words = {"topic": publisher.topic, "type": publisher.type_name, "latched": publisher.latched}
+        return {"number": number, **words}
+
+    def _of_send(self, publisher: Any, message: Any) -> dict[str, Any]:
+        number = self._publishers.get(id(publisher), (None, 0))[1]
+        return {"number": number, "topic": publisher.topic, "message": encode_message(message)}
+
+    def _of_close(self, publisher: Any) -> dict[str, Any] | None:
+        known = self._publishers.get(id(publisher))
+        return None if known is None else {"number": known[1]}
+
+    def _of_call(self, service: Any, request: Any) -> dict[str, Any] | None:
+        if service.owner is None and not service.yields:
+            return None  # the caller's own: what it does is written down
+        return {"service": service.name, "request": encode_message(request)}
+
+    def _of_send_goal(self, action: str, goal: Any, on_feedback: Any, on_done: Any) -> dict[str, Any]:
+        callbacks = {"on_feedback": on_feedback, "on_done": on_done}
+        heard = {name: self._called.get(one) for name, one in callbacks.items() if one is not None}
+        return {"action": action, "goal": encode_message(goal), **{k: v for k, v in heard.items() if v is not None}}
+
+    def _of_offer(self, service: str) -> None:
+        self.gaps.append(f"the service {service!r} was offered by the caller; who called it would find none")
+
+    def _of_act(self, action: str) -> None:
+        self.gaps.append(f"the action {action!r} was opened by the caller; who sent a goal would find none")
+
+    def _of_cancel(self, goal: int) -> dict[str, Any]:
+        return {"goal": goal}
+
+    def _of_set(self, node: str, name: str, value: Any) -> dict[str, Any]:
+        return {"node": node, "name": name, "value": encode_value(value)}
+
+    def _of_spawned(self, wanted: Any) -> dict[str, Any]:
+        return {"models": [_encode_model_source(*one) for one in wanted]}
+
+    def _of_remove(self, name: str) -> dict[str, Any]:
+        return {"name": name}
+
+    def _of_clone(self, name: str, new_name: str, pose: Pose | None) -> dict[str, Any]:
+        return {"name": name, "new_name": new_name, "pose": _encode_pose(pose)}
+
+    def _of_add_sensor(self, name: str, sensor: Any) -> dict[str, Any]:
+        return {"name": name, "sensor": encode_value(sensor)}
+
+    def _of_make_movable(self, name: str) -> dict[str, Any]:
+        return {"name": name}
+
+    def _of_add_weld(self, name: str, parent_link: str, child_link: str) -> dict[str, Any]:
+        return {"name": name, "parent_link": parent_link, "child_link": child_link}
+
+    def _of_set_weld(self, name: str, closed: bool) -> dict[str, Any]:
+        return {"name": name, "closed": bool(closed)}
+
+    def _of_reset(self, seed: int | None) -> dict[str, Any]:
+        return {"seed": seed}
+
+    def _of_reseed(self, seed: int) -> dict[str, Any]:
+        return {"seed": seed}
+
+    def _of_reset_models(self) -> dict[str, Any]:
+        return {}
+
+    def _of_snapshot(self) -> dict[str, Any]:
+        number = self._snapshot_count = self._snapshot_count + 1
+
+        def keep(snapshot: Any) -> None:
+            key = id(snapshot)
+
+            def gone(_: object) -> None:
+                self._snapshots.pop(key, None)
+
+            self._snapshots[key] = ref(snapshot, gone), number
+
+        return {"number": number, "then": keep}
+
+    def _of_restore(self, snapshot: Any) -> dict[str, Any] | None:
+        known = self._snapshots.get(id(snapshot))
+        if known is None:
+            self.gaps.append(f"a snapshot from before the bundle began was restored at t={self._sim.time:g} s")
+            return None
+        return {"number": known[1]}
+
+
+def _encode_pose(pose: Pose | None) -> list[float] | None:
+    return None if pose is None else [*map(float, pose.position), *map(float, pose.quaternion)]
+
+
+def _encode_model_source(source: Any, name: str | None, pose: Pose | None) -> dict[str, Any]:
+    """A model to be spawned: a text of XML as it is, a file or name as it was said."""
+    if isinstance(source, SceneModel):
+        raise NotEncodable("model made in Python")
+    return {"source": str(source), "name": name, "pose": _encode_pose(pose)}

@@ -1,0 +1,276 @@
+"""The first page of a bundle: what was run, how it ended, what is in it. Read as what a stranger wrote."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any, Final
+
+from simkit.errors import InputError
+
+FORMAT: Final = 1
+PAGE: Final = "bundle.json"
+COMMANDS: Final = "commands.jsonl"
+BAG: Final = "last_seconds.mcap"
+CHECK: Final = "check"
+"""Kind of the failure of a run in which something did not hold."""
+BROKEN, NEWER = "SK-BUNDLE-001", "SK-BUNDLE-002"
+
+
+@dataclass(frozen=True)
+class Failure:
+    """What a run failed with.
+
+    Attributes:
+        kind: name of the exception's class; CHECK where a check did not hold.
+        code: of the error.
+        text: what was said, without folders.
+    """
+
+    kind: str
+    code: str
+    text: str
+
+
+@dataclass(frozen=True)
+class RunEnd:
+    """How a run stood when it was packed.
+
+    Attributes:
+        steps: made since it was loaded.
+        tick: at which it stood.
+        time_ns: simulated [ns].
+        state: hash of the physics, as `simkit run` prints it.
+        failure: None where nothing failed.
+    """
+
+    steps: int
+    tick: int
+    time_ns: int
+    state: str
+    failure: Failure | None = None
+
+
+@dataclass(frozen=True)
+class SpawnedModel:
+    """A model that comes into the world as it is loaded."""
+
+    file: str
+    place: tuple[float, ...] | None = None
+    name: str | None = None
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What a bundle says of itself.
+
+    Attributes:
+        name: of the run.
+        world: the file to open.
+        base: of a bare model.
+        seed, overrides, sleep, on_error: as of `simkit.load`.
+        spawn: models put into the world.
+        params: parameter files: model (empty for all) and file.
+        models: what was spawned while it ran: as it was said -> file.
+        code: files of the user's plugins.
+        missing: what could not be packed, in words.
+        fingerprint: of the machine that made it.
+        seconds: how long messages were kept [s].
+        topics: patterns of topics that were kept although they are pictures.
+        first: steps since which messages are in it.
+        end: how the run stood.
+        streams: of the last seconds: topic -> type, count, sha256.
+        marks: steps and hash of the state, once a simulated second.
+        commands: how many entries the journal has.
+        files: name -> size and sha256.
+    """
+
+    name: str
+    world: str
+    base: str
+    seed: int
+    overrides: tuple[str, ...]
+    sleep: bool
+    on_error: str | None
+    spawn: tuple[SpawnedModel, ...]
+    params: tuple[tuple[str, str], ...]
+    models: Mapping[str, str]
+    code: tuple[str, ...]
+    missing: tuple[str, ...]
+    fingerprint: Mapping[str, str]
+    seconds: float
+    topics: tuple[str, ...]
+    first: int
+    end: RunEnd
+    streams: Mapping[str, Mapping[str, Any]]
+    marks: tuple[tuple[int, str], ...]
+    commands: int
+    files: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    def text(self) -> str:
+        """As JSON; equal for equal ones."""
+        words = {"format": FORMAT, **asdict(self)}
+        words["seconds"] = self.seconds if math.isfinite(self.seconds) else None
+        return json.dumps(words, sort_keys=True, indent=1) + "\n"
+
+
+def read_manifest(data: bytes, path: str) -> Manifest:
+    """The manifest in a bundle's first page.
+
+    Raises:
+        InputError: SK-BUNDLE-001 it is none, SK-BUNDLE-002 a later simkit wrote it.
+    """
+    try:
+        words = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{BROKEN} {path}: {PAGE} is no JSON: {error!s:.80}", BROKEN) from None
+    if not isinstance(words, dict) or not isinstance(words.get("format"), int):
+        raise InputError(f"{BROKEN} {path} is no bundle of simkit: {PAGE} says no format", BROKEN)
+    if words["format"] > FORMAT:
+        said = f"{NEWER} {path} is of format {words['format']}, this simkit reads up to {FORMAT}"
+        raise InputError(f"{said}\n    help: a newer simkit opens it", NEWER)
+    try:
+        return _parse_manifest(_ManifestReader(words))
+    except (_InvalidValue, OverflowError) as error:
+        raise InputError(f"{BROKEN} {path}: {PAGE}: {error}", BROKEN) from None
+
+
+class _InvalidValue(Exception):
+    """Something is of another kind than it has to be; says what."""
+
+
+class _ManifestReader:
+    """Takes values out of a mapping, each of the kind that it has to be."""
+
+    def __init__(self, words: Mapping[str, Any], at: str = "") -> None:
+        self._words, self._at = words, at
+
+    def _value(self, name: str, kind: Any, allowed: str) -> Any:
+        value = self._words.get(name)
+        if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+            raise _InvalidValue(f"{self._at}{name}: found {value!r:.60}, allowed is {allowed}")
+        return value
+
+    def text(self, name: str) -> str:
+        found: str = self._value(name, str, "a text")
+        return found
+
+    def flag(self, name: str) -> bool:
+        found: bool = self._value(name, bool, "true or false")
+        return found
+
+    def count(self, name: str) -> int:
+        found: int = self._value(name, int, "a whole number from 0 on")
+        if not 0 <= found < 1 << 62:
+            raise _InvalidValue(f"{self._at}{name}: found {found!r:.60}, allowed is a whole number from 0 on")
+        return found
+
+    def time(self, name: str) -> float:
+        if self._words.get(name) is None:
+            return math.inf
+        found = float(self._value(name, (int, float), "a number of seconds"))
+        if not found >= 0:
+            raise _InvalidValue(f"{self._at}{name}: found {found}, allowed is a number of seconds")
+        return found
+
+    def either(self, name: str, take: Callable[[str], Any]) -> Any:
+        return None if self._words.get(name) is None else take(name)
+
+    def listed(self, name: str) -> list[Any]:
+        found: list[Any] = self._value(name, list, "a list")
+        return found
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        found = self.listed(name)
+        if not all(isinstance(one, str) for one in found):
+            raise _InvalidValue(f"{self._at}{name}: allowed is a list of texts")
+        return tuple(found)
+
+    def mapping(self, name: str) -> dict[str, Any]:
+        found: dict[str, Any] = self._value(name, dict, "a mapping")
+        return found
+
+    def of_texts(self, name: str) -> dict[str, str]:
+        found = self.mapping(name)
+        if not all(isinstance(one, str) for one in found.values()):
+            raise _InvalidValue(f"{self._at}{name}: allowed is a mapping of texts")
+        return found
+
+    def reader(self, name: str) -> _ManifestReader:
+        return _ManifestReader(self.mapping(name), f"{self._at}{name}.")
+
+    def readers(self, name: str) -> list[_ManifestReader]:
+        found = self.listed(name)
+        if not all(isinstance(one, dict) for one in found):
+            raise _InvalidValue(f"{self._at}{name}: allowed is a list of mappings")
+        return [_ManifestReader(one, f"{self._at}{name}[{number}].") for number, one in enumerate(found)]
+
+    def each(self, name: str) -> dict[str, _ManifestReader]:
+        found = self.mapping(name)
+        if not all(isinstance(one, dict) for one in found.values()):
+            raise _InvalidValue(f"{self._at}{name}: allowed is a mapping of mappings")
+        return {key: _ManifestReader(one, f"{self._at}{name}.{key:.60}.") for key, one in found.items()}
+
+
+def _parse_manifest(said: _ManifestReader) -> Manifest:
+    return Manifest(
+        name=said.text("name"),
+        world=said.text("world"),
+        base=said.text("base"),
+        seed=said.count("seed"),
+        overrides=said.texts("overrides"),
+        sleep=said.flag("sleep"),
+        on_error=said.either("on_error", said.text),
+        spawn=tuple(_parse_spawned(one) for one in said.readers("spawn")),
+        params=tuple(_parse_pair(one) for one in said.listed("params")),
+        models=said.of_texts("models"),
+        code=said.texts("code"),
+        missing=said.texts("missing"),
+        fingerprint=said.of_texts("fingerprint"),
+        seconds=said.time("seconds"),
+        topics=said.texts("topics"),
+        first=said.count("first"),
+        end=_parse_end(said.reader("end")),
+        streams={
+            topic: {"type": one.text("type"), "count": one.count("count"), "sha256": one.text("sha256")}
+            for topic, one in said.each("streams").items()
+        },
+        marks=tuple(_parse_state_mark(one) for one in said.listed("marks")),
+        commands=said.count("commands"),
+        files={
+            name: {"size": one.count("size"), "sha256": one.text("sha256")} for name, one in said.each("files").items()
+        },
+    )
+
+
+def _parse_end(said: _ManifestReader) -> RunEnd:
+    failure = None
+    if said.either("failure", said.mapping) is not None:
+        one = said.reader("failure")
+        failure = Failure(one.text("kind"), one.text("code"), one.text("text"))
+    return RunEnd(said.count("steps"), said.count("tick"), said.count("time_ns"), said.text("state"), failure)
+
+
+def _parse_spawned(said: _ManifestReader) -> SpawnedModel:
+    place = said.either("place", said.listed)
+    if place is not None:
+        numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in place)
+        if not numbers or len(place) not in (3, 4, 6):
+            raise _InvalidValue(f"place: found {place!r:.60}, allowed are 3, 4 or 6 numbers")
+    return SpawnedModel(
+        said.text("file"), None if place is None else tuple(map(float, place)), said.either("name", said.text)
+    )
+
+
+def _parse_pair(one: Any) -> tuple[str, str]:
+    if not isinstance(one, list) or len(one) != 2 or not all(isinstance(part, str) for part in one):
+        raise _InvalidValue(f"params: found {one!r:.60}, allowed is a model's name and a file")
+    return one[0], one[1]
+
+
+def _parse_state_mark(one: Any) -> tuple[int, str]:
+    if not isinstance(one, list) or len(one) != 2 or type(one[0]) is not int or not isinstance(one[1], str):
+        raise _InvalidValue(f"marks: found {one!r:.60}, allowed are steps and a hash")
+    return one[0], one[1]

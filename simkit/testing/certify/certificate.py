@@ -1,0 +1,212 @@
+"""A determinism certificate: runs side by side, their differences, and its text for a terminal."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.testing.certify.code_hints import CodeHint
+from simkit.testing.certify.outcome import RunOutcome
+from simkit.testing.certify.variations import Variation
+
+FORMAT: Final = 1
+
+
+@dataclass(frozen=True)
+class Row:
+    """One run.
+
+    Attributes:
+        variation: its surroundings.
+        outcome: what came of it.
+        streams: one hash of all topics; empty where nobody listened. Of a run that listened later it is of the
+            messages from then on.
+        same: whether it is what the first run was.
+    """
+
+    variation: Variation
+    outcome: RunOutcome
+    streams: str
+    same: bool
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The first thing that was other in a run.
+
+    Attributes:
+        variation: which run.
+        words: what differs, in a sentence: `/odom: message 37 at t = 1.233 s`.
+        tick: the first at which something differs; None where that is not of one tick.
+        time: of that [s].
+        owner: the plugin or sensor that began it: `plugin 'drive' (robot.sdf:12)`; empty where it is not known.
+        how: what it did, in words.
+        hints: places in its code that often are to blame.
+        more: what else differs, in sentences.
+    """
+
+    variation: Variation
+    words: str
+    tick: int | None = None
+    time: float | None = None
+    owner: str = ""
+    how: str = ""
+    hints: tuple[CodeHint, ...] = ()
+    more: tuple[str, ...] = ()
+
+
+@dataclass
+class Certificate:
+    """Runs side by side.
+
+    Attributes:
+        name: of the scenario.
+        world, duration, seed: what was run.
+        rows: the runs; the others are compared with the first.
+        differences: of each run that was other; empty for a pass.
+        notes: what is other and does not count.
+        fingerprint: of the machine, which it holds for.
+    """
+
+    name: str
+    world: str
+    duration: float
+    seed: int
+    rows: list[Row]
+    differences: list[Difference] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    fingerprint: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def passed(self) -> bool:
+        """Whether all runs gave the same bits."""
+        return not self.differences
+
+    def to_dict(self) -> dict[str, Any]:
+        """For programs; holds nothing of the wall clock, so that two of one world are equal where it is."""
+        first = self.rows[0].outcome
+        topics = {
+            topic: {"type": heard.type_name, "count": len(heard.digests), "sha256": heard.digest}
+            for topic, heard in first.heard.items()
+        }
+        return {
+            "format": FORMAT,
+            "passed": self.passed,
+            "scenario": {"name": self.name, "world": self.world, "duration": self.duration, "seed": self.seed},
+            "ticks": first.ticks,
+            "state": first.state,
+            "streams": self.rows[0].streams,
+            "topics": topics,
+            "fingerprint": self.fingerprint,
+            "runs": [_certificate_row(row) for row in self.rows],
+            "differences": [_difference_dict(one) for one in self.differences],
+            "notes": self.notes,
+        }
+
+
+def _certificate_row(row: Row) -> dict[str, Any]:
+    return {
+        "name": row.variation.name,
+        "other": row.variation.words,
+        "state": row.outcome.state,
+        "streams": row.streams,
+        "same": row.same,
+        "ended": str(row.outcome.failure or row.outcome.stopped or row.outcome.end),
+    }
+
+
+def _difference_dict(one: Difference) -> dict[str, Any]:
+    return {
+        "run": one.variation.name,
+        "what": one.words,
+        "tick": one.tick,
+        "time": one.time,
+        "owner": one.owner,
+        "how": one.how,
+        "hints": [{"where": hint.where, "text": hint.text} for hint in one.hints],
+        "more": list(one.more),
+    }
+
+
+def streams_hash(outcome: RunOutcome) -> str:
+    """One hash of all that was heard; empty where nobody listened."""
+    if not outcome.heard:
+        return ""
+    whole = hashlib.sha256()
+    for topic, heard in sorted(outcome.heard.items()):
+        if outcome.heard_from:
+            heard_digest = hashlib.sha256(heard.digests[heard.ticks > outcome.heard_from].tobytes()).hexdigest()
+        else:
+            heard_digest = heard.digest
+        whole.update(f"{topic} {heard.type_name} {heard_digest}\n".encode())
+    return whole.hexdigest()
+
+
+_MAX_DIFFERENCES_SHOWN: Final = 12  # letters of a hash
+
+
+def table_header() -> str:
+    """Of the table."""
+    return f"{'run':<12}  {'state':<{_MAX_DIFFERENCES_SHOWN}}  {'streams':<{_MAX_DIFFERENCES_SHOWN}}  {'':<9}  what is other"
+
+
+def table_row(row: Row) -> str:
+    """One run."""
+    outcome = row.outcome
+    state = outcome.state[:_MAX_DIFFERENCES_SHOWN] if outcome.state else "-"
+    streams = ("second half" if outcome.heard_from else row.streams[:_MAX_DIFFERENCES_SHOWN]) or "-"
+    verdict = "same" if row.same else "DIFFERENT"
+    return f"{row.variation.name:<12}  {state:<{_MAX_DIFFERENCES_SHOWN}}  {streams:<{_MAX_DIFFERENCES_SHOWN}}  {verdict:<9}  {row.variation.words}"
+
+
+def conclusion_text(made: Certificate) -> list[str]:
+    """What stands below the table, the most important first."""
+    first = made.rows[0].outcome
+    lines: list[str] = []
+    for number, (one, also) in enumerate(_group_alike(made.differences)):
+        lines += _difference_text(one, also, is_first=number == 0)
+    if made.passed:
+        messages = sum(len(heard.digests) for heard in first.heard.values())
+        told = f"{first.ticks} steps ({made.duration:g} s), {messages} messages on {len(first.heard)} topics"
+        lines.append(f"the same bits in {len(made.rows)} runs: {told}, seed {made.seed}")
+        if first.end:
+            lines.append(f"every run ended with: {first.end}")
+    else:
+        lines.append(f"{len(made.differences)} of {len(made.rows) - 1} runs differ from the first")
+    lines += [_relative_paths(f"note: {note}") for note in made.notes]
+    shown = ", ".join(f"{name} {value}" for name, value in made.fingerprint.items() if value)
+    return [*lines, f"on: {shown}"]
+
+
+def _group_alike(differences: Sequence[Difference]) -> list[tuple[Difference, list[str]]]:
+    """Differences that somebody else began, each with the names of the other runs that show the same."""
+    found: dict[object, tuple[Difference, list[str]]] = {}
+    for one in differences:
+        key = (one.owner, one.hints) if one.owner else (one.words, one.how)
+        if key in found:
+            found[key][1].append(one.variation.name)
+        else:
+            found[key] = one, []
+    return list(found.values())
+
+
+def _difference_text(one: Difference, also: Sequence[str], *, is_first: bool) -> list[str]:
+    lines = [f"{one.variation.name}: {one.words}" + (f"; and in: {', '.join(also)}" if also else "")]
+    if one.owner:
+        when = "" if one.tick is None else f" at tick {one.tick} (t = {one.time:.6g} s)"
+        lines.append(f"    begun by {one.owner}{when}" + (f": {one.how}" if one.how else ""))
+    elif one.how:
+        lines.append(f"    {one.how}")
+    lines += [f"    hint: {hint.where}: {hint.text}" for hint in one.hints]
+    lines += [f"    also: {words}" for words in one.more] if is_first else []
+    return [_relative_paths(text) for text in lines]
+
+
+def _relative_paths(text: str) -> str:
+    """With paths below the working directory as they are from there."""
+    here = f"{Path.cwd()}{os.sep}"
+    return text.replace(here, "")

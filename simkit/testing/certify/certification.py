@@ -1,0 +1,165 @@
+"""Runs a scenario in fresh processes and puts what they gave side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import Final
+
+from simkit.errors import InputError
+from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
+from simkit.testing.certify.code_hints import hints_in
+from simkit.testing.certify.outcome import RunOutcome
+from simkit.testing.certify.outcome_comparison import Culprit, differences, find_culprit, first_tick
+from simkit.testing.certify.process_runner import ProcessRunner
+from simkit.testing.certify.variations import Variation, choose_variations
+from simkit.testing.scenarios import Scenario
+
+_REPETITIONS: Final = 2  # looks at a difference that does not show when it is looked at
+_TICK_MARGIN: Final = 2  # ticks after the first that differs
+
+ProgressCallback = Callable[[Row], None]
+
+
+def certify(
+    scenario: Scenario,
+    *,
+    runs: int = 6,
+    variations: Sequence[Variation] | None = None,
+    jobs: int = 1,
+    apart: bool = True,
+    wall_timeout: float | None = None,
+    told: ProgressCallback | None = None,
+) -> Certificate:
+    """Runs a scenario several times, each in a fresh process with other surroundings, and compares what came of it.
+
+    Args:
+        scenario: what is run.
+        runs: how many runs; the first ones of `VARIATIONS`, then those again with other hash seeds.
+        variations: the surroundings instead, the first being what the others are compared with.
+        jobs: how many processes at a time.
+        apart: whether each has a process of its own. In this one, where a debugger can look, only who listens and what
+            is done on the way can be other, and nothing has a limit.
+        wall_timeout: of each run, in wall time [s]. Where not given the first has none, and the others have ten times
+            as long as it took, at least a minute.
+        told: called with each run once it is there.
+
+    Raises:
+        InputError: SK-CERT-001 fewer than two runs; SK-CERT-002 plugins that no other process can have; SK-CERT-004
+            the first process ended, or did not end in time.
+        LoadError: the world does not open.
+        PluginError: a plugin of it does not.
+    """
+    chosen_ = choose_variations(runs) if variations is None else list(variations)
+    if len(chosen_) < 2:
+        message = f"SK-CERT-001 found {len(chosen_)} runs, allowed are at least 2: the first is compared with others"
+        raise InputError(message, "SK-CERT-001")
+    runner = ProcessRunner(scenario, apart=apart, limit=wall_timeout)
+    first = runner.first(chosen_[0])
+    if first.failure is not None:
+        raise first.failure
+    if first.stopped:
+        place = f" It stood at {first.stack[0]}." if first.stack else ""
+        message = f"SK-CERT-004 the run {chosen_[0].name!r} gave nothing: {first.stopped}.{place}"
+        raise InputError(message, "SK-CERT-004")
+    rows = [Row(chosen_[0], first, streams_hash(first), True)]
+    _report_progress(told, rows[0])
+    with ThreadPoolExecutor(max(1, jobs if apart else 1)) as pool:
+        try:
+            outcomes = pool.map(lambda v: runner.run(v, _ticks_to_run(first)), chosen_[1:])
+            for variation, outcome in zip(chosen_[1:], outcomes, strict=True):
+                rows.append(Row(variation, outcome, streams_hash(outcome), not differences(first, outcome)))
+                _report_progress(told, rows[-1])
+        except BaseException:  # Ctrl-C too: the pool waits for its threads, and they for their processes
+            runner.end()
+            raise
+    known: dict[int, Difference] = {}
+    found = [_explain_difference(row, rows[0], runner, known) for row in rows[1:] if not row.same]
+    duration, fingerprint = first.ticks * first.timestep, first.fingerprint
+    return Certificate(
+        scenario.title, scenario.world, duration, scenario.seed, rows, found, _attribute_notes(rows), fingerprint
+    )
+
+
+def _ticks_to_run(first: RunOutcome) -> int:
+    """How far the others are to go: where the first was stopped by an error, one step further than it came."""
+    return first.ticks + (1 if first.end else 0)
+
+
+def _report_progress(told: ProgressCallback | None, row: Row) -> None:
+    if told is not None:
+        told(row)
+
+
+# ---------------------------------------------------------------------- what differs
+
+
+def _explain_difference(row: Row, first: Row, runner: ProcessRunner, known: dict[int, Difference]) -> Difference:
+    """The first difference of a run, and who began it.
+
+    Args:
+        row, first: the run, and what it is compared with.
+        runner: for running both again.
+        known: differences that are explained, by their first tick; this one is put there.
+    """
+    found = differences(first.outcome, row.outcome)
+    tick, step = first_tick(found), first.outcome.timestep
+    more = tuple(f.words for f in found[1:6])
+    plain = Difference(row.variation, found[0].words, tick, None if tick is None else tick * step, more=more)
+    if row.outcome.stopped:
+        return _code_at_timeout(plain, row.outcome, first.outcome)
+    if row.outcome.failure is not None:
+        return plain
+    if tick is not None and tick in known:  # no need to run it twice more
+        return replace(known[tick], variation=row.variation, words=found[0].words, more=more)
+    ticks = _ticks_to_run(first.outcome)
+    end, who = ticks if tick is None else min(ticks, tick + _TICK_MARGIN), None
+    for _ in range(_REPETITIONS):
+        who = find_culprit(*(runner.watch(r.variation, end, ticks // 2) for r in (first, row)))
+        if who is not None:
+            break
+    made = _culprit_of_error(plain, who, first.outcome, found[0].owner)
+    if tick is not None and made.owner:
+        known[tick] = made
+    return made
+
+
+def _culprit_of_error(plain: Difference, who: Culprit | None, first: RunOutcome, owner: str) -> Difference:
+    if who is None and not owner:
+        how = "no plugin or sensor was seen to begin it; it did not show when it was looked at again"
+        return replace(plain, how=how)
+    name = who.owner if who is not None else owner
+    file, start, end = first.sources.get(name, ("", 0, 0))
+    hints = tuple(hints_in(file, start, end)) if file else ()
+    if who is None:
+        return replace(plain, owner=name, hints=hints)
+    tick = who.tick if plain.tick is None or (who.matters and who.tick < plain.tick) else plain.tick
+    return replace(plain, owner=name, how=who.how, hints=hints, tick=tick, time=tick * first.timestep)
+
+
+def _code_at_timeout(plain: Difference, stopped: RunOutcome, first: RunOutcome) -> Difference:
+    """With whose code it was that a run stood in when its time was over."""
+    for place in stopped.stack:
+        for name, (file, start, end) in first.sources.items():
+            if place.file == file and start <= place.line < end:
+                hints = tuple(hints_in(file, start, end))
+                return replace(plain, owner=name, how=f"it stood in {place.function} at {place}", hints=hints)
+    return replace(plain, how=f"it stood at {stopped.stack[0]}") if stopped.stack else plain
+
+
+def _attribute_notes(rows: Sequence[Row]) -> list[str]:
+    """Plugins that remember something else at the end though nothing that comes out shows it."""
+    first = rows[0].outcome
+    notes: dict[str, None] = {}
+    for row in rows[1:]:
+        if not row.same:
+            continue
+        for owner, attributes in first.remembered.items():
+            others = row.outcome.remembered.get(owner, {})
+            names = [n for n in attributes if n in others and others[n] != attributes[n]]
+            if names:
+                notes[
+                    f"{owner} remembers something else from run to run ({', '.join(names[:4])}); nothing shows it"
+                ] = None
+    return list(notes)

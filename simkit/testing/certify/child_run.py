@@ -1,0 +1,251 @@
+"""One run of a certificate."""
+
+from __future__ import annotations
+
+import inspect
+import pickle
+import time
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.errors import InputError, SimkitError
+from simkit.testing.certify.outcome import RunOutcome
+from simkit.testing.certify.plugin_calls import PluginCallRecorder, TickHashes, plugin_attributes, record_plugin_calls
+from simkit.testing.certify.topic_hashes import TopicHashes, plugin_title
+from simkit.testing.certify.value_hash import attribute_hashes, short_hash
+from simkit.testing.certify.variations import Variation
+from simkit.testing.scenarios import Scenario
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_SLICE: Final = 0.25  # [s] of simulated time between two looks at what was kept
+_DETOUR: Final = 0.5  # [s] of it
+_DETOUR_MODEL: Final = (
+    '<sdf version="1.9"><model name="simkit_certify_box"><pose>0 0 1000 0 0 0</pose><link name="l"><inertial><mass>1'
+    '</mass></inertial><collision name="c"><geometry><box><size>.1 .1 .1</size></box></geometry></collision></link>'
+    "</model></sdf>"
+)
+
+
+@dataclass
+class ChildRequest:
+    """What a process is asked to do.
+
+    Attributes:
+        scenario: with absolute paths.
+        variation: of its surroundings.
+        ticks: how many steps; None for the scenario's own end, `until` included.
+        is_watched: whether every call of a plugin is noted.
+        half: the tick at which it begins to listen, or takes its way; the middle where not given.
+        plugins_from: a Python file whose scenario's plugins are taken.
+        limit: wall time after which it is ended [s]; None for none.
+    """
+
+    scenario: Scenario
+    variation: Variation
+    ticks: int | None = None
+    is_watched: bool = False
+    half: int | None = None
+    plugins_from: Path | None = None
+    limit: float | None = None
+
+
+def run_child(request: ChildRequest) -> RunOutcome:
+    """Runs the scenario and says what came of it."""
+    started = time.perf_counter()
+    outcome = RunOutcome()
+    with ExitStack() as stack:
+        witness = PluginCallRecorder()
+        if request.is_watched:
+            stack.enter_context(record_plugin_calls(witness))
+        try:
+            sim = stack.enter_context(_open_world(request))
+        except SimkitError as error:
+            return RunOutcome(failure=_picklable_error(error))
+        if request.is_watched:
+            witness.loaded(sim)
+        _ChildRun(request, sim, witness, outcome).run()
+    outcome.seconds = time.perf_counter() - started
+    return outcome
+
+
+def _picklable_error(error: SimkitError) -> SimkitError:
+    """An error without what cannot leave its process."""
+    error.__cause__ = error.__context__ = None
+    with suppress(Exception):  # a plugin's own kind of error, or what it put into one
+        if type(error).__module__ == SimkitError.__module__ and pickle.dumps(error):
+            return error
+    return InputError(str(error), error.code)
+
+
+def _open_world(request: ChildRequest) -> Simulation:
+    from simkit.testing.scenarios.scenario_run import open_scenario
+
+    scenario = request.scenario
+    if request.plugins_from is not None:
+        from simkit.testing.scenarios.scenario_file import read_scenario
+
+        scenario = replace(scenario, plugins=read_scenario(request.plugins_from).plugins)
+    return open_scenario(scenario, render_thread=request.variation.render_thread)
+
+
+class _ChildRun:
+    """A run from its first tick to its last."""
+
+    def __init__(
+        self, request: ChildRequest, sim: Simulation, witness: PluginCallRecorder, outcome: RunOutcome
+    ) -> None:
+        self._request, self._scenario, self._sim = request, request.scenario, sim
+        self._variation, self._witness, self._outcome = request.variation, witness, outcome
+        self._ears: TopicHashes | None = None
+
+    def run(self) -> None:
+        """Fills the outcome."""
+        sim, outcome = self._sim, self._outcome
+        self._marks = TickHashes(sim)
+        longest = self._scenario.duration if self._scenario.timeout is None else self._scenario.timeout
+        end = sim.clock.ticks(longest) if self._request.ticks is None else self._request.ticks
+        self._end = end
+        self._half = end // 2 if self._request.half is None else self._request.half
+        try:
+            if self._variation.detour == "reset":
+                self._reset()
+            if self._variation.listening != "late":
+                self._listen()
+            if self._request.ticks is None and self._scenario.until:
+                self._run_until()
+            else:
+                self._run_to(end)
+        except InputError as error:  # a command or a condition does not fit the world: nothing to certify
+            outcome.failure = _picklable_error(error)
+            return
+        except SimkitError as error:
+            outcome.end = str(error)
+        self._gather()
+
+    # ------------------------------------------------------------------ running
+
+    def _run_until(self) -> None:
+        """As `simkit run` does, for only that knows when the run is over."""
+        from simkit.testing.scenarios.scenario_run import run_scenario
+
+        run_scenario(self._scenario, self._sim, self._take)
+
+    def _run_to(self, end: int) -> None:
+        sim = self._sim
+        has_turned = self._variation.detour != "restore"
+        slice_ = max(1, sim.clock.ticks(_SLICE))
+        with self._sender() as commands:
+            while sim.tick < end:
+                if self._ears is None and sim.tick >= self._half:
+                    self._listen()
+                if not has_turned and sim.tick >= self._half:
+                    has_turned = True
+                    self._detour()
+                commands.send_due()
+                stops = [end, sim.tick + slice_]
+                stops += [self._half] if sim.tick < self._half else []
+                stops += [max(commands.next_tick, sim.tick + 1)] if commands.next_tick is not None else []
+                sim.step(min(stops) - sim.tick)
+                self._take()
+
+    def _sender(self) -> Any:
+        from simkit.testing.scenarios.scenario_run import ScenarioCommands
+
+        return ScenarioCommands(self._scenario, self._sim)
+
+    def _reset(self) -> None:
+        """Lives a little, and begins anew."""
+        self._look_away(True)
+        with suppress(SimkitError), self._sender() as commands:  # what ends it comes again, if it is to
+            self._some_life(commands)
+        self._sim.reset()
+        self._look_away(False)
+        self._marks.state.clear()
+        self._marks.inputs.clear()
+        if self._request.is_watched:
+            self._witness.again()
+            self._witness.loaded(self._sim)
+
+    def _detour(self) -> None:
+        """Goes on, with a box that was not there, and comes back as if nothing had been."""
+        self._take()
+        snapshot = self._sim.snapshot()
+        self._look_away(True)
+        with suppress(SimkitError):
+            self._some_life(None)
+        self._sim.restore(snapshot)
+        self._take()
+        self._look_away(False)
+
+    def _some_life(self, commands: Any) -> None:
+        sim = self._sim
+        left = max(self._end, 2 * self._half) - sim.tick  # beyond its end the scenario promises nothing
+        for part in range(2):
+            end = sim.tick + min(sim.clock.ticks(_DETOUR / 2), left // 2)
+            while sim.tick < end:
+                if commands is not None:
+                    commands.send_due()
+                sim.step(min(25, end - sim.tick))
+            if part == 0:
+                with suppress(InputError):
+                    sim.spawn(_DETOUR_MODEL)
+
+    def _look_away(self, is_away: bool) -> None:
+        self._marks.is_away = self._witness.is_away = is_away
+        if self._ears is not None:
+            self._ears.is_deaf = is_away
+
+    # ------------------------------------------------------------------ what came of it
+
+    def _listen(self) -> None:
+        scenario = self._scenario
+        self._outcome.heard_from = self._sim.tick
+        self._ears = TopicHashes(self._sim, self._variation.listening, scenario.topics, scenario.skip)
+
+    def _take(self) -> None:
+        if self._ears is not None:
+            self._ears.take()
+
+    def _gather(self) -> None:
+        from simkit import msgs
+        from simkit.runtime.engine.snapshot import state_hash
+        from simkit.testing.run_record.fingerprint import fingerprint
+
+        sim, outcome = self._sim, self._outcome
+        outcome.ticks, outcome.timestep = sim.tick, sim.timestep
+        outcome.state = state_hash(sim)
+        outcome.marks, outcome.inputs = self._marks.rows(sim.tick)
+        outcome.heard = self._ears.heard() if self._ears is not None else {}
+        for sensor in sim.structure.all_sensors():
+            latest = _latest_readings(sensor)
+            outcome.latest[plugin_title(sensor)] = 0 if latest is None else short_hash(msgs.serialize(latest))
+            outcome.sources[plugin_title(sensor)] = _class_source(sensor)
+        for plugin in sim.structure.all_plugins():
+            outcome.remembered[plugin_title(plugin)] = attribute_hashes(plugin_attributes(plugin))
+            outcome.sources[plugin_title(plugin)] = _class_source(plugin)
+        outcome.fingerprint = fingerprint(pictures=any("Image" in h.type_name for h in outcome.heard.values()))
+        outcome.events = self._witness.events
+
+
+def _latest_readings(sensor: Any) -> Any:
+    try:
+        return sensor.latest
+    except SimkitError:  # no renderer: it has been told
+        return None
+
+
+def _class_source(part: Any) -> tuple[str, int, int]:
+    """File, first line and last line of the class of a plugin or a sensor; empty where there is none."""
+    cls = type(getattr(part, "system", None) or part)
+    try:
+        lines, first = inspect.getsourcelines(cls)
+        return inspect.getsourcefile(cls) or "", first, first + len(lines)
+    except (OSError, TypeError):
+        return "", 0, 0
+
+
+__all__ = ["ChildRequest", "run_child"]

@@ -1,0 +1,173 @@
+"""Places in a plugin's code that often make runs differ; a hint for who looks, and never a proof."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+_CALLS: Final[dict[str, str]] = {
+    **dict.fromkeys(
+        (
+            *("time.time", "time.time_ns", "time.perf_counter", "time.perf_counter_ns", "time.monotonic"),
+            *("time.monotonic_ns", "time.process_time", "datetime.now", "datetime.datetime.now", "datetime.utcnow"),
+            *("datetime.today", "datetime.datetime.today", "date.today", "datetime.date.today"),
+        ),
+        "reads the wall clock; self.sim.time is the simulation's",
+    ),
+    **dict.fromkeys(
+        ("os.urandom", "secrets.token_bytes", "secrets.randbelow", "uuid.uuid4", "uuid.uuid1"),
+        "is random in every process; self.random(channel) belongs to the seed",
+    ),
+    **dict.fromkeys(("os.getpid", "id", "hash"), "is another number in every process"),
+    **dict.fromkeys(("os.listdir", "os.scandir", "glob.glob"), "is in no order; sort it"),
+    **dict.fromkeys(("os.getcwd", "Path.cwd", "Path.home", "os.getenv"), "depends on where the program was started"),
+    **dict.fromkeys(("open", "os.path.getsize", "os.path.getmtime"), "a file stays as it is from run to run"),
+    **dict.fromkeys(("threading.Thread", "Thread"), "runs beside the simulation, at no fixed tick"),
+}
+_RANDOM: Final = ("random.", "np.random.", "numpy.random.")
+_SEEDED: Final = ("Random", "default_rng", "RandomState", "Generator", "SeedSequence", "PCG64")
+_NOT_KEPT: Final = "no snapshot and no reset brings it back; keep it in an attribute of self"
+_CHANGING: Final = ("append", "add", "update", "pop", "setdefault", "extend", "insert", "clear", "remove", "discard")
+_MOST: Final = 6
+
+
+@dataclass(frozen=True)
+class CodeHint:
+    """One place.
+
+    Attributes:
+        where: `file:line`.
+        text: what stands there and what it does.
+    """
+
+    where: str
+    text: str
+
+
+def hints_in(file: str, first: int, last: int) -> list[CodeHint]:
+    """What stands out between two lines of a Python file, calls of the module's own functions not followed.
+
+    Args:
+        file: its path.
+        first, last: lines of the class.
+    """
+    try:
+        tree = ast.parse(Path(file).read_text(encoding="utf-8"))
+    except (OSError, ValueError, SyntaxError):
+        return []
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.lineno != first]
+    others = {line for node in classes if not first <= node.lineno <= last for line in _lines(node)}
+    found = sorted({(line, text) for line, text in _find_hints(tree, (first, last)) if line not in others})
+    chosen = [(line, text) for line, text in found if first <= line <= last] or found
+    return [CodeHint(f"{file}:{line}", text) for line, text in chosen[:_MOST]]
+
+
+def _lines(node: ast.ClassDef) -> range:
+    return range(node.lineno, (node.end_lineno or node.lineno) + 1)
+
+
+def _find_hints(tree: ast.Module, span: tuple[int, int]) -> Iterator[tuple[int, str]]:
+    sets = {name for node in ast.walk(tree) for name in _names_of_sets(node)}
+    known = dict(pair for node in ast.walk(tree) for pair in _imported_names(node))
+    yield from _module_container_writes(tree)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            name = _dotted_name(node.func)
+            first, dot, rest = name.partition(".")
+            words = _call_hint(known.get(first, first) + dot + rest, bool(node.args or node.keywords))
+            if words:
+                yield node.lineno, f"{name}() {words}"
+        elif isinstance(node, ast.Attribute) and _dotted_name(node) == "os.environ":
+            yield node.lineno, "os.environ depends on where the program was started"
+        elif isinstance(node, ast.Attribute) and node.attr == "wanted":
+            yield node.lineno, f"{_dotted_name(node)} depends on who listens; it may save work and change nothing"
+        elif isinstance(node, ast.Global):
+            yield node.lineno, f"global {', '.join(node.names)}: {_NOT_KEPT}"
+        elif isinstance(node, ast.Nonlocal):
+            yield node.lineno, f"nonlocal {', '.join(node.names)}: {_NOT_KEPT}"
+        elif isinstance(node, (ast.Yield, ast.YieldFrom)):
+            yield node.lineno, f"how far a generator has come: {_NOT_KEPT}"
+        elif isinstance(node, ast.ClassDef) and span[0] <= node.lineno <= span[1]:
+            yield from _class_level_containers(node)
+        elif isinstance(node, (ast.For, ast.comprehension)) and _is_set(node.iter, sets):
+            yield node.iter.lineno, "goes through a set, whose order is another in every process; sorted() gives it one"
+
+
+def _class_level_containers(node: ast.ClassDef) -> Iterator[tuple[int, str]]:
+    """Lists, dicts and sets that a class has instead of its instances."""
+    for line, name in _container_assignments(node.body):
+        yield line, f"{name} is the class's, not the instance's: {_NOT_KEPT}"
+
+
+def _module_container_writes(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Where lists, dicts and sets of a module are written to."""
+    names = {name for _, name in _container_assignments(tree.body)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Subscript) and isinstance(node.ctx, (ast.Store, ast.Del)):
+            line, name = node.lineno, _dotted_name(node.value)
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _CHANGING:
+            line, name = node.lineno, _dotted_name(node.func.value)
+        else:
+            continue
+        if name in names:
+            yield line, f"{name} is the module's: {_NOT_KEPT}"
+
+
+def _container_assignments(statements: list[ast.stmt]) -> Iterator[tuple[int, str]]:
+    """Line and name of what a list, a dict or a set is given to."""
+    for statement in statements:
+        if isinstance(statement, (ast.Assign, ast.AnnAssign)) and isinstance(
+            statement.value, (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp)
+        ):
+            targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
+            yield from ((statement.lineno, _dotted_name(target)) for target in targets)
+
+
+def _imported_names(node: ast.AST) -> Iterator[tuple[str, str]]:
+    """A name of the file -> what it stands for: `now` -> `time.time`."""
+    if isinstance(node, ast.Import):
+        yield from ((alias.asname, alias.name) for alias in node.names if alias.asname)
+    elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+        yield from ((alias.asname or alias.name, f"{node.module}.{alias.name}") for alias in node.names)
+
+
+def _call_hint(name: str, has_arguments: bool) -> str:
+    if name in _CALLS:
+        return _CALLS[name]
+    if not name.startswith(_RANDOM):
+        return ""
+    if name.rpartition(".")[2] in _SEEDED:
+        return "" if has_arguments else "has no seed; self.random(channel) belongs to the simulation's"
+    return "" if name.endswith(".seed") else "draws from a generator that no seed of the simulation sets"
+
+
+def _names_of_sets(node: ast.AST) -> Iterator[str]:
+    """What a statement gives a set to."""
+    if isinstance(node, ast.Assign) and _is_set(node.value, set()):
+        yield from (_dotted_name(target) for target in node.targets)
+    elif isinstance(node, ast.AnnAssign) and node.value is not None and _is_set(node.value, set()):
+        yield _dotted_name(node.target)
+
+
+def _is_set(node: ast.expr, names: set[str]) -> bool:
+    if isinstance(node, (ast.Set, ast.SetComp)):
+        return True
+    if isinstance(node, ast.Call):
+        wrapped = _dotted_name(node.func) in ("list", "tuple", "enumerate", "iter") and len(node.args) == 1
+        return _dotted_name(node.func) in ("set", "frozenset") or (wrapped and _is_set(node.args[0], names))
+    if isinstance(node, ast.BinOp):
+        return _is_set(node.left, names) or _is_set(node.right, names)
+    return bool(names) and _dotted_name(node) in names - {""}
+
+
+def _dotted_name(node: ast.expr) -> str:
+    """`a.b.c` of such an expression; empty of another."""
+    if isinstance(node, ast.Name):
+        return node.id
+    if isinstance(node, ast.Attribute):
+        inner = _dotted_name(node.value)
+        return f"{inner}.{node.attr}" if inner else ""
+    return ""

@@ -1,0 +1,204 @@
+"""What of two runs is other, and which plugin or sensor began it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from simkit.testing.certify.outcome import Numbers, PluginCall, RunOutcome, TopicOutcome
+
+_MAX_LISTED: Final = 5
+
+
+@dataclass(frozen=True)
+class OutcomeDifference:
+    """One thing that is other.
+
+    Attributes:
+        words: in a sentence.
+        tick: at which it shows first; None where that is not of one tick.
+        owner: whose doing it is, where that is plain.
+    """
+
+    words: str
+    tick: int | None = None
+    owner: str = ""
+
+
+def differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
+    """All that is other in the other run, the earliest first."""
+    if other.stopped:
+        return [OutcomeDifference(other.stopped)]
+    if other.failure is not None:
+        return [OutcomeDifference(f"the world does not open: {other.failure}")]
+    found = [
+        *_physics_differences(one, other),
+        *_topic_differences(one, other),
+        *_ending_differences(one, other),
+        *_latest_differences(one, other),
+    ]
+    last = max(one.ticks, other.ticks) + 1
+    return sorted(found, key=lambda f: last if f.tick is None else f.tick)
+
+
+def first_tick(found: list[OutcomeDifference]) -> int | None:
+    """The first tick at which anything shows."""
+    return min((f.tick for f in found if f.tick is not None), default=None)
+
+
+def _physics_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
+    found = []
+    state, inputs = _first_different_row(one.marks, other.marks), _first_different_row(one.inputs, other.inputs)
+    if inputs is not None and (state is None or inputs <= state):
+        tick = inputs + 1
+        found.append(OutcomeDifference(f"what plugins put in (controls, forces) at {tick_text(tick, one)}", tick))
+    if state is not None:
+        same = "" if inputs is not None and inputs <= state else "; what was put in was the same until then"
+        found.append(OutcomeDifference(f"the physics from {tick_text(state + 1, one)}{same}", state + 1))
+    elif one.state != other.state:
+        found.append(OutcomeDifference("the state hash at the end"))
+    return found
+
+
+def _topic_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
+    if not one.heard or not other.heard:
+        return []
+    found = []
+    for topic in sorted({*one.heard, *other.heard}):
+        mine, theirs = one.heard.get(topic), other.heard.get(topic)
+        if mine is None or theirs is None:
+            has = one if theirs is None else other
+            known = mine or theirs
+            if known is not None and (len(known.digests) or not (one.heard_from or other.heard_from)):
+                where = "the first run" if has is one else "this run"
+                found.append(OutcomeDifference(f"{topic}: only in {where}", None, known.owner))
+            continue
+        if mine.type_name != theirs.type_name:
+            found.append(OutcomeDifference(f"{topic}: {theirs.type_name}, not {mine.type_name}", None, mine.owner))
+        index, tick = _first_message(mine, theirs, max(one.heard_from, other.heard_from))
+        if index is not None:
+            count = "" if len(mine.digests) == len(theirs.digests) or other.heard_from else _count_text(mine, theirs)
+            when = f" at {tick_text(tick, one)}" if tick is not None else ""
+            found.append(OutcomeDifference(f"{topic}: message {index + 1}{when}{count}", tick, mine.owner))
+    return found
+
+
+def _count_text(mine: TopicOutcome, theirs: TopicOutcome) -> str:
+    return f"; {len(mine.digests)} messages became {len(theirs.digests)}"
+
+
+def _first_message(mine: TopicOutcome, theirs: TopicOutcome, after: int) -> tuple[int | None, int | None]:
+    """Index and tick of the first message that is other, of those after a tick."""
+    left, right = _after_tick(mine, after), _after_tick(theirs, after)
+    index = _first_different_row(mine.digests[left], theirs.digests[right])
+    if index is None:
+        return None, None
+    for heard, chosen in ((mine, left), (theirs, right)):
+        ticks = heard.ticks[chosen]
+        if index < len(ticks) and ticks[index] >= 0:
+            return index + int((mine.ticks <= after).sum() if after else 0), int(ticks[index])
+    return index, None
+
+
+def _after_tick(heard: TopicOutcome, tick: int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    return (heard.ticks > tick) | (heard.ticks < 0) if tick else np.ones(len(heard.ticks), bool)
+
+
+def _ending_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
+    if one.end != other.end:
+        said = f"it ended with: {other.end}" if other.end else f"it ran through; the first run ended with: {one.end}"
+        return [OutcomeDifference(said, min(one.ticks, other.ticks))]
+    if one.ticks != other.ticks:
+        return [OutcomeDifference(f"it ended after {other.ticks} steps, the first run after {one.ticks}", None)]
+    return []
+
+
+def _latest_differences(one: RunOutcome, other: RunOutcome) -> list[OutcomeDifference]:
+    names = [n for n in one.latest if one.latest[n] != other.latest.get(n)]
+    return [OutcomeDifference(f"{name}: its last reading", None, name) for name in names[:_MAX_LISTED]]
+
+
+def _first_different_row(one: Numbers, other: Numbers) -> int | None:
+    """The first place at which two rows differ."""
+    count = min(len(one), len(other))
+    unequal = np.flatnonzero(one[:count] != other[:count])
+    if len(unequal):
+        return int(unequal[0])
+    return None if len(one) == len(other) else count
+
+
+def tick_text(tick: int, outcome: RunOutcome) -> str:
+    """A tick with its time."""
+    return f"tick {tick} (t = {tick * outcome.timestep:.6g} s)"
+
+
+# ---------------------------------------------------------------------- who began
+
+
+@dataclass(frozen=True)
+class Culprit:
+    """The plugin or sensor that began.
+
+    Attributes:
+        owner: which.
+        tick: when.
+        how: what it did, in words.
+        matters: whether it changed what others see, or only what it remembers.
+    """
+
+    owner: str
+    tick: int
+    how: str
+    matters: bool = True
+
+
+def find_culprit(one: RunOutcome, other: RunOutcome) -> Culprit | None:
+    """Who began, of two runs whose plugins were watched; None where no plugin or sensor did."""
+    streams = [f for f in _topic_differences(one, other) if f.owner and f.tick is not None]
+    first = streams[0] if streams else None
+    first = min(streams, key=lambda f: f.tick or 0, default=first)
+    called = _first_different_call(one.events, other.events, one)
+    if called is not None and (first is None or first.tick is None or called.tick <= first.tick):
+        return called
+    if first is not None and first.tick is not None:
+        return Culprit(first.owner, first.tick, f"what it publishes is other: {first.words}")
+    return called
+
+
+def _first_different_call(ours: list[PluginCall], theirs: list[PluginCall], outcome: RunOutcome) -> Culprit | None:
+    """The first call with another effect; one that only remembers something else counts if there is no such."""
+    remembers: Culprit | None = None
+    known: set[str] = set()
+    for mine, yours in zip(ours, theirs, strict=False):
+        if (mine.tick, mine.owner, mine.hook) != (yours.tick, yours.owner, yours.hook):
+            early = min(mine, yours, key=lambda event: event.tick)
+            words = f"its {early.hook} is called at {tick_text(early.tick, outcome)} in one of the runs only"
+            return (
+                remembers if remembers and remembers.owner == early.owner else Culprit(early.owner, early.tick, words)
+            )
+        if mine.before != yours.before:
+            return remembers
+        attributes = _other_attributes(mine, yours)
+        if attributes and mine.owner not in known:
+            known.add(mine.owner)
+            words = (
+                f"after its {mine.hook} at {tick_text(mine.tick, outcome)} it remembers something else: {attributes}"
+            )
+            remembers = remembers or Culprit(mine.owner, mine.tick, words, matters=False)
+        if mine.after != yours.after:
+            began = f"; {remembers.how}" if remembers and remembers.owner == mine.owner else ""
+            words = f"in its {mine.hook} it puts in something else{began}"
+            return Culprit(mine.owner, mine.tick, words)
+    return remembers
+
+
+def _other_attributes(mine: PluginCall, yours: PluginCall) -> str:
+    """`phase (0.25, not 0.75), seen`."""
+    names = [n for n in sorted({*mine.changed, *yours.changed}) if mine.changed.get(n) != yours.changed.get(n)]
+    said = []
+    for name in names[:3]:
+        here, there = mine.shown.get(name, ""), yours.shown.get(name, "")
+        said.append(f"{name} ({there}, not {here})" if here and there and here != there else name)
+    return ", ".join(said) + (f" and {len(names) - 3} more" if len(names) > 3 else "")

@@ -1,0 +1,367 @@
+"""The checks of a run while it runs: one class for each kind of check, and their results."""
+
+from __future__ import annotations
+
+import math
+import operator
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import InputError
+from simkit.runtime.communication.topic_bus import absolute_name
+from simkit.testing.conditions.binder import bind
+from simkit.testing.conditions.bound_expression import BoundNode, findings, value_text
+from simkit.testing.conditions.parser import parse
+from simkit.testing.conditions.syntax_tree import Comparison, Span, UndecidedValue
+from simkit.testing.conditions.value_types import TRUTH
+from simkit.testing.conditions.world_view import AbsentTopic
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.testing.conditions.world_view import WorldView
+
+
+ENDING_TEXTS: Final = {
+    "duration": "",
+    "until": "",
+    "timeout": "",
+    "wall_timeout": "the run was given up after its wall time",
+}
+"""How a run ends -> in words, where it did not come to its end."""
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """What became of one check.
+
+    Attributes:
+        check: a `simkit.testing.scenarios.Check`.
+        passed: whether it held.
+        message: in words, with the numbers found: why not, or when it was reached.
+        time: when it was decided [s] of simulated time.
+    """
+
+    check: Any
+    passed: bool
+    message: str
+    time: float
+
+
+def early_end_text(reason: str) -> str:
+    """Why a run did not come to its end; empty where it did."""
+    return ENDING_TEXTS.get(reason, f"the run ended with {reason}")
+
+
+def time_text(time: float) -> str:
+    """A simulated time as a report has it."""
+    return f"t = {time:.6g} s"
+
+
+_MAGNITUDE_STEPS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
+
+
+class Condition:
+    """An expression in a world; one that names a topic which nobody publishes yet is bound as soon as somebody does.
+
+    Args:
+        source: the expression.
+        view: the world.
+
+    Raises:
+        InputError: it cannot be read, or names what the world does not have, or is not true or false.
+    """
+
+    def __init__(self, source: str, view: WorldView) -> None:
+        self.source, self._view = source, view
+        self._expression = parse(source)
+        self._part: BoundNode | None = None
+        self._fault = ""
+        self._awaited = self._topic = ""
+        self._revision = -1
+        self._bind()
+
+    def holds(self) -> bool:
+        """Whether it is true now.
+
+        Raises:
+            Undecided: that is not known.
+        """
+        if self._part is None:
+            self._bind_late()
+        if self._part is None:
+            raise UndecidedValue(self._fault or self._awaited)
+        return bool(self._part.get())
+
+    def gap(self) -> tuple[bool, float, str]:
+        """Whether it holds, and where two numbers are compared how far they are apart, else no number; with the text.
+
+        Raises:
+            Undecided: that is not known.
+        """
+        part = self._part
+        if part is None or not isinstance(part.node, Comparison) or part.node.signs[0] not in _MAGNITUDE_STEPS:
+            return self.holds(), math.nan, ""
+        if len(part.below) > 2:
+            return self.holds(), math.nan, ""
+        left, right = part.below
+        a, b = left.get(), right.get()
+        text = left.node.span.text(self.source)
+        return _MAGNITUDE_STEPS[part.node.signs[0]](a, b), abs(a - b), f"{text} was {value_text(a)}"
+
+    def findings(self, *, wanted: bool = True) -> str:
+        """The values that make it hold or not."""
+        if self._part is None:
+            return self._fault or self._awaited
+        return ", ".join(findings(self.source, self._part, wanted=wanted))
+
+    def _bind(self) -> None:
+        try:
+            part = bind(self._expression, self._view)
+        except AbsentTopic as absent:
+            self._awaited = str(absent)
+            self._topic = absent.topic
+            return
+        if part.kind is not TRUTH:
+            from simkit.testing.conditions.syntax_tree import expression_error
+
+            message = f"the expression is {part.kind}, where true or false is wanted"
+            span = part.node.span
+            raise expression_error("SK-COND-004", message, self.source, span, "compare it: < <= > >= == !=")
+        self._part = part
+
+    def _bind_late(self) -> None:
+        """Once the topic that is waited for is there; what does not fit then makes it fail, not the run."""
+        bus = self._view.sim.bus
+        if self._fault or bus.revision == self._revision:
+            return
+        self._revision = bus.revision
+        if self._topic not in bus.all_topics():
+            return
+        try:
+            self._bind()
+        except InputError as error:
+            self._fault = str(error)
+
+
+class RunningCheck(ABC):
+    """A check of a run.
+
+    Args:
+        check: a `simkit.testing.scenarios.Check`.
+        view: the world.
+    """
+
+    def __init__(self, check: Any, view: WorldView) -> None:
+        self.check, self._sim = check, view.sim
+        self.is_decided = False
+        self._result: CheckResult | None = None
+
+    def look(self, time: float) -> None:
+        """Looks at the state after a step [s]; called until it is decided."""
+
+    def result(self, reason: str) -> CheckResult:
+        """What became of it, at the end of the run."""
+        if self._result is None:
+            self._result = self._at_end(early_end_text(reason))
+        return self._result
+
+    @abstractmethod
+    def _at_end(self, cut: str) -> CheckResult:
+        """What became of it where nothing was decided before the end; `cut` says why that came early, if it did."""
+
+    def _decide(self, passed: bool, message: str, time: float | None = None) -> CheckResult:
+        self.is_decided = True
+        self._result = CheckResult(self.check, passed, message, self._sim.time if time is None else time)
+        return self._result
+
+
+class ReachedCheck(RunningCheck):
+    """Must hold once."""
+
+    def __init__(self, check: Any, view: WorldView) -> None:
+        super().__init__(check, view)
+        self._condition = Condition(check.expression, view)
+        self._nearest, self._nearest_text, self._nearest_time = math.inf, "", 0.0
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether it has been."""
+        return self._result is not None and self._result.passed
+
+    def look(self, time: float) -> None:
+        by = self.check.by
+        if by is not None and time > by + 1e-9:
+            self._decide(False, f"was not reached by {time_text(by)}: {self._how_far()}", by)
+            return
+        try:
+            holds, gap, text = self._condition.gap()
+        except UndecidedValue:
+            return
+        if holds:
+            self._decide(True, f"was reached at {time_text(time)}: {self._condition.findings(wanted=False)}", time)
+        elif gap < self._nearest:
+            self._nearest, self._nearest_text, self._nearest_time = gap, text, time
+
+    def _how_far(self) -> str:
+        """The values now, and where they were nearer before, those of then."""
+        found = self._condition.findings()
+        if not self._nearest_text or self._nearest_text in found:
+            return found
+        return f"{found}; nearest, at {time_text(self._nearest_time)}, {self._nearest_text}"
+
+    def _at_end(self, cut: str) -> CheckResult:
+        end = f"was not reached by {time_text(self._sim.time)}"
+        if cut:
+            end += f", where {cut}"
+        return self._decide(False, f"{end}: {self._how_far()}")
+
+
+class AlwaysCheck(RunningCheck):
+    """Must hold at every step, as soon as its values are known."""
+
+    def __init__(self, check: Any, view: WorldView) -> None:
+        super().__init__(check, view)
+        self._condition = Condition(check.expression, view)
+        self._since: float | None = None
+        self._last = 0.0
+
+    def look(self, time: float) -> None:
+        if time < self.check.after - 1e-9:
+            return
+        try:
+            holds = self._condition.holds()
+        except UndecidedValue:
+            return
+        if self._since is None:
+            self._since = time
+        self._last = time
+        if not holds:
+            self._decide(False, f"did not hold at {time_text(time)}: {self._condition.findings()}", time)
+
+    def _at_end(self, cut: str) -> CheckResult:
+        now = time_text(self._sim.time)
+        if self._since is None:
+            reason = self._condition.findings()
+            if self._sim.time < self.check.after:
+                reason = f"the run ended at {now}, before {time_text(self.check.after)}"
+            return self._decide(False, f"was never looked at: {reason}")
+        if cut:
+            return self._decide(False, f"held until {now}, where {cut}")
+        found = self._condition.findings(wanted=False)
+        if self._last < self._sim.time - 0.5 * self._sim.timestep:
+            return self._decide(True, f"held from {time_text(self._since)} to {time_text(self._last)}, then: {found}")
+        return self._decide(True, f"held from {time_text(self._since)} to {now}: {found}")
+
+
+class FinalCheck(RunningCheck):
+    """Must hold at the end."""
+
+    def __init__(self, check: Any, view: WorldView) -> None:
+        super().__init__(check, view)
+        self._condition = Condition(check.expression, view)
+
+    def _at_end(self, cut: str) -> CheckResult:
+        now = time_text(self._sim.time)
+        if cut:
+            return self._decide(False, f"was not looked at: at {now} {cut}")
+        try:
+            holds = self._condition.holds()
+        except UndecidedValue:
+            holds = False
+        return self._decide(holds, f"{self._condition.findings(wanted=not holds)} at {now}")
+
+
+class SeparationCheck(RunningCheck):
+    """Models or links that must not touch."""
+
+    def __init__(self, check: Any, view: WorldView) -> None:
+        from simkit.testing.conditions.contact_query import ContactQuery
+
+        super().__init__(check, view)
+        names, source = check.models, " ".join(map(repr, check.models))
+        if not 1 <= len(names) <= 2:
+            message = f"SK-COND-009 {len(names)} models are to be apart; allowed are one, that touches nothing, or two"
+            raise InputError(message, "SK-COND-009")
+        spans, at = [], 0
+        for name in names:
+            spans.append(Span(at, at + len(repr(name))))
+            at = spans[-1].end + 1
+        self._touching = ContactQuery(
+            view.sim, *(view.scoped(name, source, span) for name, span in zip(names, spans, strict=True))
+        )
+
+    def look(self, time: float) -> None:
+        if time >= self.check.after - 1e-9 and self._touching.now():
+            self._decide(False, f"{self._touching.describe()} at {time_text(time)}", time)
+
+    def _at_end(self, cut: str) -> CheckResult:
+        now = time_text(self._sim.time)
+        if cut:
+            return self._decide(False, f"nothing touched until {now}, where {cut}")
+        if self._sim.time < self.check.after:
+            return self._decide(False, f"was never looked at: the run ended at {now}")
+        return self._decide(True, f"nothing touched until {now}")
+
+
+_MAX_LATENESS = 2.5  # periods without a message after which a topic has stopped
+
+
+def configured_rate(sim: Simulation, topic: str) -> float | None:
+    """The rate that what publishes on a topic is set to [Hz], of several together; None where that is not known."""
+    owners: list[Any] = [sensor for sensor in sim.structure.all_sensors() if topic in sensor._topics.values()]
+    if not owners:
+        for _, end, _, what in sim.bus.ends(topic):
+            if what == "publishes" and end.active:
+                owners.append(None if getattr(end, "latched", False) else end.owner)
+    rates = [_publisher_rate(owner, sim.timestep) for owner in owners]
+    return sum(rate for rate in rates if rate is not None) if rates and None not in rates else None
+
+
+def _publisher_rate(owner: Any, timestep: float) -> float | None:
+    """Of a sensor its update rate, where zero is every step; of a plugin that of its hook after steps."""
+    rate = getattr(owner, "update_rate", None)
+    if isinstance(rate, (int, float)) and hasattr(owner, "scoped") and hasattr(owner, "sample"):
+        return min(float(rate), 1.0 / timestep) if rate > 0 else 1.0 / timestep
+    rate = getattr(owner, "after_step_rate", None)
+    return float(rate) if isinstance(rate, (int, float)) and rate > 1e-3 else None
+
+
+class TopicRateCheck(RunningCheck):
+    """Messages per simulated second, from the first to the last; a topic that stops before the end has failed."""
+
+    def __init__(self, check: Any, view: WorldView) -> None:
+        super().__init__(check, view)
+        if not check.topic:
+            raise InputError("SK-COND-009 a check of a rate names no topic", "SK-COND-009")
+        self._topic = absolute_name(check.topic)
+        self._tally = view.tally(self._topic)
+
+    def _at_end(self, cut: str) -> CheckResult:
+        sim, tally, check = self._sim, self._tally, self.check
+        now = time_text(sim.time)
+        if cut:
+            return self._decide(False, f"{tally.count} messages came until {now}, where {cut}")
+        if not tally.count:
+            topics = sim.bus.all_topics()
+            if self._topic in topics:
+                return self._decide(False, f"no message came on {self._topic} until {now}")
+            near = did_you_mean(self._topic, topics)
+            return self._decide(False, f"nobody publishes on {self._topic}" + (f"; {near}" if near else ""))
+        wanted = check.rate if check.rate is not None else configured_rate(sim, self._topic)
+        found = tally.rate()
+        first, last = time_text(tally.first / 1e9), time_text(tally.last / 1e9)
+        if found is None:
+            message = f"one message came on {self._topic}, at {last}, until {now}"
+            return self._decide(False, message if tally.count == 1 else f"{tally.count} messages came, all at {last}")
+        text = f"{self._topic}: {found:.6g} Hz ({tally.count} messages from {first} to {last})"
+        if wanted is None:
+            wanted, asked = found, ""
+        else:
+            asked = f", wanted are {wanted:.6g} Hz"
+        if abs(found - wanted) > check.tolerance * wanted:
+            return self._decide(False, f"{text}{asked} ± {check.tolerance * 100:.3g} %")
+        if sim.time - tally.last / 1e9 > _MAX_LATENESS / wanted + 1.5 * sim.timestep:
+            return self._decide(False, f"{text}, and none from then until {now}")
+        return self._decide(True, text + asked)

@@ -1,0 +1,160 @@
+"""Who touches whom: the engine's contacts, by names of models, links and collisions."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import mujoco
+import numpy as np
+
+from simkit.runtime.contact.collision_contacts import Bools, collision_table
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_MAX_SLOPE: Final = math.cos(math.radians(45.0))
+_FEW_COLLISIONS: Final = 32  # contacts
+_HEIGHT_MAP: Final = int(mujoco.mjtGeom.mjGEOM_HFIELD)
+
+
+class ContactQuery:
+    """The contacts of one model, link or collision, or those between two; surfaces that touch or overlap.
+
+    Of one alone, what is around it counts and the ground does not: what stands still in the world and pushes upwards,
+    within 45° of the vertical (floors, ramps, steps from above), and height maps. Nor do its own parts count.
+
+    Args:
+        sim: the simulation.
+        first: a scoped name.
+        second: another; None for whatever there is.
+    """
+
+    def __init__(self, sim: Simulation, first: str, second: str | None = None) -> None:
+        self._sim, self._first, self._second = sim, first, second
+        self._compiled: Any = None
+        self._asleep_at = -1
+        self._asleep: tuple[tuple[int, int, int], ...] = ()
+
+    def now(self) -> tuple[tuple[int, int, int], ...]:
+        """Contact number and two geoms of each, the first one's before the other's; of the state at this tick."""
+        self._bind()
+        sim = self._sim
+        physics = sim.physics
+        data = physics.fresh()
+        sleepers = self._sleepers(data)
+        if sleepers:
+            return self._at_rest(len(sleepers))
+        return self._among(data) if data.ncon else ()
+
+    def force(self) -> float:
+        """The sum of what presses the surfaces together [N]."""
+        found = self.now()
+        if not found:
+            return 0.0
+        physics = self._sim.physics
+        data = physics.data_of(physics.hold()) if self._sleepers(physics.fresh()) else physics.fresh()
+        wrench, total = np.empty(6), 0.0
+        for number, _, _ in self._among(data):
+            mujoco.mj_contactForce(physics.model, data, number, wrench)
+            total += float(wrench[0])
+        return total
+
+    def describe(self) -> str:
+        """Which links touch: `tb3::base_link touches wall::link`; empty where none do."""
+        names = self._sim.names
+        pairs: dict[str, None] = {}
+        for _, mine, other in self.now():
+            one, two = (names.geom_owner(geom)[0] or f"geom {geom}" for geom in (mine, other))
+            pairs[f"{one} touches {two}"] = None
+        listed = list(pairs)
+        return ", ".join(listed[:3]) + (f" and {len(listed) - 3} more" if len(listed) > 3 else "")
+
+    # ------------------------------------------------------------------ which
+
+    def _bind(self) -> None:
+        """Which geoms are meant; found anew after a spawn or a removal."""
+        compiled = self._sim.structure.compiled
+        if compiled is self._compiled:
+            return
+        self._compiled, self._asleep_at = compiled, -1
+        collisions, model = collision_table(compiled), self._sim.mj_model
+        mine = collisions.mask(_collisions_below(self._first, collisions.names))
+        others = ~mine if self._second is None else collisions.mask(_collisions_below(self._second, collisions.names))
+        others[-1] = False
+        self._concerned: Bools = mine if self._second is None else mine | others
+        self._mine, self._others = mine.tolist(), others.tolist()
+        bodies = model.geom_bodyid
+        self._is_fixed = (model.body_weldid[bodies] == 0).tolist()
+        self._is_height_map = (model.geom_type == _HEIGHT_MAP).tolist()
+        trees = self._moving(mine)
+        if not trees and self._second is not None:
+            trees = self._moving(others)
+        self._trees = trees or list(range(model.ntree))
+
+    def _moving(self, geoms: Bools) -> list[int]:
+        """The trees that these geoms belong to."""
+        model = self._sim.mj_model
+        trees = np.unique(model.body_treeid[model.geom_bodyid[np.flatnonzero(geoms)]])
+        return [int(tree) for tree in trees if tree >= 0]
+
+    def _among(self, data: Any) -> tuple[tuple[int, int, int], ...]:
+        if not data.ncon:
+            return ()
+        contact = data.contact
+        pairs = contact.geom
+        mine, others, found, up = self._mine, self._others, [], None
+        # the usual few contacts cost less as Python's numbers than as arrays
+        rows = (
+            range(len(pairs))
+            if len(pairs) <= _FEW_COLLISIONS
+            else self._concerned[pairs].any(axis=1).nonzero()[0].tolist()
+        )
+        geoms = pairs.tolist() if len(pairs) <= _FEW_COLLISIONS else None
+        for row in rows:
+            one, two = geoms[row] if geoms is not None else pairs[row].tolist()
+            if mine[one] and others[two]:
+                touch, sign = (row, one, two), -1.0
+            elif mine[two] and others[one]:
+                touch, sign = (row, two, one), 1.0
+            else:
+                continue
+            if contact.dist[row] > 0.0:
+                continue
+            if self._second is None and self._is_fixed[touch[2]]:
+                up = up or self._up()
+                # the contact's normal points from the engine's first geom to its second
+                rise = sign * sum(n * u for n, u in zip(contact.frame[row].tolist(), up, strict=False))
+                if rise >= _MAX_SLOPE or self._is_height_map[touch[2]]:
+                    continue
+            found.append(touch)
+        return tuple(found)
+
+    def _up(self) -> tuple[float, float, float]:
+        """Away from where things fall, a unit vector; z without gravity."""
+        x, y, z = self._sim.mj_model.opt.gravity.tolist()
+        size = math.sqrt(x * x + y * y + z * z)
+        return (-x / size, -y / size, -z / size) if size else (0.0, 0.0, 1.0)
+
+    # ------------------------------------------------------------------ what sleeps
+
+    def _sleepers(self, data: Any) -> list[int]:
+        """What is meant here and sleeps: the engine lists no contacts of sleepers."""
+        if not self._sim.physics.sleep.counts:
+            return []
+        asleep = data.tree_asleep
+        return [tree for tree in self._trees if asleep[tree] >= 0]
+
+    def _at_rest(self, sleepers: int) -> tuple[tuple[int, int, int], ...]:
+        """The contacts of what sleeps, which stay as they are until it wakes."""
+        sim = self._sim
+        is_all = sleepers == len(self._trees)
+        if not (is_all and sim.tick - 1 <= self._asleep_at <= sim.tick):
+            self._asleep = self._among(sim.physics.data_of(sim.physics.hold()))
+        self._asleep_at = sim.tick if is_all else -1
+        return self._asleep
+
+
+def _collisions_below(name: str, collisions: tuple[str, ...]) -> set[str]:
+    """The collisions that are, or belong to, what has a name."""
+    return {scoped for scoped in collisions if scoped == name or scoped.startswith(name + "::")}

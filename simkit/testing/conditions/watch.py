@@ -1,0 +1,124 @@
+"""Looks at a simulation while it runs, and says in the end what held."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from simkit.errors import InputError
+from simkit.run_spec import Check
+from simkit.testing.conditions.checks import (
+    AlwaysCheck,
+    CheckResult,
+    ReachedCheck,
+    RunningCheck,
+    SeparationCheck,
+    TopicRateCheck,
+)
+from simkit.testing.conditions.checks import FinalCheck as AtEnd
+from simkit.testing.conditions.world_view import WorldView
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+__all__ = ["CheckResult", "Watch"]
+
+_CHECK_CLASSES: Final[dict[str, type[RunningCheck]]] = {
+    "goal": ReachedCheck,
+    "always": AlwaysCheck,
+    "final": AtEnd,
+    "apart": SeparationCheck,
+    "rate": TopicRateCheck,
+}
+
+
+class Watch:
+    """The checks of a run; a context manager around it.
+
+    Conditions are looked at when it is entered and after every step; who looks changes no bits.
+
+    Args:
+        sim: the simulation.
+        checks: `simkit.testing.scenarios.Check`.
+        until: an expression that ends the run; empty for none.
+        timeout: by when it must hold [s].
+        absent: what an expression is that names a topic which nobody publishes: an "error", or one that is not known
+            until somebody does ("wait"), so that its check fails.
+
+    Raises:
+        InputError: an expression cannot be read, or names what the world does not have; all that is wrong is told.
+    """
+
+    def __init__(
+        self,
+        sim: Simulation,
+        checks: Sequence[Any],
+        *,
+        until: str = "",
+        timeout: float | None = None,
+        absent: Literal["error", "wait"] = "error",
+    ) -> None:
+        self._sim = sim
+        self._view = WorldView(sim, absent)
+        wanted = list(checks)
+        if until:
+            wanted.insert(0, Check("goal", expression=until, by=timeout))
+        self._entries = self._bound(wanted)
+        self._until = self._entries[0] if until else None
+        self._running: list[RunningCheck] = []
+        self._is_active = False
+
+    def _bound(self, checks: Sequence[Check]) -> list[RunningCheck]:
+        entries: list[RunningCheck] = []
+        errors: list[InputError] = []
+        for check in checks:
+            try:
+                entries.append(_CHECK_CLASSES[check.kind](check, self._view))
+            except InputError as error:
+                place = f"{check.where}: " if check.where else ""
+                errors.append(InputError(f"{place}{error}", error.code))
+        if errors:
+            raise InputError("\n".join(map(str, errors)), errors[0].code)
+        return entries
+
+    @property
+    def ended(self) -> bool:
+        """Whether `until` holds, or did; the run is then over."""
+        return isinstance(self._until, ReachedCheck) and self._until.is_reached
+
+    def results(self, reason: str) -> tuple[CheckResult, ...]:
+        """What became of every check, that of `until` first; to be asked once the run is over.
+
+        Args:
+            reason: why it is: "duration", "until", "timeout", "wall_timeout", or what it failed with.
+        """
+        return tuple(entry.result(reason) for entry in self._entries)
+
+    def __enter__(self) -> Watch:
+        self._view.open()
+        self._running = [entry for entry in self._entries if not isinstance(entry, (AtEnd, TopicRateCheck))]
+        self.look()
+        if self._running and not self.ended:
+            self._is_active = True
+            self._sim.on_demand.add(lambda: self._is_active, None, lambda _: self.look(), "after")
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._is_active = False
+        self._sim.on_demand.look()
+        self._sim.pausing.is_over = False
+        self._view.close()
+
+    def look(self) -> None:
+        """Looks at the state as it is now; called by itself after every step."""
+        time = self._sim.time
+        for entry in self._running:
+            entry.look(time)
+        if any(entry.is_decided for entry in self._running):
+            self._running = [entry for entry in self._running if not entry.is_decided]
+            if self.ended:
+                self._running = []
+                self._sim.pausing.end()

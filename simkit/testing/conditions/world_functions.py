@@ -1,0 +1,232 @@
+"""Functions that read the world: poses, velocities, topics and contacts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.pose import quat_conjugate, quat_rotate
+from simkit.testing.conditions.bound_expression import BoundNode, Function, as_pose, as_vector, quoted_argument
+from simkit.testing.conditions.syntax_tree import Call, Node, Text, UndecidedValue
+from simkit.testing.conditions.value_types import (
+    JOINT,
+    NUMBER,
+    POSE,
+    SCAN,
+    TEXT,
+    TRUTH,
+    TWIST,
+    VECTOR,
+    is_pose_like,
+    message_type,
+)
+
+if TYPE_CHECKING:
+    from simkit.pose import Vector
+    from simkit.testing.conditions.binder import Binder
+    from simkit.testing.conditions.contact_query import ContactQuery
+    from simkit.testing.conditions.world_view import Entity
+
+
+_ENTITY_TYPES = "the name of a model or a link"
+
+
+def entity_argument(binder: Binder, call: Call, place: int) -> Entity:
+    """A model or a link that an argument names."""
+    node = quoted_argument(binder, call, place, _ENTITY_TYPES)
+    return binder.view.thing(node.value, binder.source, node.span)
+
+
+def _pose(binder: Binder, call: Call) -> BoundNode:
+    one = entity_argument(binder, call, 0)
+    if len(call.arguments) == 1:
+        return BoundNode(call, POSE, one.pose)
+    frame = entity_argument(binder, call, 1)
+    return BoundNode(call, POSE, lambda: frame.pose().inverse() @ one.pose())
+
+
+def _in_axes(frame: Entity, vector: Vector) -> Vector:
+    return quat_rotate(quat_conjugate(frame.pose().quaternion), vector)
+
+
+def _twist(binder: Binder, call: Call) -> BoundNode:
+    one = entity_argument(binder, call, 0)
+    if len(call.arguments) == 1:
+        return BoundNode(call, TWIST, one.twist)
+    frame = entity_argument(binder, call, 1)
+
+    def value() -> tuple[Vector, Vector]:
+        linear, angular = one.twist()
+        return _in_axes(frame, linear), _in_axes(frame, angular)
+
+    return BoundNode(call, TWIST, value)
+
+
+def _velocity(binder: Binder, call: Call) -> BoundNode:
+    one = entity_argument(binder, call, 0)
+    if len(call.arguments) == 1:
+        return BoundNode(call, VECTOR, lambda: one.twist()[0])
+    frame = entity_argument(binder, call, 1)
+    return BoundNode(call, VECTOR, lambda: _in_axes(frame, one.twist()[0]))
+
+
+def _joint(binder: Binder, call: Call) -> BoundNode:
+    node = quoted_argument(binder, call, 0, "the name of a joint")
+    joint = binder.view.joint(node.value, binder.source, node.span)
+    entities, name = binder.view.sim.entities, joint.scoped
+    # another may come in the place of one that was removed
+    return BoundNode(call, JOINT, lambda: entities.tables["joint"].get(name, joint))
+
+
+def _exists(binder: Binder, call: Call) -> BoundNode:
+    name = quoted_argument(binder, call, 0, _ENTITY_TYPES).value
+    entities = binder.view.sim.entities
+    return BoundNode(call, TRUTH, lambda: any(name in entities.tables[kind] for kind in ("model", "link")))
+
+
+# ------------------------------------------------------------------ distances
+
+
+def _distance(binder: Binder, call: Call) -> BoundNode:
+    gets, parts = [], []
+    for node in call.arguments:
+        part = binder.part(node)
+        gets.append(_point_argument(binder, node, part))
+        parts.append(part)
+    first, second = gets
+    source = call.span.text(binder.source)
+
+    def value() -> float:
+        a, b = first(), second()
+        if len(a) != len(b):
+            raise UndecidedValue(f"{source} has lists of {len(a)} and of {len(b)} numbers")
+        gap = a - b
+        return math.sqrt(float(gap.dot(gap)))
+
+    return BoundNode(call, NUMBER, value, tuple(parts))
+
+
+def _point_argument(binder: Binder, node: Node, part: BoundNode) -> Callable[[], Any]:
+    """What gives the point that an argument means."""
+    if part.kind is TEXT and isinstance(node, Text):
+        named = binder.view.thing(node.value, binder.source, node.span)
+        return lambda: named.pose().position
+    if is_pose_like(part.kind):
+        pose = as_pose(part)
+        return lambda: pose().position
+    if part.kind is NUMBER or not _has_vector(part):
+        text = node.span.text(binder.source)
+        hint = "distance takes poses, vectors, and names of models and links in quotes"
+        raise binder.fault("SK-COND-004", f"{text} is {part.kind}, which is no place", node.span, hint)
+    return as_vector(part)
+
+
+def _has_vector(part: BoundNode) -> bool:
+    from simkit.testing.conditions.value_types import is_vector_like
+
+    return is_vector_like(part.kind)
+
+
+# ------------------------------------------------------------------ topics
+
+
+def _topic_argument(binder: Binder, call: Call) -> tuple[str, str, Text]:
+    node = quoted_argument(binder, call, 0, "a topic")
+    topic, type_name = binder.view.topic(node.value, binder.source, node.span)
+    return topic, type_name, node
+
+
+def _topic(binder: Binder, call: Call) -> BoundNode:
+    topic, type_name, _ = _topic_argument(binder, call)
+    feed = binder.view.feed(topic)
+    return BoundNode(call, message_type(type_name), feed.latest, feed=feed)
+
+
+def _scan(binder: Binder, call: Call) -> BoundNode:
+    _, type_name, node = _topic_argument(binder, call)
+    if type_name != SCAN:
+        text = f"{node.value!r} carries {type_name}, and scan reads {SCAN}"
+        raise binder.fault("SK-COND-004", text, node.span, f"topic('{node.value}') reads any message")
+    return _topic(binder, call)
+
+
+def _count(binder: Binder, call: Call) -> BoundNode:
+    tally = binder.view.tally(_topic_argument(binder, call)[0])
+    return BoundNode(call, NUMBER, lambda: float(tally.count))
+
+
+def _rate(binder: Binder, call: Call) -> BoundNode:
+    topic = _topic_argument(binder, call)[0]
+    tally = binder.view.tally(topic)
+
+    def value() -> float:
+        rate = tally.rate()
+        if rate is None:
+            raise UndecidedValue(f"fewer than two messages have come on {topic}")
+        return rate
+
+    return BoundNode(call, NUMBER, value)
+
+
+def _age(binder: Binder, call: Call) -> BoundNode:
+    topic = _topic_argument(binder, call)[0]
+    tally, sim = binder.view.tally(topic), binder.view.sim
+
+    def value() -> float:
+        if not tally.count:
+            raise UndecidedValue(f"no message has come on {topic}")
+        return (sim.time_ns - tally.last) / 1e9
+
+    return BoundNode(call, NUMBER, value)
+
+
+WORLD_FUNCTIONS: Final[dict[str, Function]] = {
+    "pose": Function("pose('model or link'[, 'seen from'])", 1, 2, _pose),
+    "twist": Function("twist('model or link'[, 'axes of'])", 1, 2, _twist),
+    "velocity": Function("velocity('model or link'[, 'axes of'])", 1, 2, _velocity),
+    "joint": Function("joint('model::joint').position", 1, 1, _joint),
+    "exists": Function("exists('model or link')", 1, 1, _exists),
+    "distance": Function("distance(a, b)", 2, 2, _distance),
+    "topic": Function("topic('/topic').field", 1, 1, _topic),
+    "scan": Function("scan('/scan')", 1, 1, _scan),
+    "count": Function("count('/topic')", 1, 1, _count),
+    "rate": Function("rate('/topic')", 1, 1, _rate),
+    "age": Function("age('/topic')", 1, 1, _age),
+}
+
+
+def _contact_query(binder: Binder, call: Call) -> ContactQuery:
+    from simkit.testing.conditions.contact_query import ContactQuery
+
+    nodes = [
+        quoted_argument(binder, call, place, "the name of a model or a link") for place in range(len(call.arguments))
+    ]
+    names = [binder.view.scoped(node.value, binder.source, node.span) for node in nodes]
+    return ContactQuery(binder.view.sim, *names)
+
+
+def _contact(binder: Binder, call: Call) -> BoundNode:
+    touching = _contact_query(binder, call)
+
+    def tell() -> str:
+        found = touching.describe()
+        return f" ({found})" if found else ""
+
+    return BoundNode(call, TRUTH, lambda: bool(touching.now()), tell=tell)
+
+
+def _contacts(binder: Binder, call: Call) -> BoundNode:
+    touching = _contact_query(binder, call)
+    return BoundNode(call, NUMBER, lambda: float(len(touching.now())))
+
+
+def _contact_force(binder: Binder, call: Call) -> BoundNode:
+    return BoundNode(call, NUMBER, _contact_query(binder, call).force)
+
+
+CONTACT_FUNCTIONS: Final[dict[str, Function]] = {
+    "contact": Function("contact('model or link'[, 'another'])", 1, 2, _contact),
+    "contacts": Function("contacts('model or link'[, 'another'])", 1, 2, _contacts),
+    "contact_force": Function("contact_force('model or link'[, 'another'])", 1, 2, _contact_force),
+}

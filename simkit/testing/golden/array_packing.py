@@ -1,0 +1,304 @@
+"""Arrays and texts as few bytes: numbers rounded and predicted, split into planes of bytes, and compressed.
+
+A block is `SKGOLD` and a version, the length of a JSON text, that text, and the bytes of all arrays one after the
+other; the whole is compressed with xz. What is read may come from a stranger: sizes are bounded before anything is
+made of them, types come from a list, and nothing is executed.
+"""
+
+from __future__ import annotations
+
+import json
+import lzma
+import math
+import struct
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from simkit.testing.run_record.record import Array
+
+_MAGIC: Final = b"SKGOLD\x01\n"
+_PRESET: Final = 6 | lzma.PRESET_EXTREME
+_FAST: Final = 3
+_LONG_BLOCK: Final = 2 << 20  # [bytes]
+_MAX_MEMORY: Final = 64 << 20  # [bytes] that unpacking may take beside what comes out
+MAX_BLOCK_BYTES: Final = 1 << 30
+"""Of what a block unpacks to [bytes]; also of all its arrays together."""
+_TYPES: Final = frozenset(
+    ("bool", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64")
+)
+_ORDERS: Final = ("plain", "time", "time2", "across")  # how a number is foretold from those before it
+_MAX_DIMENSIONS: Final = 5
+
+
+class PackingError(ValueError):
+    """A block is damaged, or is none."""
+
+
+class Packer:
+    """Gathers arrays, and gives the block with them."""
+
+    def __init__(self) -> None:
+        self._entries: list[dict[str, Any]] = []
+        self._parts: list[bytes] = []
+
+    def add(self, values: Array, step: float = 0.0) -> int:
+        """Takes an array; the number it is found by.
+
+        Args:
+            values: whose first axis is time.
+            step: what it is rounded to; 0 keeps it exactly.
+        """
+        entry: dict[str, Any] = {"dtype": str(values.dtype), "shape": list(values.shape)}
+        if entry["dtype"] not in _TYPES:
+            raise TypeError(f"arrays of {values.dtype} are not kept")
+        values = np.ascontiguousarray(values)
+        if len(values) > 1 and values.size and _is_constant(values):
+            entry["constant"] = True
+            values = values[:1]
+        whole = self._whole_numbers(values, step, entry)
+        data = _byte_planes(values.reshape(-1))
+        if whole is not None:
+            found = _predict(whole)
+            if "step" in entry or found.cost < 0.98 * _entropy_bits(data, values.size):
+                entry |= {"order": found.order, "width": found.width}
+                data = found.data
+        entry["bytes"] = len(data)
+        self._entries.append(entry)
+        self._parts.append(data)
+        return len(self._entries) - 1
+
+    def block(self, about: Any) -> bytes:
+        """The compressed block.
+
+        Args:
+            about: plain data that goes with the arrays.
+        """
+        head = json.dumps({"arrays": self._entries, "about": about}, separators=(",", ":"), ensure_ascii=False)
+        text = head.encode()
+        whole = b"".join((_MAGIC, struct.pack("<I", len(text)), text, *self._parts))
+        preset = (
+            _PRESET if len(whole) <= _LONG_BLOCK else _FAST
+        )  # of large worlds most is alike, and the best takes minutes
+        return lzma.compress(whole, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
+
+    def _whole_numbers(self, values: Array, step: float, entry: dict[str, Any]) -> Array | None:
+        """The values as whole numbers of steps; None where they are kept bit by bit."""
+        if values.dtype.kind in "iub" and values.size:
+            return values.astype(np.int64)
+        if step <= 0 or not values.size:
+            return None
+        finite = np.isfinite(values)
+        scaled = np.rint(np.where(finite, values, 0).astype(np.float64) / step)
+        if np.abs(scaled).max(initial=0) >= 2**52:
+            return None
+        entry["step"] = step
+        if not finite.all():
+            kinds = np.select([np.isnan(values), values == np.inf, values == -np.inf], [1, 2, 3], 0).astype(np.uint8)
+            entry["kinds"] = self.add(kinds)
+        return np.asarray(scaled.astype(np.int64))
+
+
+class Unpacker:
+    """The arrays of a block.
+
+    Args:
+        data: the block.
+
+    Raises:
+        PackingError: it is damaged.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        whole = _decompress(data)
+        if not whole.startswith(_MAGIC) or len(whole) < len(_MAGIC) + 4:
+            raise PackingError("it does not begin as one does")
+        start = len(_MAGIC) + 4
+        (length,) = struct.unpack("<I", whole[len(_MAGIC) : start])
+        try:
+            head = json.loads(whole[start : start + length].decode())
+            self.about: Any = head["about"]
+            self._entries = [_validate_entry(entry) for entry in head["arrays"]]
+        except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
+            raise PackingError(f"its table cannot be read: {error}") from None
+        if sum(_size(entry) for entry in self._entries) > MAX_BLOCK_BYTES:
+            raise PackingError("its arrays are too large")
+        self._whole = memoryview(whole)
+        self._starts = np.cumsum([start + length, *(entry["bytes"] for entry in self._entries)]).tolist()
+        if self._starts[-1] != len(whole):
+            raise PackingError("it is cut off, or there is something behind it")
+
+    def array(self, number: Any) -> Array:
+        """The array that was taken under a number.
+
+        Raises:
+            PackingError: there is none, or it is damaged.
+        """
+        if type(number) is not int or not 0 <= number < len(self._entries):
+            raise PackingError(f"there is no array {number!r:.40}")
+        entry = self._entries[number]
+        data = bytes(self._whole[self._starts[number] : self._starts[number + 1]])
+        try:
+            return self._of(entry, data)
+        except (ValueError, TypeError, KeyError, OverflowError) as error:
+            raise PackingError(f"array {number} is damaged: {error}") from None
+
+    def _of(self, entry: dict[str, Any], data: bytes) -> Array:
+        shape = tuple(entry["shape"])
+        stored = (1, *shape[1:]) if entry["constant"] else shape
+        dtype = np.dtype(entry["dtype"])
+        if not entry["order"]:
+            values = _join_byte_planes(data, dtype, math.prod(stored)).reshape(stored)
+        else:
+            count = math.prod(stored)
+            whole = _unzigzag(_join_byte_planes(data, np.dtype(entry["width"]), count)).reshape(stored)
+            whole = _undo_prediction(whole, entry["order"])
+            values = whole.astype(dtype) if not entry["step"] else (whole * entry["step"]).astype(dtype)
+            if entry["kinds"] is not None:
+                values = self._with_kinds(values, entry)
+        return np.broadcast_to(values, shape).copy() if entry["constant"] else values
+
+    def _with_kinds(self, values: Array, entry: dict[str, Any]) -> Array:
+        inner = self._entries[entry["kinds"]] if 0 <= entry["kinds"] < len(self._entries) else None
+        if inner is None or inner["kinds"] is not None:
+            raise PackingError("an array without what is not finite in it")
+        kinds = self.array(entry["kinds"]).reshape(values.shape)
+        for kind, value in ((1, np.nan), (2, np.inf), (3, -np.inf)):
+            values[kinds == kind] = value
+        return values
+
+
+def _decompress(data: bytes) -> bytes:
+    decompressor = lzma.LZMADecompressor(format=lzma.FORMAT_XZ, memlimit=_MAX_MEMORY)
+    try:
+        whole = decompressor.decompress(data, max_length=MAX_BLOCK_BYTES)
+    except (lzma.LZMAError, EOFError) as error:
+        raise PackingError(f"it cannot be unpacked: {error}") from None
+    if not decompressor.eof or decompressor.unused_data:
+        raise PackingError("it is cut off, too large, or there is something behind it")
+    return whole
+
+
+def _validate_entry(entry: Any) -> dict[str, Any]:
+    """An entry of a block's table, of which nothing is believed."""
+    shape, dtype, size = entry["shape"], entry["dtype"], entry["bytes"]
+    if dtype not in _TYPES or type(shape) is not list or len(shape) > _MAX_DIMENSIONS:
+        raise ValueError("an array of an unknown type")
+    if not all(type(n) is int and 0 <= n <= MAX_BLOCK_BYTES for n in (*shape, size)):
+        raise ValueError("an array of no size")
+    order, step, kinds = entry.get("order", ""), entry.get("step", 0.0), entry.get("kinds")
+    width = entry.get("width", "uint8")
+    if order not in ("", *_ORDERS) or width not in ("uint8", "uint16", "uint32", "uint64"):
+        raise ValueError("an array in no known order")
+    if type(step) not in (int, float) or not 0 <= step < math.inf or not (kinds is None or type(kinds) is int):
+        raise ValueError("an array with an odd step")
+    return {
+        "shape": shape, "dtype": dtype, "bytes": size, "order": order, "step": step, "kinds": kinds, "width": width,
+        "constant": entry.get("constant") is True and bool(shape) and shape[0] > 0,
+    }  # fmt: skip
+
+
+def _size(entry: dict[str, Any]) -> int:
+    return int(math.prod(entry["shape"])) * 8
+
+
+def _is_constant(values: Array) -> bool:
+    bits = values.reshape(len(values), -1).view(np.uint8).reshape(len(values), -1)
+    return bool((bits == bits[:1]).all())
+
+
+# ---------------------------------------------------------------------- numbers from those before
+
+
+class _Prediction(NamedTuple):
+    """Differences from what the numbers before let expect, as bytes."""
+
+    order: str
+    width: str
+    data: bytes
+    cost: float
+
+
+def _predict(whole: Array) -> _Prediction:
+    """The differences in the order in which they take least."""
+    best: _Prediction | None = None
+    for order in _ORDERS:
+        if (order == "across" and whole.ndim < 2) or (order in ("time", "time2") and len(whole) < 2):
+            continue
+        small = _smallest_type(_zigzag(whole if order == "plain" else _difference(whole, order)))
+        data = _byte_planes(small)
+        cost = _entropy_bits(data, small.size)
+        if best is None or cost < best.cost * 0.98:
+            best = _Prediction(order, str(small.dtype), data, cost)
+    assert best is not None
+    return best
+
+
+def _entropy_bits(data: bytes, count: int) -> float:
+    """About how many bits planes of so many bytes take: their entropy."""
+    if not count:
+        return 1.0
+    planes = np.frombuffer(data, np.uint8).reshape(-1, count)
+    bits = 1.0
+    for plane in planes:
+        shares = np.bincount(plane, minlength=256) / count
+        shares = shares[shares > 0]
+        bits -= count * float((shares * np.log2(shares)).sum())
+    return bits
+
+
+def _difference(whole: Array, order: str) -> Array:
+    found = whole.copy()
+    if order == "across":
+        found[:, 1:] = whole[:, 1:] - whole[:, :-1]
+        if len(found) > 1:
+            found[1:, 0] = whole[1:, 0] - whole[:-1, 0]
+        return found
+    found[1:] = whole[1:] - whole[:-1]
+    if order == "time2":
+        return _difference(found, "time")
+    return found
+
+
+def _undo_prediction(residual: Array, order: str) -> Array:
+    if order == "across":
+        found = residual.copy()
+        found[:, 0] = np.cumsum(residual[:, 0], axis=0)
+        return np.asarray(np.cumsum(found, axis=1))
+    if order in ("time", "time2"):
+        residual = np.cumsum(residual, axis=0)
+    if order == "time2":
+        residual = np.cumsum(residual, axis=0)
+    return np.asarray(residual)
+
+
+def _zigzag(numbers: Array) -> Array:
+    """Small numbers of either sign as small ones without: 0, -1, 1, -2, …"""
+    flat = numbers.reshape(-1)
+    return ((flat << 1) ^ (flat >> 63)).view(np.uint64)
+
+
+def _unzigzag(numbers: Array) -> Array:
+    wide = numbers.astype(np.uint64)
+    return np.asarray((wide >> np.uint64(1)).view(np.int64) ^ -(wide & np.uint64(1)).view(np.int64))
+
+
+def _smallest_type(numbers: Array) -> Array:
+    """The same in the fewest bytes each."""
+    largest = int(numbers.max(initial=0))
+    return numbers.astype(next(w for w in ("uint8", "uint16", "uint32", "uint64") if largest <= np.iinfo(w).max))
+
+
+def _byte_planes(values: Array) -> bytes:
+    """All first bytes, then all second ones, …: equal ones stand together."""
+    size = values.dtype.itemsize
+    little = values.astype(values.dtype.newbyteorder("<"), copy=False)
+    return np.ascontiguousarray(little.view(np.uint8).reshape(-1, size).T).tobytes()
+
+
+def _join_byte_planes(data: bytes, dtype: np.dtype[Any], count: int) -> Array:
+    if len(data) != count * dtype.itemsize:
+        raise ValueError("of another length than it says")
+    planes = np.frombuffer(data, np.uint8).reshape(dtype.itemsize, count)
+    little = np.ascontiguousarray(planes.T).view(dtype.newbyteorder("<")).reshape(-1)
+    return little.astype(dtype)

@@ -1,0 +1,169 @@
+"""Changes in words: names as the file has them, numbers with units, and no more digits than tell them apart."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from simkit.testing.golden.cause.first_tick import distinct_digits
+from simkit.testing.golden.cause.world_patch import ABSENT
+from simkit.testing.golden.compare.world_edits import Edit, entity_kind, scoped_name, split_entity_path
+
+_ENTITY_TITLES = re.compile(r"^(params\.|geometry\.|inertial\.|surface\.|surroundings\.)")
+_NAMES_IN_FILES = {
+    "rate": "update_rate",
+    "xyz_joint": "axis xyz",
+    "geometry": "shape",
+    "params": "text",
+    "com": "centre of mass",
+}
+_CONTENT = re.compile(r"^[0-9a-f]{16} \((\d+) bytes\)$")
+_LONGEST = 100  # letters of a value
+
+_UNITS: Mapping[str, str] = {
+    **dict.fromkeys(("radius", "length", "size", "radii", "height", "com", "elevation", "wheel_separation"), "m"),
+    **dict.fromkeys(("wheel_radius", "wheel_diameter", "near", "far", "min_depth", "patch_radius"), "m"),
+    **dict.fromkeys(("wheel_base", "kingpin_width", "surface_radius", "equatorial", "polar"), "m"),
+    **dict.fromkeys(("horizontal_fov", "min_angle", "max_angle", "latitude", "longitude", "heading"), "rad"),
+    **dict.fromkeys(("update_rate", "rate", "publish_rate", "odom_publish_frequency"), "Hz"),
+    **dict.fromkeys(("max_step_size", "latency", "delay_start", "duration", "timeout", "correlation_time"), "s"),
+    "mass": "kg",
+    "inertia": "kg·m²",
+    "gravity": "m/s²",
+    "wind": "m/s",
+    "magnetic_field": "T",
+    "temperature": "K",
+    "pressure": "Pa",
+    "irradiance": "W/m²",
+}
+_COMPONENTS: Mapping[str, Sequence[str]] = {
+    "inertia": ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"),
+    "spot": ("inner_angle", "outer_angle", "falloff"),
+    "velocity_decay": ("linear", "angular"),
+    "size": "xyz",
+    "attenuation": ("range", "constant", "linear", "quadratic"),
+    **dict.fromkeys(("ambient", "diffuse", "specular", "emissive", "background", "colour"), "rgba"),
+}
+
+
+def attribute_name(attribute: str) -> str:
+    """An attribute by the name that a file gives it."""
+    text = re.sub(r"^axes\[(\d+)\]\.", lambda m: "" if m[1] == "0" else f"axis {int(m[1]) + 1} ", attribute)
+    text = _ENTITY_TITLES.sub("", text).replace("@", " ").strip()
+    return _NAMES_IN_FILES.get(text, text)
+
+
+def entity_title(owner: str) -> str:
+    """A part of the world: `link robot::wheel`."""
+    return f"{entity_kind(owner)} {scoped_name(owner)}".strip()
+
+
+def owner_title(edit: Edit) -> str:
+    """Whose a leaf is."""
+    return entity_title(split_entity_path(edit.path)[0])
+
+
+def list_names(names: Sequence[str], most: int = 4) -> str:
+    """Names, not too many."""
+    shown_ = list(names[: most if len(names) > most + 1 else len(names)])
+    more = len(names) - len(shown_)
+    return ", ".join(shown_) + (f" and {more} more" if more else "")
+
+
+def edit_text(edit: Edit, leaves: Mapping[str, Any]) -> str:
+    """A leaf's change in a sentence: `collision robot::wheel::tyre: radius 0.033 → 0.0333 m (+1 %)`.
+
+    Args:
+        edit: the change.
+        leaves: all of the run's, for what a number belongs to.
+    """
+    attribute = split_entity_path(edit.path)[1]
+    name = attribute_name(attribute)
+    last = re.split(r"[. ]", attribute.rpartition("@")[2])[-1]
+    unit = world_unit(edit, last, leaves)
+    return f"{owner_title(edit)}: {name} {values_text(edit.golden, edit.run, last, unit)}"
+
+
+def world_unit(edit: Edit, last: str, leaves: Mapping[str, Any]) -> str:
+    """The unit of a number of a world's; "" where it has none, or it is not known."""
+    attribute = split_entity_path(edit.path)[1]
+    if last in ("lower", "upper", "spring_ref", "velocity") and attribute.startswith("axes["):
+        is_linear = leaves.get(f"{split_entity_path(edit.path)[0]}.type") == "prismatic"
+        base = "m" if is_linear else "rad"
+        return base + "/s" if last == "velocity" else base
+    if last in ("min", "max"):
+        return "rad" if ".scan" not in attribute and "angle" in attribute else "m" if ".range" in attribute else ""
+    if ".image." in attribute:
+        return ""  # pixels
+    return _UNITS.get(last, "")
+
+
+def values_text(golden: Any, run: Any, last: str = "", unit: str = "") -> str:
+    """Two values: `0.033 → 0.0333 m (+1 %)`, `y 1 → 1.01 m`, `is new: 5`."""
+    behind = f" {unit}" if unit else ""
+    if golden is ABSENT:
+        return f"is new: {single_value_text(run)}{behind}"
+    if run is ABSENT:
+        return f"is gone (it was {single_value_text(golden)}{behind})"
+    if isinstance(golden, list) and isinstance(run, list) and len(golden) == len(run) and _flat(golden) and _flat(run):
+        return _components(golden, run, last, behind)
+    if _is_number(golden) and _is_number(run):
+        return f"{distinct_digits(golden, run)}{behind}{_percent_change(golden, run)}"
+    a, b = _CONTENT.match(str(golden)), _CONTENT.match(str(run))
+    if a and b:
+        size = f" ({a[1]} → {b[1]} bytes)" if a[1] != b[1] else f" (still {b[1]} bytes)"
+        return "has other content" + size
+    return f"{single_value_text(golden)} → {single_value_text(run)}{behind}"
+
+
+def _components(golden: list[Any], run: list[Any], last: str, unit: str) -> str:
+    names = _COMPONENTS.get(last) or ("xyz" if len(golden) == 3 else [f"[{i}]" for i in range(len(golden))])
+    differing = [i for i, (a, b) in enumerate(zip(golden, run, strict=True)) if a != b]
+    if len(differing) > 6:
+        first = differing[0]
+        return f"{len(differing)} of {len(golden)} numbers, the first {_pair(golden[first], run[first], unit)}"
+    return ", ".join(f"{names[i] if i < len(names) else f'[{i}]'} {_pair(golden[i], run[i], unit)}" for i in differing)
+
+
+def _pair(a: Any, b: Any, unit: str) -> str:
+    return (
+        distinct_digits(a, b) + unit + _percent_change(a, b)
+        if _is_number(a) and _is_number(b)
+        else f"{single_value_text(a)} → {single_value_text(b)}"
+    )
+
+
+def _percent_change(golden: float, run: float) -> str:
+    """By how much, in per cent, where that says more than the numbers."""
+    if isinstance(golden, int) and isinstance(run, int):
+        return ""  # a number of something, or of a seed
+    if not golden or not math.isfinite(golden) or not math.isfinite(run) or golden * run < 0:
+        return ""
+    percent = (run / golden - 1) * 100
+    return f" ({percent:+.3g} %)" if abs(percent) < 100 else ""
+
+
+def _flat(value: list[Any]) -> bool:
+    return not any(isinstance(v, list) for v in value)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def single_value_text(value: Any) -> str:
+    """One value; a long one is cut."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, (list, tuple)):
+        text = " ".join(single_value_text(v) for v in value) if _flat(list(value)) else str(value)
+    elif isinstance(value, str):
+        text = value if value else '""'
+    else:
+        text = str(value)
+    text = " ".join(text.split())
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."

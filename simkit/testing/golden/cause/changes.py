@@ -1,0 +1,379 @@
+"""From leaves that differ to changes as a person made them: one for a moved robot, not one for each of its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from simkit.testing.golden.cause.change_text import (
+    attribute_name,
+    edit_text,
+    entity_title,
+    list_names,
+    owner_title,
+    single_value_text,
+)
+from simkit.testing.golden.cause.motion import Motion, find_motions, local_path
+from simkit.testing.golden.cause.world_patch import ABSENT
+from simkit.testing.golden.compare.difference import CauseKind
+from simkit.testing.golden.compare.world_edits import (
+    Edit,
+    entity_kind,
+    is_same_value,
+    is_within,
+    parent_path,
+    scoped_name,
+    split_entity_path,
+)
+
+WorldValues = Mapping[str, Any]
+_LEAST_LIKENESS = frozenset(("", "params"))
+"""Elements whose values have little to do with each other."""
+_ENOUGH_EDITS = 0.5  # of the leaves of a part that are alike: it is the same part under another name
+
+
+@dataclass(frozen=True)
+class Change:
+    """One change, with all the leaves that it shows in.
+
+    Attributes:
+        kind: of what.
+        words: in a sentence.
+        path, golden, run: of the leaf that says most.
+        where: `file:line`, where there is one.
+        edits: what is put back with it.
+    """
+
+    kind: CauseKind
+    words: str
+    path: str
+    golden: Any
+    run: Any
+    where: str
+    edits: tuple[Edit, ...] = field(repr=False)
+
+
+def find_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> list[Change]:
+    """The changes of a world.
+
+    Args:
+        edits: its leaves that differ.
+        golden, run: all of its leaves.
+    """
+    found: list[Change] = []
+    rest = list(edits)
+    if not rest:
+        return found
+    renamed, rest = _find_renames(rest, golden, run)
+    come_and_gone, rest = _entity_changes(rest, golden, run)
+    moved, rest = _motions(rest, golden, run)
+    found += [*come_and_gone, *renamed, *moved, *_group_equal_changes(rest, golden, run)]
+    order = {edit.path: n for n, edit in enumerate(edits)}
+    return sorted(found, key=lambda c: min((order.get(e.path, len(order)) for e in c.edits), default=0))
+
+
+# ------------------------------------------------------------------ parts that came, went, or have another name
+
+
+def _whole_entities(leaves: WorldValues, others: WorldValues) -> list[str]:
+    """The outermost parts of the world that the other one does not have."""
+    theirs = {p for path in others for p in _entity_chain(split_entity_path(path)[0])}
+    mine = {p for path in leaves for p in _entity_chain(split_entity_path(path)[0])}
+    alone = mine - theirs
+    return [
+        p
+        for p in dict.fromkeys(q for path in leaves for q in _entity_chain(split_entity_path(path)[0]))
+        if p in alone and parent_path(p) not in alone
+    ]
+
+
+def _entity_chain(owner: str) -> Iterable[str]:
+    while owner:
+        yield owner
+        owner = parent_path(owner)
+
+
+def _within(leaves: WorldValues, owner: str) -> dict[str, Any]:
+    return {path[len(owner) :]: value for path, value in leaves.items() if path.startswith((owner + ".", owner + "@"))}
+
+
+def _find_renames(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
+    gone, new = _whole_entities(golden, run), _whole_entities(run, golden)
+    found = []
+    for old in gone:
+        candidates = [n for n in new if parent_path(n) == parent_path(old) and entity_kind(n) == entity_kind(old)]
+        mine = _within(golden, old)
+        scores = [(_likeness(mine, _within(run, n), scoped_name(old), scoped_name(n)), n) for n in candidates]
+        score, best = max(scores, default=(0.0, ""))
+        if score < _ENOUGH_EDITS:
+            continue
+        new.remove(best)
+        change, edits = _rename_change(old, best, edits, golden, run)
+        found.append(change)
+    return found, edits
+
+
+def _likeness(a: Mapping[str, Any], b: Mapping[str, Any], old: str, new: str) -> float:
+    every = {*a, *b}
+    alike = sum(1 for p in every if is_same_value(_rename_in_text(a.get(p, ABSENT), old, new), b.get(p, ABSENT)))
+    return alike / max(1, len(every))
+
+
+def _rename_in_text(value: Any, old: str, new: str) -> Any:
+    """A text in which a part has its other name."""
+    if isinstance(value, list):
+        return [_rename_in_text(v, old, new) for v in value]
+    if not isinstance(value, str):
+        return value
+    if value == old or value.startswith(old + "::"):
+        return new + value[len(old) :]
+    short_old, short_new = old.rpartition("::")[2], new.rpartition("::")[2]
+    return short_new if value == short_old else value
+
+
+def _rename_change(
+    old: str, new: str, edits: list[Edit], golden: WorldValues, run: WorldValues
+) -> tuple[Change, list[Edit]]:
+    """The change that a renaming is, and the edits that are left: those of the part itself under its new name."""
+    a, b = scoped_name(old), scoped_name(new)
+    mine: list[Edit] = []
+    rest: list[Edit] = []
+    for edit in edits:
+        owner = split_entity_path(edit.path)[0]
+        is_other_name = ABSENT not in (edit.golden, edit.run) and is_same_value(
+            _rename_in_text(edit.golden, a, b), edit.run
+        )
+        (mine if is_within(owner, old) or is_within(owner, new) or is_other_name else rest).append(edit)
+    where = next((e.where for e in mine if e.where and is_within(split_entity_path(e.path)[0], new)), "")
+    words = f"{entity_title(old)} is called {scoped_name(new)} now"
+    theirs = _within(run, new)
+    others = []
+    for tail, value in _within(golden, old).items():
+        was, now = _rename_in_text(value, a, b), theirs.get(tail, ABSENT)
+        if not is_same_value(was, now) and not is_same_value(value, now):
+            others.append(Edit("model", new + tail, was, now, where))
+    others += [Edit("model", new + t, ABSENT, v, where) for t, v in theirs.items() if old + t not in golden]
+    if others:
+        words += "; " + "; ".join(edit_text(e, run) for e in others[:3])
+    return Change("model", words, new, scoped_name(old), scoped_name(new), where, tuple(mine)), rest
+
+
+def _entity_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
+    found = []
+    for leaves, others, verb, is_new in ((golden, run, "gone", False), (run, golden, "new", True)):
+        by_kind: dict[tuple[str, str], list[str]] = {}
+        touched = {split_entity_path(e.path)[0] for e in edits}
+        alone = [p for p in _whole_entities(leaves, others) if any(is_within(t, p) for t in touched)]
+        for part in alone:
+            by_kind.setdefault((parent_path(part), entity_kind(part)), []).append(part)
+        for (_, kind), parts in by_kind.items():
+            mine = [e for e in edits if any(is_within(split_entity_path(e.path)[0], p) for p in parts)]
+            edits = [e for e in edits if e not in mine]
+            where = next((e.where for e in mine if e.where), "")
+            if len(parts) == 1:
+                words = f"{entity_title(parts[0])} is {verb}"
+            else:
+                words = f"{len(parts)} {kind}s are {verb}: {list_names([scoped_name(p) for p in parts])}"
+            named_there = [e for e in edits if _names_one(e, [scoped_name(p) for p in parts])]  # a canonical link, say
+            mine += named_there
+            edits = [e for e in edits if e not in named_there]
+            name = scoped_name(parts[0])
+            a, b = (None, name) if is_new else (name, None)
+            found.append(Change("model", words, parts[0], a, b, where, tuple(mine)))
+    return found, edits
+
+
+def _names_one(edit: Edit, names: list[str]) -> bool:
+    """Whether a leaf is the name of a part that came or went."""
+    texts = [v for v in (edit.golden, edit.run) if isinstance(v, str)]
+    return any(text == name or text.startswith(name + "::") for text in texts for name in names)
+
+
+# ------------------------------------------------------------------ what moved
+
+
+def _motions(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
+    found, rest = find_motions(edits, golden, run)
+    groups: dict[Any, list[Motion]] = {}
+    for motion in found:
+        groups.setdefault((entity_kind(motion.owner), motion.words), []).append(motion)
+    changes = []
+    for (kind, words), several in groups.items():
+        every = tuple(e for m in several for e in m.edits)
+        main = several[0].edits[0]
+        where = several[0].where
+        if len(several) == 1:
+            sentence = f"{entity_title(several[0].owner)} {words}{several[0].numbers}{several[0].along}"
+        else:
+            names = list_names([scoped_name(m.owner) for m in several])
+            sentence = f"{len(several)} {kind}s {words}: {names}"
+        changes.append(Change("model", sentence, main.path, main.golden, main.run, where, every))
+    return changes, rest
+
+
+# ------------------------------------------------------------------ the same in several places
+
+
+def _group_equal_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> list[Change]:
+    changes, edits = _element_changes(edits, golden, run)
+    paths = {e.path: e for e in edits}
+    heads = {e.path: local_path(e.path) for e in edits if local_path(e.path) in paths}
+    followers: dict[str, list[Edit]] = {}
+    for path, head in heads.items():
+        followers.setdefault(head, []).append(paths[path])
+    first = [e for e in edits if e.path not in heads]
+    for units in _group_alike(_group_by_element(first)):
+        change = _change(units, run)
+        follow = tuple(f for e in change.edits for f in followers.get(e.path, ()))
+        changes.append(replace(change, edits=(*change.edits, *follow)))
+    by_factor: dict[Any, list[Change]] = {}
+    for change in changes:
+        by_factor.setdefault(_factor(change), []).append(change)
+    found = []
+    for key, alike in by_factor.items():
+        if key is None or len(alike) < 3:
+            found += alike
+            continue
+        every = tuple(e for c in alike for e in c.edits)
+        shown = list_names([c.words for c in alike], 3)
+        words = f"{key[0]} × {key[1]:g} in {len(every)} places: {shown}"
+        found.append(replace(alike[0], words=words, edits=every))
+    return found
+
+
+def _element_changes(edits: list[Edit], golden: WorldValues, run: WorldValues) -> tuple[list[Change], list[Edit]]:
+    """Elements that came, went, or became another kind, with all that is in them; and what is left."""
+    groups: dict[str, list[Edit]] = {}
+    rest = []
+    kinds = {e.path for e in edits if ABSENT not in (e.golden, e.run)}
+    mine, theirs = _prefixes(golden), _prefixes(run)
+    hollow = [e for e in edits if _is_hollow(e)]
+    for edit in sorted(edits, key=_is_hollow):
+        block = _changed_element(edit, kinds, theirs if edit.run is ABSENT else mine)
+        if edit in hollow:
+            block = next((b for b in groups if b.startswith(edit.path + ".")), block)
+        if block:
+            groups.setdefault(block, []).append(edit)
+        else:
+            rest.append(edit)
+    changes = []
+    for block, several in groups.items():
+        head = next((e for e in edits if e.path == block), None)
+        if len(several) == 1 and head in (None, several[0]):
+            rest += several
+            continue
+        if head is not None and head in rest:
+            rest.remove(head)
+        changes.append(_element_change_text(block, head, several, run))
+    return changes, rest
+
+
+def _is_hollow(edit: Edit) -> bool:
+    """Whether it only says that an element has nothing in it, on one side."""
+    return (edit.golden, edit.run) in ((ABSENT, ""), ("", ABSENT))
+
+
+def _prefixes(leaves: WorldValues) -> set[str]:
+    """The paths of all leaves and of all that holds some."""
+    found: set[str] = set()
+    for path in leaves:
+        owner = split_entity_path(path)[0]
+        while len(path) > len(owner) and path not in found:
+            found.add(path)
+            path = _parent_element(path)
+    return found
+
+
+def _parent_element(path: str) -> str:
+    """A path without its last step."""
+    return path[: max(path.rfind("."), path.rfind("@"), path.rfind("["), 0)]
+
+
+def _changed_element(edit: Edit, kinds: set[str], others: set[str]) -> str:
+    """The outermost element of its part that only one of the two has, or that is of another kind in both."""
+    if ABSENT not in (edit.golden, edit.run) and edit.path not in kinds:
+        return ""
+    owner = split_entity_path(edit.path)[0]
+    path, block = edit.path, ""
+    while len(path) > len(owner) + 1:
+        if path in kinds and path != edit.path:
+            return path
+        if path not in others:
+            block = path
+        path = _parent_element(path)
+    return block if ABSENT in (edit.golden, edit.run) else ""
+
+
+def _element_change_text(block: str, head: Edit | None, several: list[Edit], run: WorldValues) -> Change:
+    """What became of an element."""
+    owner, attribute = split_entity_path(block)
+    inner = [(e.path[len(block) :].lstrip(".@"), e) for e in several if e.path.startswith((block + ".", block + "@"))]
+    first = head or several[0]
+    where = next((e.where for e in (first, *several) if e.where), "")
+    edits = tuple(dict.fromkeys(e.path for e in ([head] if head else []) + several))
+    by_path = {e.path: e for e in ([head] if head else []) + several}
+    every = tuple(by_path[p] for p in edits)
+    gone = list_names([f"{n} {single_value_text(e.golden)}" for n, e in inner if e.run is ABSENT], 6)
+    new = list_names([f"{n} {single_value_text(e.run)}" for n, e in inner if e.golden is ABSENT], 6)
+    if head is not None and ABSENT not in (head.golden, head.run):
+        words = edit_text(head, run) + (f", with {new}" if new else "") + (f" instead of {gone}" if gone else "")
+        return Change("model", words, head.path, head.golden, head.run, where, every)
+    is_gone = several[0].run is ABSENT
+    state = f"is gone (it had {gone})" if is_gone else f"is new, with {new}"
+    words = f"{entity_title(owner)}: {attribute_name(attribute)} {state}"
+    a, b = (single_value_text(gone), None) if is_gone else (None, single_value_text(new))
+    return Change("model", words, block, a, b, where, every)
+
+
+def _group_by_element(edits: list[Edit]) -> list[list[Edit]]:
+    """Edits that belong together: those of one element of one part (its inertial, its material, one noise)."""
+    groups: dict[Any, list[Edit]] = {}
+    for number, edit in enumerate(edits):
+        owner, attribute = split_entity_path(edit.path)
+        inner = _parent_element(attribute)
+        groups.setdefault((owner, inner) if inner not in _LEAST_LIKENESS else number, []).append(edit)
+    return list(groups.values())
+
+
+def _group_alike(units: list[list[Edit]]) -> list[list[list[Edit]]]:
+    """Units in which the same became other in the same way."""
+    groups: dict[Any, list[list[Edit]]] = {}
+    for unit in units:
+        groups.setdefault(tuple((_last(e.path), repr(e.golden), repr(e.run)) for e in unit), []).append(unit)
+    return list(groups.values())
+
+
+def _last(path: str) -> str:
+    return attribute_name(split_entity_path(path)[1]).rpartition(".")[2]
+
+
+def _factor(change: Change) -> Any:
+    """What a change multiplies a number by, with the number's name."""
+    a, b = change.golden, change.run
+    if isinstance(a, (int, float)) and isinstance(b, (int, float)) and not isinstance(a, bool) and a and b:
+        factor = round(b / a, 9)
+        return (_last(change.path), factor) if factor not in (1.0, -1.0) else None
+    return None
+
+
+def _change(units: list[list[Edit]], run: WorldValues) -> Change:
+    unit = units[0]
+    first = unit[0]
+    head = owner_title(first) + ": "
+    # of the first the whole path, of the others in the same element the last name
+    inner = [edit_text(e, run).removeprefix(head) for e in unit]
+    block = attribute_name(split_entity_path(first.path)[1]).rpartition(".")[0]
+    inner[1:] = [text.removeprefix(block + ".") if block else text for text in inner[1:]]
+    words = ", ".join(inner)
+    owners = list(dict.fromkeys(split_entity_path(u[0].path)[0] for u in units))
+    if len(owners) > 1:
+        words = f"{words} in {len(owners)} places: {list_names([entity_title(o) for o in owners])}"
+    else:
+        words = head + words
+        if len(units) > 1:
+            words += (
+                f"; the same for {list_names([attribute_name(split_entity_path(u[0].path)[1]) for u in units[1:]])}"
+            )
+    every = tuple(e for u in units for e in u)
+    return Change(first.kind, words, first.path, first.golden, first.run, first.where, every)

@@ -1,0 +1,152 @@
+"""Changes outside the scene: the scenario, files, plugin code, versions, and compiled engine fields."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from simkit.testing.golden.cause.change_text import list_names, single_value_text, values_text
+from simkit.testing.golden.cause.changes import Change
+from simkit.testing.golden.cause.world_patch import ABSENT
+from simkit.testing.golden.compare.world_edits import Edit, field_edits, other_edits, scoped_name, split_entity_path
+from simkit.testing.run_record.record import RunRecord
+
+_HEAD = 16  # letters of a hash that a leaf has
+
+
+def changes_outside_world(
+    changes: list[Change], golden: RunRecord, run: RunRecord
+) -> tuple[list[Change], list[Change]]:
+    """The world's changes, with the names of their files, and what is other beside them.
+
+    Args:
+        changes: the world's.
+        golden, run: both records.
+    """
+    edits = other_edits(golden, run)
+    named: list[Change] = []
+    spoken: set[str] = set()
+    for change in changes:
+        old, new = _name(golden, change.golden), _name(run, change.run)
+        if old or new:
+            spoken |= {old, new}
+            shown = new if old in (new, "") else old if not new else f"{old} → {new}"
+            named.append(replace(change, words=change.words.replace(" has other", f" {shown} has other", 1)))
+        else:
+            named.append(change)
+    rest = [e for e in edits if not (e.kind in ("file", "code") and e.path in spoken)]
+    return named, [_file_change(edit) for edit in rest]
+
+
+def _name(record: RunRecord, content: Any) -> str:
+    """The file whose content a leaf is."""
+    if not isinstance(content, str) or not content.endswith(" bytes)"):
+        return ""
+    return next((name for name, digest in record.sources.items() if digest[:_HEAD] == content[:_HEAD]), "")
+
+
+def _file_change(edit: Edit) -> Change:
+    return Change(
+        edit.kind, _change_text(edit), edit.path, _short_value(edit.golden), _short_value(edit.run), edit.where, (edit,)
+    )
+
+
+def _short_value(value: Any) -> Any:
+    return None if value is ABSENT else value
+
+
+def _change_text(edit: Edit) -> str:
+    if edit.kind in ("file", "code"):
+        what = "the code of" if edit.kind == "code" else "the content of"
+        if edit.golden is ABSENT:
+            return f"{edit.path} is new"
+        return f"{edit.path} is gone" if edit.run is ABSENT else f"{what} {edit.path} was changed"
+    if edit.kind == "version":
+        if edit.path == "simkit code":
+            return f"simkit's own code was changed ({edit.golden} → {edit.run})"
+        return f"{edit.path} {single_value_text(edit.golden) or 'none'} → {single_value_text(edit.run) or 'none'}"
+    return f"scenario: {_scenario_change(edit)}"
+
+
+def _scenario_change(edit: Edit) -> str:
+    if isinstance(edit.golden, (tuple, list)) and isinstance(edit.run, (tuple, list)):
+        return f"{edit.path} {_lists(list(edit.golden), list(edit.run))}"
+    return f"{edit.path} {values_text(edit.golden, edit.run)}"
+
+
+def _lists(golden: list[Any], run: list[Any]) -> str:
+    """What two lists do not have in common."""
+    a, b = [_text(v) for v in golden], [_text(v) for v in run]
+    gone, new = [v for v in a if v not in b], [v for v in b if v not in a]
+    if len(gone) == len(new) == 1:
+        return f"{single_value_text(gone[0])} → {single_value_text(new[0])}"
+    parts = [f"without {single_value_text(v)}" for v in gone[:2]] + [f"with {single_value_text(v)}" for v in new[:2]]
+    more = len(gone[2:]) + len(new[2:])
+    return (", ".join(parts) or "in another order") + (f" and {more} more" if more else "")
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, dict) or hasattr(value, "keys"):
+        return ", ".join(f"{k} {single_value_text(v)}" for k, v in dict(value).items() if k != "where")
+    return str(value)
+
+
+_DERIVED_FIELDS = frozenset(
+    (
+        *("rbound", "aabb", "subtreemass", "invweight0", "weight0", "length0", "lengthrange", "acc0"),
+        *("ipos", "iquat", "inertia", "margin", "M0", "Madr", "pos0", "poscom0", "mat0", "dir0", "gravcomp"),
+    )
+)
+"""Fields that the engine's compiler can work out of others: they are said where there is nothing else."""
+
+
+def engine_changes(golden: RunRecord, run: RunRecord, changes: Sequence[Change]) -> list[Change]:
+    """Fields of the compiled model that are other, though nothing of their part of the scene is.
+
+    Args:
+        golden, run: both records.
+        changes: the world's.
+    """
+    if not golden.fields or not run.fields:
+        return []
+    if any(change.kind == "model" for change in changes):
+        return []
+    spoken = {scoped_name(split_entity_path(edit.path)[0]) for change in changes for edit in change.edits}
+    edits = [e for e in field_edits(golden, run) if not _is_explained_by_scene(e.path, spoken)]
+    first = [e for e in edits if e.path.rpartition(" ")[2] not in _DERIVED_FIELDS] or edits
+    groups: dict[tuple[str, str, str], list[Edit]] = {}
+    for edit in first:
+        groups.setdefault((edit.path.rpartition(" ")[2], repr(edit.golden), repr(edit.run)), []).append(edit)
+    return [_engine_change(several) for several in groups.values()]
+
+
+def _is_explained_by_scene(path: str, spoken: set[str]) -> bool:
+    name = path.split(" ", 1)[-1].rpartition(" ")[0]
+    return any(part and (name == part or name.startswith(part + "::") or part.startswith(name)) for part in spoken)
+
+
+def _engine_change(several: list[Edit]) -> Change:
+    first = several[0]
+    part, _, field = first.path.rpartition(" ")
+    a, b = _plain_number(first.golden), _plain_number(first.run)
+    said = values_text(a, b, {"pos": "position"}.get(field, field))
+    if len(several) == 1:
+        words = f"{part}: {field} {said}, as the engine has it"
+    else:
+        words = f"{field} {said}, as the engine has it, in {len(several)} places: " + list_names(
+            [e.path.rpartition(" ")[0] for e in several]
+        )
+    # nothing is put back with it: a compiled model is made anew for every run
+    return Change("model", words, first.path, a, b, "", ())
+
+
+def _plain_number(value: object) -> object:
+    if value is ABSENT:
+        return value
+    array = np.asarray(value)
+    if array.ndim == 0 or array.size == 1:
+        return array.reshape(-1)[0].item()
+    return array.reshape(-1).tolist()

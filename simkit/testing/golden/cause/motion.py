@@ -1,0 +1,258 @@
+"""What moved, as a rigid body does: of a robot that stands elsewhere the robot is named, and not its forty parts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from simkit.pose import Pose
+from simkit.testing.golden.cause.first_tick import distinct_digits
+from simkit.testing.golden.compare.world_edits import Edit, entity_kind, parent_path, scoped_name, split_entity_path
+
+_LOCAL_FIELDS = {"pose_world": "pose_link", "xyz_world": "xyz_joint", "direction_world": "direction"}
+"""What follows from where the owner is -> what a file says instead."""
+_CLOSE = 1e-9  # [m and rad], per metre from the origin
+_FARTHEST = 1e15  # [m]
+_STRAIGHT = 1e-6
+_SMALL = 0.1  # [m]: below this millimetres are said
+
+
+@dataclass
+class Motion:
+    """A part that stands elsewhere.
+
+    Attributes:
+        owner: path of the part.
+        words: how it moved.
+        numbers: the coordinates that are other, as a file has them; may be empty.
+        along: what moved with it; may be empty.
+        edits: all leaves that follow from it, its own first.
+    """
+
+    owner: str
+    words: str
+    numbers: str
+    edits: list[Edit] = field(default_factory=list)
+    along: str = ""
+
+    @property
+    def where(self) -> str:
+        """Its place in the file."""
+        return next((e.where for e in self.edits if e.where), "")
+
+
+def find_motions(
+    edits: list[Edit], golden: Mapping[str, Any], run: Mapping[str, Any]
+) -> tuple[list[Motion], list[Edit]]:
+    """What moved, and the edits that say something else.
+
+    Args:
+        edits: leaves that differ.
+        golden, run: all leaves.
+    """
+    posed = {
+        split_entity_path(e.path)[0]: e for e in edits if _poses_of_edit(e, "pose_world", "pose_link") and _both(e)
+    }
+    local = {split_entity_path(e.path)[0]: e for e in edits if _poses_of_edit(e, "pose_link") and _both(e)}
+    derived = [e for e in edits if _is_derived(e, run)]
+    rest = [e for e in edits if e not in derived and not (_poses_of_edit(e, "pose_world", "pose_link") and _both(e))]
+    in_world = {
+        split_entity_path(e.path)[0]: e
+        for e in edits
+        if _poses_of_edit(e, "pose_world") and _both(e) and f"{split_entity_path(e.path)[0]}.pose_link" not in run
+    }
+    deltas = {owner: _world_motion(edit) for owner, edit in in_world.items()}
+    carriers = _carrying_entities(run, set(in_world))
+    found: dict[str, Motion] = {}
+    roots = {owner: _root_motion(owner, deltas, carriers) for owner in in_world}
+    for owner, edit in in_world.items():
+        if roots[owner] == owner:
+            words, numbers = _simplest_motion(edit, owner, golden, run, carriers)
+            found[owner] = Motion(owner, words, numbers, [edit])
+    for owner, edit in in_world.items():
+        if roots[owner] != owner:
+            found[roots[owner]].edits.append(edit)
+    for owner, edit in local.items():
+        words, numbers = _motion_text(_pose(edit.golden), _pose(edit.run))
+        found[owner] = Motion(owner, words, numbers, [edit])
+    for edit in derived:
+        home = _owner_motion(split_entity_path(edit.path)[0], found, roots)
+        if home is None:
+            if split_entity_path(edit.path)[0] not in posed:
+                rest.append(edit)
+            continue
+        found[home].edits.append(edit)
+    for motion in found.values():
+        motion.along = _count_carried(motion)
+    return list(found.values()), rest
+
+
+def _both(edit: Edit) -> bool:
+    return _is_pose(edit.golden) and _is_pose(edit.run)
+
+
+def _is_pose(value: Any) -> bool:
+    """Whether it is a position and a quaternion; a golden run may come from anybody."""
+    if not isinstance(value, list) or len(value) != 7:
+        return False
+    if not all(isinstance(v, (int, float)) and abs(v) < _FARTHEST for v in value):
+        return False
+    return bool(sum(v * v for v in value[3:]) > _CLOSE)
+
+
+def _poses_of_edit(edit: Edit, *names: str) -> bool:
+    return split_entity_path(edit.path)[1] in names
+
+
+def local_path(path: str) -> str:
+    """The leaf that says in a part's own frame what this one says in the world; empty where there is no such."""
+    beginning, dot, last = path.rpartition(".")
+    return f"{beginning}{dot}{_LOCAL_FIELDS[last]}" if last in _LOCAL_FIELDS else ""
+
+
+def _is_derived(edit: Edit, run: Mapping[str, Any]) -> bool:
+    """Whether a leaf follows from another of its part and from where the part's owner is."""
+    return local_path(edit.path) in run
+
+
+def _owner_motion(owner: str, found: Mapping[str, Motion], roots: Mapping[str, str]) -> str | None:
+    """The motion that a part took part in: its own, or that of what it belongs to."""
+    while True:
+        if owner in found:
+            return owner
+        if owner in roots:
+            return roots[owner]
+        if not owner:
+            return None
+        owner = parent_path(owner)
+
+
+def _pose(numbers: Any) -> Pose:
+    return Pose(numbers[:3], numbers[3:])
+
+
+def _world_motion(edit: Edit) -> Pose:
+    """How the world must be moved to take the part along."""
+    return _pose(edit.run) @ _pose(edit.golden).inverse()
+
+
+def _carrying_entities(run: Mapping[str, Any], moved: set[str]) -> dict[str, list[str]]:
+    """What a part goes along with, the nearest last: its model, the link that its joint hangs it on, a joint's link."""
+    links = {
+        scoped_name(split_entity_path(p)[0]): split_entity_path(p)[0]
+        for p in run
+        if split_entity_path(p)[1] == "pose_world" and _is_link(p)
+    }
+    found: dict[str, list[str]] = {owner: [parent_path(owner)] for owner in moved}
+    for path, child in run.items():
+        owner, attribute = split_entity_path(path)
+        if attribute != "child_link" or not isinstance(child, str):
+            continue
+        parent = run.get(f"{owner}.parent_link", "")
+        if owner in found and child in links:
+            found[owner].append(links[child])
+        if links.get(child, "") in found and isinstance(parent, str) and parent in links:
+            found[links[child]].append(links[parent])
+    return found
+
+
+def _is_link(path: str) -> bool:
+    return entity_kind(split_entity_path(path)[0]) == "link"
+
+
+def _root_motion(owner: str, deltas: Mapping[str, Pose], carriers: Mapping[str, list[str]]) -> str:
+    """What took a part along; itself where nothing did."""
+    seen = {owner}
+    at = owner
+    while True:
+        known = [c for c in carriers.get(at, ()) if c in deltas and c not in seen]
+        further = [c for c in known if _is_same_motion(deltas[c], deltas[owner])]
+        if not further:
+            return at
+        at = further[0]
+        seen.add(at)
+
+
+def _is_same_motion(a: Pose, b: Pose) -> bool:
+    far = 1.0 + max(np.abs(a.position).max(), np.abs(b.position).max())
+    turned = min(np.abs(a.quaternion - b.quaternion).max(), np.abs(a.quaternion + b.quaternion).max())
+    return bool(np.abs(a.position - b.position).max() < _CLOSE * far * 10 and turned < _CLOSE)
+
+
+def _simplest_motion(
+    edit: Edit, owner: str, golden: Mapping[str, Any], run: Mapping[str, Any], carriers: Mapping[str, list[str]]
+) -> tuple[str, str]:
+    """A motion in the frame in which it is simplest: the owner's, that of the link that carries it, or the world's."""
+    frames = [parent_path(owner), *reversed(carriers.get(owner, [])), ""]
+    told = []
+    for frame in dict.fromkeys(frames):
+        a, b = golden.get(f"{frame}.pose_world"), run.get(f"{frame}.pose_world")
+        base_a, base_b = (_pose(a), _pose(b)) if _is_pose(a) and _is_pose(b) else (Pose(), Pose())
+        words, numbers = _motion_text(base_a.inverse() @ _pose(edit.golden), base_b.inverse() @ _pose(edit.run))
+        told.append((words.count(" along ") + words.count("("), len(words), words, numbers))
+    return min(told, key=lambda t: t[:1])[2:]
+
+
+def _motion_text(golden: Pose, run: Pose) -> tuple[str, str]:
+    """How a pose became another one: words, and the coordinates that are other."""
+    moved = run.position - golden.position
+    turn = (run @ golden.inverse()).quaternion
+    words, numbers = [], []
+    distance = float(np.linalg.norm(moved))
+    if distance > _CLOSE * (1 + float(np.abs(golden.position).max())):
+        words.append(f"moved {_length(distance)} along {_axis(moved / distance)}")
+        numbers += [
+            f"{name} {distinct_digits(a, b)}"
+            for name, a, b in zip("xyz", golden.position, run.position, strict=True)
+            if abs(b - a) > 1e-3 * distance
+        ]
+    sine = float(np.linalg.norm(turn[1:]))
+    angle = 2 * math.atan2(sine, abs(float(turn[0])))
+    if angle > _CLOSE:
+        axis = turn[1:] / sine * (1.0 if turn[0] >= 0 else -1.0)
+        words.append(f"rotated {math.degrees(angle):.4g}° about {_rotation_axis(axis, golden)}")
+        names = ("roll", "pitch", "yaw")
+        numbers += [
+            f"{n} {distinct_digits(float(a), float(b))}"
+            for n, a, b in zip(names, golden.rpy, run.rpy, strict=True)
+            if abs(b - a) > 1e-3 * angle
+        ]
+    if not words:
+        return "moved by a rounding error", ""
+    return " and ".join(words), f" ({', '.join(numbers)})" if numbers else ""
+
+
+def _length(metres: float) -> str:
+    if metres >= _SMALL:
+        return f"{metres:.4g} m"
+    return f"{metres * 1e3:.4g} mm" if metres >= 1e-6 else f"{metres:.2g} m"
+
+
+def _axis(direction: Any) -> str:
+    """An axis by its letter, where it is one."""
+    letter = _letter(direction)
+    return letter or "(" + ", ".join(f"{v:.3g}" if abs(v) > _STRAIGHT else "0" for v in direction) + ")"
+
+
+def _letter(direction: Any) -> str:
+    largest = int(np.argmax(np.abs(direction)))
+    if abs(abs(direction[largest]) - 1.0) < _STRAIGHT:
+        return ("-" if direction[largest] < 0 else "") + "xyz"[largest]
+    return ""
+
+
+def _rotation_axis(axis: Any, golden: Pose) -> str:
+    """About what it turned: an axis of its frame, or of its own, where it is one of them."""
+    own = golden.inverse().rotate(axis)
+    return f"its own {_letter(own)}" if not _letter(axis) and _letter(own) else _axis(axis)
+
+
+def _count_carried(motion: Motion) -> str:
+    """How many others were taken along that a file might have named instead."""
+    owners = {split_entity_path(e.path)[0] for e in motion.edits} - {motion.owner}
+    links = [o for o in owners if entity_kind(o) in ("link", "model") and not o.startswith(motion.owner + ".")]
+    return f", with {len(links)} more on it" if links else ""

@@ -1,0 +1,222 @@
+"""Runs a scenario again with something put back, and says whether it gives what is golden."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from simkit.scene import SceneWorld
+from simkit.testing.golden.cause.changes import Change
+from simkit.testing.golden.cause.world_patch import ABSENT, patch_world
+from simkit.testing.golden.compare.difference import Comparison
+from simkit.testing.run_record.record import Column, RunRecord, Stream
+from simkit.testing.scenarios import Scenario
+
+ChangeWorld = Callable[[SceneWorld], SceneWorld]
+RunChangedWorld = Callable[[Scenario, ChangeWorld | None], RunRecord]
+
+_NOTHING = hashlib.sha256().hexdigest()
+
+
+def rerun_scenario(scenario: Scenario, change_world: ChangeWorld | None) -> RunRecord:
+    """Runs a scenario from the beginning in a changed world; nothing of it is left open.
+
+    Args:
+        scenario: what is run.
+        change_world: makes what is built of what the files mean; None leaves it.
+
+    Raises:
+        SimkitError: the world, or what is done in it, cannot be used.
+    """
+    from simkit.testing.run_record.run_recorder import run_record
+    from simkit.testing.scenarios.scenario_run import open_scenario
+
+    if scenario.plugins:
+        scenario = replace(scenario, plugins=tuple(copy.deepcopy(p) for p in scenario.plugins))
+    with open_scenario(scenario, change_world=change_world) as sim:
+        record = run_record(scenario, sim=sim)
+        record.simulation = None
+        return record
+
+
+class ScenarioRerun:
+    """The run again with changes put back, as long as there is time for it.
+
+    Args:
+        golden, run: both records.
+        comparison: of them.
+        changes: that can be put back.
+        rerun: runs a scenario.
+        budget: wall time for all of it [s].
+    """
+
+    def __init__(
+        self,
+        golden: RunRecord,
+        run: RunRecord,
+        comparison: Comparison,
+        changes: Sequence[Change],
+        rerun: RunChangedWorld,
+        budget: float,
+    ) -> None:
+        self._golden, self._run, self._comparison = golden, run, comparison
+        self._changes, self._rerun = changes, rerun
+        self._end = time.perf_counter() + budget
+        self._begin = self._pace = 0.0  # wall time of a run [s], and that of a simulated second [s/s]
+        self._known: dict[frozenset[int], bool | None] = {}
+        self.runs = 0
+        self.horizon = self._first_horizon()
+        self.last: RunRecord | None = None
+
+    def same(self, chosen: frozenset[int]) -> bool | None:
+        """Whether the run with these changes put back gives the golden outputs; None where that was not tried."""
+        if chosen not in self._known:
+            record = self.record(chosen, self.horizon)
+            self._known[chosen] = None if record is None else self._is_golden(record)
+            self.last = record
+        return self._known[chosen]
+
+    def record(self, chosen: frozenset[int], duration: float) -> RunRecord | None:
+        """The run with these changes put back; None where there is no time for it, or it cannot be done."""
+        begun = time.perf_counter()
+        if begun + self._begin + self._pace * duration > self._end:
+            return None
+        edits = [edit for index in chosen for edit in self._changes[index].edits]
+        values = {edit.path: edit.golden for edit in edits if edit.kind != "scenario"}
+        scenario = replace(self._run.scenario, **{e.path: e.golden for e in edits if e.kind == "scenario"})
+        scenario = replace(scenario, duration=duration, until="", timeout=None, wall_timeout=None, checks=())
+        now = self._run.leaves
+        change = (lambda world: patch_world(world, now, values, order=self._golden.leaves)) if values else None
+        try:
+            return self._rerun(scenario, change)
+        except Exception:  # noqa: BLE001 - what is put back comes from a file, and may be anything
+            return None
+        finally:
+            self.runs += 1
+            taken = time.perf_counter() - begun
+            self._begin = min(self._begin or taken, taken)
+            self._pace = max(self._pace, (taken - self._begin) / max(duration, 1e-9))
+
+    def go_on(self) -> bool:
+        """Has the whole run count from now on, where it did not; what was found so far is forgotten."""
+        whole = self._run.scenario.timeout or self._run.scenario.duration
+        if self.horizon >= whole:
+            return False
+        self._pace = max(self._pace, self._begin / self.horizon)
+        self._begin = 0.0
+        self.horizon = whole
+        self._known.clear()
+        return True
+
+    # ------------------------------------------------------------------ what counts as golden
+
+    def _first_horizon(self) -> float:
+        """Up to where it is run [s]: the end of the second in which the first difference is."""
+        whole = self._run.scenario.timeout or self._run.scenario.duration
+        differences = self._comparison.differences
+        if any(d.kind == "statistics" for d in differences) or not differences:
+            return whole
+        times = [d.time for d in differences if math.isfinite(d.time)]
+        return min(whole, math.floor(min(times)) + 1.0) if times else whole
+
+    def _is_golden(self, record: RunRecord) -> bool:
+        if self._comparison.tier == "exact":
+            return _same_bits(self._golden, record, self.horizon)
+        from simkit.testing.golden.compare.runs import compare
+
+        golden, mine = cut_record(self._golden, self.horizon), cut_record(record, self.horizon)
+        found = compare(
+            replace(golden, scenario=replace(golden.scenario, model=False)),
+            replace(mine, scenario=replace(mine.scenario, model=False)),
+        )
+        return found.passed
+
+
+def _same_bits(golden: RunRecord, run: RunRecord, until: float) -> bool:
+    count = min(round(until / golden.states.timestep), len(golden.states.marks), len(run.states.marks))
+    if run.scenario.state:
+        if {*golden.states.names} != {*run.states.names}:
+            return False
+        if not np.array_equal(golden.states.marks[:count], run.states.marks[:count]):
+            return False
+    seconds = math.ceil(until)
+    topics = [t for t in {*golden.streams, *run.streams} if _counts(t, golden, run)]
+    return all(_chunks(golden.streams.get(t), seconds) == _chunks(run.streams.get(t), seconds) for t in topics)
+
+
+def _counts(topic: str, golden: RunRecord, run: RunRecord) -> bool:
+    from simkit.testing.golden.compare.tolerances import tolerance_of
+
+    stream = run.streams.get(topic) or golden.streams[topic]
+    return not tolerance_of(run.scenario, topic, stream.type_name, "").ignore
+
+
+def _chunks(stream: Stream | None, seconds: int) -> list[str]:
+    """Of the whole seconds, without those at the end in which nothing came."""
+    found = list(stream.chunks[:seconds]) if stream is not None else []
+    while found and found[-1] == _NOTHING:
+        found.pop()
+    return found
+
+
+def cut_record(record: RunRecord, until: float) -> RunRecord:
+    """A record up to a time [s], that excluded."""
+    limit = round(until * 1e9)
+    streams = {name: _cut_stream(stream, limit) for name, stream in record.streams.items()}
+    states = record.states
+    ticks = min(len(states.marks), math.ceil(until / states.timestep) - 1)
+    kept = int(np.searchsorted(states.ticks, ticks, side="right"))
+    states = replace(
+        states,
+        marks=states.marks[:ticks],
+        inputs=states.inputs[:ticks],
+        ticks=states.ticks[:kept],
+        values=states.values[:kept],
+        input_values=states.input_values[:kept],
+        digest="",
+    )
+    return replace(record, streams={n: s for n, s in streams.items() if len(s.times_ns)}, states=states)
+
+
+def _cut_stream(stream: Stream, limit: int) -> Stream:
+    count = int(np.searchsorted(stream.times_ns, limit, side="left"))
+    if count == len(stream.times_ns):
+        return stream
+    return replace(
+        stream,
+        times_ns=stream.times_ns[:count],
+        columns={name: _cut_column(column, count) for name, column in stream.columns.items()},
+        words={name: texts[:count] for name, texts in stream.words.items()},
+        pictures=None if stream.pictures is None else stream.pictures.first(count),
+        chunks=stream.chunks[: limit // 1_000_000_000],
+        digest="",
+    )
+
+
+def _cut_column(column: Column, count: int) -> Column:
+    if column.lengths is None:
+        return replace(column, values=column.values[:count])
+    lengths = column.lengths[:count]
+    return replace(column, values=column.values[: int(lengths.sum())], lengths=lengths)
+
+
+def can_be_put_back(change: Change, run: RunRecord) -> bool:
+    """Whether it is worth trying: the golden values are all there is to it, and what is built is made from them."""
+    if change.kind == "scenario":
+        return all(edit.path not in ("world", "plugins", "options") for edit in change.edits)
+    if change.kind != "model" or not change.edits:
+        return False
+    world = getattr(run.simulation, "world", None)
+    kept = [f"models[{m.name}]" for m in world.models if m.mjcf is not None] if world is not None else []
+    return all(_is_single_value(e.golden) and not e.path.startswith(("files[", *kept)) for e in change.edits)
+
+
+def _is_single_value(value: Any) -> bool:
+    return value is ABSENT or isinstance(value, (bool, int, float, str, list))

@@ -1,0 +1,302 @@
+"""Compare columns of numbers: the first message that differs, by how much, and how the difference develops."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.testing.golden.compare.difference import Difference
+from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, FlatValues
+from simkit.testing.golden.compare.units import is_colour, item_name, period_of, quantity_text, time_text, value_text
+from simkit.testing.run_record.record import Array, Column
+from simkit.testing.scenarios import Tolerance
+
+FloatValues = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+_NAMES = ("child_frame_id", "name", "names", "joint_names", "link_name", "id")
+
+
+def value_difference(
+    terms: FieldTerms, shift: FloatValues, bad: Flags, failing: Flags, golden: FlatValues, run: FlatValues, error: float
+) -> Difference:
+    """What there is to say of values that are too far off.
+
+    Args:
+        terms: of the comparison.
+        shift: run less golden, a number for each value.
+        bad: which values are too far off.
+        failing: which messages have too many of those.
+        golden, run: the values.
+        error: what rounding may make a difference seem larger or smaller.
+    """
+    first = int(np.argmax(failing))
+    counted = bad & failing[golden.messages]
+    here = counted & (golden.messages == first)
+    start = int(golden.widths[:first].sum())
+    numbers = np.flatnonzero(here) - start
+    largest, at = _largest_deviation(shift, counted, golden.messages)
+    said = _setting_text(terms, golden, run, first, failing)
+    if not said:
+        said = _which_values(terms, numbers, int(golden.widths[first]), first)
+        said += _deviation_text(terms, shift[here], golden.values[here], run.values[here], error)
+        said += _duration_text(terms, first, failing, _typical(shift[here]), largest, at, error)
+    size = abs(largest)
+    return Difference(
+        terms.stream.topic,
+        terms.field,
+        "value",
+        terms.time(first),
+        size,
+        terms.unit,
+        f"{terms.name}: {said}",
+        terms.allowed,
+        first,
+    )
+
+
+def _largest_deviation(shift: FloatValues, counted: Flags, messages: npt.NDArray[np.intp]) -> tuple[float, int]:
+    """The largest finite difference and its message; nan and -1 where there is none."""
+    off = np.where(counted & np.isfinite(shift), np.abs(shift), -1.0)
+    at = int(np.argmax(off))
+    return (float(shift[at]), int(messages[at])) if off[at] >= 0.0 else (math.nan, -1)
+
+
+def _setting_text(terms: FieldTerms, golden: FlatValues, run: FlatValues, first: int, failing: Flags) -> str:
+    """`3.5 m became 4 m`, of a setting that says the same all along."""
+    width = int(golden.widths[0])
+    if is_colour(terms.field) or first or not failing.all() or (golden.widths != width).any():
+        return ""
+    a, b = golden.values.reshape(-1, width), run.values.reshape(-1, width)
+    if not (a == a[0]).all() or not (b == b[0]).all() or (len(a) == 1 and terms.tolerance.absolute):
+        return ""
+    changed = np.flatnonzero(a[0] != b[0])
+    if not 0 < len(changed) <= 3:
+        return ""
+    words = [f"{value_text(a[0, i], terms.unit)} became {value_text(b[0, i], terms.unit)}" for i in changed.tolist()]
+    if width == 1:
+        return words[0]
+    names = _value_names(terms, width, 0) or [f"value {i}" for i in range(width)]
+    return ", ".join(f"{names[i]} {said}" for i, said in zip(changed.tolist(), words, strict=True))
+
+
+def _which_values(terms: FieldTerms, numbers: npt.NDArray[np.intp], width: int, index: int) -> str:
+    """Which values of the message: `14 of 360 rays (45 to 58) `."""
+    if width == 1 and not _value_names(terms, width, index):
+        return ""
+    names = _value_names(terms, width, index)
+    if names and len(numbers) <= 3:
+        return ", ".join(names[int(i)] for i in numbers) + " "
+    things = item_name(terms.stream.type_name, terms.field)
+    if len(numbers) == width:
+        return f"all {width} {things} " if width > 1 else ""
+    first, last = int(numbers[0]), int(numbers[-1])
+    place = ""
+    if len(numbers) == 1:
+        place = f"number {first}"
+    elif last - first + 1 == len(numbers):
+        place = f"{first} to {last}"
+    return f"{len(numbers)} of {width} {things} " + (f"({place}) " if place else "")
+
+
+def _value_names(terms: FieldTerms, width: int, index: int) -> list[str]:
+    """What the values of a message are called, by a field of names beside theirs."""
+    if width > 64:
+        return []
+    parts = terms.field.split(".")
+    for depth in range(len(parts) - 1, -1, -1):
+        prefix = ".".join([*parts[:depth], ""]) if depth else ""
+        for name in _NAMES:
+            texts = terms.stream.words.get(prefix + name)
+            if texts is not None and index < len(texts):
+                found = texts[index].split(", ")
+                if len(found) == width and all(found) and (width > 1 or depth):
+                    return found
+    return []
+
+
+def _deviation_text(terms: FieldTerms, shift: FloatValues, golden: Array, run: Array, error: float) -> str:
+    finite = shift[np.isfinite(shift)]
+    parts = []
+    if finite.size:
+        parts.append(_signed(finite, terms.unit, error))
+    parts += _finiteness_text(
+        golden[~np.isfinite(shift)], run[~np.isfinite(shift)], only=not finite.size, single=shift.size == 1
+    )
+    return ", ".join(parts)
+
+
+def _signed(shift: FloatValues, unit: str, error: float) -> str:
+    """`+12 mm` where nearly all go one way, else `up to ±12 mm`."""
+    positive = float((shift > 0).mean())
+    if 0.2 < positive < 0.8:
+        return f"up to ±{quantity_text(float(np.abs(shift).max()), unit, signed=False, error=error)}"
+    return quantity_text(_typical(shift), unit, error=error)
+
+
+def _typical(shift: FloatValues) -> float:
+    finite = shift[np.isfinite(shift)]
+    return float(np.median(finite)) if finite.size else math.nan
+
+
+def _finiteness_text(golden: Array, run: Array, *, only: bool, single: bool) -> list[str]:
+    """What became infinite, finite or no number."""
+    a, b = golden.astype(np.float64), run.astype(np.float64)
+    kinds = (
+        ("no number any more", np.isnan(b)),
+        ("a number now", np.isnan(a) & ~np.isnan(b)),
+        ("infinite now", np.isinf(b) & ~np.isnan(a)),
+        ("finite now", np.isinf(a) & np.isfinite(b)),
+    )
+    told = []
+    for words, which in kinds:
+        number = int(which.sum())
+        if number:
+            told.append(words if (only and number == len(a)) or single else f"{number} {words}")
+    return told
+
+
+def _duration_text(
+    terms: FieldTerms, first: int, failing: Flags, typical: float, largest: float, at: int, error: float
+) -> str:
+    """From when on, in how many messages, and how large it gets."""
+    rest = len(failing) - first
+    number = int(failing[first:].sum())
+    if number == 1 and rest > 1:
+        return f" at {time_text(terms.time(first))}, in that message only"
+    words = f" {'at' if rest == 1 else 'from'} {time_text(terms.time(first))}"
+    if number < rest:
+        words += f", in {number} of {rest} messages"
+    if at > first and abs(largest) > 1.5 * abs(typical):
+        words += f", up to {quantity_text(largest, terms.unit, error=error)} at {time_text(terms.time(at))}"
+    return words
+
+
+def width_difference(terms: FieldTerms, index: int, golden: Column, run: Column) -> Difference:
+    """A message that has more or fewer values."""
+    a, b = int(golden.of(index).size), int(run.of(index).size)
+    things = item_name(terms.stream.type_name, terms.field)
+    words = f"{terms.name}: {a} {things} became {b} at {time_text(terms.time(index))}"
+    return Difference(
+        terms.stream.topic, terms.field, "count", terms.time(index), float(abs(b - a)), things, words, "none", index
+    )
+
+
+Floats = npt.NDArray[np.float64]
+
+HALF_STEP: Final = 0.5 * (1.0 + 1e-9)
+"""Of a step: how far rounding moves a value."""
+
+
+def compare_column(terms: FieldTerms, golden: Column, run: Column) -> FieldFinding:
+    """Compares a field of numbers."""
+    mine, other = FlatValues.of(golden, terms.count), FlatValues.of(run, terms.count)
+    uneven = np.flatnonzero(mine.widths != other.widths)
+    count = terms.count
+    if uneven.size:
+        count = int(uneven[0])
+        mine, other = mine.first(count), other.first(count)
+    shift = _deviation(terms, mine.values, other.values)
+    limit = _limit(terms, golden, run, mine.values)
+    found = field_finding(terms, shift, limit, mine, other, HALF_STEP * (golden.step + run.step))
+    if found.difference is None and uneven.size:
+        return FieldFinding(width_difference(terms, count, golden, run), math.inf, math.inf)
+    return found
+
+
+def field_finding(
+    terms: FieldTerms, shift: Floats, limit: Floats, golden: FlatValues, run: FlatValues, rounding: float
+) -> FieldFinding:
+    """What there is to say of values that are off.
+
+    Args:
+        terms: of the comparison.
+        shift: run less golden, a number for each value.
+        limit: how far each may be off.
+        golden, run: the values themselves.
+        rounding: how far off rounding alone may make a value.
+    """
+    off = np.abs(shift)
+    bad = ~(off <= limit)
+    share = 0.0 if terms.is_exact else float(terms.tolerance.share or 0.0)
+    bad_counts = np.bincount(golden.messages[bad], minlength=len(golden.widths))
+    failing = bad_counts > share * golden.widths
+    finite = off[np.isfinite(off)]
+    largest = max(0.0, float(finite.max(initial=0.0)) - rounding)
+    if not failing.any():
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.nan_to_num(off / limit, nan=0.0, posinf=0.0)
+        return FieldFinding(None, float(ratio[~bad].max(initial=0.0)), largest)
+    excess = _excess(off[bad], _tolerance_text(terms.tolerance, golden.values[bad]))
+    return FieldFinding(value_difference(terms, shift, bad, failing, golden, run, rounding), excess, largest)
+
+
+# ---------------------------------------------------------------------- values
+
+
+def _deviation(terms: FieldTerms, golden: Array, run: Array) -> Floats:
+    """Run less golden; 0 where both are the same infinity or both no number, infinite where only one is finite."""
+    if not golden.size:
+        return np.zeros(0)
+    if is_colour(terms.field) and golden.dtype == run.dtype and golden.dtype.itemsize == 4:
+        return _colour_deviation(golden, run)
+    if golden.dtype.kind in "iub" and run.dtype.kind in "iub":
+        return (
+            (run.astype(np.float64) - golden.astype(np.float64))
+            if golden.dtype != np.int64
+            else _time_deviation(golden, run)
+        )
+    a, b = golden.astype(np.float64), run.astype(np.float64)
+    with np.errstate(invalid="ignore"):
+        shift = b - a
+    same = (a == b) | (np.isnan(a) & np.isnan(b))
+    shift[same] = 0.0
+    shift[~same & ~np.isfinite(shift)] = np.inf
+    period = period_of(terms.stream.type_name, terms.field)
+    if period:
+        shift -= period * np.round(np.where(np.isfinite(shift), shift, 0.0) / period)
+    return shift
+
+
+def _colour_deviation(golden: Array, run: Array) -> Floats:
+    """The largest difference of a channel, of colours that are four bytes each."""
+    a = np.ascontiguousarray(golden).view(np.uint8).reshape(-1, 4).astype(np.float64)
+    b = np.ascontiguousarray(run).view(np.uint8).reshape(-1, 4)
+    shift = b - a
+    at = np.argmax(np.abs(shift), axis=1)
+    return np.asarray(np.take_along_axis(shift, at[:, None], axis=1)[:, 0])
+
+
+def _time_deviation(golden: Array, run: Array) -> Floats:
+    """The difference of times [ns], which are too large for a float."""
+    return np.asarray((run.astype(np.int64) - golden).astype(np.float64))
+
+
+def _limit(terms: FieldTerms, golden: Column, run: Column, values: Array) -> Floats:
+    """How far each value may be off."""
+    rounding = HALF_STEP * (golden.step + run.step)
+    limit = np.full(values.shape, rounding)
+    if terms.is_exact:
+        return limit
+    tolerance = terms.tolerance
+    limit += tolerance.absolute or 0.0
+    is_plain_count = values.dtype.kind in "iub" and tolerance.pattern == terms.field and not terms.unit
+    if tolerance.relative and not is_plain_count and not is_colour(terms.field):
+        with np.errstate(invalid="ignore"):
+            limit += np.nan_to_num(tolerance.relative * np.abs(values.astype(np.float64)), nan=0.0, posinf=0.0)
+    return limit
+
+
+def _tolerance_text(tolerance: Tolerance, values: Array) -> Floats:
+    """What a tolerance allows values to be off, whether it counts here or not."""
+    with np.errstate(invalid="ignore"):
+        part = (tolerance.relative or 0.0) * np.nan_to_num(np.abs(values.astype(np.float64)), posinf=0.0)
+    return np.asarray((tolerance.absolute or 0.0) + part)
+
+
+def _excess(off: Floats, limit: Floats) -> float:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.nan_to_num(off / limit, nan=np.inf, posinf=np.inf).max(initial=0.0))

@@ -1,0 +1,186 @@
+"""The physics of two runs side by side: the first tick that is other, and what is other there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.testing.golden.compare.difference import Difference
+from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text
+from simkit.testing.run_record.record import States
+
+_TINY: Final = 1e-9  # of a quantity that has hardly moved, where its own size says nothing
+# absolute, and part of the largest value, on another machine; by what the quantity's name says
+_ALLOWED: Final[tuple[tuple[str, float, float], ...]] = (
+    ("velocity", 2e-2, 1e-2),
+    ("position", 1e-3, 1e-3),
+    ("orientation", 1e-3, 0.0),
+    ("", 1e-3, 1e-2),
+)
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _StateDifferences:
+    """The states that both kept, of the quantities that both have."""
+
+    names: list[str]
+    times: Floats
+    golden: Floats
+    shift: Floats
+    joints: Mapping[str, str]
+
+
+def compare_physics(
+    golden: States, run: States, is_exact: bool, joints: Mapping[str, str] | None = None
+) -> Difference | None:
+    """Compares the physics of two runs; None where nothing is other that may not be.
+
+    Args:
+        golden, run: of the same scenario.
+        is_exact: whether bits must be equal; else the states that were kept are compared with tolerances.
+        joints: unit of each joint's position, by its name.
+    """
+    if golden.timestep != run.timestep:
+        steps = [quantity_text(s.timestep, "s", signed=False) for s in (golden, run)]
+        words = f"physics: a step of {steps[0]} became one of {steps[1]}"
+        return _state(words, 0.0, abs(run.timestep - golden.timestep), "s", "")
+    parts = _entity_changes(golden, run)
+    if parts:
+        return _state(f"physics: moving parts are other: {parts}", 0.0, float("nan"), "", "")
+    return _bits(golden, run, joints or {}) if is_exact else _values(golden, run, joints or {})
+
+
+def _state(words: str, time: float, size: float, unit: str, name: str, allowed: str = "the same bits") -> Difference:
+    return Difference("", name, "state", time, size, unit, words, allowed)
+
+
+def _entity_changes(golden: States, run: States) -> str:
+    """`new: crate; gone: pillar`, by the names of quantities without what they say of them."""
+    told = []
+    for words, names in (("new", set(run.names) - set(golden.names)), ("gone", set(golden.names) - set(run.names))):
+        owners = sorted({_quantity_owner(name) for name in names})
+        if owners:
+            more = f" and {len(owners) - 3} more" if len(owners) > 3 else ""
+            told.append(f"{words}: {', '.join(owners[:3])}{more}")
+    return "; ".join(told)
+
+
+def _quantity_owner(name: str) -> str:
+    """A quantity's name without what it is: `crate` of `crate angular velocity x`."""
+    for word in (" position", " orientation", " angular velocity", " velocity", " activation"):
+        if word in name:
+            return name[: name.index(word)]
+    return name
+
+
+# ---------------------------------------------------------------------- the same bits
+
+
+def _bits(golden: States, run: States, joints: Mapping[str, str]) -> Difference | None:
+    both = min(len(golden.marks), len(run.marks))
+    apart = np.flatnonzero(golden.marks[:both] != run.marks[:both])
+    begins = _initial_difference(golden, run, joints)
+    if not apart.size and begins is None:
+        has_digests = golden.named_digest and run.named_digest and len(golden.marks) == len(run.marks)
+        if not has_digests or golden.named_digest == run.named_digest:
+            return None
+    if begins is not None:
+        return begins
+    tick = int(apart[0]) + 1 if apart.size else both
+    time = tick * run.timestep
+    words = f"physics: state differs from {time_text(time)} (tick {tick})"
+    kept = _state_differences(golden, run, joints)
+    first = next((i for i in range(len(kept.times)) if kept.times[i] >= time and kept.shift[i].any()), None)
+    if first is None:
+        return _state(f"{words}, and not in the states that were kept", time, 0.0, "", "")
+    return _largest_difference(kept, first, words, time, "the same bits")
+
+
+def _initial_difference(golden: States, run: States, joints: Mapping[str, str]) -> Difference | None:
+    """What is other before the first step."""
+    kept = _state_differences(golden, run, joints)
+    if not len(kept.times) or kept.times[0] > 0.0 or not kept.shift[0].any():
+        return None
+    return _largest_difference(kept, 0, "physics: begins in another state", 0.0, "the same bits")
+
+
+def _largest_difference(kept: _StateDifferences, index: int, words: str, time: float, allowed: str) -> Difference:
+    """The quantity that differs most for its size, at a state that was kept."""
+    scale = np.maximum(np.abs(kept.golden).max(axis=0), _TINY)
+    at = int(np.argmax(np.abs(kept.shift[index]) / scale))
+    name, unit = kept.names[at], unit_of_quantity(kept.names[at], kept.joints)
+    shift, largest = float(kept.shift[index, at]), int(np.argmax(np.abs(kept.shift[:, at])))
+    said = quantity_text(shift, unit)
+    when = "" if kept.times[index] == time else f" at {time_text(float(kept.times[index]))}"
+    words += f": {name} {said}{when}"
+    size = abs(float(kept.shift[largest, at]))
+    if largest > index and size > 1.5 * abs(shift):
+        words += (
+            f", up to {quantity_text(float(kept.shift[largest, at]), unit)} at {time_text(float(kept.times[largest]))}"
+        )
+    return _state(words, time, size, unit, name, allowed)
+
+
+# ---------------------------------------------------------------------- another machine
+
+
+def _values(golden: States, run: States, joints: Mapping[str, str]) -> Difference | None:
+    kept = _state_differences(golden, run, joints)
+    if not len(kept.times):
+        return None
+    largest = np.abs(kept.golden).max(axis=0)
+    limits = np.array([_limit(name, float(size)) for name, size in zip(kept.names, largest, strict=True)])
+    failing = (np.abs(kept.shift) > limits).any(axis=1)
+    if not failing.any():
+        return None
+    index = int(np.argmax(failing))
+    time = float(kept.times[index])
+    over = np.where(np.abs(kept.shift) > limits, kept.shift, 0.0)
+    told = replace(kept, shift=over)
+    return _largest_difference(
+        told, index, f"physics: state differs from {time_text(time)}", time, "1 mm, 1 mrad, 1 % of velocities"
+    )
+
+
+def _limit(name: str, size: float) -> float:
+    for word, absolute, relative in _ALLOWED:
+        if word in name:
+            return absolute + relative * size
+    raise AssertionError(name)
+
+
+def _state_differences(golden: States, run: States, joints: Mapping[str, str]) -> _StateDifferences:
+    """Differences of the states that both kept, at the same ticks; where only one is a number they are infinite."""
+    names = [name for name in golden.names if name in set(run.names)]
+    ticks = np.intersect1d(golden.ticks, run.ticks)
+    mine = golden.values[np.searchsorted(golden.ticks, ticks)][:, [golden.names.index(name) for name in names]]
+    other = run.values[np.searchsorted(run.ticks, ticks)][:, [run.names.index(name) for name in names]]
+    with np.errstate(invalid="ignore"):
+        shift = other - mine
+    shift[np.isnan(mine) & np.isnan(other)] = 0.0
+    times = np.asarray(ticks * run.timestep, np.float64)
+    return _StateDifferences(names, times, np.nan_to_num(mine), np.nan_to_num(shift, nan=np.inf), joints)
+
+
+def unit_of_quantity(name: str, joints: Mapping[str, str]) -> str:
+    """The unit of a quantity of the state.
+
+    Args:
+        name: of the quantity.
+        joints: unit of each joint's position, by its name.
+    """
+    if "angular velocity" in name:
+        return "rad/s"
+    if " velocity " in name:
+        return "m/s"
+    if " position " in name:
+        return "m"
+    position = joints.get(_quantity_owner(name).rpartition("::")[2], "")
+    if name.endswith(" velocity"):
+        return joint_unit("rad/s or m/s", position)
+    return joint_unit("rad or m", position) if name.endswith(" position") else ""

@@ -1,0 +1,243 @@
+"""Pictures side by side: which part changed, by how much, and whether the structure is the same."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.testing.golden.compare.difference import Difference
+from simkit.testing.golden.compare.numbers import compare_column
+from simkit.testing.golden.compare.tolerances import FieldTerms
+from simkit.testing.golden.compare.units import time_text
+from simkit.testing.run_record.pictures import TILE, structural_similarity
+from simkit.testing.run_record.record import Array, Column, Pictures, Stream
+from simkit.testing.scenarios import Tolerance
+
+_DEPTH = 2.0**-10  # [m]
+Ranked = list[tuple[float, Difference]]
+
+
+def compare_pictures(
+    golden: Stream, run: Stream, tolerance: Tolerance, is_exact: bool, count: int, notes: list[str]
+) -> Ranked:
+    """Compares the pictures of a topic.
+
+    Args:
+        golden, run: of one topic.
+        tolerance: of the topic.
+        is_exact: whether bits must be equal.
+        count: how many messages are compared.
+        notes: where what is other and allowed is told.
+    """
+    mine, other = golden.pictures, run.pictures
+    if tolerance.ignore or not count:
+        return []
+    if mine is None or other is None:
+        notes.append(f"{run.topic}: only {'the golden' if other is None else 'the run'} has small pictures of it")
+        return []
+    form = _format_difference(run, mine, other)
+    if form is not None:
+        return [(math.inf, form)]
+    both = np.intersect1d(mine.messages, other.messages)
+    met = _CommonPictures(run, mine, other, tolerance, is_exact, count, both[both < count])
+    if mine.small.dtype.kind == "f" or other.small.dtype.kind == "f":
+        ranked = _depths(met, notes)
+    else:
+        ranked = _colours(met, notes)
+    return _with_hashes(met, ranked) if is_exact else ranked
+
+
+class _CommonPictures:
+    """The pictures that both kept, of the same messages.
+
+    Args:
+        run: the stream.
+        golden, other: pictures of the golden stream and of the run's.
+        tolerance, is_exact, count: as of `compare_pictures`.
+        messages: of which both kept the picture.
+    """
+
+    def __init__(
+        self,
+        run: Stream,
+        golden: Pictures,
+        other: Pictures,
+        tolerance: Tolerance,
+        is_exact: bool,
+        count: int,
+        messages: npt.NDArray[np.int64],
+    ) -> None:
+        self.stream, self.tolerance, self.is_exact = run, tolerance, is_exact
+        self.golden, self.run, self.messages = golden.at(messages), other.at(messages), messages
+        self.count, self.all_kept = count, len(messages) == count
+        self.changed: npt.NDArray[np.intp] | None = None  # messages whose pictures are other
+        if golden.hashes is not None and other.hashes is not None:
+            both = min(count, len(golden.hashes), len(other.hashes))
+            self.changed = np.flatnonzero(golden.hashes[:both] != other.hashes[:both])
+
+    def seconds(self, row: int) -> float:
+        """When the message of a row came."""
+        return float(self.stream.times_ns[int(self.messages[row])]) * 1e-9
+
+    def when(self, row: int) -> str:
+        """The same in words."""
+        return time_text(self.seconds(row))
+
+    def similarity(self, row: int) -> float:
+        """Of a row's pictures."""
+        return structural_similarity(self.golden.small[row], self.run.small[row])
+
+
+def _format_difference(run: Stream, mine: Pictures, other: Pictures) -> Difference | None:
+    """Another size or encoding."""
+    said = []
+    if mine.shape != other.shape:
+        said.append(f"{mine.shape[1]} × {mine.shape[0]} px became {other.shape[1]} × {other.shape[0]} px")
+    if mine.encoding != other.encoding:
+        said.append(f"encoding {mine.encoding} became {other.encoding}")
+    if not said and mine.small.shape[1:] != other.small.shape[1:]:
+        said.append("pictures are kept in another size (picture: in the scenario)")
+    if not said:
+        return None
+    time = float(run.times_ns[0]) * 1e-9 if len(run.times_ns) else 0.0
+    words = f"{run.topic}: {', '.join(said)}"
+    return Difference(run.topic, "", "picture", time, math.nan, "", words, "the same size and encoding", 0)
+
+
+def _with_hashes(met: _CommonPictures, ranked: Ranked) -> Ranked:
+    """Dates what differs by the first picture that is other, which need not be among those that were kept."""
+    if met.changed is None or not met.changed.size:
+        return ranked
+    first = int(met.changed[0])
+    time = float(met.stream.times_ns[first]) * 1e-9
+    if not ranked:
+        words = f"{met.stream.topic}: pictures differ from {time_text(time)}, in {len(met.changed)} of {met.count}"
+        words += "" if met.all_kept else ", and in none that a golden keeps"
+        difference = Difference(met.stream.topic, "", "picture", time, math.nan, "", words, "the same bits", first)
+        return [(1.0, difference)]
+    excess, told = ranked[0]
+    if first < told.index:
+        words = f"{told.words}; the first that is other came at {time_text(time)} and is not kept"
+        ranked = [(excess, replace(told, time=time, index=first, words=words)), *ranked[1:]]
+    return ranked
+
+
+# ---------------------------------------------------------------------- colours
+
+
+def _colours(met: _CommonPictures, notes: list[str]) -> Ranked:
+    count, topic = len(met.messages), met.stream.topic
+    if not count:
+        return []
+    changed = _changed_tiles(met)
+    apart = np.abs(met.golden.small.astype(np.int16) - met.run.small).reshape(count, -1).mean(axis=1)
+    suspects = np.flatnonzero((apart > 0.0) | changed.any(axis=1))
+    if not suspects.size:
+        return []
+    tolerance = met.tolerance
+    if met.is_exact:
+        failing = suspects
+        allowed = "the same bits"
+    else:
+        image, least = float(tolerance.image or 0.0), float(1.0 if tolerance.ssim is None else tolerance.ssim)
+        failing = np.array([i for i in suspects if apart[i] > image or met.similarity(int(i)) < least], np.intp)
+        allowed = f"a mean difference of {image:g} of 255, similarity {least:g}"
+    if not failing.size:
+        worst = int(np.argmax(apart))
+        notes.append(
+            f"{topic}: pictures differ by {apart[worst]:.2g} of 255 on average, within {allowed} "
+            f"(similarity {met.similarity(worst):.3f} at {met.when(worst)})"
+        )
+        return []
+    first = int(failing[0])
+    words = f"{topic}: {_changed_part_text(changed[first], met.golden)}{_brightness(met, first)}"
+    words += f", similarity {met.similarity(first):.3f}, {_development_text(met, failing, apart)}"
+    size, index = float(apart[failing].max()), int(met.messages[first])
+    difference = Difference(topic, "", "picture", met.seconds(first), size, "of 255", words, allowed, index)
+    return [(float(apart.max()) / max(0.1, float(tolerance.image or 0.1)), difference)]
+
+
+def _changed_tiles(met: _CommonPictures) -> npt.NDArray[np.bool_]:
+    """Which tiles of each picture are other, shape (messages, tiles)."""
+    a, b = met.golden.tiles, met.run.tiles
+    if a.shape != b.shape:
+        return np.zeros((len(met.messages), 1), bool)
+    return np.asarray((a != b).reshape(len(a), -1))
+
+
+def _changed_part_text(changed: npt.NDArray[np.bool_], mine: Pictures) -> str:
+    """`12 of 300 tiles changed (left, top)`."""
+    number, total = int(changed.sum()), changed.size
+    if not number:
+        return "pictures changed"
+    if number == total:
+        return "the whole picture changed"
+    columns = mine.tiles.shape[2]
+    y, x = np.divmod(np.flatnonzero(changed), columns)
+    box = [int(x.min()) * TILE, int(y.min()) * TILE]
+    box += [min(mine.shape[1], (int(x.max()) + 1) * TILE), min(mine.shape[0], (int(y.max()) + 1) * TILE)]
+    place = f"x {box[0]} to {box[2]}, y {box[1]} to {box[3]} px"
+    return f"{number} of {total} tiles changed ({place})"
+
+
+def _brightness(met: _CommonPictures, row: int) -> str:
+    """By how much values are other, and whether they became brighter or darker."""
+    shift = met.run.small[row].astype(np.float64) - met.golden.small[row]
+    mean, size = float(shift.mean()), float(np.abs(shift).mean())
+    if size < 0.005:
+        return ", too little to be seen when small"
+    words = f" by {size:.2g} of 255 on average"
+    if abs(mean) > 0.8 * size:
+        words += ", brighter" if mean > 0 else ", darker"
+    return words
+
+
+# ---------------------------------------------------------------------- depths
+
+
+def _depths(met: _CommonPictures, notes: list[str]) -> Ranked:
+    """Depths are numbers [m]; where the small ones are equal, tiles tell of the large ones."""
+    mine, other, topic = met.golden.small, met.run.small, met.stream.topic
+    kept = replace(met.stream, times_ns=met.stream.times_ns[met.messages], words={})
+    terms = FieldTerms(kept, "", met.tolerance, met.is_exact, len(met.messages), "m")
+    found = compare_column(terms, Column(mine, None, _rounding_step(mine)), Column(other, None, _rounding_step(other)))
+    if found.difference is not None:
+        index = int(met.messages[found.difference.index])
+        return [(found.excess, replace(found.difference, kind="picture", index=index))]
+    changed = _changed_tiles(met)
+    if not met.is_exact or not changed.any():
+        if found.excess > 0.1:
+            notes.append(f"{topic}: pictures differ within {terms.allowed}")
+        return []
+    first = int(np.argmax(changed.any(axis=1)))
+    words = f"{topic}: {_changed_part_text(changed[first], met.golden)}, too little to be seen when small, from {met.when(first)}"
+    index = int(met.messages[first])
+    return [(1.0, Difference(topic, "", "picture", met.seconds(first), math.nan, "m", words, "the same bits", index))]
+
+
+def _rounding_step(depths: Array) -> float:
+    """What depths are rounded to: a golden keeps them so."""
+    finite = depths[np.isfinite(depths)]
+    return _DEPTH if np.array_equal(finite, np.rint(finite / _DEPTH) * _DEPTH) else 0.0
+
+
+# ---------------------------------------------------------------------- time
+
+
+def _development_text(met: _CommonPictures, failing: npt.NDArray[np.intp], apart: Array) -> str:
+    """From when on, in how many pictures, and how large it gets."""
+    first = int(failing[0])
+    number, rest, things = len(failing), len(met.messages) - first, "pictures" if met.all_kept else "kept pictures"
+    if met.is_exact and met.changed is not None:  # of all of them, kept or not
+        index = int(met.messages[first])
+        number, rest, things = int((met.changed >= index).sum()), met.count - index, "pictures"
+    words = f"{'from' if number > 1 else 'at'} {met.when(first)}"
+    if number < rest:
+        words += f", in {number} of {rest} {things}"
+    worst = int(failing[int(np.argmax(apart[failing]))])
+    if worst > first and apart[worst] > 1.5 * apart[first]:
+        words += f", up to {apart[worst]:.2g} of 255 at {met.when(worst)}"
+    return words

@@ -1,0 +1,221 @@
+"""Compare two records of runs: the first difference of each field that is not allowed."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+
+import numpy as np
+
+from simkit.testing.golden.compare.difference import Comparison, Difference
+from simkit.testing.golden.compare.physics import compare_physics
+from simkit.testing.golden.compare.streams import StreamPair, compare_stream
+from simkit.testing.golden.compare.times import begin_time
+from simkit.testing.golden.compare.tolerances import tolerance_of
+from simkit.testing.run_record.record import RunRecord, Stream
+
+_PICTURES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+_NOTES = 12  # of one kind that are told
+
+
+def compare(golden: RunRecord, run: RunRecord, *, exact: bool | None = None) -> Comparison:
+    """Compares what a run gave with what is golden, by the tolerances of the run's scenario.
+
+    Args:
+        golden: what was stored.
+        run: what came now, of the same scenario.
+        exact: whether bits must be equal; None for where the machine and the versions are the same, unless the run's
+            scenario says that tolerances count there too.
+    """
+    from simkit.testing.run_record.fingerprint import fingerprint_differences
+
+    if exact is None and not run.scenario.bits:
+        exact = False
+    same = not fingerprint_differences(golden.fingerprint, run.fingerprint) if exact is None else exact
+    same_pictures = not fingerprint_differences(golden.fingerprint, run.fingerprint, True) if exact is None else exact
+    is_reordered = exact is None and same and _is_reordered(golden, run)
+    if is_reordered:  # the engine adds up in the order of the file
+        same = same_pictures = False
+    found = Comparison("exact" if same else "tolerant")
+    if is_reordered:
+        found.notes.append("the world's parts come in another order, so that bits need not be equal")
+    found.machine = fingerprint_differences(
+        golden.fingerprint, run.fingerprint, any(map(_is_rendered, run.streams.values()))
+    )
+    with np.errstate(all="ignore"):  # what is compared may hold any number
+        _compare_topics(golden, run, same, same_pictures, found)
+    if run.scenario.state:
+        physics = compare_physics(golden.states, run.states, same, joint_units(run))
+        if physics is not None:
+            found.differences.append(physics)
+    _compare_ends(golden, run, found)
+    found.differences.sort(key=lambda d: (d.kind != "end", d.time, d.topic))
+    if run.scenario.model and not found.differences:
+        _compare_meaning(golden, run, found)
+    _note_diagnostics(golden, run, found)
+    return found
+
+
+def _is_reordered(golden: RunRecord, run: RunRecord) -> bool:
+    """Whether what both worlds have stands in another order in their files."""
+    mine = [path for path in golden.leaves if path in run.leaves]
+    return mine != [path for path in run.leaves if path in golden.leaves]
+
+
+_JOINT = re.compile(r"joints\[([^\]]+)\]\.type")
+
+
+def joint_units(record: RunRecord) -> dict[str, str]:
+    """The unit of each joint's position, by the joint's name; "" of a name that joints of both kinds have."""
+    found: dict[str, str] = {}
+    for path, kind in record.leaves.items():
+        match = _JOINT.search(path)
+        if match and path.endswith("].type"):
+            unit = "m" if kind == "prismatic" else "rad"
+            name = match[1]
+            found[name] = unit if found.get(name, unit) == unit else ""
+    return found
+
+
+# ---------------------------------------------------------------------- topics
+
+
+def _compare_topics(golden: RunRecord, run: RunRecord, same: bool, same_pictures: bool, found: Comparison) -> None:
+    notes: list[str] = []
+    joints = joint_units(run)
+    for topic in sorted(golden.streams.keys() | run.streams.keys()):
+        mine, other = golden.streams.get(topic), run.streams.get(topic)
+        known = mine or other
+        assert known is not None
+        whole = tolerance_of(run.scenario, topic, known.type_name, "")
+        if whole.ignore:
+            found.notes.append(f"{topic} is not compared" + (f" ({whole.where})" if whole.where else ""))
+        elif mine is None or other is None:
+            found.differences.append(_missing_topic(known, mine is None, golden, run))
+        else:
+            is_exact = same_pictures if _is_rendered(other) else same
+            result = compare_stream(StreamPair(mine, other, run.scenario, is_exact, run.states.timestep, joints))
+            found.differences += result.differences
+            notes += result.notes
+            found.topics += 1
+            found.messages += len(mine.times_ns)
+    found.notes += _few_names(notes)
+
+
+def _missing_topic(stream: Stream, is_new: bool, golden: RunRecord, run: RunRecord) -> Difference:
+    """A topic that only one of the two has."""
+    number = len(stream.times_ns)
+    messages = f"{number} message{'' if number == 1 else 's'} of {stream.type_name}"
+    if is_new:
+        words = f"{stream.topic}: is new, {messages}"
+        return Difference(stream.topic, "", "extra", begin_time(stream), math.nan, "", words, "the same topics")
+    renamed = [s.topic for t, s in run.streams.items() if t not in golden.streams and s.type_name == stream.type_name]
+    words = f"{stream.topic}: is gone, {messages} are missing"
+    if renamed:
+        words += f"; {_listed(sorted(renamed))} of its type {'is' if len(renamed) == 1 else 'are'} new"
+    return Difference(stream.topic, "", "missing", begin_time(stream), math.nan, "", words, "the same topics")
+
+
+def _is_rendered(stream: Stream) -> bool:
+    """Whether a renderer has part in it."""
+    return stream.pictures is not None or stream.type_name in _PICTURES
+
+
+# ---------------------------------------------------------------------- the end, the meaning, the report of loading
+
+
+def _compare_ends(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
+    """Why the runs ended, and when."""
+    ticks = len(golden.states.marks), len(run.states.marks)
+    time = min(ticks) * run.states.timestep
+    if golden.end != run.end:
+        words = f"the run ended with “{run.end}” at t = {ticks[1] * run.states.timestep:g} s"
+        words += f"; the golden one with “{golden.end}” at t = {ticks[0] * golden.states.timestep:g} s"
+        found.differences.append(Difference("", "", "end", time, math.nan, "", words, "the same end"))
+    elif ticks[0] != ticks[1] and golden.states.timestep == run.states.timestep:
+        words = f"the run took {ticks[1]} steps, the golden one {ticks[0]}"
+        size = float(abs(ticks[1] - ticks[0]))
+        found.differences.append(Difference("", "", "end", time, size, "steps", words, "as many steps"))
+
+
+def _compare_meaning(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
+    """What the world means: a difference even where nothing that is recorded shows it."""
+    other_version = golden.fingerprint.get("simkit") != run.fingerprint.get("simkit")
+    common = golden.leaves.keys() & run.leaves.keys()
+    leaves = sorted(path for path in common if not _is_same_value(golden.leaves[path], run.leaves[path]))
+    alone = sorted(golden.leaves.keys() ^ run.leaves.keys()) if golden.leaves and run.leaves else []
+    if other_version and alone:
+        found.notes.append(
+            f"{len(alone)} values of the world are known to one version of simkit only: {_listed(alone)}"
+        )
+        alone = []
+    sources = sorted(
+        name for name in golden.sources.keys() | run.sources.keys() if golden.sources.get(name) != run.sources.get(name)
+    )
+    changed = [*leaves, *alone, *sources]
+    if not changed:
+        if found.tier == "exact":
+            _compare_fields(golden, run, found)
+        return
+    places = "place" if len(changed) == 1 else "places"
+    words = f"the world is another in {len(changed)} {places}, and nothing that is recorded shows it: "
+    words += _count_text(golden, run, changed)
+    found.differences.append(
+        Difference("", changed[0], "model", 0.0, math.nan, "", words, "the same meaning (model: false allows others)")
+    )
+
+
+def _compare_fields(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
+    """What the engine was given, of a world that says the same as before: parts that are the engine's own language."""
+    from simkit.testing.golden.compare.world_edits import field_edits
+
+    edits = field_edits(golden, run) if golden.fields and run.fields else []
+    if not edits:
+        return
+    places = "place" if len(edits) == 1 else "places"
+    words = f"the compiled model is another in {len(edits)} {places}, and nothing that is recorded shows it: "
+    words += _listed([f"{edit.path} {edit.golden} → {edit.run}" for edit in edits])
+    allowed = "the same meaning (model: false allows others)"
+    found.differences.append(Difference("", edits[0].path, "model", 0.0, math.nan, "", words, allowed))
+
+
+def _count_text(golden: RunRecord, run: RunRecord, changed: list[str]) -> str:
+    said = []
+    for path in changed[:3]:
+        if path in golden.leaves and path in run.leaves:
+            said.append(f"{path} {golden.leaves[path]} → {run.leaves[path]}")
+        elif path in golden.leaves or path in run.leaves:
+            said.append(f"{path} is {'new' if path in run.leaves else 'gone'}")
+        else:
+            said.append(f"{path} has other contents")
+    more = len(changed) - len(said)
+    return ", ".join(said) + (f" and {more} more" if more else "")
+
+
+def _is_same_value(a: object, b: object) -> bool:
+    """Whether two leaves are equal, not-a-numbers included."""
+    if isinstance(a, float) and isinstance(b, float):
+        return a == b or (math.isnan(a) and math.isnan(b))
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
+        return len(a) == len(b) and all(map(_is_same_value, a, b))
+    return a == b
+
+
+def _note_diagnostics(golden: RunRecord, run: RunRecord, found: Comparison) -> None:
+    for code in sorted(golden.diagnostics.keys() | run.diagnostics.keys()):
+        counts = golden.diagnostics.get(code, 0), run.diagnostics.get(code, 0)
+        if counts[0] != counts[1]:
+            found.notes.append(f"loading reports {code} {counts[1]} times, with the golden one {counts[0]} times")
+
+
+def _listed(names: list[str], most: int = 3) -> str:
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def _few_names(notes: Iterable[str]) -> list[str]:
+    told = list(notes)
+    if len(told) <= _NOTES:
+        return told
+    return [*told[:_NOTES], f"{len(told) - _NOTES} more are other and allowed"]

@@ -1,0 +1,320 @@
+"""Compare two streams of one topic: fields, texts, noise statistics and bits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from simkit.diagnostics import shorten
+from simkit.testing.golden.compare.difference import Difference, DifferenceKind
+from simkit.testing.golden.compare.numbers import compare_column
+from simkit.testing.golden.compare.orientations import compare_orientation, quaternion_paths
+from simkit.testing.golden.compare.times import begin_time, compare_times, shift_allowed
+from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, tolerance_of
+from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text, unit_of, value_text
+from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference
+from simkit.testing.run_record.record import Column, Stream
+from simkit.testing.scenarios import Scenario, Tolerance
+
+
+def difference_in_bits(golden: Stream, run: Stream) -> Difference:
+    """`bits differ from t in 3–4 s, by less than 31 µm`: found by the hashes of each second."""
+    both = min(len(golden.chunks), len(run.chunks))
+    second = next((i for i in range(both) if golden.chunks[i] != run.chunks[i]), both)
+    times = run.times_ns
+    first = next((i for i, t in enumerate(times.tolist()) if t >= second * 1_000_000_000), -1)
+    words = f"{run.topic}: bits differ from t in {second}–{second + 1} s"
+    rounding = rounding_text(golden)
+    if golden.pictures is not None or any(path.startswith("points.") for path in golden.columns):
+        words += ", in what a golden does not keep"
+    elif rounding:
+        words += f", by less than {rounding}"
+    time = float(times[first]) * 1e-9 if first >= 0 else float(second)
+    return Difference(run.topic, "", "bits", time, math.nan, "", words, "the same bits", first)
+
+
+def rounding_text(stream: Stream) -> str:
+    """What numbers of a stream are rounded to, in words: `31 µm of ranges`; "" where nothing is."""
+    steps = {path: column.step for path, column in stream.columns.items() if column.step}
+    if not steps:
+        return ""
+    by_unit: dict[str, tuple[float, str]] = {}
+    for path, step in steps.items():
+        unit = unit_of(stream.type_name, path)
+        by_unit[unit] = max(by_unit.get(unit, (0.0, "")), (step / 2.0, path))
+    told = [quantity_text(step, unit, signed=False) for unit, (step, _) in sorted(by_unit.items(), key=lambda i: i[0])]
+    return ", ".join(told[:3])
+
+
+Ranked = list[tuple[float, Difference]]
+
+_MAX_SETTINGS = 0.1  # part of a tolerance from which a difference within it is worth a note
+
+
+@dataclass
+class StreamComparison:
+    """What comparing two streams gave.
+
+    Attributes:
+        differences: that count, the largest against its tolerance first.
+        notes: of what is other and allowed.
+    """
+
+    differences: list[Difference] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class StreamPair:
+    """A topic of both runs, and how it is compared.
+
+    Attributes:
+        golden, run: of the same topic.
+        scenario: whose tolerances count.
+        is_exact: whether bits must be equal.
+        timestep: of the physics [s].
+        joints: unit of each joint's position, by its name.
+    """
+
+    golden: Stream
+    run: Stream
+    scenario: Scenario
+    is_exact: bool
+    timestep: float
+    joints: Mapping[str, str] = field(default_factory=dict)
+
+    def tolerance(self, path: str) -> Tolerance:
+        """What is allowed a field."""
+        return tolerance_of(self.scenario, self.golden.topic, self.golden.type_name, path)
+
+    def terms(self, path: str, count: int) -> FieldTerms:
+        """How a field is compared.
+
+        Args:
+            path: of the field.
+            count: how many messages from the first on.
+        """
+        tolerance, unit = self.tolerance(path), unit_of(self.golden.type_name, path)
+        if unit == "ns" and not self.is_exact and not tolerance.absolute:
+            tolerance = replace(tolerance, absolute=float(shift_allowed(self.timestep)))
+        if " or " in unit:
+            unit = self._unit_of_joints(unit)
+        return FieldTerms(self.run, path, tolerance, self.is_exact or tolerance.exact, count, unit)
+
+    def _unit_of_joints(self, unit: str) -> str:
+        """Of a field of joints that all turn, or all slide, one unit."""
+        names = next((texts[0].split(", ") for path, texts in self.run.words.items() if path == "name" and texts), [])
+        kinds = {self.joints.get(name, "") for name in names}
+        return joint_unit(unit, kinds.pop() if len(kinds) == 1 else "")
+
+
+def compare_stream(pair: StreamPair) -> StreamComparison:
+    """Compares what a topic gave."""
+    golden, run = pair.golden, pair.run
+    found = StreamComparison()
+    if golden.digest and golden.digest == run.digest and np.array_equal(golden.times_ns, run.times_ns):
+        return found
+    if golden.type_name != run.type_name:
+        words, time = f"{run.topic}: {golden.type_name} became {run.type_name}", begin_time(golden)
+        found.differences.append(Difference(run.topic, "", "text", time, math.nan, "", words, "the same type"))
+        return found
+    whole = pair.tolerance("")
+    if whole.exact:
+        pair = replace(pair, is_exact=True)
+    count, timing = compare_times(golden, run, pair.timestep, pair.is_exact)
+    if timing is not None:
+        found.differences.append(timing)
+    ranked = [*_compare_numbers(pair, count, found), *_missing_fields(pair), *_compare_texts(pair, count)]
+    if golden.pictures is not None or run.pictures is not None:
+        from simkit.testing.golden.compare.pictures import compare_pictures
+
+        ranked += compare_pictures(golden, run, whole, pair.is_exact, count, found.notes)
+    if golden.statistics or run.statistics:
+        ranked += _compare_statistics(pair, found)
+    ranked.sort(key=lambda ranking: -ranking[0])
+    found.differences += [difference for _, difference in ranked]
+    if not found.differences:
+        _compare_bits(pair, found)
+    return found
+
+
+# ---------------------------------------------------------------------- fields
+
+
+def _compare_numbers(pair: StreamPair, count: int, found: StreamComparison) -> Ranked:
+    """All columns, orientations as one."""
+    golden, run = pair.golden.columns, pair.run.columns
+    ranked: Ranked = []
+    common = [path for path in golden if path in run]
+    told: set[str] = set()
+    for base in quaternion_paths(common):
+        terms = pair.terms(base, count)
+        parts = [f"{base}.{axis}" for axis in "xyzw"]
+        if terms.tolerance.ignore:
+            told.update(parts)
+            continue
+        result = compare_orientation(terms, [golden[part] for part in parts], [run[part] for part in parts])
+        if result is not None:
+            told.update(parts)
+            _keep_first(result, terms, ranked, found)
+    for path in common:
+        if path in told or pair.tolerance(path).ignore:
+            continue
+        is_setting = _is_setting(golden[path]) and _is_setting(run[path])  # does not depend on when it is said
+        terms = pair.terms(path, min(len(golden[path].values), len(run[path].values)) if is_setting else count)
+        _keep_first(compare_column(terms, golden[path], run[path]), terms, ranked, found)
+    return ranked
+
+
+def _is_setting(column: Column) -> bool:
+    """Whether it says the same in every message."""
+    values = column.values
+    return column.lengths is None and values.ndim == 1 and len(values) > 1 and bool((values == values[0]).all())
+
+
+def _keep_first(result: FieldFinding, terms: FieldTerms, ranked: Ranked, found: StreamComparison) -> None:
+    if result.difference is not None:
+        ranked.append((result.excess, result.difference))
+    elif result.excess > _MAX_SETTINGS and result.off > 0.0 and not terms.is_exact:
+        off = quantity_text(result.off, terms.unit, signed=False)
+        found.notes.append(f"{terms.name}: up to {off} off, within {terms.allowed}")
+
+
+def _missing_fields(pair: StreamPair) -> Ranked:
+    """Fields that only one of the two has."""
+    golden, run = pair.golden, pair.run
+    if not len(golden.times_ns) or not len(run.times_ns):
+        return []  # without a message there is no field; that is told already
+    ranked: Ranked = []
+    for path in sorted(golden.columns.keys() ^ run.columns.keys()):
+        tolerance = pair.tolerance(path)
+        if tolerance.ignore or tolerance.statistics or path in golden.statistics or path in run.statistics:
+            continue
+        kind: DifferenceKind = "extra" if path in run.columns else "missing"
+        words = f"{run.topic}.{path}: is {'new' if kind == 'extra' else 'gone'}"
+        difference = Difference(run.topic, path, kind, begin_time(run), math.nan, "", words, "the same fields")
+        ranked.append((math.inf, difference))
+    return ranked
+
+
+def _compare_texts(pair: StreamPair, count: int) -> Ranked:
+    """Words: the first message in which they are other."""
+    run = pair.run
+    ranked: Ranked = []
+    for path, mine in pair.golden.words.items():
+        other = run.words.get(path)
+        if other is None or pair.tolerance(path).ignore:
+            continue
+        both = min(count, len(mine), len(other))
+        apart = [i for i in range(both) if mine[i] != other[i]]
+        if not apart:
+            continue
+        first, rest = apart[0], both - apart[0]
+        words = f"{run.topic}.{path}: “{_line(mine[first])}” became “{_line(other[first])}”"
+        time = float(run.times_ns[first]) * 1e-9
+        words += f" {'at' if len(apart) == 1 else 'from'} {time_text(time)}"
+        if len(apart) < rest:
+            words += f", in {len(apart)} of {rest} messages"
+        difference = Difference(run.topic, path, "text", time, math.nan, "", words, "the same text", first)
+        ranked.append((math.inf, difference))
+    return ranked
+
+
+def _line(text: str) -> str:
+    return shorten(text.replace("\n", " "), 60)
+
+
+# ---------------------------------------------------------------------- noise
+
+
+def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
+    """Statistics of the noise, where both have them."""
+    from simkit.testing.run_record.noise_statistics import statistic_differences
+
+    golden, run = pair.golden, pair.run
+    ranked: Ranked = []
+    for path in sorted(golden.statistics.keys() | run.statistics.keys()):
+        if pair.tolerance(path).ignore:
+            continue
+        mine, other = golden.statistics.get(path), run.statistics.get(path)
+        if mine is None or other is None:
+            holder = "the golden" if other is None else "the run"
+            found.notes.append(f"{run.topic}.{path}: only {holder} has statistics of it; it is not compared")
+            continue
+        for deviance in statistic_differences(mine, other, *_allowed_by_scenario(pair.scenario, golden.topic, path)):
+            ranked.append((math.inf, statistic_text(deviance, run, path, mine, other)))
+    return ranked
+
+
+def _allowed_by_scenario(scenario: Scenario, topic: str, path: str) -> tuple[float, float]:
+    """What a scenario itself allows beside chance."""
+    said = [t for t in scenario.tolerance(topic, path) if t.absolute is not None or t.relative is not None]
+    return (said[0].absolute or 0.0, said[0].relative or 0.0) if said else (0.0, 0.0)
+
+
+# ---------------------------------------------------------------------- bits
+
+
+def _compare_bits(pair: StreamPair, found: StreamComparison) -> None:
+    """All that was kept agrees, and the bits do not."""
+    loose = sorted(_loose_fields(pair))
+    if pair.is_exact and not loose:
+        found.differences.append(difference_in_bits(pair.golden, pair.run))
+    elif pair.is_exact:
+        left = ", ".join(loose[:3]) + (" …" if len(loose) > 3 else "")
+        found.notes.append(f"{pair.run.topic}: bits differ, and nothing that is compared ({left} left out)")
+
+
+def _loose_fields(pair: StreamPair) -> set[str]:
+    """Fields whose samples are not looked at, which the digest of the messages covers all the same."""
+    golden, run = pair.golden, pair.run
+    fields = {*golden.columns, *run.columns, *golden.words, *run.words, *golden.statistics, *run.statistics}
+    tolerances = {path: pair.tolerance(path) for path in fields}
+    return {path for path, t in tolerances.items() if t.ignore or path in golden.statistics or path in run.statistics}
+
+
+def statistic_text(
+    deviance: StatisticDifference, run: Stream, path: str, golden: NoiseStatistics, other: NoiseStatistics
+) -> Difference:
+    """`/imu.angular_velocity.x: noise's deviation 0.0002 rad/s became 0.00024 rad/s (+20 %) in 6000 samples`.
+
+    Args:
+        deviance: what is other.
+        run: the stream.
+        path: of its field.
+        golden, other: statistics of it; the run's are the other ones.
+    """
+    unit = unit_of(run.type_name, path)
+    place = f"[{deviance.component}]" if golden.mean.size > 1 else ""
+    counts = f"{other.count}" if other.count == golden.count else f"{golden.count} and {other.count}"
+    samples = f"in {counts} samples"
+    a, b = value_text(deviance.golden, unit, 4), value_text(deviance.run, unit, 4)
+    size, allowed = abs(deviance.run - deviance.golden), ""
+    if deviance.what == "count":
+        said = f"{deviance.golden:g} samples of the noise became {deviance.run:g}"
+        unit, allowed = "samples", "enough samples on both sides"
+    elif deviance.what == "mean":
+        said = f"the noise's mean {a} became {b} {samples}"
+        allowed = f"{quantity_text(deviance.limit, unit, signed=False)} by chance"
+    elif deviance.what == "distribution":
+        at = value_text(deviance.at, unit, 3)
+        said = f"{100 * deviance.golden:.1f} % of the noise below {at} from its mean became {100 * deviance.run:.1f} %"
+        said += f" {samples}: another distribution"
+        allowed, unit = f"{100 * deviance.limit:.2g} % by chance", ""
+    else:
+        what = "deviation" if deviance.what == "deviation" else f"Allan deviation over {deviance.at:g} s"
+        said = f"the noise's {what} {a} became {b}{_percent(deviance)} {samples}"
+        allowed = f"{100 * (deviance.limit - 1):.2g} % by chance"
+    time = float(run.times_ns[0]) * 1e-9 if len(run.times_ns) else 0.0
+    words = f"{run.topic}.{path}{place}: {said}"
+    return Difference(run.topic, path, "statistics", time, size, unit, words, allowed)
+
+
+def _percent(deviance: StatisticDifference) -> str:
+    if not deviance.golden or not math.isfinite(deviance.run / deviance.golden):
+        return ""
+    percent = 100.0 * (deviance.run / deviance.golden - 1.0)
+    return f" ({percent:+.3g} %)".replace("-", "−")

@@ -1,0 +1,220 @@
+"""How far readings may be from the reference run on another machine, and how one field is compared."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.testing.golden.compare.difference import Difference
+from simkit.testing.golden.compare.units import is_colour, plain_path, quantity_text, unit_of
+from simkit.testing.run_record.record import Array, Column, Stream
+from simkit.testing.scenarios import Scenario, Tolerance
+
+_RELATIVE_PARTS = 8  # of a tolerance that a stored number is rounded to
+
+# absolute in the field's unit, and part of the value. What they come from is in docs/tolerances.md
+_BY_UNIT: Final[dict[str, tuple[float, float]]] = {
+    "m": (5e-4, 1e-4),
+    "rad": (1e-3, 0.0),
+    "rad or m": (5e-4, 1e-4),
+    "m/s": (2e-3, 1e-3),
+    "rad/s": (5e-4, 1e-3),
+    "rad/s or m/s": (5e-3, 1e-3),
+    "m/s²": (1e-2, 1e-3),
+    "rad/s²": (1e-2, 1e-3),
+    "N": (1e-1, 1e-2),
+    "N m": (1e-2, 1e-2),
+    "N m or N": (1e-2, 1e-2),
+    "T": (1e-8, 1e-3),
+    "Pa": (5e-2, 1e-6),
+    "K": (1e-3, 0.0),
+    "°C": (1e-3, 0.0),
+    "V": (1e-4, 1e-4),
+    "A": (1e-4, 1e-3),
+    "A h": (1e-5, 1e-4),
+    "lx": (1e-1, 1e-3),
+    "px": (2.0, 0.0),
+    "s": (0.0, 1e-6),
+    "ns": (0.0, 0.0),
+    "": (1e-4, 1e-3),
+}
+# type, field, absolute, relative, share of the values of one message that may be further off
+_BY_FIELD: Final[tuple[tuple[str, str, float, float, float], ...]] = (
+    (r"sensor_msgs/msg/LaserScan", r"ranges", 1e-3, 1e-4, 0.02),  # a ray past an edge may hit or miss
+    (r"sensor_msgs/msg/LaserScan", r"intensities", 1e-3, 1e-3, 0.02),
+    (r"sensor_msgs/msg/PointCloud2?", r"(.*\.)?(rgba?|intensity|r|g|b)", 2.0, 0.0, 0.02),
+    (r"sensor_msgs/msg/PointCloud2?", r".*", 2e-3, 1e-3, 0.02),
+    (r"sensor_msgs/msg/(Compressed)?Image", r".*", 2e-3, 1e-3, 0.02),  # depths [m]
+    (r"sensor_msgs/msg/Range", r"range", 2e-3, 1e-3, 0.0),
+    (r"sensor_msgs/msg/NavSatFix|gps_msgs/msg/GPSFix", r"(latitude|longitude)", 1e-8, 0.0, 0.0),  # 1 mm
+    (r"sensor_msgs/msg/CameraInfo", r".*", 0.0, 1e-6, 0.0),  # a setting, nothing that is measured
+    (r".*", r"(.*\.)?(angle_min|angle_max|angle_increment|range_min|range_max|min_range|max_range)", 0.0, 1e-6, 0.0),
+    (r".*", r"(.*\.)?(field_of_view|horizontal_fov|near_clip|far_clip|aspect_ratio)", 0.0, 1e-6, 0.0),
+    (r".*", r"(.*\.)?(variance|\w*covariance)", 0.0, 1e-6, 0.0),
+    (r"(ros_gz_interfaces|gazebo_msgs)/msg/Contact.*", r".*(force|torque).*", 1.0, 5e-2, 0.0),  # by the solver
+    (r"(ros_gz_interfaces|gazebo_msgs)/msg/Contact.*", r".*", 1e-3, 1e-3, 0.0),
+)
+IMAGE: Final = 2.0
+"""Mean difference of a picture's values that is allowed, 0 to 255."""
+SSIM: Final = 0.98
+"""Least structural similarity."""
+
+
+@cache
+def default_tolerance(type_name: str, field: str) -> Tolerance:
+    """What is allowed where a scenario says nothing: every number is given.
+
+    Args:
+        type_name: the message's ROS type.
+        field: path of the field within it.
+    """
+    path = plain_path(field)
+    absolute, relative, share = (*_BY_UNIT.get(unit_of(type_name, field), _BY_UNIT[""]), 0.0)
+    for of_type, of_field, *numbers in _BY_FIELD:
+        if re.fullmatch(of_type, type_name) and re.fullmatch(of_field, path):
+            absolute, relative, share = numbers
+            break
+    return Tolerance(field, absolute=absolute, relative=relative, share=share, image=IMAGE, ssim=SSIM, statistics=False)
+
+
+def tolerance_of(scenario: Scenario, topic: str, type_name: str, field: str) -> Tolerance:
+    """What a scenario allows a field of a topic: of each number the first tolerance that names it, or the default.
+
+    A scenario that gives an absolute tolerance means that alone: no relative one is added, and the other way round.
+    """
+    found = default_tolerance(type_name, field)
+    said = scenario.tolerance(topic, field)
+    if not said:
+        return found
+    first = said[0]
+    absolute, relative = found.absolute, found.relative
+    sizes = next((t for t in said if t.absolute is not None or t.relative is not None), None)
+    if sizes is not None:
+        absolute, relative = sizes.absolute or 0.0, sizes.relative or 0.0
+    return replace(
+        found,
+        pattern=first.pattern,
+        absolute=absolute,
+        relative=relative,
+        share=next((t.share for t in said if t.share is not None), found.share),
+        image=next((t.image for t in said if t.image is not None), found.image),
+        ssim=next((t.ssim for t in said if t.ssim is not None), found.ssim),
+        statistics=next((t.statistics for t in said if t.statistics is not None), found.statistics),
+        ignore=first.ignore,
+        exact=first.exact,
+        where=first.where,
+    )
+
+
+def storage_step(type_name: str, field: str, scenario: Scenario | None = None, topic: str = "") -> float:
+    """What numbers of a field are rounded to in a golden: a power of two; 0 where they are kept exactly.
+
+    Args:
+        type_name: the message's ROS type.
+        field: path of the field within it.
+        scenario: whose tolerances count; None for the defaults.
+        topic: of the message, which the scenario's tolerances are by.
+    """
+    found = tolerance_of(scenario, topic, type_name, field) if scenario else default_tolerance(type_name, field)
+    if found.exact or not found.absolute or is_colour(field):
+        return 0.0
+    return math.ldexp(1.0, math.floor(math.log2(found.absolute / _RELATIVE_PARTS)))
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """A tolerance in words."""
+
+    tolerance: Tolerance
+    unit: str
+
+    def __str__(self) -> str:
+        parts = []
+        if self.tolerance.absolute:
+            parts.append(quantity_text(self.tolerance.absolute, self.unit, signed=False))
+        if self.tolerance.relative:
+            parts.append(f"{100.0 * self.tolerance.relative:g} % of the value")
+        words = " + ".join(parts) or "nothing"
+        if self.tolerance.share:
+            words += f", {100.0 * self.tolerance.share:g} % of a message further off"
+        return words
+
+
+@dataclass(frozen=True)
+class FieldTerms:
+    """How one field of a topic is compared.
+
+    Attributes:
+        stream: the run's.
+        field: path of the field.
+        tolerance: with every number given.
+        is_exact: whether bits must be equal.
+        count: how many messages are compared, from the first on.
+        unit: SI.
+    """
+
+    stream: Stream
+    field: str
+    tolerance: Tolerance
+    is_exact: bool
+    count: int
+    unit: str
+
+    @property
+    def name(self) -> str:
+        """Topic and field."""
+        return f"{self.stream.topic}.{self.field}" if self.field else self.stream.topic
+
+    @property
+    def allowed(self) -> str:
+        """In words."""
+        return "the same bits" if self.is_exact else str(Allowed(self.tolerance, self.unit))
+
+    def time(self, index: int) -> float:
+        """Of a message [s]."""
+        return float(self.stream.times_ns[index]) * 1e-9
+
+
+@dataclass(frozen=True)
+class FieldFinding:
+    """What comparing a field gave.
+
+    Attributes:
+        difference: None where nothing is further off than allowed.
+        excess: how many times what is allowed the largest difference is; up to 1 for a pass, inf where nothing is.
+        off: the largest difference of all values that rounding does not explain, in the field's unit.
+    """
+
+    difference: Difference | None
+    excess: float = 0.0
+    off: float = 0.0
+
+
+@dataclass(frozen=True)
+class FlatValues:
+    """All values of a column one after the other, and which message each belongs to."""
+
+    values: Array
+    messages: npt.NDArray[np.intp]
+    widths: npt.NDArray[np.int64]
+
+    @staticmethod
+    def of(column: Column, count: int) -> FlatValues:
+        """Those of the first messages of a column."""
+        if column.lengths is None:
+            table = column.values[:count].reshape(count, -1) if count else np.zeros((0, 1))
+            widths = np.full(count, table.shape[1], np.int64)
+            return FlatValues(table.reshape(-1), np.repeat(np.arange(count), widths), widths)
+        widths = np.asarray(column.lengths[:count], np.int64)
+        return FlatValues(column.values[: int(widths.sum())], np.repeat(np.arange(count), widths), widths)
+
+    def first(self, count: int) -> FlatValues:
+        """Those of the first messages."""
+        end = int(self.widths[:count].sum())
+        return FlatValues(self.values[:end], self.messages[:end], self.widths[:count])

@@ -1,0 +1,202 @@
+"""Differences of the inputs of two runs, value by value, and the entity that each belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from simkit.testing.golden.cause.world_patch import ABSENT
+from simkit.testing.golden.compare.difference import CauseKind
+from simkit.testing.run_record.record import RunRecord
+from simkit.testing.run_record.world_values import split_path
+from simkit.testing.scenarios import Scenario
+
+_ENTITY_FIELDS = frozenset(
+    ("models", "links", "joints", "collisions", "visuals", "sensors", "lights", "frames", "plugins", "actors", "files")
+)
+
+
+@lru_cache(maxsize=65536)
+def split_entity_path(path: str) -> tuple[str, str]:
+    """A path's beginning that names a part of the world, and the rest of it: what of the part."""
+    at = 0
+    while True:
+        end = _entity_step_end(path, at)
+        if end == at:
+            break
+        at = end
+    return path[:at].rstrip("."), path[at:]
+
+
+def _entity_step_end(path: str, at: int) -> int:
+    """Where a step that names a part ends; `at` where there is none."""
+    opened = path.find("[", at)
+    if opened < 0 or path[at:opened] not in _ENTITY_FIELDS:
+        return at
+    closed = path.find("]", opened)
+    if closed < 0:
+        return at
+    return closed + 2 if path[closed + 1 : closed + 2] == "." else closed + 1
+
+
+@lru_cache(maxsize=65536)
+def scoped_name(owner: str) -> str:
+    """The scoped name of a part that a path names; empty for the world."""
+    return "::".join(key for _, key in split_path(owner))
+
+
+def entity_kind(owner: str) -> str:
+    """What a part is: model, link, …; "world" for the world."""
+    found = split_path(owner)
+    return found[-1][0].removesuffix("s") if found else "world"
+
+
+def parent_path(owner: str) -> str:
+    """The path of the part that a part belongs to; empty for the world."""
+    closed = owner.rfind("].")
+    return owner[: closed + 1] if closed >= 0 else ""
+
+
+def is_within(owner: str, outer: str) -> bool:
+    """Whether a part is another one, or belongs to it."""
+    return not outer or owner == outer or owner.startswith(outer + ".")
+
+
+_REPORT_FIELDS = frozenset(
+    ("folder", "file", "name", "test", "topics", "skip", "tolerances", "state", "model", "picture", "bits")
+)
+"""What a scenario says of what is looked at, which changes no run; and where it stands."""
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One leaf that is other.
+
+    Attributes:
+        kind: of what.
+        path: of the leaf; of a file or a version its name.
+        golden, run: its values; ABSENT where it is not there.
+        where: `file:line` in the run's files; empty where there is none.
+    """
+
+    kind: CauseKind
+    path: str
+    golden: Any
+    run: Any
+    where: str = ""
+
+    @property
+    def entity(self) -> str:
+        """Scoped name of the part of the world."""
+        return scoped_name(self.owner)
+
+    @property
+    def owner(self) -> str:
+        """Path of that part."""
+        return split_entity_path(self.path)[0]
+
+    @property
+    def attribute(self) -> str:
+        """What of that part."""
+        return split_entity_path(self.path)[1]
+
+
+def model_edits(golden: Mapping[str, Any], run: Mapping[str, Any], places: Mapping[str, str]) -> list[Edit]:
+    """The leaves of the world that are other, in the run's order."""
+    order = {path: n for n, path in enumerate([*run, *(p for p in golden if p not in run)])}
+    found = []
+    for path in order:
+        old, new = golden.get(path, ABSENT), run.get(path, ABSENT)
+        if not is_same_value(old, new):
+            found.append(Edit("model", path, old, new, places.get(path, "")))
+    return found
+
+
+def other_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
+    """What is other beside the world: the scenario, files, code and versions."""
+    found = [Edit("scenario", name, a, b) for name, (a, b) in _scenario(golden.scenario, run.scenario).items()]
+    code = (".py", ".so", ".pyc")
+    for name, (a, b) in _mapping(golden.sources, run.sources).items():
+        found.append(Edit("code" if name.split(" ")[0].endswith(code) else "file", name, a, b))
+    found += [Edit("version", name, a, b) for name, (a, b) in _mapping(golden.fingerprint, run.fingerprint).items()]
+    return found
+
+
+def field_edits(golden: RunRecord, run: RunRecord) -> list[Edit]:
+    """The compiled model's fields that are other."""
+    found = []
+    for name in [*run.fields, *(n for n in golden.fields if n not in run.fields)]:
+        a, b = golden.fields.get(name), run.fields.get(name)
+        if a is None or b is None:
+            found.append(Edit("model", name, ABSENT if a is None else a, ABSENT if b is None else b))
+        elif np.shape(a) != np.shape(b) or not _is_equal(a, b):
+            found.append(Edit("model", name, np.asarray(a).tolist(), np.asarray(b).tolist()))
+    return found
+
+
+def is_same_value(a: Any, b: Any) -> bool:
+    """Whether two leaves are equal; not a number is equal to itself."""
+    if a is b:
+        return True
+    if a is ABSENT or b is ABSENT:
+        return False
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(is_same_value(x, y) for x, y in zip(a, b, strict=True))
+    if isinstance(a, bool) != isinstance(b, bool):
+        return False
+    return bool(a == b) or (a != a and b != b)
+
+
+def _is_equal(a: Any, b: Any) -> bool:
+    x, y = np.asarray(a), np.asarray(b)
+    if x.dtype.kind in "fc" and y.dtype.kind in "fc":
+        return bool(np.array_equal(x, y, equal_nan=True))
+    return bool(np.array_equal(x, y))
+
+
+def _scenario(golden: Scenario, run: Scenario) -> dict[str, tuple[Any, Any]]:
+    found: dict[str, tuple[Any, Any]] = {}
+    for one in fields(Scenario):
+        if one.name in _REPORT_FIELDS:
+            continue
+        a, b = getattr(golden, one.name), getattr(run, one.name)
+        if one.name == "plugins":
+            a, b = tuple(_class_of(p) for p in a), tuple(_class_of(p) for p in b)
+        if one.name == "world":
+            a, b = _world_name(a), _world_name(b)
+        if _plain(a) != _plain(b):
+            found[one.name] = (a, b)
+    return found
+
+
+def _class_of(plugin: Any) -> str:
+    one = plugin[-1] if isinstance(plugin, tuple) else plugin
+    return one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__)
+
+
+def _world_name(world: str) -> str:
+    """What a world is called, wherever it lies; text in full."""
+    return world if "<" in world else world.replace("\\", "/").rstrip("/").rpartition("/")[2]
+
+
+def _plain(value: Any) -> Any:
+    """Of the same form, whether it came from a file or not."""
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items() if k != "where"}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if hasattr(value, "__dataclass_fields__"):
+        return {f.name: _plain(getattr(value, f.name)) for f in fields(value) if f.name != "where"}
+    return value if isinstance(value, (int, float, str, bool, type(None))) else str(value)
+
+
+def _mapping(a: Mapping[str, Any], b: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
+    return {
+        name: (a.get(name, ABSENT), b.get(name, ABSENT))
+        for name in [*b, *(n for n in a if n not in b)]
+        if not is_same_value(a.get(name, ABSENT), b.get(name, ABSENT))
+    }

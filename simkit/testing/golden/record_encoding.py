@@ -1,0 +1,232 @@
+"""A record as what stands in `golden.json` and a block of data; and back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
+from simkit.testing.golden.scenario_encoding import is_long_text
+from simkit.testing.run_record.model_fields import ModelFields
+from simkit.testing.run_record.noise_statistics import NoiseStatistics
+from simkit.testing.run_record.record import Array, Column, Pictures, RunRecord, States, Stream
+from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES
+from simkit.testing.scenarios import Scenario
+
+_MAX_FIELDS: Final = 400_000  # numbers of the compiled model; of a larger one its fields are not kept
+_DEPTH_ENCODINGS: Final = 2.0**-10  # [m] that depths of small pictures are rounded to
+_STATISTICS: Final = ("mean", "deviation", "quantiles", "taus", "allan", "independent", "kurtosis")
+
+
+def encode_record(record: RunRecord) -> tuple[dict[str, Any], bytes]:
+    """What people read of a record, and the block of its data."""
+    packer = Packer()
+    inner: dict[str, Any] = {
+        "streams": {topic: _pack_stream(packer, s, record.scenario) for topic, s in sorted(record.streams.items())},
+        "states": _pack_states(packer, record.states),
+        "leaves": dict(record.leaves),  # in the order of the file, for what is put back has its old place
+        "fields": _pack_fields(packer, record.fields),
+    }
+    if is_long_text(record.scenario.world):
+        inner["world"] = record.scenario.world
+    about = {
+        "fingerprint": record.fingerprint,
+        **({"environment": dict(record.environment)} if record.environment else {}),
+        "end": record.end,
+        "state": record.states.digest,
+        "named_state": record.states.named_digest,
+        "topics": {
+            topic: {"type": s.type_name, "messages": len(s.times_ns), "sha256": s.digest}
+            for topic, s in sorted(record.streams.items())
+        },
+        "sources": dict(record.sources),
+        "diagnostics": dict(record.diagnostics),
+    }
+    return about, packer.block(inner)
+
+
+def decode_record(said: Mapping[str, Any], data: bytes, scenario: Scenario) -> RunRecord:
+    """The record that was written.
+
+    Args:
+        said: what stands in `golden.json`.
+        data: the block.
+        scenario: that is in it.
+
+    Raises:
+        PackingError, ValueError, TypeError, KeyError: it is damaged.
+    """
+    unpacker = Unpacker(data)
+    inner = unpacker.about
+    if not scenario.world:
+        scenario = replace(scenario, world=str(inner["world"]))
+    return RunRecord(
+        scenario,
+        {str(k): str(v) for k, v in said["fingerprint"].items()},
+        {str(topic): _unpack_stream(unpacker, str(topic), one) for topic, one in inner["streams"].items()},
+        _unpack_states(unpacker, inner["states"]),
+        _validate_values(inner["leaves"]),
+        {},
+        _unpack_fields(unpacker, inner["fields"]),
+        {str(k): str(v) for k, v in said["sources"].items()},
+        {str(k): int(v) for k, v in said["diagnostics"].items()},
+        str(said["end"]),
+        environment={str(k): str(v) for k, v in said.get("environment", {}).items() if k in ENVIRONMENT_VARIABLES},
+    )
+
+
+# ---------------------------------------------------------------------- streams
+
+
+def _pack_stream(packer: Packer, stream: Stream, scenario: Scenario) -> dict[str, Any]:
+    from simkit.testing.golden.compare.tolerances import storage_step
+
+    columns = {}
+    for path, column in stream.columns.items():
+        step = column.step or storage_step(stream.type_name, path, scenario, stream.topic)
+        entry = {"values": packer.add(column.values, step), "step": step if column.values.dtype.kind == "f" else 0.0}
+        if column.lengths is not None:
+            entry["lengths"] = packer.add(column.lengths)
+        columns[path] = entry
+    found: dict[str, Any] = {
+        "type": stream.type_name,
+        "times": packer.add(stream.times_ns),
+        "columns": columns,
+        "words": {path: _pack_words(packer, texts) for path, texts in stream.words.items()},
+        "statistics": {path: _pack_statistics(packer, one) for path, one in stream.statistics.items()},
+        "chunks": list(stream.chunks),
+        "digest": stream.digest,
+    }
+    if stream.pictures is not None:
+        pictures = stream.pictures
+        found["pictures"] = {
+            "small": packer.add(pictures.small, _DEPTH_ENCODINGS if pictures.small.dtype.kind == "f" else 0.0),
+            "shape": list(pictures.shape),
+            "encoding": pictures.encoding,
+            "tiles": packer.add(pictures.tiles),
+            "kept": None if pictures.kept is None else packer.add(pictures.kept),
+            "hashes": None if pictures.hashes is None else packer.add(pictures.hashes),
+        }
+    return found
+
+
+def _unpack_stream(unpacker: Unpacker, topic: str, said: Mapping[str, Any]) -> Stream:
+    stream = Stream(topic, str(said["type"]), _times(unpacker.array(said["times"])))
+    count = len(stream.times_ns)
+    for path, one in said["columns"].items():
+        lengths = unpacker.array(one["lengths"]) if "lengths" in one else None
+        column = Column(unpacker.array(one["values"]), lengths, float(one["step"]))
+        rows = len(column.values) if lengths is None else len(lengths)
+        if rows != count or (
+            lengths is not None and (lengths.min(initial=0) < 0 or lengths.sum() != len(column.values))
+        ):
+            raise PackingError(f"{topic}.{path} has {rows} messages of {count}")
+        stream.columns[str(path)] = column
+    stream.words = {str(path): _unpack_words(unpacker, one, count) for path, one in said["words"].items()}
+    stream.statistics = {str(p): _unpack_statistics(unpacker, one) for p, one in said["statistics"].items()}
+    stream.chunks, stream.digest = [str(chunk) for chunk in said["chunks"]], str(said["digest"])
+    if "pictures" in said:
+        stream.pictures = _unpack_pictures(unpacker, said["pictures"], count)
+    return stream
+
+
+def _unpack_pictures(unpacker: Unpacker, said: Mapping[str, Any], count: int) -> Pictures:
+    small, tiles = unpacker.array(said["small"]), unpacker.array(said["tiles"])
+    kept = None if said["kept"] is None else unpacker.array(said["kept"])
+    hashes = None if said["hashes"] is None else unpacker.array(said["hashes"])
+    wanted = count if kept is None else len(kept)
+    if small.ndim != 4 or tiles.ndim != 3 or len(small) != wanted or len(tiles) != wanted:
+        raise PackingError("pictures of another shape")
+    if kept is not None and len(kept) and (kept.min() < 0 or kept.max() >= count):
+        raise PackingError("pictures of messages that there are not")
+    height, width = (int(one) for one in said["shape"])
+    return Pictures(small, (height, width), str(said["encoding"]), tiles, kept, hashes)
+
+
+def _times(times: Array) -> Array:
+    if times.ndim != 1 or times.dtype != np.int64:
+        raise PackingError("times of another type")
+    return times
+
+
+def _pack_words(packer: Packer, texts: list[str]) -> dict[str, Any]:
+    known = {text: number for number, text in enumerate(dict.fromkeys(texts))}
+    return {"texts": list(known), "which": packer.add(np.array([known[text] for text in texts], dtype=np.int64))}
+
+
+def _unpack_words(unpacker: Unpacker, said: Mapping[str, Any], count: int) -> list[str]:
+    texts = [str(text) for text in said["texts"]]
+    which = unpacker.array(said["which"]).tolist()
+    if len(which) != count or any(type(i) is not int or not 0 <= i < len(texts) for i in which):
+        raise PackingError("texts of messages that there are not")
+    return [texts[i] for i in which]
+
+
+def _pack_statistics(packer: Packer, statistics: NoiseStatistics) -> dict[str, Any]:
+    found: dict[str, Any] = {"count": int(statistics.count)}
+    return found | {name: packer.add(np.asarray(getattr(statistics, name), np.float64)) for name in _STATISTICS}
+
+
+def _unpack_statistics(unpacker: Unpacker, said: Mapping[str, Any]) -> NoiseStatistics:
+    return NoiseStatistics(int(said["count"]), *(unpacker.array(said[name]) for name in _STATISTICS))
+
+
+# ---------------------------------------------------------------------- states and model
+
+
+def _pack_states(packer: Packer, states: States) -> dict[str, Any]:
+    arrays = ("marks", "inputs", "ticks", "values", "input_values")
+    found: dict[str, Any] = {name: packer.add(getattr(states, name)) for name in arrays}
+    texts = {"names": states.names, "input_names": states.input_names, "timestep": states.timestep}
+    return found | texts | {"digest": states.digest, "named_digest": states.named_digest}
+
+
+def _unpack_states(unpacker: Unpacker, said: Mapping[str, Any]) -> States:
+    marks, inputs, ticks = (unpacker.array(said[name]) for name in ("marks", "inputs", "ticks"))
+    values, given = unpacker.array(said["values"]), unpacker.array(said["input_values"])
+    names, given_names = [str(n) for n in said["names"]], [str(n) for n in said["input_names"]]
+    timestep = float(said["timestep"])
+    if marks.ndim != 1 or inputs.shape != marks.shape or not 0 < timestep < 1e6:
+        raise PackingError("marks of another shape")
+    if values.shape != (len(ticks), len(names)) or given.shape != (len(ticks), len(given_names)):
+        raise PackingError("states of another shape")
+    return States(
+        timestep, marks, inputs, ticks, names, values, given_names, given,
+        str(said["digest"]), str(said["named_digest"]),
+    )  # fmt: skip
+
+
+def _pack_fields(packer: Packer, fields: Mapping[str, Array]) -> dict[str, Any]:
+    if not isinstance(fields, ModelFields):
+        return {}
+    if sum(array.size for _, table in fields.tables.values() for array in table.values()) > _MAX_FIELDS:
+        return {}
+    return {
+        kind: {"names": names, "table": {name: packer.add(array) for name, array in sorted(table.items())}}
+        for kind, (names, table) in sorted(fields.tables.items())
+    }
+
+
+def _unpack_fields(unpacker: Unpacker, said: Mapping[str, Any]) -> ModelFields:
+    tables: dict[str, tuple[list[str], dict[str, Array]]] = {}
+    for kind, one in said.items():
+        names = [str(name) for name in one["names"]]
+        table = {str(name): unpacker.array(number) for name, number in one["table"].items()}
+        if any(len(array) != len(names) for array in table.values()):
+            raise PackingError(f"fields of {kind} of another length")
+        tables[str(kind)] = (names, table)
+    return ModelFields(tables)
+
+
+def _validate_values(leaves: Any) -> dict[str, Any]:
+    """Leaves as they may be: numbers, texts, and lists of them."""
+
+    def is_plain(value: Any) -> bool:
+        return isinstance(value, (bool, int, float, str)) or (isinstance(value, list) and all(map(is_plain, value)))
+
+    if not isinstance(leaves, dict) or not all(map(is_plain, leaves.values())):
+        raise PackingError("leaves of another type")
+    return leaves

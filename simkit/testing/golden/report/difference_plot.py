@@ -1,0 +1,240 @@
+"""Golden, run and difference of what differs, drawn."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.testing.golden.compare.difference import Difference, Verdict
+from simkit.testing.golden.report.html_markup import escape_html, table
+from simkit.testing.golden.report.svg_chart import Line, chart
+from simkit.testing.run_record.noise_statistics import NoiseStatistics
+from simkit.testing.run_record.record import Column, States, Stream
+
+Array = npt.NDArray[Any]
+_LOW: Final = 110  # [px]: height of a chart of differences
+_QUANTITIES: Final = 3  # of the state that are drawn
+
+
+def figure(verdict: Verdict, difference: Difference) -> str:
+    """What can be drawn of a difference, as markup; empty where that is nothing.
+
+    Args:
+        verdict: the difference's.
+        difference: any but one of pictures.
+    """
+    if difference.kind == "state":
+        return _state(verdict.golden.states, verdict.run.states, difference)
+    golden = verdict.golden.streams.get(difference.topic)
+    run = verdict.run.streams.get(difference.topic)
+    if golden is None or run is None:
+        return ""
+    if difference.kind in ("count", "time", "missing", "extra"):
+        return _frame_figure(difference, [_rates(golden, run)], "messages in each second") if difference.topic else ""
+    statistics = _pair(golden.statistics, run.statistics, difference.field)
+    if difference.kind == "statistics" and statistics is not None:
+        return _statistics(difference, *statistics)
+    for field in difference.columns or (difference.field,):
+        columns = _pair(golden.columns, run.columns, field)
+        if columns is not None and (field == difference.field or _differ(*columns)):
+            return _columns(difference, field, golden, run, columns)
+    return ""
+
+
+def _differ(golden: Column, run: Column) -> bool:
+    return golden.values.shape != run.values.shape or not np.array_equal(golden.values, run.values)
+
+
+def _columns(difference: Difference, field: str, golden: Stream, run: Stream, columns: tuple[Column, Column]) -> str:
+    a, b = columns
+    count = min(_messages(a, golden), _messages(b, run))
+    packed = field.endswith((".rgb", ".rgba")) and a.values.dtype.kind == "f"  # colours in the bits of a number
+    if count == 0 or packed or a.values.dtype.kind not in "biuf" or b.values.dtype.kind not in "biuf":
+        return ""
+    title = f"{difference.topic}.{field}"
+    if a.lengths is None and b.lengths is None and a.values[0].size == b.values[0].size == 1:
+        ours, theirs = _flat(a.values[:count]), _flat(b.values[:count])
+        shown = field if difference.columns else ""
+        return _frame_figure(difference, _over_time(golden.times_ns[:count], ours, theirs, title, difference), shown)
+    return _arrays(difference, golden, a, b, count, title)
+
+
+def _arrays(difference: Difference, golden: Stream, a: Column, b: Column, count: int, title: str) -> str:
+    """The first message that differs as a profile, and how far each message is off."""
+    far = np.zeros(count)
+    for index in range(count):
+        ours, theirs = _flat(a.of(index)), _flat(b.of(index))
+        if len(ours) != len(theirs):
+            far[index] = np.nan
+            continue
+        off = np.abs(_difference(theirs, ours))
+        far[index] = float(off[np.isfinite(off)].max(initial=0.0))
+    first = difference.index
+    if not 0 <= first < count:
+        differing = np.flatnonzero((far > 0.0) | ~np.isfinite(far))
+        first = int(differing[0]) if len(differing) else 0
+    ours, theirs = _flat(a.of(first)), _flat(b.of(first))
+    seconds = golden.times_ns[:count] * 1e-9
+    unit = _unit(difference)
+    if max(len(ours), len(theirs)) <= 4:
+        worst = (
+            int(np.nanargmax(np.abs(_difference(theirs, ours))))
+            if len(ours) == len(theirs) and _any(ours, theirs)
+            else 0
+        )
+        if a.lengths is None and b.lengths is None and worst < min(len(ours), len(theirs)):
+            pair = [_flat(column.values[:count].reshape(count, -1)[:, worst]) for column in (a, b)]
+            parts = _over_time(golden.times_ns[:count], pair[0], pair[1], f"{title}[{worst}]", difference)
+            return _frame_figure(difference, parts, f"component {worst}")
+    profile = [_profile(ours, "golden"), _profile(theirs, "run")]
+    parts = [
+        chart(
+            profile, title=f"{title} at {seconds[first]:.6g} s", x_label="number of the value", y_label=f"value{unit}"
+        ),
+        _difference_chart(_profile_of_difference(ours, theirs), f"{title}: difference", "number of the value", unit),
+        _difference_chart(
+            Line(seconds, far, "difference"), f"{title}: largest difference", "time [s]", unit, difference.time
+        ),
+    ]
+    return _frame_figure(
+        difference, parts, f"message {first} at {seconds[first]:.6g} s; below: the largest of each message"
+    )
+
+
+def _over_time(times_ns: Array, ours: Array, theirs: Array, title: str, difference: Difference) -> list[str]:
+    seconds, unit = times_ns * 1e-9, _unit(difference)
+    lines = [Line(seconds, ours, "golden"), Line(seconds, theirs, "run")]
+    mark = difference.time
+    return [
+        chart(lines, title=title, x_label="time [s]", y_label=f"value{unit}", mark=mark),
+        _difference_chart(
+            Line(seconds, _difference(theirs, ours), "difference"), f"{title}: difference", "time [s]", unit, mark
+        ),
+    ]
+
+
+def _difference_chart(line: Line, title: str, x_label: str, unit: str, mark: float | None = None) -> str:
+    return chart([line], title=title, x_label=x_label, y_label=f"Δ{unit}", height=_LOW, mark=mark)
+
+
+def _rates(golden: Stream, run: Stream) -> str:
+    """Messages in each second of simulated time; the last second, which need not be whole, is left out."""
+    lines = []
+    ends = [int(stream.times_ns[-1]) // 10**9 for stream in (golden, run) if len(stream.times_ns)]
+    seconds = max([*ends, 1])
+    for stream, role in ((golden, "golden"), (run, "run")):
+        counts = np.bincount((stream.times_ns // 10**9).astype(np.int64), minlength=seconds)[:seconds]
+        x = np.repeat(np.arange(seconds + 1.0), 2)[1:-1]
+        lines.append(Line(x, np.repeat(counts.astype(float), 2), "golden" if role == "golden" else "run"))
+    return chart(lines, title=golden.topic, x_label="time [s]", y_label="messages a second")
+
+
+def _state(golden: States, run: States, difference: Difference) -> str:
+    """The quantities that are furthest off at the first kept state that differs."""
+    shared = sorted(set(golden.names) & set(run.names))
+    ticks, ours_at, theirs_at = np.intersect1d(golden.ticks, run.ticks, return_indices=True)
+    if not shared or len(ticks) == 0:
+        return ""
+    places, others = ({name: i for i, name in enumerate(states.names)} for states in (golden, run))
+    ours = golden.values[ours_at][:, [places[name] for name in shared]]
+    theirs = run.values[theirs_at][:, [others[name] for name in shared]]
+    off = np.abs(_difference(theirs, ours))
+    differing = np.flatnonzero((off > 0.0).any(axis=1))
+    if len(differing) == 0:
+        return ""
+    order = np.argsort(-np.nan_to_num(off[differing[0]]), kind="stable")[:_QUANTITIES]
+    seconds = ticks * golden.timestep
+    parts = []
+    for number in order:
+        if not (off[:, number] > 0.0).any():
+            continue
+        lines = [Line(seconds, ours[:, number], "golden"), Line(seconds, theirs[:, number], "run")]
+        parts.append(chart(lines, title=shared[number], x_label="time [s]", y_label="value", height=150))
+        line = Line(seconds, _difference(theirs[:, number], ours[:, number]), "difference")
+        parts.append(_difference_chart(line, f"{shared[number]}: difference", "time [s]", ""))
+        parts.append(f'<p class="small">{escape_html(shared[number])}</p>')
+    return _frame_figure(difference, parts, "the quantities that differ most where the first kept state does")
+
+
+def _statistics(difference: Difference, golden: NoiseStatistics, run: NoiseStatistics) -> str:
+    rows = []
+    for number in range(min(len(golden.mean), len(run.mean))):
+        told = [(s.mean[number], s.deviation[number]) for s in (golden, run)]
+        rows.append([str(number), *(f"{mean:.6g} ± {deviation:.6g}" for mean, deviation in told)])
+    unit = _unit(difference)
+    worst = _worst_component(golden, run)
+    parts = [table(["component", f"golden mean ± deviation{unit}", "run"], rows)]
+    if worst is not None and golden.quantiles.shape[1] > 1 and golden.quantiles.shape == run.quantiles.shape:
+        share = np.linspace(0.0, 1.0, golden.quantiles.shape[1])
+        lines = [Line(share, golden.quantiles[worst], "golden"), Line(share, run.quantiles[worst], "run")]
+        parts.append(
+            chart(lines, title="quantiles", x_label=f"share of samples, component {worst}", y_label=f"noise{unit}")
+        )
+    if worst is not None and len(golden.taus) > 1 and golden.allan.shape == run.allan.shape:
+        lines = [Line(golden.taus, golden.allan[worst], "golden"), Line(run.taus, run.allan[worst], "run")]
+        label = f"Allan deviation{unit}"
+        parts.append(chart(lines, title=label, x_label="averaging time [s]", y_label=label, log=True))
+    return _frame_figure(difference, parts, f"{golden.count} and {run.count} samples of the noise")
+
+
+def _worst_component(golden: NoiseStatistics, run: NoiseStatistics) -> int | None:
+    shared = min(len(golden.mean), len(run.mean))
+    if shared == 0:
+        return None
+    scale = np.maximum(golden.deviation[:shared], 1e-300)
+    with np.errstate(all="ignore"):
+        off = np.abs(run.mean[:shared] - golden.mean[:shared]) / scale
+        off += np.abs(run.deviation[:shared] - golden.deviation[:shared]) / scale
+    return int(np.nan_to_num(off).argmax())
+
+
+def _frame_figure(difference: Difference, parts: list[str], caption: str) -> str:
+    drawn = "".join(parts)
+    roles = (("golden", "golden"), ("run", "run"), ("difference", "run less golden"))
+    key = " ".join(f'<span class="key {role}">{name}</span>' for role, name in roles if f'line {role}"' in drawn)
+    said = f"{escape_html(difference.words)}" + (f"<br/>{escape_html(caption)}" if caption else "")
+    return f"<figure><figcaption>{said}<br/>{key}</figcaption>{drawn}</figure>"
+
+
+def _pair(golden: dict[str, Any], run: dict[str, Any], field: str) -> tuple[Any, Any] | None:
+    """What both have of a field, of a part of it, or of what it is a part of."""
+    both = sorted(golden.keys() & run.keys())
+    near = [name for name in both if name == field]
+    near += [name for name in both if field and field.startswith((f"{name}.", f"{name}["))]
+    near += [name for name in both if field and name.startswith(f"{field}.")]
+    return (golden[near[0]], run[near[0]]) if near else None
+
+
+def _messages(column: Column, stream: Stream) -> int:
+    return min(len(column.values) if column.lengths is None else len(column.lengths), len(stream.times_ns))
+
+
+def _flat(values: Any) -> Array:
+    return np.asarray(values, np.float64).reshape(-1)
+
+
+def _difference(run: Array, golden: Array) -> Array:
+    """Run less golden; 0 where both are the same infinity, nan where one of them is not finite."""
+    with np.errstate(invalid="ignore"):
+        off = run - golden
+    same = (run == golden) | (np.isnan(run) & np.isnan(golden))
+    return np.where(same, 0.0, np.where(np.isfinite(off), off, np.nan))
+
+
+def _any(ours: Array, theirs: Array) -> bool:
+    return bool(np.isfinite(_difference(theirs, ours)).any())
+
+
+def _profile(values: Array, role: str) -> Line:
+    return Line(np.arange(float(len(values))), values, "golden" if role == "golden" else "run")
+
+
+def _profile_of_difference(ours: Array, theirs: Array) -> Line:
+    shared = min(len(ours), len(theirs))
+    return Line(np.arange(float(shared)), _difference(theirs[:shared], ours[:shared]), "difference")
+
+
+def _unit(difference: Difference) -> str:
+    return f" [{difference.unit}]" if difference.unit and difference.kind != "count" else ""

@@ -1,0 +1,193 @@
+"""Messages of one type as columns of numbers and texts, one for each field."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from itertools import pairwise
+from operator import attrgetter
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from simkit import msgs
+from simkit.testing.run_record.record import Column
+
+_STAMPS: Final = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+_BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4  # as the type store numbers the kinds of fields
+_NS: Final = 1_000_000_000
+
+
+class MessageFields(NamedTuple):
+    """The fields of a type, flat; times are single ones.
+
+    Attributes:
+        numbers, texts, stamps: paths of single ones, with the type of the numbers.
+        arrays: of lists of numbers, with their type.
+        lists: of lists of texts.
+        parts: of lists of messages, with their fields.
+    """
+
+    numbers: dict[str, str]
+    texts: tuple[str, ...]
+    stamps: tuple[str, ...]
+    arrays: dict[str, str]
+    lists: tuple[str, ...]
+    parts: dict[str, tuple[str, MessageFields]]
+
+
+@cache
+def message_fields(type_name: str) -> MessageFields:
+    """What a message type holds."""
+    store = msgs.type_store()
+    found = MessageFields({}, (), (), {}, (), {})
+    texts: list[str] = []
+    stamps: list[str] = []
+    lists: list[str] = []
+
+    def walk(name: str, prefix: str) -> None:
+        definition: Any = store.fielddefs[msgs.full_name(name)][1]
+        for field, (kind, of) in definition:
+            path = prefix + field
+            if int(kind) == _NAME:
+                if of in _STAMPS:
+                    stamps.append(path)
+                else:
+                    walk(str(of), path + ".")
+            elif int(kind) == _BASE:
+                base = str(of[0])
+                if base in ("string", "wstring"):
+                    texts.append(path)
+                else:
+                    found.numbers[path] = _dtype(base)
+            else:
+                inner_kind, inner = of[0]
+                if int(inner_kind) == _NAME:
+                    found.parts[path] = (str(inner), message_fields(str(inner)))
+                elif str(inner[0]) in ("string", "wstring"):
+                    lists.append(path)
+                else:
+                    found.arrays[path] = _dtype(str(inner[0]))
+
+    walk(type_name, "")
+    return found._replace(texts=tuple(texts), stamps=tuple(stamps), lists=tuple(lists))
+
+
+def _dtype(base: str) -> str:
+    return {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(base, base)
+
+
+class MessageRows:
+    """Collects the fields of messages of one type.
+
+    Args:
+        type_name: of all of them.
+        skip: paths that are not collected.
+    """
+
+    def __init__(self, type_name: str, skip: frozenset[str] = frozenset()) -> None:
+        self._fields = message_fields(type_name)
+        fields = self._fields
+        self._numbers = [path for path in fields.numbers if path not in skip]
+        single = [*self._numbers, *fields.texts, *(f"{p}.{q}" for p in fields.stamps for q in ("sec", "nanosec"))]
+        self._single = _getter(single)
+        self._rows: list[tuple[Any, ...]] = []
+        self._arrays = {path: attrgetter(path) for path in fields.arrays if path not in skip}
+        self._lists = {path: attrgetter(path) for path in fields.lists if path not in skip}
+        self._kept: dict[str, list[Any]] = {path: [] for path in (*self._arrays, *self._lists)}
+        self._parts = {
+            path: (attrgetter(path), MessageRows(kind, _nested_path(skip, path)))
+            for path, (kind, _) in fields.parts.items()
+            if path not in skip
+        }
+        self._counts: dict[str, list[int]] = {path: [] for path in self._parts}
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def take(self, message: Any) -> None:
+        """One message more; what it holds is copied."""
+        self._rows.append(self._single(message))
+        for path, get in self._arrays.items():
+            self._kept[path].append(np.array(get(message)))
+        for path, get in self._lists.items():
+            self._kept[path].append([str(text) for text in get(message)])
+        for path, (get, rows) in self._parts.items():
+            items = get(message)
+            self._counts[path].append(len(items))
+            for item in items:
+                rows.take(item)
+
+    def columns(self) -> tuple[dict[str, Column], dict[str, list[str]]]:
+        """Numbers and texts by path."""
+        fields, count = self._fields, len(self._rows)
+        columns: dict[str, Column] = {}
+        words: dict[str, list[str]] = {}
+        at = 0
+        turned = list(zip(*self._rows, strict=True)) if count else []
+
+        def next_of() -> tuple[Any, ...]:
+            nonlocal at
+            at += 1
+            return turned[at - 1] if turned else ()
+
+        for path in self._numbers:
+            columns[path] = Column(np.array(next_of(), dtype=fields.numbers[path]))
+        for path in fields.texts:
+            words[path] = [str(text) for text in next_of()]
+        for path in fields.stamps:
+            sec, nanosec = (np.array(next_of(), dtype=np.int64) for _ in range(2))
+            columns[path] = Column(sec * _NS + nanosec)
+        for path in self._arrays:
+            columns[path] = join_arrays([np.atleast_1d(a) for a in self._kept[path]], fields.arrays[path])
+        for path in self._lists:
+            words[path] = [", ".join(texts) for texts in self._kept[path]]
+        for path, (_, rows) in self._parts.items():
+            _add_nested_fields(columns, words, path, rows, self._counts[path])
+        return columns, words
+
+
+def join_arrays(arrays: list[Any], dtype: str) -> Column:
+    """One array a message: a table where all are as long, else one after the other."""
+    lengths = np.array([len(a) for a in arrays], dtype=np.int64)
+    if not len(arrays):
+        return Column(np.zeros((0, 0), dtype=dtype))
+    if (lengths == lengths[0]).all():
+        return Column(np.stack(arrays).astype(dtype, copy=False))
+    return Column(np.concatenate(arrays).astype(dtype, copy=False), lengths)
+
+
+def _add_nested_fields(
+    columns: dict[str, Column], words: dict[str, list[str]], path: str, rows: MessageRows, counts: list[int]
+) -> None:
+    """The fields of a list of messages, gathered by the message that they are part of."""
+    inner, texts = rows.columns()
+    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    is_even = len(set(counts)) == 1 and counts[0] > 0
+    for name, column in inner.items():
+        if column.lengths is None and is_even and column.values.ndim == 1:
+            columns[f"{path}.{name}"] = Column(column.values.reshape(len(counts), counts[0]))
+            continue
+        width = column.lengths
+        if width is None:
+            each = int(np.prod(column.values.shape[1:], dtype=np.int64)) if column.values.ndim > 1 else 1
+            width = np.full(len(rows), each, dtype=np.int64)
+        ends = np.concatenate([[0], np.cumsum(width)])
+        lengths = ends[starts[1:]] - ends[starts[:-1]]
+        columns[f"{path}.{name}"] = Column(column.values.reshape(-1), lengths)
+    for name, values in texts.items():
+        words[f"{path}.{name}"] = [", ".join(values[start:stop]) for start, stop in pairwise(starts)]
+
+
+def _nested_path(skip: frozenset[str], path: str) -> frozenset[str]:
+    return frozenset(p.removeprefix(path + ".") for p in skip if p.startswith(path + "."))
+
+
+def _getter(paths: list[str]) -> Callable[[Any], tuple[Any, ...]]:
+    """Gives the values at all paths as a tuple."""
+    if not paths:
+        return lambda _: ()
+    if len(paths) == 1:
+        one = attrgetter(paths[0])
+        return lambda message: (one(message),)
+    return attrgetter(*paths)

@@ -1,0 +1,266 @@
+"""What is recorded of the messages of one topic, by their type: fields, small pictures, thinned clouds, noise
+statistics.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
+from zlib import crc32
+
+import numpy as np
+
+from simkit.testing.run_record.message_columns import MessageRows, join_arrays
+from simkit.testing.run_record.record import Array, Pictures, Stream
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.testing.scenarios import Scenario
+
+
+_IMAGE: Final = "sensor_msgs/msg/Image"
+_CLOUD: Final = "sensor_msgs/msg/PointCloud2"
+_BINARY_FIELDS: Final = {
+    _IMAGE: frozenset(("data",)),
+    _CLOUD: frozenset(("data", "fields")),
+    "sensor_msgs/msg/CompressedImage": frozenset(("data",)),
+}
+_POINTS_KEPT: Final = 64  # of a cloud's message that are kept
+_PICTURES_KEPT: Final = 32  # of a run that are kept, at most
+_CHANNELS: Final = {
+    "mono8": ("uint8", 1),
+    "8UC1": ("uint8", 1),
+    "rgb8": ("uint8", 3),
+    "bgr8": ("uint8", 3),
+    "8UC3": ("uint8", 3),
+    "rgba8": ("uint8", 4),
+    "bgra8": ("uint8", 4),
+    "mono16": ("uint16", 1),
+    "16UC1": ("uint16", 1),
+    "32FC1": ("float32", 1),
+    "32FC3": ("float32", 3),
+    "bayer_rggb8": ("uint8", 1),
+    "bayer_bggr8": ("uint8", 1),
+    "bayer_gbrg8": ("uint8", 1),
+    "bayer_grbg8": ("uint8", 1),
+}
+_CLOUD_TYPES: Final = {
+    1: "int8", 2: "uint8", 3: "int16", 4: "uint16", 5: "int32", 6: "uint32", 7: "float32", 8: "float64"
+}  # fmt: skip
+
+
+class MessageRecorder(Protocol):
+    """Takes the messages of one topic, and says in the end what they were."""
+
+    def take(self, message: Any) -> None:
+        """One message more; what is kept of it is copied."""
+
+    def fill(self, stream: Stream) -> None:
+        """Puts what was taken into a stream."""
+
+
+def message_recorder_for(scenario: Scenario, sim: Simulation, topic: str, type_name: str) -> MessageRecorder:
+    """What takes the messages of a topic."""
+    if type_name == _IMAGE:
+        return _ImageRecorder(scenario.picture)
+    if type_name == _CLOUD:
+        return _CloudRecorder()
+
+    plain = _FieldRecorder(type_name)
+    residuals = noise_recorder_for(scenario, sim, topic, type_name)
+    return plain if residuals is None else _NoisyFieldRecorder(plain, residuals)
+
+
+class _FieldRecorder:
+    """All fields as they are."""
+
+    def __init__(self, type_name: str) -> None:
+        self._rows = MessageRows(type_name, _BINARY_FIELDS.get(type_name, frozenset()))
+
+    def take(self, message: Any) -> None:
+        self._rows.take(message)
+
+    def fill(self, stream: Stream) -> None:
+        stream.columns, stream.words = self._rows.columns()
+
+
+class _NoisyFieldRecorder:
+    """All fields but those of which the statistics are kept."""
+
+    def __init__(self, plain: _FieldRecorder, residuals: Any) -> None:
+        self._plain, self._residuals = plain, residuals
+
+    def take(self, message: Any) -> None:
+        self._plain.take(message)
+        self._residuals.take(message)
+
+    def fill(self, stream: Stream) -> None:
+        self._plain.fill(stream)
+        self._residuals.fill(stream)
+
+
+class _ImageRecorder:
+    """Pictures, made small."""
+
+    def __init__(self, longest: int) -> None:
+        self._plain, self._longest = _FieldRecorder(_IMAGE), longest
+        self._small: list[Any] = []
+        self._tiles: list[Any] = []
+        self._hashes: list[int] = []
+        self._every = 1
+        self._shape: tuple[int, int] | None = None
+        self._encoding, self._is_odd = "", False
+
+    def take(self, message: Any) -> None:
+        from simkit.testing.run_record.pictures import shrink, tile_hashes
+
+        number = len(self._hashes)
+        self._plain.take(message)
+        self._hashes.append(crc32(message.data))
+        shape = (int(message.height), int(message.width))
+        if self._shape is None:
+            self._shape, self._encoding = shape, str(message.encoding)
+        if number % self._every:
+            return
+        image = pixels_of_image(message)
+        if image is None or shape != self._shape:  # of another size from one to the next: the digest has it
+            self._is_odd = True
+            return
+        small = shrink(image, self._longest)
+        self._small.append(small if small.dtype != np.uint16 else small.astype(np.float32))
+        self._tiles.append(tile_hashes(image))
+        if len(self._small) > _PICTURES_KEPT:  # every second of them, so that the numbers of two runs meet
+            self._every *= 2
+            del self._small[1::2], self._tiles[1::2]
+
+    def fill(self, stream: Stream) -> None:
+        self._plain.fill(stream)
+        if self._shape is None or not self._small or self._is_odd:
+            return
+        kept = np.arange(0, len(self._hashes), self._every)
+        stream.pictures = Pictures(
+            np.stack(self._small),
+            self._shape,
+            self._encoding,
+            np.stack(self._tiles).astype(np.uint32),
+            None if self._every == 1 else kept,
+            np.array(self._hashes, np.uint32),
+        )
+
+
+class _CloudRecorder:
+    """Clouds of points, thinned; the digest has all of them."""
+
+    def __init__(self) -> None:
+        self._plain = _FieldRecorder(_CLOUD)
+        self._values: dict[str, list[Any]] = {}
+        self._names: list[str] = []
+
+    def take(self, message: Any) -> None:
+        self._plain.take(message)
+        points = points_of_cloud(message)
+        self._names.append(", ".join(points.dtype.names or ()))
+        step = max(1, -(-len(points) // _POINTS_KEPT))
+        thin = points[::step]
+        for name in thin.dtype.names or ():
+            if thin.dtype[name].kind in "iuf" and not thin.dtype[name].shape:
+                self._values.setdefault(name, []).append(np.array(thin[name]))
+
+    def fill(self, stream: Stream) -> None:
+        self._plain.fill(stream)
+        stream.words["fields"] = list(self._names)
+        for name, arrays in self._values.items():
+            if len(arrays) == len(stream.times_ns):
+                stream.columns[f"points.{name}"] = join_arrays(arrays, str(arrays[0].dtype))
+
+
+def pixels_of_image(message: Any) -> Any:
+    """The pixels of an Image message, shape (height, width, channels); None for an encoding that is not known."""
+    kind = _CHANNELS.get(str(message.encoding))
+    if kind is None:
+        return None
+    dtype, channels = np.dtype(kind[0]), kind[1]
+    data = np.asarray(message.data, dtype=np.uint8)
+    height, width, step = int(message.height), int(message.width), int(message.step)
+    wide = width * channels * dtype.itemsize
+    if height * step > data.size or wide > step:
+        return None
+    rows = np.ascontiguousarray(data[: height * step].reshape(height, step)[:, :wide])
+    pixels = rows.view(dtype.newbyteorder(">" if message.is_bigendian else "<")).reshape(height, width, channels)
+    return pixels.astype(dtype, copy=False)
+
+
+def points_of_cloud(message: Any) -> Any:
+    """The points of a PointCloud2 as a structured array."""
+    order: Literal[">", "<"] = ">" if message.is_bigendian else "<"
+    kinds: list[Any] = []
+    names: list[str] = []
+    offsets: list[int] = []
+    for field in message.fields:
+        if int(field.datatype) in _CLOUD_TYPES and field.name not in names:
+            kind = np.dtype(_CLOUD_TYPES[int(field.datatype)]).newbyteorder(order)
+            kinds.append(kind if int(field.count) <= 1 else (kind, (int(field.count),)))
+            names.append(str(field.name))
+            offsets.append(int(field.offset))
+    step = int(message.point_step)
+    dtype = np.dtype({"names": names, "formats": kinds, "offsets": offsets, "itemsize": step})
+    data = np.ascontiguousarray(np.asarray(message.data, dtype=np.uint8))
+    count = len(data) // step if step else 0
+    return np.frombuffer(data[: count * step].tobytes(), dtype=dtype)
+
+
+def noise_recorder_for(scenario: Scenario, sim: Simulation, topic: str, type_name: str) -> NoiseRecorder | None:
+    """What keeps the statistics of a topic's noise; None where nobody asks for them, or no sensor publishes it."""
+    from simkit.testing.run_record.message_columns import message_fields
+
+    fields = message_fields(type_name)
+    paths = [
+        path
+        for path in (*fields.numbers, *fields.arrays)
+        if any(t.statistics for t in scenario.tolerance(topic, path)[:1])
+    ]
+    sensor = next((s for s in sim.structure.all_sensors() if s.topic == topic), None)
+    if not paths or sensor is None:
+        return None
+    return NoiseRecorder(sensor, type_name, frozenset(paths))
+
+
+class NoiseRecorder:
+    """Collects readings and truths of some fields.
+
+    Args:
+        sensor: that publishes.
+        type_name: of its messages.
+        paths: of the fields.
+    """
+
+    def __init__(self, sensor: Any, type_name: str, paths: frozenset[str]) -> None:
+        self._sensor, self._paths = sensor, paths
+        self._read, self._true = MessageRows(type_name), MessageRows(type_name)
+
+    def take(self, message: Any) -> None:
+        """A reading that is published now."""
+        self._read.take(message)
+        self._true.take(self._sensor.truth)
+
+    def fill(self, stream: Stream) -> None:
+        """Puts statistics in the place of the samples."""
+        from simkit.testing.run_record.noise_statistics import noise_statistics
+
+        read, true = self._read.columns()[0], self._true.columns()[0]
+        times = stream.times_ns * 1e-9
+        period = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+        for path in sorted(self._paths):
+            column, truth = read[path], true[path]
+            if column.lengths is not None or column.values.shape != truth.values.shape or not len(column.values):
+                continue
+            with np.errstate(invalid="ignore"):  # rays that hit nothing, in both
+                residual = _table(column.values) - _table(truth.values)
+            if not np.nan_to_num(residual).any():
+                continue  # there is no noise: samples are compared
+            stream.statistics[path] = noise_statistics(residual, period)
+            del stream.columns[path]
+
+
+def _table(values: Array) -> Array:
+    """A row for each message."""
+    return values.reshape(len(values), -1).astype(np.float64)

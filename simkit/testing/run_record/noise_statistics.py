@@ -1,0 +1,303 @@
+"""What noise is like, in a few numbers, and whether two samples of it can be of one kind."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Final, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+FALSE_ALARM: Final = 1e-11
+"""Probability with which one test calls two samples of one noise different: a field has some ten tests, so that ten
+thousand checks of a robot with a hundred fields stay silent with more than 99.9 %."""
+QUANTILES: Final = 129
+_COMPONENTS: Final = 16  # that are told apart; a covariance has 9
+_MIN_SAMPLES: Final = 8  # samples that say something
+_SLOW_DRIFT: Final = 4  # slowest waves of a sample, which a drift shows in
+_DRIFT_RATIO: Final = 4.0  # their mean power, of white noise's, from which there is one: by chance once in ten thousand
+_WALK: Final = 13.2  # a random walk's mean has this times the power of its slowest wave: 4 pi squared by 3
+_ALLAN_LEAST: Final = 20  # independent differences of averages behind an Allan deviation that is kept
+
+
+@dataclass
+class NoiseStatistics:
+    """Of the residual (reading less truth) of one field.
+
+    Attributes:
+        count: of samples.
+        mean, deviation: in the field's unit, one for each component, shape (components,).
+        quantiles: at evenly spread probabilities, shape (components, quantiles).
+        taus: averaging times of the Allan deviation [s], (taus,).
+        allan: Allan deviation at those, (components, taus).
+        independent: how many independent samples tell as much of the mean as these do, which may depend on each other,
+            (components,).
+        kurtosis: fourth moment by the squared variance (3 for a normal distribution), (components,).
+    """
+
+    count: int
+    mean: Floats
+    deviation: Floats
+    quantiles: Floats
+    taus: Floats
+    allan: Floats
+    independent: Floats = field(default_factory=lambda: np.zeros(0))
+    kurtosis: Floats = field(default_factory=lambda: np.zeros(0))
+
+
+@dataclass(frozen=True)
+class StatisticDifference:
+    """A statistic in which two samples cannot be of one noise.
+
+    Attributes:
+        what: "mean", "deviation", "distribution" or "allan".
+        component: which.
+        golden, run: its values; of a distribution, the part of samples below `at`.
+        at: where a distribution differs most, in the field's unit; the averaging time of an Allan deviation [s].
+        limit: how far they may be apart: a difference, of deviations a ratio.
+    """
+
+    what: Literal["mean", "deviation", "distribution", "allan", "count"]
+    component: int
+    golden: float
+    run: float
+    limit: float
+    at: float = math.nan
+
+
+def noise_statistics(residual: npt.ArrayLike, period: float) -> NoiseStatistics:
+    """The statistics of noise.
+
+    Args:
+        residual: reading less truth, shape (samples,) or (samples, components); samples that are not finite are left
+            out. Many components (rays, pixels) are taken for one noise, without an Allan deviation.
+        period: between two samples [s].
+    """
+    values = np.asarray(residual, np.float64)
+    values = values.reshape(len(values), -1 if values.size else max(1, int(np.prod(values.shape[1:]))))
+    is_pooled = values.shape[1] > _COMPONENTS
+    if is_pooled:
+        values = values.reshape(-1, 1)
+    values = values[np.isfinite(values).all(axis=1)]
+    components = values.shape[1]
+    if len(values) == 0:
+        nothing = np.zeros((components, 0))
+        zero = np.zeros(components)
+        return NoiseStatistics(0, zero, zero, nothing, np.zeros(0), nothing, zero, zero)
+    mean, deviation = values.mean(axis=0), values.std(axis=0)
+    taus, allan = (np.zeros(0), np.zeros((1, 0))) if is_pooled else _allan(values, period)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        kurtosis = np.nan_to_num(((values - mean) ** 4).mean(axis=0) / deviation**4, nan=3.0, posinf=3.0)
+    return NoiseStatistics(
+        count=len(values),
+        mean=mean,
+        deviation=deviation,
+        quantiles=np.quantile(values, np.linspace(0.0, 1.0, QUANTILES), axis=0).T,
+        taus=taus,
+        allan=allan,
+        independent=np.array([_independent_samples(values[:, c] - mean[c]) for c in range(components)]),
+        kurtosis=kurtosis,
+    )
+
+
+def statistic_differences(
+    golden: NoiseStatistics, run: NoiseStatistics, absolute: float = 0.0, relative: float = 0.0
+) -> list[StatisticDifference]:
+    """In what two samples cannot be of one noise, each with a false alarm of `FALSE_ALARM`.
+
+    Args:
+        golden, run: of the same field.
+        absolute: how far means may be apart beside what chance explains, in the field's unit.
+        relative: part by which deviations may be other beside what chance explains.
+    """
+    if golden.mean.shape != run.mean.shape:
+        return [StatisticDifference("count", 0, float(golden.mean.size), float(run.mean.size), 0.0)]
+    if min(golden.count, run.count) < _MIN_SAMPLES:
+        if (golden.count < _MIN_SAMPLES) != (run.count < _MIN_SAMPLES):
+            return [StatisticDifference("count", 0, float(golden.count), float(run.count), 0.0)]
+        return []
+    found = []
+    for component in range(golden.mean.size):
+        of_deviation = _deviation_difference(golden, run, component, relative)
+        of_mean = _mean_difference(golden, run, component, absolute)
+        found += [of_mean, of_deviation]
+        if of_deviation is None:  # which shows in the rest too, as a mean does in the distribution
+            found.append(None if of_mean else _distribution_difference(golden, run, component, absolute))
+            found.append(_allan_difference(golden, run, component, relative))
+    return [deviance for deviance in found if deviance is not None]
+
+
+def detectable_ratio(count: float, kurtosis: float = 3.0) -> float:
+    """The smallest ratio of two deviations that is found nearly always, from two samples of this many values."""
+    from scipy.stats import norm
+
+    if count < _MIN_SAMPLES:
+        return math.inf
+    error = math.sqrt(max(kurtosis - 1.0, 0.1) / 4.0 * 2.0 / count)
+    return math.exp((float(norm.isf(FALSE_ALARM / 2.0)) + 3.0) * error)
+
+
+# ---------------------------------------------------------------------- tests
+
+
+def _mean_difference(
+    golden: NoiseStatistics, run: NoiseStatistics, c: int, absolute: float
+) -> StatisticDifference | None:
+    """Means, by the normal distribution of their difference with the number of independent samples."""
+    from scipy.stats import t as student
+
+    counts = _sample_counts(golden, c), _sample_counts(run, c)
+    variance = golden.deviation[c] ** 2 / counts[0] + run.deviation[c] ** 2 / counts[1]
+    freedom = max(1.0, min(counts) - 1.0)
+    limit = float(student.isf(FALSE_ALARM / 2.0, freedom)) * math.sqrt(variance) + absolute
+    limit += 8.0 * np.finfo(float).eps * max(abs(golden.mean[c]), abs(run.mean[c]))
+    if abs(golden.mean[c] - run.mean[c]) <= limit:
+        return None
+    return StatisticDifference("mean", c, float(golden.mean[c]), float(run.mean[c]), limit)
+
+
+def _deviation_difference(
+    golden: NoiseStatistics, run: NoiseStatistics, c: int, relative: float
+) -> StatisticDifference | None:
+    """Deviations, by the logarithm of their ratio, whose variance is (kurtosis - 1) / 4 by the number of samples.
+
+    Source: Shoemaker, "Fixing the F test for equal variances", The American Statistician 57(2), 2003.
+    """
+    a, b = float(golden.deviation[c]), float(run.deviation[c])
+    if a == b:
+        return None
+    floor = 1e-12 * max(abs(golden.mean[c]), abs(run.mean[c]))
+    if a <= floor or b <= floor:  # one of them has no noise at all
+        return StatisticDifference("deviation", c, a, b, 1.0) if max(a, b) > 4.0 * floor else None
+    kurtosis = max(3.0, *(s.kurtosis[c] for s in (golden, run) if s.kurtosis.size))
+    inverse = 1.0 / max(2.0, _sample_counts(golden, c) - 1.0) + 1.0 / max(2.0, _sample_counts(run, c) - 1.0)
+    error = math.sqrt((kurtosis - 1.0) / 4.0 * inverse)
+    sigmas = _sigmas(min(_sample_counts(golden, c), _sample_counts(run, c)))
+    limit = math.exp(min(100.0, sigmas * error)) * (1.0 + relative)
+    return StatisticDifference("deviation", c, a, b, limit) if max(a / b, b / a) > limit else None
+
+
+def _distribution_difference(
+    golden: NoiseStatistics, run: NoiseStatistics, c: int, absolute: float
+) -> StatisticDifference | None:
+    """Kolmogorov-Smirnov from quantiles: the least distance of the distributions that the quantiles allow."""
+    a, b = golden.quantiles[c], run.quantiles[c]
+    if a.size < 2 or b.size < 2 or golden.deviation[c] == 0.0:
+        return None
+    places = np.unique(np.concatenate([a, b]))
+    low_a, high_a = _bounds(a, places)
+    gap = np.maximum(
+        low_a - _bounds(b, places + absolute)[1],
+        _bounds(b, places - absolute)[0] - high_a,
+    )
+    at = int(np.argmax(gap))
+    counts = _sample_counts(golden, c), _sample_counts(run, c)
+    limit = math.sqrt(-math.log(FALSE_ALARM / 2.0) / 2.0 * (1.0 / counts[0] + 1.0 / counts[1]))
+    if gap[at] <= limit:
+        return None
+    low_b, high_b = _bounds(b, places)
+    below = (low_a[at] + high_a[at]) / 2.0, (low_b[at] + high_b[at]) / 2.0
+    return StatisticDifference("distribution", c, float(below[0]), float(below[1]), limit, float(places[at]))
+
+
+def _allan_difference(
+    golden: NoiseStatistics, run: NoiseStatistics, c: int, relative: float
+) -> StatisticDifference | None:
+    """Allan deviations at the same averaging times, by the F distribution of their squares: the one furthest off."""
+    from scipy.stats import f as fisher
+
+    common = [float(tau) for tau in golden.taus if np.isclose(run.taus, tau, rtol=1e-6).any()]
+    worst: StatisticDifference | None = None
+    most = 1.0
+    for tau in common:
+        a = float(golden.allan[c][np.isclose(golden.taus, tau, rtol=1e-6)][0])
+        b = float(run.allan[c][np.isclose(run.taus, tau, rtol=1e-6)][0])
+        if a <= 0.0 or b <= 0.0:
+            continue
+        freedom = [_degrees_of_freedom(s, c, tau) for s in (golden, run)]
+        level = FALSE_ALARM / 2.0 / len(common)
+        limit = math.sqrt(max(float(fisher.isf(level, *freedom)), float(fisher.isf(level, *freedom[::-1]))))
+        limit *= 1.0 + relative
+        if max(a / b, b / a) / limit > most:
+            most, worst = max(a / b, b / a) / limit, StatisticDifference("allan", c, a, b, limit, tau)
+    return worst
+
+
+def _degrees_of_freedom(statistics: NoiseStatistics, c: int, tau: float) -> float:
+    """Independent squares behind an Allan deviation: half as many as there are averages, fewer with heavy tails."""
+    width = max(1.0, tau / float(statistics.taus[0]))
+    kurtosis = 3.0 + max(0.0, float(statistics.kurtosis[c]) - 3.0 if statistics.kurtosis.size else 0.0) / width
+    return max(2.0, statistics.count / width / (kurtosis - 1.0))
+
+
+def _sample_counts(statistics: NoiseStatistics, c: int) -> float:
+    """Independent samples behind a component."""
+    if not statistics.independent.size:
+        return float(statistics.count)
+    return float(max(2.0, min(statistics.count, statistics.independent[c])))
+
+
+def _sigmas(count: float) -> float:
+    """How many standard errors chance explains; more where the error itself is known from few samples."""
+    from scipy.stats import t as student
+
+    return float(student.isf(FALSE_ALARM / 2.0, max(2.0, count - 1.0)))
+
+
+def _bounds(quantiles: Floats, places: Floats) -> tuple[Floats, Floats]:
+    """The least and the greatest part of a sample that can lie at or below each place, by its quantiles."""
+    steps = quantiles.size - 1
+    at_least = np.searchsorted(quantiles, places, side="right") - 1
+    at_most = np.searchsorted(quantiles, places, side="right")
+    low = np.clip(at_least / steps, 0.0, 1.0)
+    high = np.clip(at_most / steps, 0.0, 1.0)
+    return low, high
+
+
+# ---------------------------------------------------------------------- numbers of a sample
+
+
+def _allan(values: Floats, period: float) -> tuple[Floats, Floats]:
+    """Overlapping Allan deviation at doubling averaging times.
+
+    Source: IEEE Std 952-1997, annex C; Riley, "Handbook of Frequency Stability Analysis", NIST SP 1065, 5.2.4.
+    """
+    count = len(values)
+    sums = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values - values.mean(axis=0), axis=0)])
+    taus, found = [], []
+    width = 1
+    while count // width > _ALLAN_LEAST:
+        means = (sums[width:] - sums[:-width]) / width
+        steps = means[width:] - means[:-width]
+        taus.append(width * period)
+        found.append(np.sqrt(0.5 * (steps**2).mean(axis=0)))
+        width *= 2
+    table = np.array(found).T if found else np.zeros((values.shape[1], 0))
+    return np.array(taus), table
+
+
+def _independent_samples(centred: Floats) -> float:
+    """How many independent samples tell as much of the mean: by the autocorrelation, up to where it first vanishes.
+
+    Source: Geyer, "Practical Markov chain Monte Carlo", Statistical Science 7(4), 1992: sums of pairs, while positive.
+    """
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    count = len(centred)
+    total = float(centred @ centred)
+    if count < _MIN_SAMPLES or total <= 0.0:
+        return float(count)
+    length: Any = next_fast_len(2 * count)
+    spectrum = rfft(centred, length)
+    correlation = irfft(np.abs(spectrum) ** 2, length)[: count // 2] / total
+    pairs = correlation[: correlation.size // 2 * 2].reshape(-1, 2).sum(axis=1)
+    ends = np.flatnonzero(pairs <= 3.0 / math.sqrt(count))
+    pairs = pairs[: int(ends[0])] if ends.size else pairs
+    time = max(1.0, 2.0 * float(pairs.sum()) - 1.0)
+    slow = np.abs(np.fft.rfft(centred)[1 : 1 + _SLOW_DRIFT]) ** 2 / total
+    if float(slow.mean()) > _DRIFT_RATIO:  # the mean of a random walk wanders further than its slowest wave shows
+        time = max(time, _WALK * float(slow.max()))
+    return max(1.0, count / time)

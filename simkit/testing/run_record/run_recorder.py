@@ -1,0 +1,312 @@
+"""Run a scenario and record the topics and the physics of it."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import math
+import os
+from collections import Counter, deque
+from collections.abc import Callable
+from dataclasses import replace
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from simkit import msgs
+from simkit.errors import PluginError, SimulationDiverged, SubscriberError
+from simkit.recording.bags.recorder import matches_topic
+from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
+from simkit.testing.run_record.record import RunRecord, Stream
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+    from simkit.testing.run_record.message_recorder import MessageRecorder
+    from simkit.testing.scenarios import Scenario
+
+
+_CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
+_PARTS: Final[dict[str, tuple[str, Callable[[Any], Any]]]] = {
+    "tf2_msgs/msg/TFMessage": ("transforms", attrgetter("child_frame_id", "header.frame_id")),
+    _CONTACTS: ("contacts", attrgetter("collision1.name", "collision2.name")),
+    "gazebo_msgs/msg/ContactsState": ("states", attrgetter("collision1_name", "collision2_name")),
+}
+"""A list of parts that each say whose they are, and what they say; those that say the same keep their order."""
+_POINTS: Final[dict[str, tuple[str, ...]]] = {
+    _CONTACTS: ("positions", "normals", "depths", "wrenches"),
+    "gazebo_msgs/msg/ContactsState": ("contact_positions", "contact_normals", "depths", "wrenches"),
+}
+"""Lists side by side, of the points where two things touch; the first says where."""
+_ACROSS: Final = (1.0, math.sqrt(0.5), math.sqrt(1.0 / 3.0))
+"""Points are in order along this direction, which is none that the corners of a box have in common."""
+_ROWS: Final[dict[str, tuple[str, ...]]] = {
+    "gazebo_msgs/msg/ModelStates": ("name", "pose", "twist"),
+    "gazebo_msgs/msg/LinkStates": ("name", "pose", "twist"),
+}
+"""Lists side by side, of all that a world holds; the first has the names."""
+
+
+def sort_message(message: Any, type_name: str) -> Any:
+    """A message with its parts by name; itself where they are, or where their order means something.
+
+    Args:
+        message: which is not changed.
+        type_name: of it.
+    """
+    if type_name in _PARTS:
+        field, key = _PARTS[type_name]
+        parts = getattr(message, field)
+        if type_name == _CONTACTS and any(one.collision1.id or one.collision2.id for one in parts):
+            return sort_message(replace(message, contacts=[_without_entity_numbers(one) for one in parts]), type_name)
+        if type_name in _POINTS:
+            parts = [_sort_points(part, _POINTS[type_name]) for part in parts]
+        ordered = sorted(parts, key=key)
+        if all(a is b for a, b in zip(ordered, getattr(message, field), strict=True)):
+            return message
+        return replace(message, **{field: ordered})
+    if type_name in _ROWS:
+        names = list(getattr(message, _ROWS[type_name][0]))
+        order = sorted(range(len(names)), key=names.__getitem__)
+        columns = {field: getattr(message, field) for field in _ROWS[type_name]}
+        if order == list(range(len(names))) or any(len(column) != len(names) for column in columns.values()):
+            return message
+        return replace(message, **{field: [column[i] for i in order] for field, column in columns.items()})
+    return message
+
+
+def _sort_points(part: Any, fields: tuple[str, ...]) -> Any:
+    """A contact with its points in one order: the engine's depends on which of the two came first in the file."""
+    columns = {field: getattr(part, field) for field in fields}
+    places = columns[fields[0]]
+    keys = [p.x * _ACROSS[0] + p.y * _ACROSS[1] + p.z * _ACROSS[2] for p in places]
+    order = sorted(range(len(keys)), key=keys.__getitem__)
+    if order == list(range(len(keys))):
+        return part
+    moved = {field: _reorder(column, order) for field, column in columns.items() if len(column) == len(keys)}
+    return replace(part, **moved)
+
+
+def _reorder(column: Any, order: list[int]) -> Any:
+    return column[order] if isinstance(column, np.ndarray) else [column[i] for i in order]
+
+
+def _without_entity_numbers(contact: Any) -> Any:
+    """A contact without the numbers of what touches: they count the parts of the file, and names stand beside them."""
+    wrenches = [
+        replace(w, body_1_id=replace(w.body_1_id, data=0), body_2_id=replace(w.body_2_id, data=0))
+        for w in contact.wrenches
+    ]
+    return replace(
+        contact,
+        collision1=replace(contact.collision1, id=0),
+        collision2=replace(contact.collision2, id=0),
+        wrenches=wrenches,
+    )
+
+
+_CLOCK: Final = "rosgraph_msgs/msg/Clock"
+_RENDERED: Final = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+ENVIRONMENT_VARIABLES: Final = ("TURTLEBOT3_MODEL",)
+_HASH_LETTERS: Final = 16  # of the hash of a second
+
+
+def run_record(scenario: Scenario, *, sim: Simulation | None = None) -> RunRecord:
+    """Runs a scenario to its end and records what it gives.
+
+    The record's `simulation` is left open, for further questions; whoever asked for the record closes it.
+
+    Args:
+        scenario: what is run.
+        sim: its world, where it is open already; it goes on from where it stands.
+
+    Raises:
+        InputError: the world, a command or a check cannot be used.
+        RenderError: there are pictures to be drawn and nothing that draws.
+    """
+    with contextlib.chdir("."):  # where a plugin may have gone is nobody else's place
+        return _run_and_record(scenario, sim)
+
+
+def _run_and_record(scenario: Scenario, sim: Simulation | None) -> RunRecord:
+    from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+
+    opened = open_scenario(scenario) if sim is None else sim
+    results: tuple[Any, ...] = ()
+    failed: Exception | None = None
+    try:
+        longest = scenario.duration if scenario.timeout is None else scenario.timeout
+        with RunRecorder(scenario, opened, longest) as capture:
+            try:
+                ended = run_scenario(scenario, opened)
+                end, results = ended.reason, ended.results
+            except (SimulationDiverged, PluginError, SubscriberError) as error:
+                end, failed = str(error), error
+            record = capture.record(end)
+    except BaseException:
+        if sim is None:
+            opened.close()
+        raise
+    record.checks, record.error = results, failed
+    return record
+
+
+class RunRecorder:
+    """Takes down the topics and the physics of a simulation, from now on; a context manager around its run.
+
+    Args:
+        scenario: which topics, and how.
+        sim: the simulation.
+        longest: how long it will run at most [s]; states are kept accordingly.
+    """
+
+    def __init__(self, scenario: Scenario, sim: Simulation, longest: float) -> None:
+        from simkit.testing.run_record.model_fields import fields_of_model
+        from simkit.testing.run_record.source_files import source_hashes
+        from simkit.testing.run_record.state_recorder import StateRecorder
+        from simkit.testing.run_record.world_values import values_of_simulation
+
+        self._scenario, self._sim = scenario, sim
+        self._streams: dict[str, StreamRecorder] = {}
+        self._leaves, self._places = values_of_simulation(sim)
+        self._fields, self._sources = fields_of_model(sim), source_hashes(sim)
+        self._diagnostics = Counter(d.code for d in sim.diagnostics)
+        self._is_open = True
+        sim.bus.on_topic(self._add)
+        self._marks = StateRecorder(sim, sim.clock.ticks(longest))
+
+    def __enter__(self) -> RunRecorder:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Takes nothing any more."""
+        self._is_open = False
+        for stream in self._streams.values():
+            stream.close()
+        self._marks.close()
+
+    def record(self, end: str = "duration") -> RunRecord:
+        """What was taken so far.
+
+        Args:
+            end: why the run ended.
+        """
+        from simkit.testing.run_record.fingerprint import fingerprint
+
+        published = {topic for topic, _, _, does in self._sim.bus.ends() if does == "publishes"}
+        streams = {}
+        for topic in sorted(self._streams):
+            taker = self._streams[topic]
+            stream = taker.stream()
+            if len(stream.times_ns) or topic in published:
+                streams[topic] = stream
+        pictures = any(s.type_name in _RENDERED and len(s.times_ns) for s in streams.values())
+        return RunRecord(
+            self._scenario,
+            fingerprint(pictures=pictures),
+            streams,
+            self._marks.states(),
+            self._leaves,
+            self._places,
+            self._fields,
+            self._sources,
+            dict(sorted(self._diagnostics.items())),
+            end,
+            self._sim,
+            environment=_environment(self._sim),
+        )
+
+    def _add(self, topic: str, type_name: str) -> None:
+        if self._is_open and topic not in self._streams and self._is_asked_for(topic, type_name):
+            self._streams[topic] = StreamRecorder(self._scenario, self._sim, topic, type_name)
+
+    def _is_asked_for(self, topic: str, type_name: str) -> bool:
+        scenario = self._scenario
+        if matches_topic(topic, scenario.skip):
+            return False
+        if scenario.topics:
+            return matches_topic(topic, scenario.topics)
+        return topic not in self._sim.bus.aside and type_name != _CLOCK
+
+
+class StreamRecorder:
+    """Takes down one topic.
+
+    Args:
+        scenario: how.
+        sim: the simulation.
+        topic, type_name: which.
+    """
+
+    def __init__(self, scenario: Scenario, sim: Simulation, topic: str, type_name: str) -> None:
+        self._scenario, self._sim, self._topic, self._type_name = scenario, sim, topic, type_name
+        self._taker: MessageRecorder | None = None
+        self._times: list[int] = []
+        self._whole, self._second = hashlib.sha256(), hashlib.sha256()
+        self._chunks: list[str] = []
+        self._waiting: deque[tuple[int, Any]] = deque()  # behind a picture that is still being drawn
+        self._tap = sim.bus.tap(topic, self._take, takes_later=True)
+
+    def close(self) -> None:
+        """Takes nothing any more."""
+        self._take_waiting(to_the_end=True)
+        self._tap.close()
+
+    def stream(self) -> Stream:
+        """What was taken so far."""
+        self._sim.bus.gather(self._topic)
+        self._take_waiting(to_the_end=True)
+        stream = Stream(self._topic, self._type_name, np.array(self._times, np.int64))
+        stream.digest = self._whole.hexdigest()
+        stream.chunks = [*self._chunks, self._second.hexdigest()[:_HASH_LETTERS]] if self._times else []
+        if self._taker is not None:
+            self._taker.fill(stream)
+        return stream
+
+    def _take(self, message: Any) -> None:
+        """A message that was published now."""
+        now = self._sim.time_ns
+        if type(message) is LazyMessage and (self._waiting or not message.is_ready):
+            self._waiting.append((now, message))
+            self._take_waiting()
+            return
+        if self._waiting:
+            self._take_waiting(to_the_end=True)  # this one may be written to later, and stays in its order
+        message = message.get() if type(message) is LazyMessage else message
+        if message is not NO_MESSAGE:
+            self._keep(now, message)
+
+    def _take_waiting(self, *, to_the_end: bool = False) -> None:
+        while self._waiting and (to_the_end or self._waiting[0][1].is_ready):
+            now, later = self._waiting.popleft()
+            message = later.get()
+            if message is not NO_MESSAGE:
+                self._keep(now, message)
+
+    def _keep(self, now: int, message: Any) -> None:
+        type_name = msgs.type_name(message)
+        if self._taker is None:
+            from simkit.testing.run_record.message_recorder import message_recorder_for
+
+            self._type_name = type_name
+            self._taker = message_recorder_for(self._scenario, self._sim, self._topic, type_name)
+        message = sort_message(message, type_name)
+        data = msgs.serialize(message)
+        self._whole.update(data)
+        second = now // 1_000_000_000
+        while len(self._chunks) < second:
+            self._chunks.append(self._second.hexdigest()[:_HASH_LETTERS])
+            self._second = hashlib.sha256()
+        self._second.update(data)
+        self._times.append(now)
+        if type_name == self._type_name:  # a second type on one topic counts in the digest
+            self._taker.take(message)
+
+
+def _environment(sim: Simulation) -> dict[str, str]:
+    """What the environment says of the world: which TurtleBot3 it is."""
+    is_told = any("turtlebot3" in model.name for model in sim.world.models)
+    return {name: os.environ.get(name, "") for name in ENVIRONMENT_VARIABLES if is_told}

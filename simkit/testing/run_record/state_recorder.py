@@ -1,0 +1,214 @@
+"""One byte a tick that tells whether the physics is where it was, and whole states now and then."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any, Final
+from zlib import crc32
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.runtime.engine.held_state import applied_forces
+from simkit.runtime.engine.snapshot import state_hash
+from simkit.testing.run_record.record import States
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+_STATES_KEPT: Final = 64  # states of a run, where the world is small
+_MAX_VALUES: Final = 6000  # of all of them together
+_MIN_STATES: Final = 3
+_WATCHED_CALLS: Final = 200  # bodies; of more, forces on them are looked at only where something was written
+
+
+class StateRecorder:
+    """Follows the physics of a run, tick by tick.
+
+    Args:
+        sim: the simulation.
+        ticks: how many steps the run will have at most.
+    """
+
+    def __init__(self, sim: Simulation, ticks: int) -> None:
+        self._sim, self._ticks = sim, max(1, ticks)
+        self._marks, self._inputs = bytearray(), bytearray()
+        self._kept: list[tuple[int, dict[str, float], dict[str, float]]] = []
+        self._data: Any = None
+        self._edition = -1
+        self._is_active = True
+        self._every, self._given = 1, 0
+        self._has_more = self._listens = False
+        self._look_anew()
+        self._keep()
+        sim.on_demand.add(lambda: self._is_active, None, self._mark, "after")
+
+    def close(self) -> None:
+        """Ends it."""
+        if self._is_active:
+            self._is_active = False
+            self._sim.on_demand.look()
+
+    def states(self) -> States:
+        """What was seen, the state of now included."""
+        self._keep()
+        names = _union(state for _, state, _ in self._kept)
+        inputs = _union(given for _, _, given in self._kept)
+        marks = np.frombuffer(bytes(self._marks), np.uint8)
+        last = self._kept[-1][1]
+        whole = hashlib.sha256(marks.tobytes())
+        for name in sorted(last):
+            whole.update(f"{name}={last[name]!r};".encode())
+        return States(
+            timestep=self._sim.timestep,
+            marks=marks,
+            inputs=np.frombuffer(bytes(self._inputs), np.uint8),
+            ticks=np.array([tick for tick, _, _ in self._kept], np.int64),
+            names=names,
+            values=_state_table([state for _, state, _ in self._kept], names),
+            input_names=inputs,
+            input_values=_state_table([given for _, _, given in self._kept], inputs),
+            digest=state_hash(self._sim),
+            named_digest=whole.hexdigest(),
+        )
+
+    # ------------------------------------------------------------------ every tick
+
+    def _mark(self, _: int) -> None:
+        physics = self._sim.physics
+        if physics.data is not self._data:
+            self._look_anew()
+        state = crc32(self._qvel.take(self._dofs), crc32(self._qpos.take(self._positions)))
+        if self._has_more:
+            data = self._data
+            state = crc32(data.act[self._activations], crc32(data.mocap_pos[self._mocaps], state))
+            state = crc32(data.mocap_quat[self._mocaps], state)
+        state ^= state >> 16  # all of it counts in its last byte
+        self._marks.append((state ^ (state >> 8)) & 0xFF)
+        if physics.edition != self._edition or self._listens:
+            self._edition = physics.edition
+            self._given = self._hash_inputs(physics)
+        self._inputs.append(self._given)
+        if len(self._marks) % self._every == 0:
+            self._keep()
+
+    def _hash_inputs(self, physics: Any) -> int:
+        found = crc32(self._ctrl.take(self._controls))
+        applied, pushed = self._applied, self._pushed
+        if physics.shows_applied:  # forces of one step are gone by now, and remembered
+            applied, pushed = physics.last_applied + applied, physics.last_pushed + pushed
+        if crc32(applied) != self._no_force:
+            found = crc32(applied.take(self._dofs), found)
+        if crc32(pushed) != self._no_push:
+            found = crc32(pushed[self._bodies], found)
+        found ^= found >> 16
+        return (found ^ (found >> 8)) & 0xFF
+
+    # ------------------------------------------------------------------ names
+
+    def _look_anew(self) -> None:
+        """Learns the names of the model that is there now."""
+        physics = self._sim.physics
+        model, data = physics.model, physics.data
+        self._data = data
+        self._qpos, self._qvel, self._ctrl = data.qpos, data.qvel, data.ctrl
+        self._applied, self._pushed = data.qfrc_applied, data.xfrc_applied
+        self._no_force, self._no_push = crc32(bytes(8 * model.nv)), crc32(bytes(48 * model.nbody))
+        named = StateQuantities(model)
+        self._named = named
+        self._positions, self._dofs = _sort_by_name(named.positions), _sort_by_name(named.velocities)
+        self._controls, self._activations = _sort_by_name(named.controls), _sort_by_name(named.activations)
+        self._bodies, self._mocaps = _sort_by_name(named.bodies), _sort_by_name(named.mocaps)
+        self._has_more = bool(model.na or model.nmocap)
+        self._listens = model.nbody <= _WATCHED_CALLS
+        self._edition, self._given = -1, 0
+        width = model.nq + model.nv + model.nu + 1
+        kept = int(np.clip(_MAX_VALUES // width, _MIN_STATES, _STATES_KEPT))
+        self._every = max(1, -(-self._ticks // kept))
+
+    def _keep(self) -> None:
+        """Takes the whole state."""
+        tick = len(self._marks)
+        if self._kept and self._kept[-1][0] == tick:
+            return
+        physics = self._sim.physics
+        if physics.data is not self._data:
+            self._look_anew()
+        self._kept.append((tick, *self._named.values(physics)))
+
+
+class StateQuantities:
+    """Names of what a compiled model's state is made of, in the order of the engine."""
+
+    def __init__(self, model: Any) -> None:
+        import mujoco
+
+        self.bodies = [_name(model, mujoco.mjtObj.mjOBJ_BODY, i) for i in range(model.nbody)]
+        joints = [_name(model, mujoco.mjtObj.mjOBJ_JOINT, i) for i in range(model.njnt)]
+        self.controls = [_name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i) for i in range(model.nu)]
+        self.positions = [""] * model.nq
+        self.velocities = [""] * model.nv
+        free, ball = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
+        for joint, name in enumerate(joints):
+            kind, whole = int(model.jnt_type[joint]), self.bodies[int(model.jnt_bodyid[joint])]
+            place, speed = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
+            if kind == free:
+                self.positions[place : place + 7] = [f"{whole} {part}" for part in _FREE_POSITION]
+                self.velocities[speed : speed + 6] = [f"{whole} {part}" for part in _FREE_VELOCITY]
+            elif kind == ball:
+                self.positions[place : place + 4] = [f"{name} orientation {part}" for part in "wxyz"]
+                self.velocities[speed : speed + 3] = [f"{name} velocity {part}" for part in "xyz"]
+            else:
+                self.positions[place], self.velocities[speed] = f"{name} position", f"{name} velocity"
+        self.activations = [f"activation {i}" for i in range(model.na)]
+        for actuator, motor in enumerate(self.controls):
+            start, count = int(model.actuator_actadr[actuator]), int(model.actuator_actnum[actuator])
+            for at in range(start, start + count if start >= 0 else start):
+                self.activations[at] = f"{motor} activation" + (f" {at - start}" if count > 1 else "")
+        self.mocaps = [""] * model.nmocap
+        for body, number in enumerate(model.body_mocapid.tolist()):
+            if number >= 0:
+                self.mocaps[number] = self.bodies[body]
+        self.forces = [f"force on {name}" for name in self.velocities]
+
+    def values(self, physics: Any) -> tuple[dict[str, float], dict[str, float]]:
+        """The state by name, and what is put in; of forces those that are not zero."""
+        data = physics.data
+        state = dict(zip(self.positions, data.qpos.tolist(), strict=True))
+        state.update(zip(self.velocities, data.qvel.tolist(), strict=True))
+        state.update(zip(self.activations, data.act.tolist(), strict=True))
+        for name, position, turn in zip(self.mocaps, data.mocap_pos.tolist(), data.mocap_quat.tolist(), strict=True):
+            state.update((f"{name} {part}", v) for part, v in zip(_FREE_POSITION, [*position, *turn], strict=True))
+        given = {f"control {name}": value for name, value in zip(self.controls, data.ctrl.tolist(), strict=True)}
+        applied, pushed = applied_forces(physics)
+        for at in np.flatnonzero(applied):
+            given[self.forces[int(at)]] = float(applied[at])
+        for body, part in zip(*np.nonzero(pushed), strict=True):
+            given[f"{_WRENCH[int(part)]} on {self.bodies[int(body)]}"] = float(pushed[body, part])
+        return state, given
+
+
+_FREE_POSITION: Final = ("position x", "position y", "position z", *(f"orientation {part}" for part in "wxyz"))
+_FREE_VELOCITY: Final = (*(f"velocity {part}" for part in "xyz"), *(f"angular velocity {part}" for part in "xyz"))
+_WRENCH: Final = (*(f"push {part}" for part in "xyz"), *(f"torque {part}" for part in "xyz"))
+
+
+def _name(model: Any, kind: Any, number: int) -> str:
+    import mujoco
+
+    return mujoco.mj_id2name(model, kind, number) or f"#{number}"
+
+
+def _sort_by_name(names: list[str]) -> npt.NDArray[np.intp]:
+    """Puts them in the order of their names."""
+    return np.array(sorted(range(len(names)), key=names.__getitem__), dtype=np.intp)
+
+
+def _union(states: Any) -> list[str]:
+    return sorted({name for state in states for name in state})
+
+
+def _state_table(states: list[dict[str, float]], names: list[str]) -> npt.NDArray[np.float64]:
+    """A row for each state; not a number where it has no such quantity (a model that was not there)."""
+    values = [[state.get(name, np.nan) for name in names] for state in states]
+    return np.array(values, dtype=np.float64).reshape(len(states), len(names))

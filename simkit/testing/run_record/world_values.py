@@ -1,0 +1,317 @@
+"""A resolved world as a flat table: one path for each value, the values of controller and motion files included."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.diagnostics import Where
+from simkit.params import Params
+from simkit.pose import Pose
+from simkit.scene import SceneSensor, SceneWorld
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
+
+
+_IGNORED_FIELDS: Final = frozenset(("where", "name", "scoped", "uri", "script", "skin", "missing", "mjcf", "moved_by"))
+"""Fields that are places or names of files, or that are in the path already, or no plain values."""
+_SENSOR_FIELDS: Final = frozenset(("pose", "update_rate", "topic", "plugin"))
+"""Elements of a sensor that are fields of it as well."""
+WorldValues = dict[str, Any]
+
+
+def values_of_simulation(sim: Simulation) -> tuple[WorldValues, dict[str, str]]:
+    """The values that a simulation's world is made of.
+
+    Returns:
+        Path -> number, text, or list of numbers (a pose is x, y, z and a quaternion w, x, y, z); path -> `file:line`.
+    """
+
+    leaves, places = values_of_world(sim.world)
+    in_files, their_places, _ = values_of_files(plugin_value_files(sim))
+    return {**leaves, **in_files}, {**places, **their_places}
+
+
+def values_of_world(world: SceneWorld) -> tuple[WorldValues, dict[str, str]]:
+    """The same of a world that is not simulated."""
+    walk = _WorldWalk()
+    walk.dataclass(world, "", "")
+    return walk.leaves, walk.places
+
+
+def split_path(path: str) -> list[tuple[str, str]]:
+    """The steps of a path: (field, key), the key empty where there is none; an attribute's field begins with `@`.
+
+    Names in brackets have `]` as `%5D` and `%` as `%25`; they come back as they are.
+    """
+    steps: list[tuple[str, str]] = []
+    at = 0
+    while at < len(path):
+        if path[at] == ".":
+            at += 1
+        start = at
+        at += path[at : at + 1] == "@"
+        while at < len(path) and path[at] not in ".[@":
+            at += 1
+        name, key = path[start:at], ""
+        if path[at : at + 1] == "[":
+            stop = path.find("]", at)
+            stop = len(path) if stop < 0 else stop
+            key, at = path[at + 1 : stop].replace("%5D", "]").replace("%25", "%"), stop + 1
+        steps.append((name, key))
+    return steps
+
+
+def item_keys(items: Iterable[Any]) -> list[str]:
+    """What the items of a list go by in paths: their name (of a second one `name#2`), else their number from 0."""
+    seen: dict[str, int] = {}
+    keys = []
+    for number, item in enumerate(items):
+        name = str(getattr(item, "name", "") or getattr(item, "filename", ""))
+        if not name:
+            keys.append(str(number))
+            continue
+        seen[name] = seen.get(name, 0) + 1
+        keys.append(name if seen[name] == 1 else f"{name}#{seen[name]}")
+    return keys
+
+
+def element_keys(elements: Iterable[Params]) -> list[str]:
+    """What elements of one parent go by: their own names, with the attribute `name` or a number from 1 where several
+    have the same: `update_rate`, `left_joint[2]`, `plugin[drive]`."""
+    found = list(elements)
+    equal: dict[str, list[Params]] = {}
+    for one in found:
+        equal.setdefault(one.name, []).append(one)
+    keys = {}
+    for name, several in equal.items():
+        names = [one.attributes.get("name", "") for one in several]
+        named = all(names) and len(set(names)) == len(names)
+        for number, one in enumerate(several, 1):
+            if named:
+                keys[id(one)] = f"{name}[{_escaped(one.attributes['name'])}]"
+            else:
+                keys[id(one)] = name if len(several) == 1 else f"{name}[{number}]"
+    return [keys[id(one)] for one in found]
+
+
+class _WorldWalk:
+    """Goes through dataclasses and elements."""
+
+    def __init__(self) -> None:
+        self.leaves: WorldValues = {}
+        self.places: dict[str, str] = {}
+
+    def dataclass(self, value: Any, path: str, place: str) -> None:
+        where = getattr(value, "where", None)
+        if isinstance(where, Where) and where.line:
+            place = str(where)
+        kind: Any = type(value)
+        for name in _field_names(kind):
+            if name not in _IGNORED_FIELDS:
+                self.value(getattr(value, name), f"{path}.{name}" if path else name, place, value)
+
+    def value(self, value: Any, path: str, place: str, owner: Any = None) -> None:
+        if value is None or callable(value):
+            return
+        if isinstance(value, (bool, int, float, str)):
+            self._put(path, value, place)
+        elif isinstance(value, Pose):
+            self._put(path, [*map(float, value.position), *map(float, value.quaternion)], place)
+        elif isinstance(value, Path):
+            self._put(path, file_content_text(value), place)
+        elif isinstance(value, Params):
+            self.element(value, path, place, _SENSOR_FIELDS if isinstance(owner, SceneSensor) else frozenset())
+        elif is_dataclass(value):
+            if shape_class_name(value):
+                self._put(path, shape_class_name(value), place)
+            self.dataclass(value, path, place)
+        elif isinstance(value, Mapping):
+            for key in sorted(value, key=str):
+                self.value(value[key], f"{path}[{_escaped(str(key))}]", place)
+        elif isinstance(value, (tuple, list, frozenset)):
+            self._items(value, path, place)
+
+    def _items(self, items: Any, path: str, place: str) -> None:
+        if isinstance(items, frozenset):
+            items = sorted(items, key=str)
+        if all(_is_scalar(item) for item in items):
+            if len(items):
+                self._put(path, [_scalar(item) for item in items], place)
+            return
+        for key, item in zip(item_keys(items), items, strict=True):
+            self.value(item, f"{path}[{_escaped(key)}]", place)
+
+    def element(self, params: Params, path: str, place: str, left_out: frozenset[str] = frozenset()) -> None:
+        """An element with what is in it."""
+        if params.where.line:
+            place = str(params.where)
+        for name, text in sorted(params.attributes.items()):
+            self._put(f"{path}@{name}", _element_value(text), place)
+        if params.value:
+            self._put(path, _element_value(params.value), place)
+        elif not params.children and not params.attributes:
+            self._put(path, "", place)
+        inner = [child for child in params.children if child.name not in left_out]
+        for key, child in zip(element_keys(inner), inner, strict=True):
+            self.element(child, f"{path}.{key}", place)
+
+    def _put(self, path: str, value: Any, place: str) -> None:
+        self.leaves[path] = value
+        if place:
+            self.places[path] = place
+
+
+def shape_class_name(value: Any) -> str:
+    """The class of what may be of several: shapes."""
+    kind = type(value)
+    return kind.__name__ if kind.__module__ == "simkit.scene.geometry" else ""
+
+
+@cache
+def _field_names(kind: Any) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind))
+
+
+def _is_scalar(item: Any) -> bool:
+    return isinstance(item, (bool, int, float, str)) or (
+        isinstance(item, (tuple, list)) and all(_is_scalar(one) for one in item)
+    )
+
+
+def _scalar(item: Any) -> Any:
+    return [_scalar(one) for one in item] if isinstance(item, (tuple, list)) else item
+
+
+def _escaped(key: str) -> str:
+    return key.replace("%", "%25").replace("]", "%5D")
+
+
+def _element_value(text: str) -> Any:
+    """The text of an element: numbers where it is some, so that `0.10` is `0.1`; files by what is in them."""
+    words = text.split()
+    try:
+        numbers = [float(word) for word in words]
+    except ValueError:
+        if text.startswith("/") and len(text) < 4096:
+            path = Path(text)
+            if path.is_file():
+                return file_content_text(path)
+            if path.is_dir():
+                return path.name
+        return " ".join(words)
+    return numbers[0] if len(numbers) == 1 else numbers
+
+
+def file_content_text(path: Path) -> str:
+    """What is in a file, in a few letters: the beginning of its SHA-256, and its size."""
+    digest, size = file_hash(path)
+    return f"{digest[:16]} ({size} bytes)" if digest else "missing"
+
+
+def file_hash(path: Path) -> tuple[str, int]:
+    """SHA-256 and size of a file; empty and 0 where it cannot be read."""
+    try:
+        stat = path.stat()
+        return _cached_file_hash(str(path), stat.st_mtime_ns, stat.st_size)
+    except OSError:
+        return "", 0
+
+
+@cache
+def _cached_file_hash(path: str, _: int, size: int) -> tuple[str, int]:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest(), size
+
+
+_SUFFIXES: Final = frozenset((".yaml", ".yml"))
+_MAX_FILE_BYTES: Final = 100_000  # values of one file
+_MAX_YAML_DEPTH: Final = 60
+_MAX_TEXT: Final = 8 << 20  # bytes
+_PLAIN_YAML_VALUE: Final = re.compile(r"[\w/*:-]+")
+
+
+def plugin_value_files(sim: Simulation) -> list[Path]:
+    """The files that plugins have found, each once."""
+    return list(dict.fromkeys(path.resolve() for path in sim.structure.builder.files_read))
+
+
+def values_of_files(paths: Iterable[Path]) -> tuple[dict[str, Any], dict[str, str], set[Path]]:
+    """What is in files of values.
+
+    Args:
+        paths: files; those of another kind are left out.
+
+    Returns:
+        Path of a leaf (`files[controllers.yaml].arm.gains.p`) -> value, `file:line`, and the files that were read.
+    """
+    leaves: dict[str, Any] = {}
+    places: dict[str, str] = {}
+    read = set()
+    for path in sorted(set(paths)):
+        root = _parse_document(path)
+        if root is None:
+            continue
+        taken = any(key.startswith(f"files[{path.name}]") for key in leaves)
+        name = f"{path.parent.name}/{path.name}" if taken else path.name
+        found: dict[str, tuple[Any, int]] = {}
+        if _flatten_document(root, f"files[{name.replace('%', '%25').replace(']', '%5D')}]", found, 0):
+            leaves.update({key: value for key, (value, _) in found.items()})
+            places.update({key: f"{path}:{line}" for key, (_, line) in found.items()})
+            read.add(path)
+    return leaves, places, read
+
+
+def _parse_document(path: Path) -> Any:
+    """The document of a file; None where it is not one of values."""
+    if path.suffix.lower() not in _SUFFIXES:
+        return None
+    import yaml
+
+    from simkit.yaml_reader import yaml_loader
+
+    try:
+        if path.stat().st_size > _MAX_TEXT:
+            return None
+        return yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml_loader())
+    except (OSError, UnicodeDecodeError, yaml.YAMLError, RecursionError):
+        return None
+
+
+def _flatten_document(node: Any, path: str, found: dict[str, tuple[Any, int]], depth: int) -> bool:
+    """Goes through a document; False where it is too large, or holds itself."""
+    if depth > _MAX_YAML_DEPTH or len(found) > _MAX_FILE_BYTES:
+        return False
+    line = node.start_mark.line + 1
+    if node.id == "mapping":
+        for key, value in node.value:
+            name = str(key.value) if key.id == "scalar" else "?"
+            step = (
+                f".{name}"
+                if _PLAIN_YAML_VALUE.fullmatch(name)
+                else f".of[{name.replace('%', '%25').replace(']', '%5D')}]"
+            )
+            if not _flatten_document(value, path + step, found, depth + 1):
+                return False
+        return True
+    if node.id == "sequence":
+        if all(item.id == "scalar" for item in node.value):
+            found[path] = ([_yaml_scalar(item) for item in node.value], line)
+            return True
+        return all(_flatten_document(item, f"{path}.item[{n}]", found, depth + 1) for n, item in enumerate(node.value))
+    found[path] = (_yaml_scalar(node), line)
+    return True
+
+
+def _yaml_scalar(node: Any) -> Any:
+    """A scalar: the number that it is, or its text."""
+    try:
+        return float(node.value) if not node.style else node.value
+    except ValueError:
+        return {"true": True, "false": False}.get(node.value.lower(), node.value) if not node.style else node.value

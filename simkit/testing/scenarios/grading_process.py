@@ -1,0 +1,130 @@
+"""One run of an exercise in a process of its own, so that what was handed in can end, hang or print as it likes."""
+
+from __future__ import annotations
+
+import json
+import sys
+import traceback
+from pathlib import Path
+from typing import Any
+
+from simkit.child_process import exit_immediately, exit_with_parent
+from simkit.errors import InputError, LoadError, PluginError, SimkitError
+from simkit.testing.scenarios.exercise import Exercise, ExerciseRun, read_exercise
+
+
+def main(job_file: str) -> None:
+    """Runs one variation and leaves what came of it as JSON in a file.
+
+    Args:
+        job_file: what is to be done, as JSON: `exercise` and `hand_in` (files; empty for none), `number` of the run,
+            `target` (file for the result), `picture` (file for one of the path; empty for none), and a `token` that
+            the result has too. The file is removed: what was handed in does not find it lying around.
+    """
+    job = json.loads(Path(job_file).read_text(encoding="utf-8"))
+    Path(job_file).unlink()
+    asked = read_exercise(job["exercise"])
+    hand_in = Path(job["hand_in"]) if job["hand_in"] else None
+    found = _run_exercise(asked, asked.runs[job["number"]], hand_in, job["picture"])
+    try:
+        Path(job["target"]).write_text(json.dumps({**found, "token": job["token"]}), encoding="utf-8")
+    except OSError as error:  # what was handed in has removed the place
+        sys.exit(f"the result cannot be written: {error.strerror}")
+
+
+def _run_exercise(asked: Exercise, variation: ExerciseRun, hand_in: Path | None, picture: str) -> dict[str, Any]:
+    """What became of each check, or what went wrong."""
+    from simkit.recording.run_picture import DrivenPath, save_picture
+    from simkit.runtime.engine.snapshot import state_hash
+    from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+
+    sim: Any = None
+    try:
+        more: dict[str, Any] = {}
+        if hand_in is not None:
+            paths = (hand_in.parent, *variation.scenario.options.get("plugin_paths", ()))
+            more["plugin_paths"] = paths
+            if asked.robot:
+                more["plugins"] = (
+                    *variation.scenario.plugins,
+                    (asked.robot, _make_plugin(hand_in, variation.parameters)),
+                )
+        with open_scenario(variation.scenario, **more) as sim:
+            driven = DrivenPath(sim) if picture else None
+            on_slice = None if driven is None else driven.sample
+            ended = run_scenario(variation.scenario, sim, on_slice, absent="wait")
+            if driven is not None:
+                from simkit.build import render_view
+
+                save_picture(sim, Path(picture), render_view, driven)
+            results = [(result.passed, result.message, result.time) for result in ended.results]
+            return {"end": ended.reason, "time": sim.time, "results": results, "state": state_hash(sim)}
+    except (LoadError, InputError) as error:  # the world's, or of a check or command that does not fit it
+        if hand_in is None or not _is_sound_without_plugin(variation):
+            return {"fault": str(error), "code": error.code}
+        return {"error": str(error), "time": 0.0 if sim is None else sim.time}
+    except (KeyboardInterrupt, SystemExit) as error:
+        place = _error_position(error, hand_in)
+        return {"error": f"{type(error).__name__} ended the run{place}", "time": 0.0 if sim is None else sim.time}
+    except PluginError as error:
+        place = "" if error.__cause__ is None else _error_position(error.__cause__, hand_in)
+        return {"error": f"{error}{place}", "time": error.time}
+    except SimkitError as error:
+        return {"error": str(error), "time": 0.0 if sim is None else sim.time}
+
+
+def _is_sound_without_plugin(variation: ExerciseRun) -> bool:
+    """Whether the exercise's world opens and has what its checks name where nothing was handed in."""
+    from simkit.testing.conditions import Watch
+    from simkit.testing.scenarios.scenario_run import open_scenario
+
+    asked = variation.scenario
+    try:
+        with open_scenario(asked) as sim:
+            Watch(sim, asked.checks, until=asked.until, absent="wait")
+    except SimkitError:
+        return False
+    return True
+
+
+def _make_plugin(file: Path, parameters: Any) -> Any:
+    """The plugin of a file.
+
+    Raises:
+        LoadError: SK-PLUGIN-008 it has none, or running or making it failed.
+    """
+    from simkit.diagnostics import Diagnostics, Where
+    from simkit.params import Params
+    from simkit.plugins.discovery.user_plugins import find_user_plugin
+    from simkit.scene import ScenePlugin
+
+    diagnostics = Diagnostics()
+    where = Where(str(file))
+    wanted = ScenePlugin(file.stem, file.name, "", Params("plugin", "", {}, (), where), where)
+    found = find_user_plugin(wanted, [file.parent], diagnostics)
+    if found is None:
+        if not diagnostics.has_errors:
+            diagnostics.error("SK-PLUGIN-008", f"{file.name} has no plugin", where)
+        raise LoadError(tuple(diagnostics))
+    try:
+        return found(**parameters)
+    except Exception as error:
+        message = f"making a {found.__name__} failed: {type(error).__name__}: {error}{_error_position(error, file)}"
+        diagnostics.error("SK-PLUGIN-008", message, where)
+        raise LoadError(tuple(diagnostics)) from error
+
+
+def _error_position(error: BaseException, file: Path | None) -> str:
+    """Where in what was handed in an error came from."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if file is not None and f.filename == str(file)]
+    frames = frames or [
+        f for f in traceback.extract_tb(error.__traceback__) if file and Path(f.filename) == file.resolve()
+    ]
+    return f"\n{Path(frames[-1].filename).name}:{frames[-1].lineno}: {frames[-1].line}" if frames else ""
+
+
+if __name__ == "__main__":
+    exit_with_parent()
+    main(*sys.argv[1:])
+    sys.stdout.flush()
+    exit_immediately(0)

@@ -1,0 +1,131 @@
+"""Scenario files in Python: run the file, take its `scenario`, and validate the values of it."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final, get_args
+
+from simkit.diagnostics import Diagnostics, Where
+from simkit.errors import InputError, LoadError
+from simkit.run_spec import Check, CheckKind, Scenario, Tolerance
+from simkit.testing.scenarios.yaml_document import resolve_spawn_file, short_repr
+from simkit.yaml_reader import finite_number
+
+_TEXT_FIELDS: Final = ("overrides", "spawn", "topics", "skip")
+_CHECK_KINDS: Final = get_args(CheckKind)
+
+
+def validate_scenario(scenario: Scenario) -> Iterator[str]:
+    """Each as `attribute: found …, allowed is …`."""
+    if not isinstance(scenario.world, str) or not scenario.world.strip():
+        yield _problem("world", scenario.world, "a file, a bare name, or XML text")
+    yield from _validate_numbers("", scenario, duration=False, timeout=True, wall_timeout=True)
+    for key, least in (("seed", 0), ("picture", 8)):
+        value = getattr(scenario, key)
+        if not isinstance(value, int) or isinstance(value, bool) or value < least:
+            yield _problem(key, value, f"a whole number of at least {least}")
+    for key in ("name", "until"):
+        if not _is_valid_text(scenario, key):
+            yield _problem(key, getattr(scenario, key), "a text")
+    for key in _TEXT_FIELDS:
+        value = getattr(scenario, key)
+        if not isinstance(value, (tuple, list)) or not all(isinstance(one, str) for one in value):
+            yield _problem(key, value, "a tuple of texts")
+    yield from _validate_commands(scenario.commands)
+    for key, kind in (("checks", Check), ("tolerances", Tolerance)):
+        value = getattr(scenario, key)
+        if not isinstance(value, (tuple, list)) or not all(isinstance(one, kind) for one in value):
+            yield _problem(key, value, f"a tuple of {kind.__name__}")
+        elif kind is Check:
+            for number, check in enumerate(value):
+                yield from _validate_check(f"checks[{number}].", check)
+
+
+def _validate_check(label: str, check: Check) -> Iterator[str]:
+    if check.kind not in _CHECK_KINDS:
+        yield _problem(f"{label}kind", check.kind, f"one of {', '.join(_CHECK_KINDS)}")
+    yield from (
+        _problem(f"{label}{key}", getattr(check, key), "a text")
+        for key in ("name", "expression", "topic", "hint")
+        if not _is_valid_text(check, key)
+    )
+    models: Any = check.models
+    if not isinstance(models, (tuple, list)) or not all(isinstance(one, str) for one in models):
+        yield _problem(f"{label}models", models, "a tuple of texts")
+    yield from _validate_numbers(label, check, by=True, after=False, rate=True, tolerance=False, points=False)
+
+
+def _validate_numbers(label: str, of: Any, **may_be_none: bool) -> Iterator[str]:
+    for key, is_free in may_be_none.items():
+        value = getattr(of, key)
+        number = finite_number(value)
+        if (number is None or number < 0.0) and not (is_free and value is None):
+            yield _problem(f"{label}{key}", value, "a number of at least 0" + (", or None" if is_free else ""))
+
+
+def _validate_commands(commands: Any) -> Iterator[str]:
+    from simkit.recording.commands import placed_items
+
+    if not isinstance(commands, (tuple, list)) or not all(isinstance(one, Mapping) for one in commands):
+        yield _problem("commands", commands, "a tuple of mappings with at, topic and message")
+        return
+    try:
+        placed_items((dict(one), f"commands[{number}]") for number, one in enumerate(commands))
+    except InputError as error:
+        yield from (line.replace(f" {error.code}", "", 1) for line in str(error).splitlines())
+
+
+def _is_valid_text(of: Any, key: str) -> bool:
+    return isinstance(getattr(of, key), str)
+
+
+def _problem(key: str, value: Any, allowed: str) -> str:
+    return f"{key}: found {value!r:.60}, allowed is {allowed}"
+
+
+def load_python_scenario(file: Path, diagnostics: Diagnostics) -> Scenario:
+    """The `scenario` of a Python file, which is run.
+
+    Raises:
+        LoadError: SK-SCEN-001 there is no such file; SK-SCEN-005 it failed, or has no scenario; SK-SCEN-003 for
+            every value of it that is not of those that are allowed.
+    """
+    where = Where(str(file))
+    problem: Callable[..., None] = diagnostics.error
+    found: Any = None
+    spec = importlib.util.spec_from_file_location(f"simkit_scenario_{file.stem}", file)
+    if spec is None or spec.loader is None or not file.is_file():
+        problem("SK-SCEN-001", "cannot be read: no such file", where)
+        raise LoadError(tuple(diagnostics))
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:
+        line = _error_line(error, file)
+        problem("SK-SCEN-005", f"running it failed: {type(error).__name__}: {error}", Where(str(file), line))
+        raise LoadError(tuple(diagnostics)) from error
+    found = getattr(module, "scenario", None)
+    if not isinstance(found, Scenario):
+        hint = "from simkit.testing.scenarios import Scenario; scenario = Scenario(world=..., duration=...)"
+        problem("SK-SCEN-005", f"'scenario' is {short_repr(found)}, allowed is a Scenario", where, hint)
+        raise LoadError(tuple(diagnostics))
+    for message in validate_scenario(found):
+        problem("SK-SCEN-003", message, where)
+    diagnostics.raise_if_errors()
+    folder = file.parent if found.folder == Path() else found.folder
+    return replace(found, folder=folder, file=file, spawn=tuple(resolve_spawn_file(folder, one) for one in found.spawn))
+
+
+def _error_line(error: BaseException, file: Path) -> int | None:
+    """The last line of a file that an error came through."""
+    if isinstance(error, SyntaxError) and error.filename == str(file):
+        return error.lineno
+    line, trace = None, error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == str(file):
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    return line

@@ -1,0 +1,352 @@
+"""Scenario files: YAML, or Python with a `scenario`.
+
+All problems of a file are reported in one pass, with file and line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Final
+
+from simkit.diagnostics import Diagnostics, Where
+from simkit.errors import InputError, LoadError
+from simkit.run_spec import Check, CheckKind, Scenario, Tolerance
+from simkit.testing.scenarios.python_file import load_python_scenario
+from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
+
+_SCENARIO_SUFFIXES: Final = (".yaml", ".yml", ".py")
+_CHECKS: Final[dict[str, CheckKind]] = {
+    "goals": "goal",
+    "limits": "always",
+    "at_end": "final",
+    "no_contact": "apart",
+    "rates": "rate",
+}
+_READING_KEYS: Final = ("resource_paths", "package_paths", "xacro_args", "base")
+_LOADING_KEYS: Final = ("plugin_paths", "params_files", *_READING_KEYS)
+KEYS: Final = (
+    *("world", "name", "duration", "seed", "set", "spawn", "commands", "play", "play_topics", "topics"),
+    *("skip", "tolerances", "statistics", "state", "model", "picture", "until", "timeout", "wall_timeout"),
+    *_CHECKS,
+    *_LOADING_KEYS,
+)
+"""What a scenario file may say."""
+_CHECK_KEYS: Final[dict[CheckKind, tuple[str, ...]]] = {
+    "goal": ("name", "that", "by", "points", "hint"),
+    "always": ("name", "that", "after", "points", "hint"),
+    "final": ("name", "that", "points", "hint"),
+    "apart": ("name", "models", "after", "points", "hint"),
+    "rate": ("name", "topic", "rate", "tolerance", "points", "hint"),
+}
+_TOLERANCE_KEYS: Final = tuple(f.name for f in fields(Tolerance) if f.name not in ("pattern", "where"))
+_TEXT_KEYS: Final[dict[str, dict[str, Any]]] = {
+    "exact": {"exact": True},
+    "ignore": {"ignore": True},
+    "statistics": {"statistics": True},
+}
+
+
+def is_scenario_file(source: str | Path) -> bool:
+    """Whether a name is that of a scenario's file rather than of a world."""
+    return Path(source).suffix.lower() in _SCENARIO_SUFFIXES
+
+
+def read_scenario(path: str | Path) -> Scenario:
+    """The scenario in a file.
+
+    Args:
+        path: a YAML file, or a Python file that has a `scenario = Scenario(...)`, which is run for it.
+
+    Raises:
+        LoadError: with every problem of the file: SK-SCEN-001 to SK-SCEN-005.
+    """
+    file = Path(path)
+    diagnostics = Diagnostics()
+    if file.suffix.lower() == ".py":
+        return load_python_scenario(file, diagnostics)
+    document = Document(file, diagnostics)
+    if document.values is None:
+        diagnostics.raise_if_errors()
+    scenario = parse_scenario(document)
+    if diagnostics.has_errors:
+        _check_world(scenario, diagnostics)
+    diagnostics.raise_if_errors()
+    return scenario
+
+
+def _check_world(scenario: Scenario, diagnostics: Diagnostics) -> None:
+    """What is wrong with the world of a faulty scenario: it is told in the same pass."""
+    from simkit.build import read_scene
+
+    if not scenario.world:
+        return
+    options = {key: value for key, value in scenario.options.items() if key in _READING_KEYS}
+    try:
+        read_scene(scenario.source, **options)
+    except LoadError as error:
+        diagnostics.extend(error.diagnostics)
+    except InputError as error:
+        diagnostics.error(error.code, str(error).removeprefix(error.code).strip(), Where(str(scenario.file)))
+
+
+def parse_scenario(document: Document, *, also: tuple[str, ...] = ()) -> Scenario:
+    """What a document says; its problems go into its diagnostics.
+
+    Args:
+        document: of a scenario file.
+        also: keys that somebody else reads.
+    """
+    if document.values is None:
+        document.values = {}
+    said = document.only(document.values, KEYS + also, "a scenario")
+    if isinstance(document.values, dict) and "world" not in said:
+        document.error("SK-SCEN-004", "a scenario needs 'world'", hint="world: a file, or a bare name that simkit has")
+    return ScenarioReader(document, said).scenario()
+
+
+class ScenarioReader(ValueReader):
+    """Reads the values of a scenario."""
+
+    def scenario(self) -> Scenario:
+        wall = self._number("wall_timeout", None, above=0.0)
+        if "timeout" in self._said and "until" not in self._said:
+            hint = "duration: S ends a run by itself"
+            self._document.error("SK-SCEN-004", "'timeout' needs 'until': what is waited for", "timeout", hint=hint)
+        if "timeout" in self._said and "duration" in self._said:
+            message = "'timeout' and 'duration' both say when a run ends; 'timeout' does where there is 'until'"
+            self._document.error("SK-SCEN-003", message, "timeout", hint="leave one of them out")
+        return Scenario(
+            world=self._text("world", ""),
+            duration=self._number("duration", self._played(), least=0.0) or 0.0,
+            seed=self._whole("seed", 0, 0),
+            name=self._text("name", ""),
+            overrides=self._overrides(),
+            spawn=tuple(resolve_spawn_file(self._document.path.parent, one) for one in self._texts("spawn")),
+            commands=self._commands(),
+            play=str(self._said.get("play", "")),
+            play_topics=self._texts("play_topics"),
+            topics=self._texts("topics"),
+            skip=self._texts("skip"),
+            tolerances=(*self._tolerances(), *self._statistics()),
+            state=self._flag("state", True),
+            model=self._flag("model", True),
+            picture=self._whole("picture", 64, 8),
+            until=self._expression(self._text("until", ""), "until"),
+            timeout=self._number("timeout", None, above=0.0),
+            wall_timeout=wall,
+            checks=tuple(check for key, kind in _CHECKS.items() for check in self._checks(key, kind)),
+            options=self._options(),
+            folder=self._document.path.parent,
+            file=self._document.path,
+        )
+
+    # ------------------------------------------------------------------ what is loaded and done
+
+    def _overrides(self) -> tuple[str, ...]:
+        if isinstance(self._said.get("set"), dict):
+            return tuple(f"{path}={one}" for path, one in self._written("set").items())
+        return self._texts("set")
+
+    def _written(self, key: str) -> dict[str, str]:
+        """A mapping's values as texts; those that cannot be one are told of."""
+        found = {}
+        for name, value in self._mapping(key).items():
+            if is_scalar_text(value):
+                found[name] = yaml_value_text(value)
+            else:
+                self._wrong(value, "a number, a text, true or false, or a list of them", key, name)
+        return found
+
+    def _commands(self) -> tuple[Mapping[str, Any], ...]:
+        from simkit.recording.commands import placed_items, script_items
+
+        value = self._said.get("commands", ())
+        try:
+            if isinstance(value, str):
+                return tuple(script_items(self._document.path.parent / value))
+            if isinstance(value, (list, tuple)):
+                places = [str(self._document.where("commands", number)) for number in range(len(value))]
+                return tuple(placed_items(zip(value, places, strict=True)))
+        except InputError as error:
+            for line in str(error).splitlines():
+                place, _, message = line.partition(f": {error.code} ")
+                file, _, number = place.rpartition(":")
+                where = Where(file, int(number)) if number.isdecimal() else Where(place)
+                self._document.diagnostics.error(error.code, message, where)
+            return ()
+        self._wrong(value, "a list of {at, topic, message}, or the name of a file that holds one", "commands")
+        return ()
+
+    def _played(self) -> float:
+        """How long the recording is that is played [s]; 10 s where none is."""
+        from simkit.recording.charts.series import bag_file_duration
+
+        said = self._said.get("play")
+        if said is None and "play_topics" in self._said:
+            hint = "play: a bag, whose commands are sent again"
+            self._document.error("SK-SCEN-004", "'play_topics' needs 'play'", "play_topics", hint=hint)
+        if not isinstance(said, str) or not said.strip():
+            if "play" in self._said:
+                self._wrong(said, "the name of a bag", "play")
+            return 10.0
+        try:
+            return bag_file_duration(self._document.path.parent / said)
+        except InputError as error:
+            self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")
+            return 10.0
+
+    def _options(self) -> dict[str, Any]:
+        folder = self._document.path.parent
+        found: dict[str, Any] = {}
+        for key in ("resource_paths", "plugin_paths"):
+            if key in self._said:
+                found[key] = tuple(folder / one for one in self._texts(key))
+        if "params_files" in self._said:
+            found["params_files"] = tuple(_resolve_params_file(folder, one) for one in self._texts("params_files"))
+        if "package_paths" in self._said:
+            found["package_paths"] = {name: folder / one for name, one in self._written("package_paths").items()}
+        if "xacro_args" in self._said:
+            found["xacro_args"] = self._written("xacro_args")
+        if "base" in self._said:
+            found["base"] = self._text("base", "auto")
+            if found["base"] not in ("auto", "fixed", "floating"):
+                self._wrong(found.pop("base"), "auto, fixed or floating", "base")
+        return found
+
+    # ------------------------------------------------------------------ what is compared
+
+    def _tolerances(self) -> list[Tolerance]:
+        found = []
+        for pattern, value in self._mapping("tolerances").items():
+            keys = ("tolerances", pattern)
+            where = str(self._document.where(*keys))
+            if isinstance(value, str) and value in _TEXT_KEYS:
+                found.append(Tolerance(_absolute_topic(pattern), **_TEXT_KEYS[value], where=where))
+            elif isinstance(value, (int, float)) and not isinstance(value, bool):
+                limit = self._number_of(value, None, keys, least=0.0)
+                found.append(Tolerance(_absolute_topic(pattern), absolute=limit, where=where))
+            elif isinstance(value, dict):
+                found.append(self._tolerance(pattern, value, where))
+            else:
+                words = ", ".join(_TEXT_KEYS)
+                self._wrong(value, f"a number, one of {words}, or a mapping of {', '.join(_TOLERANCE_KEYS)}", *keys)
+        return found
+
+    def _tolerance(self, pattern: str, value: Mapping[str, Any], where: str) -> Tolerance:
+        keys = ("tolerances", pattern)
+        said = self._document.only(value, _TOLERANCE_KEYS, "a tolerance", *keys)
+        found: dict[str, Any] = {}
+        for key, one in said.items():
+            if key in ("statistics", "ignore", "exact"):
+                if isinstance(one, bool):
+                    found[key] = one
+                else:
+                    self._wrong(one, "true or false", *keys, key)
+            else:
+                found[key] = self._number_of(one, None, (*keys, key), least=-1.0 if key == "ssim" else 0.0)
+                if key in ("share", "ssim") and (found[key] or 0.0) > 1.0:
+                    self._wrong(one, "a number of at most 1", *keys, key)
+        modes = [key for key in _TEXT_KEYS if found.get(key)]
+        if len(modes) > 1:
+            self._document.error("SK-SCEN-003", f"a tolerance is one of {', '.join(modes)}, not all of them", *keys)
+        return Tolerance(_absolute_topic(pattern), where=where, **found)
+
+    def _statistics(self) -> list[Tolerance]:
+        where = str(self._document.where("statistics"))
+        return [Tolerance(_absolute_topic(one), statistics=True, where=where) for one in self._texts("statistics")]
+
+    # ------------------------------------------------------------------ what must hold
+
+    def _checks(self, key: str, kind: CheckKind) -> list[Check]:
+        value = self._said.get(key, ())
+        if isinstance(value, dict) and kind == "rate":
+            value = [{"topic": topic, "rate": rate} for topic, rate in value.items()]
+        if isinstance(value, (str, dict, bool)):
+            value = [value]
+        if not isinstance(value, (list, tuple)):
+            self._wrong(value, "a list", key)
+            return []
+        found = [self._check(one, kind, key, number) for number, one in enumerate(value)]
+        return [check for check in found if check is not None]
+
+    def _check(self, value: Any, kind: CheckKind, key: str, number: int) -> Check | None:
+        keys = (key, number)
+        main = "topic" if kind == "rate" else "models" if kind == "apart" else "that"
+        if isinstance(value, (str, {"that": bool, "models": list}.get(main, str))):
+            value = {main: value}
+        said = self._document.only(value, _CHECK_KEYS[kind], f"an entry of {key}", *keys)
+        if main not in said:
+            if isinstance(value, dict):
+                self._document.error("SK-SCEN-004", f"an entry of {key} needs {main!r}", *keys)
+            return None
+        number_of = self._number_of
+        wanted = said.get("rate", "own")
+        return Check(
+            kind,
+            name=self._text_of(said.get("name", ""), (*keys, "name")),
+            expression=self._expression(self._text_of(said["that"], (*keys, "that")), *keys) if main == "that" else "",
+            by=number_of(said.get("by"), None, (*keys, "by"), least=0.0),
+            after=number_of(said.get("after", 0.0), 0.0, (*keys, "after"), least=0.0) or 0.0,
+            models=self._models(said["models"], (*keys, "models")) if kind == "apart" else (),
+            topic=_absolute_topic(self._text_of(said["topic"], (*keys, "topic"))) if kind == "rate" else "",
+            rate=None if wanted == "own" else number_of(wanted, None, (*keys, "rate"), above=0.0),
+            tolerance=number_of(said.get("tolerance", 0.05), 0.05, (*keys, "tolerance"), least=0.0) or 0.0,
+            points=number_of(said.get("points", 1.0), 1.0, (*keys, "points"), least=0.0) or 0.0,
+            hint=self._text_of(said.get("hint", ""), (*keys, "hint")),
+            where=str(self._document.where(*keys)),
+        )
+
+    def _expression(self, text: str, *keys: Any) -> str:
+        """An expression that can be read; whether the world has what it names is seen when it is bound to one."""
+        from simkit.testing.conditions import parse
+
+        if text:
+            try:
+                parse(text)
+            except InputError as error:
+                message, _, hint = str(error).removeprefix(error.code).strip().partition("\n    help: ")
+                self._document.error(error.code, message, *keys, hint=hint)
+        return text
+
+    def _text_of(self, value: Any, keys: tuple[Any, ...]) -> str:
+        if isinstance(value, str) and (value.strip() or keys[-1] not in ("that", "topic")):
+            return value
+        if isinstance(value, bool) and keys[-1] == "that":  # YAML reads a bare true or false as such
+            return str(value).lower()
+        self._wrong(value, "a text (in quotes where YAML takes it for something else)", *keys)
+        return ""
+
+    def _models(self, value: Any, keys: tuple[Any, ...]) -> tuple[str, ...]:
+        listed = [value] if isinstance(value, str) else value
+        are_names = isinstance(listed, list) and all(isinstance(one, str) and one.strip() for one in listed)
+        if are_names and len(listed) == len(set(listed)) and len(listed) in (1, 2):
+            return tuple(listed)
+        self._wrong(value, "the name of a model or link, or two different ones", *keys)
+        return ()
+
+
+def _absolute_topic(topic: str) -> str:
+    """A topic or a pattern of topics with its leading slash."""
+    return topic if topic.startswith(("/", "*")) or not topic else "/" + topic
+
+
+def is_scalar_text(value: Any) -> bool:
+    """Whether `yaml_value_text` has a text for a YAML value."""
+    if isinstance(value, list):
+        return all(is_scalar_text(one) and not isinstance(one, list) for one in value)
+    return isinstance(value, (str, int, float))
+
+
+def yaml_value_text(value: Any) -> str:
+    """A YAML value as one would write it: `true` for a truth, numbers of a list with blanks between."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return " ".join(map(yaml_value_text, value)) if isinstance(value, list) else str(value)
+
+
+def _resolve_params_file(folder: Path, text: str) -> str:
+    """`[MODEL=]FILE` with the file beside the scenario's."""
+    model, equals, file = text.rpartition("=")
+    return f"{model}{equals}{folder / file}"

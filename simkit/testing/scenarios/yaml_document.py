@@ -1,0 +1,195 @@
+"""Read a YAML file into plain values that know their lines, and check the type of each value."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from simkit.diagnostics import Diagnostics, Where, did_you_mean, shorten
+from simkit.yaml_reader import finite_number
+
+MAX_BYTES = 1 << 20  # bytes of a file that people write by hand
+_MAX_DEPTH = 6  # levels whose lines are known
+_BOOLEAN_WORDS = {"on": True, "yes": True, "true": True, "off": False, "no": False, "false": False}
+
+
+class Document:
+    """The values of a YAML file.
+
+    Args:
+        path: of the file.
+        diagnostics: gets what is wrong with it.
+
+    Attributes:
+        values: plain ones; None where the file is no YAML.
+    """
+
+    def __init__(self, path: Path, diagnostics: Diagnostics) -> None:
+        self.path, self.diagnostics = path, diagnostics
+        self.values: Any = None
+        self._lines: dict[tuple[Any, ...], int] = {}
+        text = self._text()
+        if text is not None:
+            self._read(text)
+
+    def where(self, *keys: Any) -> Where:
+        """The place of a value, or of the nearest one around it whose line is known."""
+        while keys and keys not in self._lines:
+            keys = keys[:-1]
+        return Where(str(self.path), self._lines.get(keys, 1))
+
+    def error(self, code: str, message: str, *keys: Any, hint: str = "") -> None:
+        """Reports what is wrong with a value."""
+        self.diagnostics.error(code, message, self.where(*keys), hint)
+
+    def only(self, value: Any, allowed: tuple[str, ...], what: str, *keys: Any) -> dict[str, Any]:
+        """A mapping with nothing but allowed keys; what else it has is reported, with the closest name."""
+        if not isinstance(value, dict):
+            self.error("SK-SCEN-003", f"{what}: found {short_repr(value)}, allowed is a mapping", *keys)
+            return {}
+        for key in value:
+            if key not in allowed:
+                hint = did_you_mean(str(key), allowed) or f"there is {', '.join(allowed)}"
+                if isinstance(key, bool):
+                    hint = f"YAML takes a bare on, off, yes and no for true or false; {hint}"
+                self.error("SK-SCEN-002", f"{what} has no {str(key)!r}", *keys, key, hint=hint)
+        return {key: one for key, one in value.items() if key in allowed}
+
+    def _text(self) -> str | None:
+        try:
+            if self.path.stat().st_size > MAX_BYTES:
+                message = f"the file has more than {MAX_BYTES >> 20} MB"
+                self.diagnostics.error("SK-SCEN-001", message, Where(str(self.path)))
+                return None
+            return self.path.read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            why = getattr(error, "strerror", None) or "it is no text in UTF-8"
+            self.diagnostics.error("SK-SCEN-001", f"cannot be read: {why}", Where(str(self.path)))
+            return None
+
+    def _read(self, text: str) -> None:
+        from simkit.yaml_reader import NotYaml, compose_nodes, node_value
+
+        try:
+            root = compose_nodes(text)
+            if root is not None:
+                self._note_lines(root)  # before values are made, which resolves merges
+                self.values = node_value(root)
+        except NotYaml as error:
+            where = Where(str(self.path), error.line)
+            self.diagnostics.error("SK-SCEN-001", f"is not YAML: {error!s:.200}", where)
+
+    def _note_lines(self, root: Any) -> None:
+        for keys, line in _lines_by_path(root, ()):
+            if keys in self._lines and keys and not isinstance(keys[-1], int):
+                message = f"{keys[-1]!r} is said twice, at line {self._lines[keys]} too"
+                self.diagnostics.error("SK-SCEN-003", message, Where(str(self.path), line))
+            self._lines[keys] = line
+
+
+def _lines_by_path(node: Any, keys: tuple[Any, ...]) -> Iterator[tuple[tuple[Any, ...], int]]:
+    """Of every value down to some depth, by its keys; that of a mapping's value is the line of its key."""
+    import yaml
+
+    if not keys:
+        yield (), node.start_mark.line + 1
+    if len(keys) >= _MAX_DEPTH:
+        return
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                name = _BOOLEAN_WORDS.get(key.value.lower(), key.value) if key.tag.endswith(":bool") else key.value
+                yield (*keys, name), key.start_mark.line + 1
+                yield from _lines_by_path(value, (*keys, name))
+    elif isinstance(node, yaml.SequenceNode):
+        for number, item in enumerate(node.value):
+            yield (*keys, number), item.start_mark.line + 1
+            yield from _lines_by_path(item, (*keys, number))
+
+
+def resolve_spawn_file(folder: Path, spawn: str) -> str:
+    """`MODEL:x,y,yaw[:name]` with the file in a folder, where there is such a one; else as it is."""
+    model, colon, rest = spawn.partition(":")
+    return f"{folder / model}{colon}{rest}" if model and (folder / model).exists() else spawn
+
+
+def short_repr(value: Any) -> str:
+    """A value for a message, short."""
+    return shorten(repr(value), 60)
+
+
+class ValueReader:
+    """Reads plain values of a document.
+
+    Args:
+        document: it is told what is wrong.
+        said: its values at the top, by key.
+    """
+
+    def __init__(self, document: Document, said: Mapping[str, Any]) -> None:
+        self._document, self._said = document, said
+
+    def _wrong(self, value: Any, allowed: str, *keys: Any) -> None:
+        label = ".".join(str(key) for key in keys)
+        self._document.error("SK-SCEN-003", f"{label}: found {short_repr(value)}, allowed is {allowed}", *keys)
+
+    def _text(self, key: str, default: str) -> str:
+        value = self._said.get(key, default)
+        if isinstance(value, str) and (value.strip() or value == default):
+            return value
+        self._wrong(value, "a text", key)
+        return default
+
+    def _flag(self, key: str, default: bool) -> bool:
+        value = self._said.get(key, default)
+        if isinstance(value, bool):
+            return value
+        self._wrong(value, "true or false", key)
+        return default
+
+    def _number(
+        self, key: str, default: float | None, *, least: float = -math.inf, above: float = -math.inf
+    ) -> float | None:
+        return self._number_of(self._said.get(key, default), default, (key,), least=least, above=above)
+
+    def _number_of(
+        self,
+        value: Any,
+        default: float | None,
+        keys: tuple[Any, ...],
+        *,
+        least: float = -math.inf,
+        above: float = -math.inf,
+    ) -> float | None:
+        if value is default:  # nothing was said
+            return None if value is None else float(value)
+        number = finite_number(value)
+        if number is not None and number >= least and number > above:
+            return number
+        bound = f" of at least {least:g}" if least > -math.inf else f" above {above:g}" if above > -math.inf else ""
+        self._wrong(value, f"a number{bound}", *keys)
+        return default
+
+    def _whole(self, key: str, default: int, least: int) -> int:
+        value = self._said.get(key, default)
+        if isinstance(value, int) and not isinstance(value, bool) and value >= least:
+            return value
+        self._wrong(value, f"a whole number of at least {least}", key)
+        return default
+
+    def _texts(self, key: str) -> tuple[str, ...]:
+        value = self._said.get(key, ())
+        listed = [value] if isinstance(value, str) else value
+        if isinstance(listed, (list, tuple)) and all(isinstance(one, str) and one.strip() for one in listed):
+            return tuple(listed)
+        self._wrong(value, "a text, or a list of them", key)
+        return ()
+
+    def _mapping(self, key: str) -> dict[str, Any]:
+        value = self._said.get(key, {})
+        if isinstance(value, dict) and all(isinstance(one, str) for one in value):
+            return value
+        self._wrong(value, "a mapping with texts before the colons", key)
+        return {}

@@ -1,0 +1,388 @@
+"""Collect a world and every file that it names into one self-contained folder."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from html import escape
+from pathlib import Path, PurePosixPath
+from typing import Any
+from urllib.parse import unquote
+
+from simkit.diagnostics import Diagnostics
+from simkit.errors import InputError
+from simkit.loaders import Document, Resolver, find_document
+from simkit.loaders.resources.bundled_models import turtlebot3_uri
+from simkit.loaders.resources.xml_reader import parse_file
+from simkit.params import Params
+from simkit.writers.asset_folder import companion_files
+from simkit.writers.xml_text import document as xml_text
+
+MOST_FILES = 50_000
+MOST_BYTES = 8 << 30
+_COPIED_FILES = ("model.config", "manifest.xml", "package.xml")
+_LICENCES = re.compile(r"^(licen[cs]e|copying|notice|credits|attribution|authors)", re.IGNORECASE)
+_MANIFESTS = ("model.config", "package.xml", "manifest.xml")
+_PACKAGE_FOLDERS = {
+    "meshes",
+    "mesh",
+    "urdf",
+    "xacro",
+    "materials",
+    "textures",
+    "scripts",
+    "config",
+    "worlds",
+    "sdf",
+    "media",
+}
+_FILE_SUFFIX = re.compile(r"\.[A-Za-z0-9]{2,8}$")
+
+
+class Vendor:
+    """Collects what one world needs.
+
+    Args:
+        resolver: finds what the files name.
+        folder: where everything goes; made anew.
+    """
+
+    def __init__(self, resolver: Resolver, folder: Path, diagnostics: Diagnostics) -> None:
+        self.resolver, self.folder, self.diagnostics = resolver, folder, diagnostics
+        self.home = Path()
+        self.count = self.size = 0
+        self._roots: dict[Path, PurePosixPath] = {}
+        self._done: dict[Path, PurePosixPath] = {}
+
+    def take(self, document: Document, expanded: bool) -> PurePosixPath:
+        """Takes the outermost file; returns its path in the folder.
+
+        Args:
+            expanded: the tree is not what the file says (xacro), so it is written anew.
+        """
+        assert document.path is not None
+        path = _absolute(document.path)
+        self.home = path.parent
+        name = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}.urdf" if expanded else path.name
+        self.resolver = self.resolver.around(self.home)
+        target = PurePosixPath(name)
+        self._done[path] = target
+        self._licences(self.home, PurePosixPath())
+        self._write(target, document, path, expanded)
+        return target
+
+    # ------------------------------------------------------------------ files
+
+    def _write(self, target: PurePosixPath, document: Document, path: Path, expanded: bool = False) -> None:
+        """A file with the URIs in it changed."""
+        if document.root.name == "mujoco":
+            self._mujoco(document.root, path.parent, target.parent)
+            self._put(target, document.text)
+            return
+        changes = dict(self._changes(document.root, path.parent, target.parent))
+        if expanded:
+            self._put(target, xml_text(_replace_in_tree(document.root, changes)).encode())
+        else:
+            self._put(target, _replace_uris(document.text, changes))
+
+    def _file(self, path: Path) -> PurePosixPath:
+        """Takes a file of any kind with what it names; returns its place."""
+        path = _absolute(path)
+        if path in self._done:
+            return self._done[path]
+        target = self._place(path)
+        self._done[path] = target
+        if path.suffix.lower() in (".sdf", ".world", ".urdf", ".xml", ".model"):
+            document = parse_file(path, Diagnostics())
+            if document is not None:
+                self._write(target, document, path)
+                return target
+        self._copy(path, target)
+        for other in companion_files(path):
+            self._copy(other, target.parent / _relative(other, path.parent))
+        return target
+
+    def _model(self, folder: Path, file: Path) -> PurePosixPath:
+        """Takes a model's folder: its file, its manifest and licence; returns the folder's place."""
+        self._file(file)
+        folder = _absolute(folder)
+        place = self._place(folder / file.name).parent
+        self._licences(folder, place)
+        return place
+
+    def _folder(self, path: Path) -> PurePosixPath:
+        """Takes a folder as it is, as one of material scripts."""
+        path = _absolute(path)
+        target = self._place(path)
+        for source in sorted(p for p in path.rglob("*") if p.is_file() and not p.is_symlink()):
+            self._copy(source, target / source.relative_to(path).as_posix())
+        return target
+
+    def _licences(self, folder: Path, place: PurePosixPath) -> None:
+        for source in sorted(folder.iterdir()) if folder.is_dir() else ():
+            if source.is_file() and (source.name in _COPIED_FILES or _LICENCES.match(source.name)):
+                self._copy(source, place / source.name)
+
+    def _place(self, path: Path) -> PurePosixPath:
+        """Where a file goes: at its place below the world's folder, else in that of its model or package."""
+        if path.is_relative_to(self.home):
+            return PurePosixPath(path.relative_to(self.home).as_posix())
+        known = next((root for root in self._roots if path.is_relative_to(root)), None)
+        if known is None:
+            known = _root_of(path)
+            self._add_root(known, known.name)
+        return self._roots[known] / path.relative_to(known).as_posix()
+
+    def _know_root(self, uri: str, path: Path) -> None:
+        """The folder that `model://NAME/...` or `package://NAME/...` stands for keeps that name."""
+        scheme, _, rest = uri.partition("://")
+        name, _, inside = rest.strip("/").partition("/")
+        if scheme not in ("model", "package") or path.is_relative_to(self.home):
+            return
+        parts = [p for p in unquote(inside).split("/") if p]
+        root = path.parents[len(parts) - 1] if parts else path
+        if not any(path.is_relative_to(known) for known in self._roots) and not self.home.is_relative_to(root):
+            self._add_root(root, name)
+
+    def _add_root(self, root: Path, name: str) -> None:
+        stem, k = re.sub(r"[^\w.-]+", "_", name) or "files", 1
+        while PurePosixPath("models", stem if k == 1 else f"{stem}_{k}") in self._roots.values():
+            k += 1
+        self._roots[root] = PurePosixPath("models", stem if k == 1 else f"{stem}_{k}")
+        self._licences(root, self._roots[root])
+
+    def _copy(self, source: Path, target: PurePosixPath) -> None:
+        if not (self.folder / target).exists():
+            self._count(source.stat().st_size)
+            place = self._ready(target)
+            shutil.copyfile(source, place)
+
+    def _put(self, target: PurePosixPath, content: bytes) -> None:
+        self._count(len(content))
+        self._ready(target).write_bytes(content)
+
+    def _ready(self, target: PurePosixPath) -> Path:
+        place = Path(os.path.abspath(self.folder / target))  # noqa: PTH100 - without `..`
+        if not place.is_relative_to(self.folder):
+            raise OSError(f"{target} would lie outside of the folder")
+        place.parent.mkdir(parents=True, exist_ok=True)
+        return place
+
+    def _count(self, size: int) -> None:
+        self.count, self.size = self.count + 1, self.size + size
+        if self.count > MOST_FILES or self.size > MOST_BYTES:
+            raise OSError(f"more than {MOST_FILES} files or {MOST_BYTES >> 30} GiB")
+
+    # ------------------------------------------------------------------ what a file names
+
+    def _changes(self, root: Params, folder: Path, here: PurePosixPath) -> Iterator[tuple[str, str]]:
+        """Each URI of a file with the path that it becomes, seen from `here`."""
+        seen: set[str] = set()
+        for element, parent in _elements(root):
+            for said in _file_references(element, parent):
+                if said in seen:
+                    continue
+                place = self._taken(said, element, parent, folder)
+                if place is not None:
+                    seen.add(said)
+                    new = _relative(place, here)
+                    if new != said:
+                        yield said, new
+
+    def _taken(self, said: str, element: Params, parent: str, folder: Path) -> PurePosixPath | None:
+        """The place of what a text names; None where it names no file that is here."""
+        uri = turtlebot3_uri(said, element.where, Diagnostics()) or said
+        path, _ = self.resolver.search(uri, folder)
+        if path is None:
+            return None
+        self._know_root(uri, _absolute(path))
+        if not path.is_dir():
+            return self._file(path)
+        if parent == "include" or element.name == "include":
+            file = self.resolver.model_file(path, element.where, self.diagnostics)
+            return None if file is None else self._model(path, file)
+        return self._folder(path) if "://" in said or "/" in said else None
+
+    def _mujoco(self, root: Params, folder: Path, here: PurePosixPath) -> None:
+        """What a file in MuJoCo's format names keeps its place beside it."""
+        below: dict[str, str] = {}
+        for compiler in root.all("compiler"):
+            below |= {k: v for k, v in compiler.attributes.items() if k in ("meshdir", "texturedir", "assetdir")}
+        folders = ["", below.get("assetdir", ""), below.get("meshdir", ""), below.get("texturedir", "")]
+        for element, _ in _elements(root):
+            for key, said in element.attributes.items():
+                if not key.startswith("file"):
+                    continue
+                for inside in folders:
+                    source = _absolute(folder / inside / said)
+                    if source.is_file() and source.is_relative_to(folder):
+                        target = here / inside / said
+                        document = parse_file(source, Diagnostics()) if source.suffix == ".xml" else None
+                        if document is not None:
+                            self._write(target, document, source)
+                        else:
+                            self._copy(source, target)
+
+
+def vendor(
+    source: str,
+    target: Path,
+    describe: Callable[..., dict[str, Any]],
+    *,
+    resource_paths: Sequence[Path] = (),
+    package_paths: Mapping[str, str] | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    base: str = "auto",
+) -> tuple[PurePosixPath, int]:
+    """Writes a self-contained folder and makes sure that it means the same.
+
+    Args:
+        source: a file, or the bare name of a world or model.
+        target: the folder; it must not exist, or be empty.
+        describe: `simkit.describe`.
+
+    Returns:
+        The file to open, seen from the folder, and how many files there are.
+
+    Raises:
+        InputError: SK-CLI-016 the folder is not empty or cannot be written, SK-CLI-019 it would mean something else.
+        LoadError: the source has errors.
+    """
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        raise InputError(f"SK-CLI-016 {target} is not an empty folder; vendor writes into a new one", "SK-CLI-016")
+    options = {"resource_paths": resource_paths, "package_paths": package_paths, "base": base}
+    before = describe(source, xacro_args=xacro_args, **options)
+    diagnostics = Diagnostics()
+    resolver = Resolver(list(resource_paths), missing_meshes=True, package_paths=package_paths)
+    document, expanded = find_document(source, resolver, diagnostics, xacro_args)
+    diagnostics.raise_if_errors()
+    if document is None or document.path is None:
+        raise InputError(f"SK-LOAD-002 {source} is no file", "SK-LOAD-002")
+    parent = target.absolute().parent
+    try:
+        stage = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=parent))
+    except OSError as error:
+        raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
+    try:
+        taking = Vendor(resolver, stage, diagnostics)
+        main = taking.take(document, expanded)
+        after = describe(stage / main, base=base)
+        differs = _difference(before, after) or _file_outside(after, stage)
+        if differs:
+            raise InputError(f"SK-CLI-019 the folder would not mean the same as {source}: {differs}", "SK-CLI-019")
+        if target.exists():
+            target.rmdir()
+        stage.chmod(0o755)
+        stage.rename(target)
+    except OSError as error:
+        raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+    return main, taking.count
+
+
+def _elements(root: Params) -> Iterator[tuple[Params, str]]:
+    """Every element with the name of the one that holds it."""
+    stack = [(root, "")]
+    while stack:
+        element, parent = stack.pop()
+        yield element, parent
+        stack += [(child, element.name) for child in reversed(element.children)]
+
+
+def _file_references(element: Params, parent: str) -> Iterator[str]:
+    """Texts of an element that may name a file."""
+    is_include = element.name == "uri" and parent == "include"
+    is_text = bool(element.value) and not element.children and len(element.value) < 1000
+    if is_text and (is_include or _may_be_file(element.value)):
+        yield element.value
+    for key, value in element.attributes.items():
+        if (
+            value
+            and not (element.name == "plugin" and key in ("filename", "name"))
+            and key != "name"
+            and _may_be_file(value)
+        ):
+            yield value
+
+
+def _may_be_file(text: str) -> bool:
+    return "\n" not in text and ("://" in text or "/" in text or bool(_FILE_SUFFIX.search(text)))
+
+
+def _replace_uris(text: bytes, changes: Mapping[str, str]) -> bytes:
+    """A file's text with each URI replaced where it stands alone in an element or an attribute."""
+    for old, new in changes.items():
+        for spelt in dict.fromkeys((old, escape(old, quote=False), escape(old))):
+            before, after = re.escape(spelt.encode()), escape(new).encode().replace(b"\\", rb"\\")
+            text = re.sub(rb"(>\s*)" + before + rb"(\s*<)", rb"\g<1>" + after + rb"\g<2>", text)
+            text = re.sub(rb"([\"'])\s*" + before + rb"\s*\1", rb"\g<1>" + after + rb"\g<1>", text)
+    return text
+
+
+def _replace_in_tree(node: Params, changes: Mapping[str, str]) -> Params:
+    """A tree with each URI replaced."""
+    attributes = {k: changes.get(v, v) for k, v in node.attributes.items()}
+    return Params(
+        node.name,
+        changes.get(node.value, node.value),
+        attributes,
+        [_replace_in_tree(c, changes) for c in node.children],
+    )
+
+
+def _root_of(path: Path) -> Path:
+    """The outermost model or package that a file belongs to, else the folder above `meshes`, `materials` and so on."""
+    found = None
+    for ancestor in (path, *list(path.parents)[:8]):
+        if any((ancestor / name).is_file() for name in _MANIFESTS):
+            found = ancestor
+    if found is not None:
+        return found
+    folder = path if path.is_dir() else path.parent
+    while folder.name.lower() in _PACKAGE_FOLDERS and folder.parent != folder:
+        folder = folder.parent
+    return folder
+
+
+def _relative(place: Path | PurePosixPath, here: Path | PurePosixPath) -> str:
+    return Path(os.path.relpath(str(place), str(here) or ".")).as_posix()
+
+
+def _absolute(path: Path) -> Path:
+    return Path(os.path.abspath(path))  # noqa: PTH100 - resolve() would follow links
+
+
+def _file_outside(described: Any, folder: Path) -> str:
+    """A mesh or picture that is read from outside of a folder; empty where there is none."""
+    stack = [described]
+    while stack:
+        one = stack.pop()
+        if isinstance(one, dict):
+            file = one.get("file")
+            is_read = "uri" in one and isinstance(file, str) and not one.get("missing")
+            if is_read and not Path(os.path.realpath(str(file))).is_relative_to(Path(os.path.realpath(folder))):
+                return f"{one['uri']} is read from {file}"
+            stack += one.values()
+        elif isinstance(one, list):
+            stack += one
+    return ""
+
+
+_PATH_KEYS: frozenset[str] = frozenset(("file", "uri", "diagnostics"))
+
+
+def _difference(a: Any, b: Any, path: str = "") -> str:
+    """The first place where two descriptions differ, the paths of files aside; empty where there is none."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        parts: Iterable[tuple[str, Any, Any]] = (
+            (f"{path}.{k}", a.get(k), b.get(k)) for k in sorted(a.keys() | b.keys()) if k not in _PATH_KEYS
+        )
+    elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        parts = ((f"{path}[{i}]", x, y) for i, (x, y) in enumerate(zip(a, b, strict=True)))
+    else:
+        return "" if a == b else f"{path.lstrip('.')} was {a!r}, is {b!r}"
+    return next((found for p, x, y in parts if (found := _difference(x, y, p))), "")
