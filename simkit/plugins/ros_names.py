@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-from simkit.plugins.base import SensorPlugin
+
+if TYPE_CHECKING:
+    from simkit.plugins.base import SensorPlugin
 
 _RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
 

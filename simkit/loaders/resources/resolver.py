@@ -381,7 +381,7 @@ def _mjcf_models(folder: Path) -> list[Path]:
 
 @lru_cache(maxsize=1)
 def _package() -> Path:
-    return Path(__file__).resolve().parents[1]
+    return Path(__file__).resolve().parents[2]
 
 
 def bundled_folders(kind: str) -> list[Path]:

@@ -93,7 +93,7 @@ def _cpu_features() -> str:
 @cache
 def code_hash() -> str:
     """The first letters of a hash over simkit's own Python files."""
-    root = Path(__file__).resolve().parents[1]
+    root = Path(__file__).resolve().parents[2]
     digest = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
         digest.update(path.relative_to(root).as_posix().encode())

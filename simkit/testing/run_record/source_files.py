@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _MAX_MODULES: Final = 100
 _FILE_NAMING_SUFFIXES: Final = frozenset((".obj", ".dae", ".gltf", ".glb"))  # formats of meshes that name further files
-_SIMKIT_FOLDER: Final = Path(__file__).resolve().parents[1]
+_SIMKIT_FOLDER: Final = Path(__file__).resolve().parents[2]
 
 
 def source_hashes(sim: Simulation) -> dict[str, str]:
