@@ -7,7 +7,7 @@ from pathlib import Path
 
 import simkit
 from simkit import msgs
-from simkit.msgs.services import SERVICES
+from simkit.msgs.interfaces import interface_names
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "services.md"
 ROW = re.compile(r"^\| `(/[^`]+)` \| `([\w/]+/srv/\w+)` \| (.+) \|$", re.MULTILINE)
@@ -37,7 +37,7 @@ def test_the_page_has_the_topics_that_a_world_tells_of_itself() -> None:
 
 
 def test_every_type_can_be_made_and_written() -> None:
-    for name in SERVICES:
+    for name in interface_names("srv"):
         for end in ("Request", "Response"):
             message = msgs.make(f"{name}_{end}")
             assert msgs.serialize(msgs.deserialize(msgs.serialize(message), f"{name}_{end}")) == msgs.serialize(message)

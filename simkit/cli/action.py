@@ -165,7 +165,7 @@ class _GoalRun:
         self._say("Goal canceled." if handle.wait(_PATIENCE) else "The goal goes on: its action does not stop it.")
 
     def _ended(self, handle: LiveGoal) -> None:
-        from simkit.msgs.text import plain
+        from simkit.msgs.message_text import plain
 
         result = handle.result
         if self._json:
@@ -176,7 +176,7 @@ class _GoalRun:
             print_line(f"Goal finished with status: {handle.status.name}")
 
     def _on_feedback(self, message: Any) -> None:
-        from simkit.msgs.text import plain
+        from simkit.msgs.message_text import plain
 
         if self._early is not None:
             self._early.append(message)
@@ -191,6 +191,6 @@ class _GoalRun:
 
 
 def _yaml(message: Any) -> str:
-    from simkit.msgs.text import yaml_of
+    from simkit.msgs.message_text import yaml_of
 
     return yaml_of(message)

@@ -40,16 +40,16 @@ def list_(
     json_: Json = False,
 ) -> int:
     """Lists the types that simkit knows."""
-    from simkit.msgs.written import names
+    from simkit.msgs.interfaces import interface_names
 
     wanted = {"msg": only_msgs, "srv": only_srvs, "action": only_actions}
     kinds = [(kind, title) for kind, title in _KINDS if wanted[kind] or not any(wanted.values())]
     if json_:
-        print_json({kind: names(kind) for kind, _ in kinds})
+        print_json({kind: interface_names(kind) for kind, _ in kinds})
         return 0
     for kind, title in kinds:
         print_line(f"{title}:")
-        for name in names(kind):
+        for name in interface_names(kind):
             print_line(f"    {name}")
     return 0
 
@@ -58,9 +58,9 @@ def list_(
 @report_errors_quietly
 def packages(json_: Json = False) -> int:
     """Lists the packages that the types are of."""
-    from simkit.msgs.written import names
+    from simkit.msgs.interfaces import interface_names
 
-    found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in names(kind)})
+    found = sorted({name.split("/")[0] for kind, _ in _KINDS for name in interface_names(kind)})
     if json_:
         print_json(found)
     else:
@@ -73,9 +73,9 @@ def packages(json_: Json = False) -> int:
 @report_errors_quietly
 def package(name: Annotated[str, typer.Argument(metavar="PACKAGE", show_default=False)], json_: Json = False) -> int:
     """Lists the types of a package."""
-    from simkit.msgs.written import names
+    from simkit.msgs.interfaces import interface_names
 
-    known = [n for kind, _ in _KINDS for n in names(kind)]
+    known = [n for kind, _ in _KINDS for n in interface_names(kind)]
     found = [n for n in known if n.split("/")[0] == name]
     if not found:
         raise not_found_error("package", name, sorted({n.split("/")[0] for n in known}), "SK-CLI-032", "simkit")
@@ -97,7 +97,7 @@ def show(
     json_: Json = False,
 ) -> int:
     """Prints the definition of a type, with those of its parts below."""
-    from simkit.msgs.written import show as text_of
+    from simkit.msgs.interfaces import show as text_of
 
     name = _read(type_)
     try:
@@ -116,7 +116,7 @@ def show(
 
 def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> str:
     """The definition as a bag has it."""
-    from simkit.msgs.written import show as text_of
+    from simkit.msgs.interfaces import show as text_of
     from simkit.recording.bags.reader import open_bag_to_read
 
     with open_bag_to_read(str(bag)) as reader:
@@ -133,8 +133,8 @@ def proto(
     json_: Json = False,
 ) -> int:
     """Prints a message with every field, to be filled in."""
-    from simkit.msgs.text import dump
-    from simkit.msgs.written import prototype
+    from simkit.msgs.interfaces import prototype
+    from simkit.msgs.message_text import dump
 
     try:
         found = prototype(_read(type_))

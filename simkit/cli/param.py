@@ -178,7 +178,7 @@ def delete(node: Node, name: Name, sim: Sim = None, json_: Json = False) -> int:
 @report_errors_quietly
 def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> int:
     """Says what parameters are, and what they take."""
-    from simkit.msgs.text import plain
+    from simkit.msgs.message_text import plain
 
     with connect_to_simulation(sim) as client:
         full = _node(client, node)
@@ -207,7 +207,7 @@ def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> 
 @report_errors_quietly
 def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
     """Prints all parameters of a node as a parameter file."""
-    from simkit.msgs.text import dump as as_yaml
+    from simkit.msgs.message_text import dump as as_yaml
 
     with connect_to_simulation(sim) as client:
         full = _node(client, node)

@@ -157,7 +157,7 @@ def call(
 
 
 def _one_call(client: Any, name: str, request: Any, json_: bool) -> None:
-    from simkit.msgs.text import plain, python_of
+    from simkit.msgs.message_text import plain, python_of
 
     if not json_:
         print_line(f"requester: making request: {python_of(request)}\n")

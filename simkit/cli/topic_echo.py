@@ -19,7 +19,7 @@ from simkit.errors import InputError, MessageError
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-    from simkit.msgs.text import Style
+    from simkit.msgs.message_text import Style
 
 TRUNCATE = 128
 _SEPARATOR = "---"
@@ -70,7 +70,7 @@ def echo(
     json_: Json = False,
 ) -> int:
     """Prints the messages of a topic; of a bag, all that were recorded."""
-    from simkit.msgs.text import Style
+    from simkit.msgs.message_text import Style
 
     style = Style(None if full_length or json_ else truncate_length, no_arr, no_str, flow_style)
     until = None if timeout is None else time.monotonic() + timeout
@@ -138,7 +138,7 @@ class _MessagePrinter:
         self._csv, self._raw, self._json, self._info = csv, raw, json_, info
 
     def __call__(self, received: ReceivedMessage) -> bool:
-        from simkit.msgs.text import part
+        from simkit.msgs.message_text import part
 
         if self._raw:
             if self._json:
@@ -160,7 +160,7 @@ class _MessagePrinter:
         return True
 
     def _print(self, received: ReceivedMessage, message: Any, node: Any, store: Typestore | None) -> None:
-        from simkit.msgs.text import csv_of, field_text, is_message, plain_value, yaml_of
+        from simkit.msgs.message_text import csv_of, field_text, is_message, plain_value, yaml_of
 
         style = self._style
         seconds = received.time_ns * 1e-9

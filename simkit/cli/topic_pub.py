@@ -183,7 +183,7 @@ def _times(client: Any, rate: float, number: int, by_wall: bool) -> Iterator[int
 
 
 def _print(message: Any, count: int, json_: bool) -> None:
-    from simkit.msgs.text import plain, python_of
+    from simkit.msgs.message_text import plain, python_of
 
     if json_:
         print_json(plain(message))

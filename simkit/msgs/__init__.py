@@ -1,8 +1,12 @@
-"""ROS 2 messages: dataclasses that rosbags makes, filled from plain values and written as CDR.
+"""ROS 2 messages: dataclasses that rosbags makes, built from plain values and serialised as CDR.
 
-msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
-msgs.type_of("sensor_msgs/msg/Imu")          # the class itself, for the fast path
-msgs.header(sim.time_ns, "imu_link")
+    msgs.make("geometry_msgs/msg/Twist", linear={"x": 0.2})
+    msgs.type_of("sensor_msgs/msg/Imu")  # the class itself, for the fast path
+    msgs.header(sim.time_ns, "imu_link")
+
+Type names, plain values and CDR bytes enter; message objects, CDR bytes, and definitions and messages as text leave.
+The room knows messages alone, never a topic that carries them, a simulation or a bag; `import simkit.msgs` loads
+neither rosbags nor NumPy.
 """
 
 from __future__ import annotations
@@ -10,10 +14,13 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from simkit.errors import MessageError
-from simkit.msgs.store import definition, full_name, rihs, type_of, type_store, types_of
+from simkit.msgs.message_types import definition, full_name, rihs, type_of, type_store, types_of
+
+if TYPE_CHECKING:
+    from simkit.msgs.message_builder import MessageBuilder
 
 __all__ = [
     "definition",
@@ -38,11 +45,11 @@ _NS = 1_000_000_000
 
 
 @cache
-def _forms() -> Callable[[str], Any]:
-    """What fills messages; it needs NumPy, which those who only ask a simulation something do without."""
-    from simkit.msgs.forms import form_of
+def _builder_of() -> Callable[[str], MessageBuilder]:
+    """Return what finds builders of messages; it needs NumPy, which reading a simulation's state alone does not."""
+    from simkit.msgs.message_builder import builder_of
 
-    return form_of
+    return builder_of
 
 
 def make(type_name: str, /, **fields: Any) -> Any:
@@ -51,7 +58,7 @@ def make(type_name: str, /, **fields: Any) -> Any:
     Raises:
         MessageError: an unknown type or field (the closest is named), or a value that does not fit.
     """
-    return _forms()(type_name).build(fields)
+    return _builder_of()(type_name).build(fields)
 
 
 def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
@@ -63,7 +70,7 @@ def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
     first: MessageError | None = None
     for name in type_names:
         try:
-            return _forms()(name).build(values)
+            return _builder_of()(name).build(values)
         except MessageError as error:
             first = first or error
     if first is None:

@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any
 
 from simkit.msgs import type_store
-from simkit.msgs.text import NUMBER_CODES
+from simkit.msgs.message_text import NUMBER_CODES
 
 _CODES = {**NUMBER_CODES, "bool": "?"}
 _BASE, _NAME = 1, 2  # kinds of field, as rosbags counts them

@@ -88,7 +88,7 @@ def topics(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def topic_types(ctx: typer.Context) -> Iterable[str]:
     """Types of the topic named before; all message types where it has none yet."""
-    from simkit.msgs.written import names
+    from simkit.msgs.interfaces import interface_names
 
     topic = _topic(ctx)
     if topic:
@@ -97,29 +97,29 @@ def topic_types(ctx: typer.Context) -> Iterable[str]:
         if found is not None:
             ends = [t for end in found.subscribers for t in end.types]
             return dict.fromkeys([*found.types, *ends])
-    return names("msg")
+    return interface_names("msg")
 
 
 @_silent
 def message_types(_: typer.Context) -> Iterable[str]:
     """All message types."""
-    from simkit.msgs.written import names
+    from simkit.msgs.interfaces import interface_names
 
-    return names("msg")
+    return interface_names("msg")
 
 
 @_silent
 def interfaces(_: typer.Context) -> Iterable[str]:
     """All message, service and action types."""
-    from simkit.msgs.written import names
+    from simkit.msgs.interfaces import interface_names
 
-    return [name for kind in ("msg", "srv", "action") for name in names(kind)]
+    return [name for kind in ("msg", "srv", "action") for name in interface_names(kind)]
 
 
 @_silent
 def fields(ctx: typer.Context) -> Iterable[str]:
     """Paths of fields of the topic named before, one level at a time."""
-    from simkit.msgs.text import fields_of
+    from simkit.msgs.message_text import fields_of
 
     with _source(ctx) as source:
         entry = source.topics()[_topic(ctx)]
@@ -160,8 +160,8 @@ def goal_values(ctx: typer.Context) -> Iterable[str]:
 
 
 def _prototype(type_name: str) -> list[str]:
-    from simkit.msgs.text import dump
-    from simkit.msgs.written import prototype
+    from simkit.msgs.interfaces import prototype
+    from simkit.msgs.message_text import dump
 
     return [dump(prototype(type_name), flow=True).strip()] if type_name else []
 
@@ -194,7 +194,7 @@ def action_types(ctx: typer.Context) -> Iterable[str]:
 
 def _types_of(ctx: typer.Context, what: str, kind: str) -> list[str]:
     """The type of the service or action that was written before; where there is none, all types of that kind."""
-    from simkit.msgs.written import names
+    from simkit.msgs.interfaces import interface_names
 
     name = ctx.params.get(what)
     if name:
@@ -202,7 +202,7 @@ def _types_of(ctx: typer.Context, what: str, kind: str) -> list[str]:
             there = client.services() if what == "service" else client.actions()
         if absolute_name(name) in there:
             return [there[absolute_name(name)]]
-    return names(kind)
+    return interface_names(kind)
 
 
 @_silent

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
-from simkit.msgs.monitors import STATUS
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel, SceneWorld
 
 POSE: Final = "geometry_msgs/msg/PoseStamped"
+STATUS: Final = "simkit_msgs/msg/PerformerStatus"
 DETAILS: Final = "/details"
 """After a detector's topic: the one on which it says all that it knows."""
 

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
-from simkit.msgs.monitors import STATUS
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
-from simkit.plugins.gz.performer_detector import DETAILS, pose_of_status
+from simkit.plugins.gz.performer_detector import DETAILS, STATUS, pose_of_status
 from simkit.plugins.gz_python.msgs import message_class
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.message_matcher import TOLERANCE, MessageMatcher

@@ -172,7 +172,7 @@ class Playback:
 
     def _made(self, message: BagMessage) -> Any:
         """The message as one of simkit's own types."""
-        from simkit.msgs.text import plain
+        from simkit.msgs.message_text import plain
 
         wanted = self._as[message.topic, message.type_name]
         found = self._bag.decode(message)

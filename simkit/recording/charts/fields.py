@@ -18,7 +18,7 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.msgs.text import NUMBER_CODES, attribute, fields_of
+from simkit.msgs.message_text import NUMBER_CODES, attribute, fields_of
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

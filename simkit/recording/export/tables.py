@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.errors import InputError
-from simkit.msgs.text import attribute, fields_of
+from simkit.msgs.message_text import attribute, fields_of
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import ActionError, InputError, MessageError, PluginError, SimkitError, SubscriberError
-from simkit.msgs.actions import ACTIONS
+from simkit.msgs.message_types import definition_files
 from simkit.runtime.communication.subscription import callback_name
 from simkit.runtime.communication.topic_bus import absolute_name
 
@@ -224,7 +224,7 @@ class ActionTable:
             MessageError: an unknown type.
         """
         name = absolute_name(name)
-        if type_name not in ACTIONS:  # what is in there is read when a goal comes
+        if type_name not in definition_files():  # what is in there is read when a goal comes
             msgs.full_name(f"{type_name}_Goal")
         if self._find(name) is not None:
             raise ActionError(f"there is an action {name!r} already")

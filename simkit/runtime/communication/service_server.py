@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError, PluginError, ServiceError, SimkitError
-from simkit.msgs.services import SERVICES
+from simkit.msgs.message_types import definition_files
 from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.engine.plugin_faults import call_plugin
 
@@ -61,7 +61,7 @@ class ServiceTable:
             MessageError: an unknown type.
         """
         name = absolute_name(name)
-        if type_name not in SERVICES:  # what is in there is read when somebody calls
+        if type_name not in definition_files():  # what is in there is read when somebody calls
             msgs.full_name(f"{type_name}_Request")
         standing = self._find(name)
         if standing is not None and not standing.yields:

@@ -1,0 +1,90 @@
+"""Interfaces as `ros2 interface` shows them: names of messages, services and actions, definitions, prototypes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import MessageError
+from simkit.msgs.message_builder import builder_of
+from simkit.msgs.message_text import plain
+from simkit.msgs.message_types import definition_files, definition_text, full_name, type_store
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+_TYPE = re.compile(r"^\s*([A-Za-z]\w*(?:/\w+)*)(<=\d+)?(\[[^\]]*\])?\s+[a-z]\w*\b")
+_BASIC = frozenset({"bool", "byte", "char", "string", "wstring", "float32", "float64"}) | {
+    f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)
+}
+
+
+def interface_names(kind: str) -> list[str]:
+    """Return the full name of every interface of a kind (`msg`, `srv` or `action`), sorted."""
+    ours = {name for name in definition_files() if f"/{kind}/" in name}
+    return sorted(ours | {name for name in type_store().fielddefs if "/msg/" in name} if kind == "msg" else ours)
+
+
+def full_interface_name(name: str) -> str:
+    """Return the full name of a message, service or action: `std_msgs/String` is `std_msgs/msg/String`.
+
+    Raises:
+        MessageError: none of that name; the closest is told.
+    """
+    package, _, rest = name.partition("/")
+    ours = definition_files()
+    for full in (name, f"{package}/srv/{rest}", f"{package}/action/{rest}"):
+        if full in ours:
+            return full
+    try:
+        return full_name(name)
+    except MessageError:
+        known = [known for kind in ("msg", "srv", "action") for known in interface_names(kind)]
+        hint = did_you_mean(name, known)
+        raise MessageError(f"no interface {name!r} is known; {hint}".rstrip("; ")) from None
+
+
+def show(type_name: str, *, comments: bool = True, all_comments: bool = False, store: Typestore | None = None) -> str:
+    """The definition of a type, with those of its fields' types indented below, as `ros2 interface show` prints it.
+
+    Raises:
+        MessageError: no such type.
+    """
+    return "\n".join(_lines(type_name if store else full_interface_name(type_name), 0, comments, all_comments, store))
+
+
+def _lines(name: str, depth: int, comments: bool, below: bool, store: Typestore | None) -> Iterator[str]:
+    package = name.split("/")[0]
+    for line in _text(name, store).strip("\n").split("\n"):
+        text = line.rstrip()
+        if not comments:
+            text = text.partition("#")[0].rstrip()
+        if text or comments:
+            yield "\t" * depth + text
+        found = _TYPE.match(text)
+        if found and found[1] not in _BASIC:
+            inner = found[1] if "/" in found[1] else f"{package}/{found[1]}"
+            full = inner.replace("/", "/msg/") if inner.count("/") == 1 else inner
+            yield from _lines(full, depth + 1, below, below, store)
+
+
+def _text(name: str, store: Typestore | None) -> str:
+    """Return what the file of a type holds, as far as it is known."""
+    if store is None and name in definition_files():
+        return definition_text(name)
+    found = (store or type_store()).generate_msgdef(name if store else full_name(name), ros_version=2)[0]
+    return str(found).split("=" * 80)[0].rstrip()
+
+
+def prototype(type_name: str) -> dict[str, Any]:
+    """Return the fields of a message with their defaults, to be filled in: of a service's request, an action's goal.
+
+    Raises:
+        MessageError: no such type.
+    """
+    name = full_interface_name(type_name)
+    if name in definition_files():
+        name += {"msg": "", "srv": "_Request", "action": "_Goal"}[name.split("/")[1]]
+    return plain(builder_of(name).default())

@@ -1,0 +1,186 @@
+"""Build messages from plain values: fields left out are zero, dicts become messages, numbers become arrays."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import MessageError
+from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE, full_name, type_store
+
+_INTEGERS: dict[str, tuple[int, int]] = {
+    **{f"int{n}": (-(1 << (n - 1)), (1 << (n - 1)) - 1) for n in (8, 16, 32, 64)},
+    **{f"uint{n}": (0, (1 << n) - 1) for n in (8, 16, 32, 64)},
+    "byte": (0, 255),
+    "char": (0, 255),
+}
+_DTYPES = {"byte": "uint8", "char": "uint8", "bool": "bool"}
+
+# The defaults that ROS gives other than zero.
+_DEFAULTS: dict[tuple[str, str], float] = {("geometry_msgs/msg/Quaternion", "w"): 1.0}
+
+_Default = Callable[[], Any]
+_Conversion = Callable[[Any], Any]
+
+
+class MessageBuilder:
+    """Builder of messages of one type.
+
+    Attributes:
+        name: full name of the type.
+        cls: its dataclass.
+        fields: attribute, default and conversion of each field, in order.
+    """
+
+    def __init__(self, name: str) -> None:
+        from rosbags.typesys.base import normalize_fieldname
+
+        store = type_store()
+        self.name = name
+        self.cls: type[Any] = store.types[name]
+        self.fields: list[tuple[str, _Default, _Conversion]] = []
+        for field, node in store.fielddefs[name][1]:
+            default, convert = _default_and_conversion(node)
+            value = _DEFAULTS.get((name, field))
+            default = default if value is None else partial(float, value)
+            self.fields.append((normalize_fieldname(field), default, convert))
+        self._defaults = [default for _, default, _ in self.fields]
+
+    def default(self) -> Any:
+        """Return a message with every field at its default."""
+        return self.cls(*[default() for default in self._defaults])
+
+    def build(self, fields: Mapping[str, Any]) -> Any:
+        """Return a message of the given fields; the others have their defaults.
+
+        Raises:
+            MessageError: an unknown field, or a value that does not fit.
+        """
+        values = []
+        found = 0
+        for name, default, convert in self.fields:
+            if name in fields:
+                found += 1
+                try:
+                    values.append(convert(fields[name]))
+                except MessageError as error:
+                    raise MessageError(f"{self.name}.{name}: {error}") from None
+                except (TypeError, ValueError, OverflowError) as error:
+                    raise MessageError(f"{self.name}.{name}: found {_short(fields[name])}: {error}") from None
+            else:
+                values.append(default())
+        if found != len(fields):
+            known = [name for name, _, _ in self.fields]
+            unknown = next(name for name in fields if name not in known)
+            hint = did_you_mean(str(unknown), known) or f"its fields are {', '.join(known)}"
+            raise MessageError(f"{self.name} has no field {unknown!r}; {hint}")
+        return self.cls(*values)
+
+    def convert(self, value: Any) -> Any:
+        """Return a message unchanged; build one from a dict."""
+        if type(value) is self.cls:
+            return value
+        if isinstance(value, Mapping):
+            return self.build(value)
+        if getattr(value, "__msgtype__", None) == self.name:
+            return value
+        raise MessageError(f"found {_short(value)}, allowed is a {self.name} or a dict of its fields")
+
+
+@cache
+def builder_of(type_name: str) -> MessageBuilder:
+    """Return the builder of a type; short names are allowed."""
+    return MessageBuilder(full_name(type_name))
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _default_and_conversion(node: Any) -> tuple[_Default, _Conversion]:
+    """Return what makes the default of a field, and what converts a value for it, from its node in the type store."""
+    kind, what = int(node[0]), node[1]
+    if kind == NAME:
+        builder = builder_of(what)
+        return builder.default, builder.convert
+    if kind == BASE:
+        return _scalar(what[0])
+    (inner_kind, inner), size = what
+    length = size if kind == ARRAY else 0
+    bound = size if kind == SEQUENCE and size else None
+    if int(inner_kind) == BASE and inner[0] != "string":
+        dtype = np.dtype(_DTYPES.get(inner[0], inner[0]))
+        return partial(np.zeros, length, dtype), partial(_numbers, dtype, length or None, bound)
+    default, convert = _default_and_conversion((inner_kind, inner))
+    return (lambda: [default() for _ in range(length)]), partial(_items, convert, length or None, bound)
+
+
+def _scalar(name: str) -> tuple[_Default, _Conversion]:
+    if name == "string":
+        return str, _text
+    if name == "bool":
+        return bool, _boolean
+    if name in _INTEGERS:
+        return int, partial(_integer, *_INTEGERS[name])
+    return float, _float
+
+
+def _float(value: Any) -> float:
+    if isinstance(value, (str, bytes, bool)):
+        raise MessageError(f"found {_short(value)}, allowed is a number")
+    return float(value)
+
+
+def _integer(low: int, high: int, value: Any) -> int:
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)
+    number = operator.index(value)
+    if not low <= number <= high:
+        raise MessageError(f"found {number}, allowed is a whole number from {low} to {high}")
+    return number
+
+
+def _boolean(value: Any) -> bool:
+    if value is True or value is False or isinstance(value, np.bool_):
+        return bool(value)
+    raise MessageError(f"found {_short(value)}, allowed is true or false")
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise MessageError(f"found {_short(value)}, allowed is a text")
+    return value
+
+
+def _check_length(count: int, length: int | None, bound: int | None) -> None:
+    if length is not None and count != length:
+        raise MessageError(f"found {count} entries, allowed is {length}")
+    if bound is not None and count > bound:
+        raise MessageError(f"found {count} entries, allowed is at most {bound}")
+
+
+def _numbers(dtype: np.dtype[Any], length: int | None, bound: int | None, value: Any) -> Any:
+    if type(value) is np.ndarray and value.dtype == dtype and value.ndim == 1:
+        array = value
+    elif isinstance(value, (bytes, bytearray, memoryview)):
+        array = np.frombuffer(value, np.uint8).astype(dtype, copy=False)
+    else:
+        array = np.asarray(value)
+        if array.size and (array.dtype.kind not in "biuf" or (dtype.kind in "iu" and array.dtype.kind == "f")):
+            raise MessageError(f"found {_short(value)}, allowed is a list of {dtype}")
+        array = array.astype(dtype).reshape(-1)
+    _check_length(len(array), length, bound)
+    return array
+
+
+def _items(convert: _Conversion, length: int | None, bound: int | None, value: Any) -> list[Any]:
+    if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, (Sequence, np.ndarray)):
+        raise MessageError(f"found {_short(value)}, allowed is a list")
+    _check_length(len(value), length, bound)
+    return [convert(item) for item in value]

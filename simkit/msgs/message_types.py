@@ -1,0 +1,135 @@
+"""Message types: ROS 2 Jazzy's own from rosbags, and those of `definitions/`, which are read at their first use.
+
+The definition of a type of ours is the file `definitions/<package>/<msg, srv or action>/<Name>.<msg, srv or action>`,
+with the published fields in the published order. Constants are part of a definition but not of its hash; field names,
+types and order are. A service or action is several message types: `<package>/srv/<Name>_Request` and `…_Response`,
+`<package>/action/<Name>_Goal`, `…_Result` and `…_Feedback`, divided by `---` in its file.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.diagnostics import did_you_mean
+from simkit.errors import MessageError
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+_FOLDER: Final = os.path.join(os.path.dirname(__file__), "definitions")  # noqa: PTH118, PTH120 (pathlib takes 3 ms)
+BASE, NAME, ARRAY, SEQUENCE = 1, 2, 3, 4
+"""Kinds of field nodes in the type store: `rosbags.interfaces.Nodetype`, whose import would load all of rosbags."""
+_PARTS: Final = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
+
+
+@cache
+def definition_files() -> dict[str, str]:
+    """Return the path of each definition file by the full name of its message, service or action."""
+    return {
+        f"{package.name}/{kind.name}/{file.name.removesuffix(f'.{kind.name}')}": file.path
+        for package in os.scandir(_FOLDER)
+        for kind in os.scandir(package.path)
+        for file in os.scandir(kind.path)
+    }
+
+
+@cache
+def definition_text(interface_name: str) -> str:
+    """Return the text of the definition file of a message, service or action of ours."""
+    with open(definition_files()[interface_name], encoding="utf-8") as file:
+        return file.read()
+
+
+@cache
+def _message_sources() -> dict[str, tuple[str, int]]:
+    """Return, for each message type of ours, the interface that defines it and the part of the file that it is."""
+    return {
+        f"{interface}{part}": (interface, index)
+        for interface in definition_files()
+        for index, part in enumerate(_PARTS[interface.split("/")[1]])
+    }
+
+
+class _ReadOnDemand(dict[str, Any]):
+    """Table of the type store that contains our types as well; one is registered when it is first looked up."""
+
+    def __contains__(self, type_name: object) -> bool:
+        return super().__contains__(type_name) or type_name in _message_sources()
+
+    def __missing__(self, type_name: str) -> Any:
+        _register(type_name)
+        return self[type_name]
+
+
+@cache
+def type_store() -> Typestore:
+    """Return the type store, which knows every message type that simkit knows."""
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    store.fielddefs, store.types = _ReadOnDemand(store.fielddefs), _ReadOnDemand(store.types)
+    return store
+
+
+def _register(type_name: str) -> None:
+    """Read the definition of one message type of ours into the type store.
+
+    Raises:
+        KeyError: the type is not ours.
+    """
+    from rosbags.typesys import get_types_from_msg
+
+    interface, part = _message_sources()[type_name]
+    package, kind, name = type_name.split("/")
+    text = definition_text(interface).split("---\n")[part]
+    # rosbags' parser has no services: it takes every name for a message's
+    (definition,) = get_types_from_msg(text, f"{package}/msg/{name}").values()
+    type_store().register({f"{package}/{kind}/{name}": definition})
+
+
+def message_type_names() -> list[str]:
+    """Return the full name of every message type, those that services and actions consist of included."""
+    return sorted({*type_store().fielddefs, *_message_sources()})
+
+
+def full_name(type_name: str) -> str:
+    """`sensor_msgs/Imu` and `sensor_msgs/msg/Imu` are the same type.
+
+    Raises:
+        MessageError: no such type is known; names the closest.
+    """
+    known = type_store().fielddefs
+    package, _, rest = type_name.partition("/")
+    long = f"{package}/msg/{rest}"
+    for name in (type_name, long):
+        if name in known:
+            return name
+    is_long = any(f"/{kind}/" in type_name for kind in _PARTS)
+    hint = did_you_mean(type_name if is_long else long, [*known, *_message_sources()])
+    raise MessageError(f"no message type {type_name!r} is known; {hint}".rstrip("; "))
+
+
+@cache
+def type_of(type_name: str) -> type[Any]:
+    """Return the dataclass of a message type; construct it directly where every microsecond counts."""
+    return type_store().types[full_name(type_name)]
+
+
+@cache
+def types_of(*type_names: str) -> tuple[type[Any], ...]:
+    """The dataclasses of several types. The first one there ever was takes 0.2 s: ask when a message is to be made."""
+    return tuple(map(type_of, type_names))
+
+
+@cache
+def definition(type_name: str) -> str:
+    """Return the `ros2msg` text of a type, with those of all types it uses."""
+    return type_store().generate_msgdef(full_name(type_name), ros_version=2)[0]
+
+
+@cache
+def rihs(type_name: str) -> str:
+    """Return the type hash as ROS 2 writes it (`RIHS01_…`)."""
+    return type_store().hash_rihs01(full_name(type_name))
