@@ -17,10 +17,12 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from simkit.errors import MessageError
-from simkit.msgs.message_types import definition, full_name, rihs, type_of, type_store, types_of
+from simkit.msgs.message_types import definition, full_name, message_class, rihs, type_of, type_store, types_of
 
 if TYPE_CHECKING:
     from simkit.msgs.message_builder import MessageBuilder
+    from simkit.msgs.message_classes import *  # noqa: F403
+    from simkit.msgs.message_classes import Duration, Header, Time
 
 __all__ = [
     "definition",
@@ -42,6 +44,9 @@ __all__ = [
 ]
 
 _NS = 1_000_000_000
+
+if not TYPE_CHECKING:  # to a type checker a class that does not exist is an error
+    __getattr__ = message_class
 
 
 @cache
@@ -94,7 +99,7 @@ def type_name(message: Any) -> str:
 
 
 @cache
-def _stamp_types() -> tuple[type[Any], type[Any], type[Any]]:
+def _stamp_types() -> tuple[type[Time], type[Duration], type[Header]]:
     return (
         type_of("builtin_interfaces/msg/Time"),
         type_of("builtin_interfaces/msg/Duration"),
@@ -102,30 +107,30 @@ def _stamp_types() -> tuple[type[Any], type[Any], type[Any]]:
     )
 
 
-def time(ns: int) -> Any:
+def time(ns: int) -> Time:
     """A `builtin_interfaces/msg/Time` of `ns` nanoseconds."""
     return _stamp_types()[0](*divmod(ns, _NS))
 
 
-def duration(ns: int) -> Any:
+def duration(ns: int) -> Duration:
     """A `builtin_interfaces/msg/Duration` of `ns` nanoseconds."""
     return _stamp_types()[1](*divmod(ns, _NS))
 
 
-def header(time_ns: int, frame_id: str) -> Any:
+def header(time_ns: int, frame_id: str) -> Header:
     """A `std_msgs/msg/Header` stamped with `time_ns` [ns]."""
     stamp, _, made = _stamp_types()
     return made(stamp(time_ns // _NS, time_ns % _NS), frame_id)
 
 
-def headers(time_ns: int) -> Callable[[str], Any]:
+def headers(time_ns: int) -> Callable[[str], Header]:
     """What makes `header(time_ns, frame_id)` of a frame, sooner where there are many."""
     stamp, _, made = _stamp_types()
     seconds, rest = divmod(time_ns, _NS)
     return lambda frame_id: made(stamp(seconds, rest), frame_id)
 
 
-def stamp_ns(stamp: Any) -> int:
+def stamp_ns(stamp: Time | Duration) -> int:
     """The nanoseconds of a Time or Duration message."""
     return int(stamp.sec) * _NS + int(stamp.nanosec)
 

@@ -118,6 +118,41 @@ def type_of(type_name: str) -> type[Any]:
 
 
 @cache
+def class_names() -> dict[str, str]:
+    """Return the type name of each message class by the class's name in `simkit.msgs`.
+
+    That is the last part of the type name: `LaserScan`. Where several types share it, it is the name of ROS's own type
+    if there is one; every other is named in full: `gazebo_msgs__srv__SpawnEntity_Request`.
+    """
+    names = message_type_names()
+    candidates: dict[str, list[str]] = {}
+    for name in sorted(names, key=_message_sources().__contains__):  # ROS's own first
+        candidates.setdefault(name.rpartition("/")[2], []).append(name)
+    found = {}
+    for name in names:
+        short = name.rpartition("/")[2]
+        first, *others = candidates[short]
+        is_ambiguous = bool(others) and (first in _message_sources()) == (others[0] in _message_sources())
+        found[short if name == first and not is_ambiguous else name.replace("/", "__")] = name
+    return found
+
+
+def message_class(class_name: str) -> type[Any]:
+    """Return a message class by its name in `simkit.msgs`.
+
+    Raises:
+        AttributeError: there is no message class of that name; the closest is named.
+    """
+    # what begins with a small letter is a submodule or a slip; it does not load the type store
+    if class_name[:1].isupper() or "__" in class_name.strip("_"):
+        names = class_names()
+        if class_name in names:
+            return type_of(names[class_name])
+        raise AttributeError(f"simkit.msgs has no {class_name!r}; {did_you_mean(class_name, names)}".rstrip("; "))
+    raise AttributeError(f"simkit.msgs has no {class_name!r}")
+
+
+@cache
 def types_of(*type_names: str) -> tuple[type[Any], ...]:
     """The dataclasses of several types. The first one there ever was takes 0.2 s: ask when a message is to be made."""
     return tuple(map(type_of, type_names))

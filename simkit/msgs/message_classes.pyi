@@ -1,0 +1,3543 @@
+# Written by `python -m simkit.msgs.message_class_stubs`; a test compares it with the definitions.
+# ruff: noqa
+# fmt: off
+"""Fields of every message class: `from simkit.msgs import LaserScan`."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+# action_msgs
+
+@dataclass
+class GoalInfo:
+    """`action_msgs/msg/GoalInfo`"""
+    goal_id: UUID
+    stamp: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class action_msgs__msg__GoalStatus:
+    """`action_msgs/msg/GoalStatus`"""
+    goal_info: GoalInfo
+    status: int
+    STATUS_UNKNOWN: ClassVar[int] = 0
+    STATUS_ACCEPTED: ClassVar[int] = 1
+    STATUS_EXECUTING: ClassVar[int] = 2
+    STATUS_CANCELING: ClassVar[int] = 3
+    STATUS_SUCCEEDED: ClassVar[int] = 4
+    STATUS_CANCELED: ClassVar[int] = 5
+    STATUS_ABORTED: ClassVar[int] = 6
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class action_msgs__msg__GoalStatusArray:
+    """`action_msgs/msg/GoalStatusArray`"""
+    status_list: list[action_msgs__msg__GoalStatus]
+    __msgtype__: ClassVar[str]
+
+# actionlib_msgs
+
+@dataclass
+class GoalID:
+    """`actionlib_msgs/msg/GoalID`"""
+    stamp: Time
+    id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class actionlib_msgs__msg__GoalStatus:
+    """`actionlib_msgs/msg/GoalStatus`"""
+    goal_id: GoalID
+    status: int
+    text: str
+    PENDING: ClassVar[int] = 0
+    ACTIVE: ClassVar[int] = 1
+    PREEMPTED: ClassVar[int] = 2
+    SUCCEEDED: ClassVar[int] = 3
+    ABORTED: ClassVar[int] = 4
+    REJECTED: ClassVar[int] = 5
+    PREEMPTING: ClassVar[int] = 6
+    RECALLING: ClassVar[int] = 7
+    RECALLED: ClassVar[int] = 8
+    LOST: ClassVar[int] = 9
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class actionlib_msgs__msg__GoalStatusArray:
+    """`actionlib_msgs/msg/GoalStatusArray`"""
+    header: Header
+    status_list: list[actionlib_msgs__msg__GoalStatus]
+    __msgtype__: ClassVar[str]
+
+# actuator_msgs
+
+@dataclass
+class Actuators:
+    """`actuator_msgs/msg/Actuators`"""
+    header: Header
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    normalized: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+# builtin_interfaces
+
+@dataclass
+class Duration:
+    """`builtin_interfaces/msg/Duration`"""
+    sec: int
+    nanosec: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Time:
+    """`builtin_interfaces/msg/Time`"""
+    sec: int
+    nanosec: int
+    __msgtype__: ClassVar[str]
+
+# control_msgs
+
+@dataclass
+class FollowJointTrajectory_Feedback:
+    """`control_msgs/action/FollowJointTrajectory_Feedback`"""
+    header: Header
+    joint_names: list[str]
+    desired: JointTrajectoryPoint
+    actual: JointTrajectoryPoint
+    error: JointTrajectoryPoint
+    multi_dof_joint_names: list[str]
+    multi_dof_desired: MultiDOFJointTrajectoryPoint
+    multi_dof_actual: MultiDOFJointTrajectoryPoint
+    multi_dof_error: MultiDOFJointTrajectoryPoint
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowJointTrajectory_Goal:
+    """`control_msgs/action/FollowJointTrajectory_Goal`"""
+    trajectory: JointTrajectory
+    multi_dof_trajectory: MultiDOFJointTrajectory
+    path_tolerance: list[JointTolerance]
+    component_path_tolerance: list[JointComponentTolerance]
+    goal_tolerance: list[JointTolerance]
+    component_goal_tolerance: list[JointComponentTolerance]
+    goal_time_tolerance: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FollowJointTrajectory_Result:
+    """`control_msgs/action/FollowJointTrajectory_Result`"""
+    error_code: int
+    error_string: str
+    SUCCESSFUL: ClassVar[int] = 0
+    INVALID_GOAL: ClassVar[int] = -1
+    INVALID_JOINTS: ClassVar[int] = -2
+    OLD_HEADER_TIMESTAMP: ClassVar[int] = -3
+    PATH_TOLERANCE_VIOLATED: ClassVar[int] = -4
+    GOAL_TOLERANCE_VIOLATED: ClassVar[int] = -5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GripperCommand_Feedback:
+    """`control_msgs/action/GripperCommand_Feedback`"""
+    position: float
+    effort: float
+    stalled: bool
+    reached_goal: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GripperCommand_Goal:
+    """`control_msgs/action/GripperCommand_Goal`"""
+    command: GripperCommand
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GripperCommand_Result:
+    """`control_msgs/action/GripperCommand_Result`"""
+    position: float
+    effort: float
+    stalled: bool
+    reached_goal: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParallelGripperCommand_Feedback:
+    """`control_msgs/action/ParallelGripperCommand_Feedback`"""
+    state: JointState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParallelGripperCommand_Goal:
+    """`control_msgs/action/ParallelGripperCommand_Goal`"""
+    command: JointState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParallelGripperCommand_Result:
+    """`control_msgs/action/ParallelGripperCommand_Result`"""
+    state: JointState
+    stalled: bool
+    reached_goal: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointHead_Feedback:
+    """`control_msgs/action/PointHead_Feedback`"""
+    pointing_angle_error: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointHead_Goal:
+    """`control_msgs/action/PointHead_Goal`"""
+    target: PointStamped
+    pointing_axis: Vector3
+    pointing_frame: str
+    min_duration: Duration
+    max_velocity: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointHead_Result:
+    """`control_msgs/action/PointHead_Result`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DynamicJointState:
+    """`control_msgs/msg/DynamicJointState`"""
+    header: Header
+    joint_names: list[str]
+    interface_values: list[InterfaceValue]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GripperCommand:
+    """`control_msgs/msg/GripperCommand`"""
+    position: float
+    max_effort: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InterfaceValue:
+    """`control_msgs/msg/InterfaceValue`"""
+    interface_names: list[str]
+    values: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointComponentTolerance:
+    """`control_msgs/msg/JointComponentTolerance`"""
+    joint_name: str
+    component: int
+    position: float
+    velocity: float
+    acceleration: float
+    X_AXIS: ClassVar[int] = 1
+    Y_AXIS: ClassVar[int] = 2
+    Z_AXIS: ClassVar[int] = 3
+    TRANSLATION: ClassVar[int] = 4
+    ROTATION: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointControllerState:
+    """`control_msgs/msg/JointControllerState`"""
+    header: Header
+    set_point: float
+    process_value: float
+    process_value_dot: float
+    error: float
+    time_step: float
+    command: float
+    p: float
+    i: float
+    d: float
+    i_clamp: float
+    antiwindup: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointTolerance:
+    """`control_msgs/msg/JointTolerance`"""
+    name: str
+    position: float
+    velocity: float
+    acceleration: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointTrajectoryControllerState:
+    """`control_msgs/msg/JointTrajectoryControllerState`"""
+    header: Header
+    joint_names: list[str]
+    reference: JointTrajectoryPoint
+    feedback: JointTrajectoryPoint
+    error: JointTrajectoryPoint
+    output: JointTrajectoryPoint
+    desired: JointTrajectoryPoint
+    actual: JointTrajectoryPoint
+    multi_dof_joint_names: list[str]
+    multi_dof_reference: MultiDOFJointTrajectoryPoint
+    multi_dof_feedback: MultiDOFJointTrajectoryPoint
+    multi_dof_error: MultiDOFJointTrajectoryPoint
+    multi_dof_output: MultiDOFJointTrajectoryPoint
+    multi_dof_desired: MultiDOFJointTrajectoryPoint
+    multi_dof_actual: MultiDOFJointTrajectoryPoint
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpeedScalingFactor:
+    """`control_msgs/msg/SpeedScalingFactor`"""
+    factor: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class QueryTrajectoryState_Request:
+    """`control_msgs/srv/QueryTrajectoryState_Request`"""
+    time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class QueryTrajectoryState_Response:
+    """`control_msgs/srv/QueryTrajectoryState_Response`"""
+    success: bool
+    message: str
+    name: list[str]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    acceleration: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+# controller_manager_msgs
+
+@dataclass
+class ChainConnection:
+    """`controller_manager_msgs/msg/ChainConnection`"""
+    name: str
+    reference_interfaces: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ControllerState:
+    """`controller_manager_msgs/msg/ControllerState`"""
+    name: str
+    state: str
+    type: str
+    claimed_interfaces: list[str]
+    required_command_interfaces: list[str]
+    required_state_interfaces: list[str]
+    is_chainable: bool
+    is_chained: bool
+    reference_interfaces: list[str]
+    chain_connections: list[ChainConnection]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class HardwareComponentState:
+    """`controller_manager_msgs/msg/HardwareComponentState`"""
+    name: str
+    type: str
+    class_type: str
+    state: State
+    command_interfaces: list[HardwareInterface]
+    state_interfaces: list[HardwareInterface]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class HardwareInterface:
+    """`controller_manager_msgs/msg/HardwareInterface`"""
+    name: str
+    is_available: bool
+    is_claimed: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ConfigureController_Request:
+    """`controller_manager_msgs/srv/ConfigureController_Request`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ConfigureController_Response:
+    """`controller_manager_msgs/srv/ConfigureController_Response`"""
+    ok: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListControllerTypes_Request:
+    """`controller_manager_msgs/srv/ListControllerTypes_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListControllerTypes_Response:
+    """`controller_manager_msgs/srv/ListControllerTypes_Response`"""
+    types: list[str]
+    base_classes: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListControllers_Request:
+    """`controller_manager_msgs/srv/ListControllers_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListControllers_Response:
+    """`controller_manager_msgs/srv/ListControllers_Response`"""
+    controller: list[ControllerState]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListHardwareComponents_Request:
+    """`controller_manager_msgs/srv/ListHardwareComponents_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListHardwareComponents_Response:
+    """`controller_manager_msgs/srv/ListHardwareComponents_Response`"""
+    component: list[HardwareComponentState]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListHardwareInterfaces_Request:
+    """`controller_manager_msgs/srv/ListHardwareInterfaces_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListHardwareInterfaces_Response:
+    """`controller_manager_msgs/srv/ListHardwareInterfaces_Response`"""
+    command_interfaces: list[HardwareInterface]
+    state_interfaces: list[HardwareInterface]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoadController_Request:
+    """`controller_manager_msgs/srv/LoadController_Request`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoadController_Response:
+    """`controller_manager_msgs/srv/LoadController_Response`"""
+    ok: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ReloadControllerLibraries_Request:
+    """`controller_manager_msgs/srv/ReloadControllerLibraries_Request`"""
+    force_kill: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ReloadControllerLibraries_Response:
+    """`controller_manager_msgs/srv/ReloadControllerLibraries_Response`"""
+    ok: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetHardwareComponentState_Request:
+    """`controller_manager_msgs/srv/SetHardwareComponentState_Request`"""
+    name: str
+    target_state: State
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetHardwareComponentState_Response:
+    """`controller_manager_msgs/srv/SetHardwareComponentState_Response`"""
+    ok: bool
+    state: State
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SwitchController_Request:
+    """`controller_manager_msgs/srv/SwitchController_Request`"""
+    activate_controllers: list[str]
+    deactivate_controllers: list[str]
+    start_controllers: list[str]
+    stop_controllers: list[str]
+    strictness: int
+    start_asap: bool
+    activate_asap: bool
+    timeout: Duration
+    BEST_EFFORT: ClassVar[int] = 1
+    STRICT: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SwitchController_Response:
+    """`controller_manager_msgs/srv/SwitchController_Response`"""
+    ok: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UnloadController_Request:
+    """`controller_manager_msgs/srv/UnloadController_Request`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UnloadController_Response:
+    """`controller_manager_msgs/srv/UnloadController_Response`"""
+    ok: bool
+    __msgtype__: ClassVar[str]
+
+# diagnostic_msgs
+
+@dataclass
+class DiagnosticArray:
+    """`diagnostic_msgs/msg/DiagnosticArray`"""
+    header: Header
+    status: list[DiagnosticStatus]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DiagnosticStatus:
+    """`diagnostic_msgs/msg/DiagnosticStatus`"""
+    level: int
+    name: str
+    message: str
+    hardware_id: str
+    values: list[diagnostic_msgs__msg__KeyValue]
+    OK: ClassVar[int] = 0
+    WARN: ClassVar[int] = 1
+    ERROR: ClassVar[int] = 2
+    STALE: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class diagnostic_msgs__msg__KeyValue:
+    """`diagnostic_msgs/msg/KeyValue`"""
+    key: str
+    value: str
+    __msgtype__: ClassVar[str]
+
+# example_interfaces
+
+@dataclass
+class Fibonacci_Feedback:
+    """`example_interfaces/action/Fibonacci_Feedback`"""
+    sequence: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Fibonacci_Goal:
+    """`example_interfaces/action/Fibonacci_Goal`"""
+    order: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Fibonacci_Result:
+    """`example_interfaces/action/Fibonacci_Result`"""
+    sequence: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+# gazebo_msgs
+
+@dataclass
+class ContactState:
+    """`gazebo_msgs/msg/ContactState`"""
+    info: str
+    collision1_name: str
+    collision2_name: str
+    wrenches: list[Wrench]
+    total_wrench: Wrench
+    contact_positions: list[Vector3]
+    contact_normals: list[Vector3]
+    depths: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ContactsState:
+    """`gazebo_msgs/msg/ContactsState`"""
+    header: Header
+    states: list[ContactState]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityState:
+    """`gazebo_msgs/msg/EntityState`"""
+    name: str
+    pose: Pose
+    twist: Twist
+    reference_frame: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LinkState:
+    """`gazebo_msgs/msg/LinkState`"""
+    link_name: str
+    pose: Pose
+    twist: Twist
+    reference_frame: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LinkStates:
+    """`gazebo_msgs/msg/LinkStates`"""
+    name: list[str]
+    pose: list[Pose]
+    twist: list[Twist]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ModelState:
+    """`gazebo_msgs/msg/ModelState`"""
+    model_name: str
+    pose: Pose
+    twist: Twist
+    reference_frame: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ModelStates:
+    """`gazebo_msgs/msg/ModelStates`"""
+    name: list[str]
+    pose: list[Pose]
+    twist: list[Twist]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ODEJointProperties:
+    """`gazebo_msgs/msg/ODEJointProperties`"""
+    damping: NDArray[np.float64]
+    hi_stop: NDArray[np.float64]
+    lo_stop: NDArray[np.float64]
+    erp: NDArray[np.float64]
+    cfm: NDArray[np.float64]
+    stop_erp: NDArray[np.float64]
+    stop_cfm: NDArray[np.float64]
+    fudge_factor: NDArray[np.float64]
+    fmax: NDArray[np.float64]
+    vel: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ODEPhysics:
+    """`gazebo_msgs/msg/ODEPhysics`"""
+    auto_disable_bodies: bool
+    sor_pgs_precon_iters: int
+    sor_pgs_iters: int
+    sor_pgs_w: float
+    sor_pgs_rms_error_tol: float
+    contact_surface_layer: float
+    contact_max_correcting_vel: float
+    cfm: float
+    erp: float
+    max_contacts: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WheelSlip:
+    """`gazebo_msgs/msg/WheelSlip`"""
+    name: list[str]
+    lateral_slip: NDArray[np.float64]
+    longitudinal_slip: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyBodyWrench_Request:
+    """`gazebo_msgs/srv/ApplyBodyWrench_Request`"""
+    body_name: str
+    reference_frame: str
+    reference_point: Point
+    wrench: Wrench
+    start_time: Time
+    duration: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyBodyWrench_Response:
+    """`gazebo_msgs/srv/ApplyBodyWrench_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyJointEffort_Request:
+    """`gazebo_msgs/srv/ApplyJointEffort_Request`"""
+    joint_name: str
+    effort: float
+    start_time: Time
+    duration: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyJointEffort_Response:
+    """`gazebo_msgs/srv/ApplyJointEffort_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyLinkWrench_Request:
+    """`gazebo_msgs/srv/ApplyLinkWrench_Request`"""
+    link_name: str
+    reference_frame: str
+    reference_point: Point
+    wrench: Wrench
+    start_time: Time
+    duration: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ApplyLinkWrench_Response:
+    """`gazebo_msgs/srv/ApplyLinkWrench_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BodyRequest_Request:
+    """`gazebo_msgs/srv/BodyRequest_Request`"""
+    body_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BodyRequest_Response:
+    """`gazebo_msgs/srv/BodyRequest_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class gazebo_msgs__srv__DeleteEntity_Request:
+    """`gazebo_msgs/srv/DeleteEntity_Request`"""
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class gazebo_msgs__srv__DeleteEntity_Response:
+    """`gazebo_msgs/srv/DeleteEntity_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeleteModel_Request:
+    """`gazebo_msgs/srv/DeleteModel_Request`"""
+    model_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DeleteModel_Response:
+    """`gazebo_msgs/srv/DeleteModel_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntityState_Request:
+    """`gazebo_msgs/srv/GetEntityState_Request`"""
+    name: str
+    reference_frame: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetEntityState_Response:
+    """`gazebo_msgs/srv/GetEntityState_Response`"""
+    header: Header
+    state: EntityState
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetJointProperties_Request:
+    """`gazebo_msgs/srv/GetJointProperties_Request`"""
+    joint_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetJointProperties_Response:
+    """`gazebo_msgs/srv/GetJointProperties_Response`"""
+    type: int
+    damping: NDArray[np.float64]
+    position: NDArray[np.float64]
+    rate: NDArray[np.float64]
+    success: bool
+    status_message: str
+    REVOLUTE: ClassVar[int] = 0
+    CONTINUOUS: ClassVar[int] = 1
+    PRISMATIC: ClassVar[int] = 2
+    FIXED: ClassVar[int] = 3
+    BALL: ClassVar[int] = 4
+    UNIVERSAL: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLightProperties_Request:
+    """`gazebo_msgs/srv/GetLightProperties_Request`"""
+    light_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLightProperties_Response:
+    """`gazebo_msgs/srv/GetLightProperties_Response`"""
+    diffuse: ColorRGBA
+    attenuation_constant: float
+    attenuation_linear: float
+    attenuation_quadratic: float
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLinkProperties_Request:
+    """`gazebo_msgs/srv/GetLinkProperties_Request`"""
+    link_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLinkProperties_Response:
+    """`gazebo_msgs/srv/GetLinkProperties_Response`"""
+    com: Pose
+    gravity_mode: bool
+    mass: float
+    ixx: float
+    ixy: float
+    ixz: float
+    iyy: float
+    iyz: float
+    izz: float
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLinkState_Request:
+    """`gazebo_msgs/srv/GetLinkState_Request`"""
+    link_name: str
+    reference_frame: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetLinkState_Response:
+    """`gazebo_msgs/srv/GetLinkState_Response`"""
+    link_state: LinkState
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetModelList_Request:
+    """`gazebo_msgs/srv/GetModelList_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetModelList_Response:
+    """`gazebo_msgs/srv/GetModelList_Response`"""
+    header: Header
+    model_names: list[str]
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetModelProperties_Request:
+    """`gazebo_msgs/srv/GetModelProperties_Request`"""
+    model_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetModelProperties_Response:
+    """`gazebo_msgs/srv/GetModelProperties_Response`"""
+    parent_model_name: str
+    canonical_body_name: str
+    body_names: list[str]
+    geom_names: list[str]
+    joint_names: list[str]
+    child_model_names: list[str]
+    is_static: bool
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetModelState_Request:
+    """`gazebo_msgs/srv/GetModelState_Request`"""
+    model_name: str
+    relative_entity_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetModelState_Response:
+    """`gazebo_msgs/srv/GetModelState_Response`"""
+    header: Header
+    pose: Pose
+    twist: Twist
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPhysicsProperties_Request:
+    """`gazebo_msgs/srv/GetPhysicsProperties_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetPhysicsProperties_Response:
+    """`gazebo_msgs/srv/GetPhysicsProperties_Response`"""
+    time_step: float
+    pause: bool
+    max_update_rate: float
+    gravity: Vector3
+    ode_config: ODEPhysics
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetWorldProperties_Request:
+    """`gazebo_msgs/srv/GetWorldProperties_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetWorldProperties_Response:
+    """`gazebo_msgs/srv/GetWorldProperties_Response`"""
+    sim_time: float
+    model_names: list[str]
+    rendering_enabled: bool
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointRequest_Request:
+    """`gazebo_msgs/srv/JointRequest_Request`"""
+    joint_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointRequest_Response:
+    """`gazebo_msgs/srv/JointRequest_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LinkRequest_Request:
+    """`gazebo_msgs/srv/LinkRequest_Request`"""
+    link_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LinkRequest_Response:
+    """`gazebo_msgs/srv/LinkRequest_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityState_Request:
+    """`gazebo_msgs/srv/SetEntityState_Request`"""
+    state: EntityState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityState_Response:
+    """`gazebo_msgs/srv/SetEntityState_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetJointProperties_Request:
+    """`gazebo_msgs/srv/SetJointProperties_Request`"""
+    joint_name: str
+    ode_joint_config: ODEJointProperties
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetJointProperties_Response:
+    """`gazebo_msgs/srv/SetJointProperties_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLightProperties_Request:
+    """`gazebo_msgs/srv/SetLightProperties_Request`"""
+    light_name: str
+    diffuse: ColorRGBA
+    attenuation_constant: float
+    attenuation_linear: float
+    attenuation_quadratic: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLightProperties_Response:
+    """`gazebo_msgs/srv/SetLightProperties_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLinkProperties_Request:
+    """`gazebo_msgs/srv/SetLinkProperties_Request`"""
+    link_name: str
+    com: Pose
+    gravity_mode: bool
+    mass: float
+    ixx: float
+    ixy: float
+    ixz: float
+    iyy: float
+    iyz: float
+    izz: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLinkProperties_Response:
+    """`gazebo_msgs/srv/SetLinkProperties_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLinkState_Request:
+    """`gazebo_msgs/srv/SetLinkState_Request`"""
+    link_state: LinkState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLinkState_Response:
+    """`gazebo_msgs/srv/SetLinkState_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetModelConfiguration_Request:
+    """`gazebo_msgs/srv/SetModelConfiguration_Request`"""
+    model_name: str
+    urdf_param_name: str
+    joint_names: list[str]
+    joint_positions: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetModelConfiguration_Response:
+    """`gazebo_msgs/srv/SetModelConfiguration_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetModelState_Request:
+    """`gazebo_msgs/srv/SetModelState_Request`"""
+    model_state: ModelState
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetModelState_Response:
+    """`gazebo_msgs/srv/SetModelState_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetPhysicsProperties_Request:
+    """`gazebo_msgs/srv/SetPhysicsProperties_Request`"""
+    time_step: float
+    max_update_rate: float
+    gravity: Vector3
+    ode_config: ODEPhysics
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetPhysicsProperties_Response:
+    """`gazebo_msgs/srv/SetPhysicsProperties_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class gazebo_msgs__srv__SpawnEntity_Request:
+    """`gazebo_msgs/srv/SpawnEntity_Request`"""
+    name: str
+    xml: str
+    robot_namespace: str
+    initial_pose: Pose
+    reference_frame: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class gazebo_msgs__srv__SpawnEntity_Response:
+    """`gazebo_msgs/srv/SpawnEntity_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpawnModel_Request:
+    """`gazebo_msgs/srv/SpawnModel_Request`"""
+    model_name: str
+    model_xml: str
+    robot_namespace: str
+    initial_pose: Pose
+    reference_frame: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpawnModel_Response:
+    """`gazebo_msgs/srv/SpawnModel_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+# geometry_msgs
+
+@dataclass
+class Accel:
+    """`geometry_msgs/msg/Accel`"""
+    linear: Vector3
+    angular: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AccelStamped:
+    """`geometry_msgs/msg/AccelStamped`"""
+    header: Header
+    accel: Accel
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AccelWithCovariance:
+    """`geometry_msgs/msg/AccelWithCovariance`"""
+    accel: Accel
+    covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AccelWithCovarianceStamped:
+    """`geometry_msgs/msg/AccelWithCovarianceStamped`"""
+    header: Header
+    accel: AccelWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Inertia:
+    """`geometry_msgs/msg/Inertia`"""
+    m: float
+    com: Vector3
+    ixx: float
+    ixy: float
+    ixz: float
+    iyy: float
+    iyz: float
+    izz: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InertiaStamped:
+    """`geometry_msgs/msg/InertiaStamped`"""
+    header: Header
+    inertia: Inertia
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Point:
+    """`geometry_msgs/msg/Point`"""
+    x: float
+    y: float
+    z: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Point32:
+    """`geometry_msgs/msg/Point32`"""
+    x: float
+    y: float
+    z: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointStamped:
+    """`geometry_msgs/msg/PointStamped`"""
+    header: Header
+    point: Point
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Polygon:
+    """`geometry_msgs/msg/Polygon`"""
+    points: list[Point32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PolygonInstance:
+    """`geometry_msgs/msg/PolygonInstance`"""
+    polygon: Polygon
+    id: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PolygonInstanceStamped:
+    """`geometry_msgs/msg/PolygonInstanceStamped`"""
+    header: Header
+    polygon: PolygonInstance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PolygonStamped:
+    """`geometry_msgs/msg/PolygonStamped`"""
+    header: Header
+    polygon: Polygon
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Pose:
+    """`geometry_msgs/msg/Pose`"""
+    position: Point
+    orientation: Quaternion
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Pose2D:
+    """`geometry_msgs/msg/Pose2D`"""
+    x: float
+    y: float
+    theta: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PoseArray:
+    """`geometry_msgs/msg/PoseArray`"""
+    header: Header
+    poses: list[Pose]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PoseStamped:
+    """`geometry_msgs/msg/PoseStamped`"""
+    header: Header
+    pose: Pose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PoseWithCovariance:
+    """`geometry_msgs/msg/PoseWithCovariance`"""
+    pose: Pose
+    covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PoseWithCovarianceStamped:
+    """`geometry_msgs/msg/PoseWithCovarianceStamped`"""
+    header: Header
+    pose: PoseWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Quaternion:
+    """`geometry_msgs/msg/Quaternion`"""
+    x: float
+    y: float
+    z: float
+    w: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class QuaternionStamped:
+    """`geometry_msgs/msg/QuaternionStamped`"""
+    header: Header
+    quaternion: Quaternion
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Transform:
+    """`geometry_msgs/msg/Transform`"""
+    translation: Vector3
+    rotation: Quaternion
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TransformStamped:
+    """`geometry_msgs/msg/TransformStamped`"""
+    header: Header
+    child_frame_id: str
+    transform: Transform
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Twist:
+    """`geometry_msgs/msg/Twist`"""
+    linear: Vector3
+    angular: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TwistStamped:
+    """`geometry_msgs/msg/TwistStamped`"""
+    header: Header
+    twist: Twist
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TwistWithCovariance:
+    """`geometry_msgs/msg/TwistWithCovariance`"""
+    twist: Twist
+    covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TwistWithCovarianceStamped:
+    """`geometry_msgs/msg/TwistWithCovarianceStamped`"""
+    header: Header
+    twist: TwistWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Vector3:
+    """`geometry_msgs/msg/Vector3`"""
+    x: float
+    y: float
+    z: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Vector3Stamped:
+    """`geometry_msgs/msg/Vector3Stamped`"""
+    header: Header
+    vector: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class VelocityStamped:
+    """`geometry_msgs/msg/VelocityStamped`"""
+    header: Header
+    body_frame_id: str
+    reference_frame_id: str
+    velocity: Twist
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Wrench:
+    """`geometry_msgs/msg/Wrench`"""
+    force: Vector3
+    torque: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WrenchStamped:
+    """`geometry_msgs/msg/WrenchStamped`"""
+    header: Header
+    wrench: Wrench
+    __msgtype__: ClassVar[str]
+
+# gps_msgs
+
+@dataclass
+class GPSFix:
+    """`gps_msgs/msg/GPSFix`"""
+    header: Header
+    status: GPSStatus
+    latitude: float
+    longitude: float
+    altitude: float
+    track: float
+    speed: float
+    climb: float
+    pitch: float
+    roll: float
+    dip: float
+    time: float
+    gdop: float
+    pdop: float
+    hdop: float
+    vdop: float
+    tdop: float
+    err: float
+    err_horz: float
+    err_vert: float
+    err_track: float
+    err_speed: float
+    err_climb: float
+    err_time: float
+    err_pitch: float
+    err_roll: float
+    err_dip: float
+    position_covariance: NDArray[np.float64]
+    position_covariance_type: int
+    COVARIANCE_TYPE_UNKNOWN: ClassVar[int] = 0
+    COVARIANCE_TYPE_APPROXIMATED: ClassVar[int] = 1
+    COVARIANCE_TYPE_DIAGONAL_KNOWN: ClassVar[int] = 2
+    COVARIANCE_TYPE_KNOWN: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GPSStatus:
+    """`gps_msgs/msg/GPSStatus`"""
+    header: Header
+    satellites_used: int
+    satellite_used_prn: NDArray[np.int32]
+    satellites_visible: int
+    satellite_visible_prn: NDArray[np.int32]
+    satellite_visible_z: NDArray[np.int32]
+    satellite_visible_azimuth: NDArray[np.int32]
+    satellite_visible_snr: NDArray[np.int32]
+    status: int
+    motion_source: int
+    orientation_source: int
+    position_source: int
+    STATUS_NO_FIX: ClassVar[int] = -1
+    STATUS_FIX: ClassVar[int] = 0
+    STATUS_SBAS_FIX: ClassVar[int] = 1
+    STATUS_GBAS_FIX: ClassVar[int] = 2
+    STATUS_DGPS_FIX: ClassVar[int] = 18
+    STATUS_RTK_FIX: ClassVar[int] = 19
+    STATUS_RTK_FLOAT: ClassVar[int] = 20
+    STATUS_WAAS_FIX: ClassVar[int] = 33
+    SOURCE_NONE: ClassVar[int] = 0
+    SOURCE_GPS: ClassVar[int] = 1
+    SOURCE_POINTS: ClassVar[int] = 2
+    SOURCE_DOPPLER: ClassVar[int] = 4
+    SOURCE_ALTIMETER: ClassVar[int] = 8
+    SOURCE_MAGNETIC: ClassVar[int] = 16
+    SOURCE_GYRO: ClassVar[int] = 32
+    SOURCE_ACCEL: ClassVar[int] = 64
+    __msgtype__: ClassVar[str]
+
+# lifecycle_msgs
+
+@dataclass
+class State:
+    """`lifecycle_msgs/msg/State`"""
+    id: int
+    label: str
+    PRIMARY_STATE_UNKNOWN: ClassVar[int] = 0
+    PRIMARY_STATE_UNCONFIGURED: ClassVar[int] = 1
+    PRIMARY_STATE_INACTIVE: ClassVar[int] = 2
+    PRIMARY_STATE_ACTIVE: ClassVar[int] = 3
+    PRIMARY_STATE_FINALIZED: ClassVar[int] = 4
+    TRANSITION_STATE_CONFIGURING: ClassVar[int] = 10
+    TRANSITION_STATE_CLEANINGUP: ClassVar[int] = 11
+    TRANSITION_STATE_SHUTTINGDOWN: ClassVar[int] = 12
+    TRANSITION_STATE_ACTIVATING: ClassVar[int] = 13
+    TRANSITION_STATE_DEACTIVATING: ClassVar[int] = 14
+    TRANSITION_STATE_ERRORPROCESSING: ClassVar[int] = 15
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Transition:
+    """`lifecycle_msgs/msg/Transition`"""
+    id: int
+    label: str
+    TRANSITION_CREATE: ClassVar[int] = 0
+    TRANSITION_CONFIGURE: ClassVar[int] = 1
+    TRANSITION_CLEANUP: ClassVar[int] = 2
+    TRANSITION_ACTIVATE: ClassVar[int] = 3
+    TRANSITION_DEACTIVATE: ClassVar[int] = 4
+    TRANSITION_UNCONFIGURED_SHUTDOWN: ClassVar[int] = 5
+    TRANSITION_INACTIVE_SHUTDOWN: ClassVar[int] = 6
+    TRANSITION_ACTIVE_SHUTDOWN: ClassVar[int] = 7
+    TRANSITION_DESTROY: ClassVar[int] = 8
+    TRANSITION_ON_CONFIGURE_SUCCESS: ClassVar[int] = 10
+    TRANSITION_ON_CONFIGURE_FAILURE: ClassVar[int] = 11
+    TRANSITION_ON_CONFIGURE_ERROR: ClassVar[int] = 12
+    TRANSITION_ON_CLEANUP_SUCCESS: ClassVar[int] = 20
+    TRANSITION_ON_CLEANUP_FAILURE: ClassVar[int] = 21
+    TRANSITION_ON_CLEANUP_ERROR: ClassVar[int] = 22
+    TRANSITION_ON_ACTIVATE_SUCCESS: ClassVar[int] = 30
+    TRANSITION_ON_ACTIVATE_FAILURE: ClassVar[int] = 31
+    TRANSITION_ON_ACTIVATE_ERROR: ClassVar[int] = 32
+    TRANSITION_ON_DEACTIVATE_SUCCESS: ClassVar[int] = 40
+    TRANSITION_ON_DEACTIVATE_FAILURE: ClassVar[int] = 41
+    TRANSITION_ON_DEACTIVATE_ERROR: ClassVar[int] = 42
+    TRANSITION_ON_SHUTDOWN_SUCCESS: ClassVar[int] = 50
+    TRANSITION_ON_SHUTDOWN_FAILURE: ClassVar[int] = 51
+    TRANSITION_ON_SHUTDOWN_ERROR: ClassVar[int] = 52
+    TRANSITION_ON_ERROR_SUCCESS: ClassVar[int] = 60
+    TRANSITION_ON_ERROR_FAILURE: ClassVar[int] = 61
+    TRANSITION_ON_ERROR_ERROR: ClassVar[int] = 62
+    TRANSITION_CALLBACK_SUCCESS: ClassVar[int] = 97
+    TRANSITION_CALLBACK_FAILURE: ClassVar[int] = 98
+    TRANSITION_CALLBACK_ERROR: ClassVar[int] = 99
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TransitionDescription:
+    """`lifecycle_msgs/msg/TransitionDescription`"""
+    transition: Transition
+    start_state: State
+    goal_state: State
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TransitionEvent:
+    """`lifecycle_msgs/msg/TransitionEvent`"""
+    timestamp: int
+    transition: Transition
+    start_state: State
+    goal_state: State
+    __msgtype__: ClassVar[str]
+
+# nav_msgs
+
+@dataclass
+class GridCells:
+    """`nav_msgs/msg/GridCells`"""
+    header: Header
+    cell_width: float
+    cell_height: float
+    cells: list[Point]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MapMetaData:
+    """`nav_msgs/msg/MapMetaData`"""
+    map_load_time: Time
+    resolution: float
+    width: int
+    height: int
+    origin: Pose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class OccupancyGrid:
+    """`nav_msgs/msg/OccupancyGrid`"""
+    header: Header
+    info: MapMetaData
+    data: NDArray[np.int8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Odometry:
+    """`nav_msgs/msg/Odometry`"""
+    header: Header
+    child_frame_id: str
+    pose: PoseWithCovariance
+    twist: TwistWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Path:
+    """`nav_msgs/msg/Path`"""
+    header: Header
+    poses: list[PoseStamped]
+    __msgtype__: ClassVar[str]
+
+# play_motion2_msgs
+
+@dataclass
+class PlayMotion2Raw_Feedback:
+    """`play_motion2_msgs/action/PlayMotion2Raw_Feedback`"""
+    current_time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlayMotion2Raw_Goal:
+    """`play_motion2_msgs/action/PlayMotion2Raw_Goal`"""
+    motion: Motion
+    skip_planning: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlayMotion2Raw_Result:
+    """`play_motion2_msgs/action/PlayMotion2Raw_Result`"""
+    success: bool
+    error: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlayMotion2_Feedback:
+    """`play_motion2_msgs/action/PlayMotion2_Feedback`"""
+    current_time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlayMotion2_Goal:
+    """`play_motion2_msgs/action/PlayMotion2_Goal`"""
+    motion_name: str
+    skip_planning: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlayMotion2_Result:
+    """`play_motion2_msgs/action/PlayMotion2_Result`"""
+    success: bool
+    error: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Motion:
+    """`play_motion2_msgs/msg/Motion`"""
+    key: str
+    name: str
+    usage: str
+    description: str
+    joints: list[str]
+    positions: NDArray[np.float64]
+    times_from_start: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AddMotion_Request:
+    """`play_motion2_msgs/srv/AddMotion_Request`"""
+    motion: Motion
+    overwrite: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class AddMotion_Response:
+    """`play_motion2_msgs/srv/AddMotion_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMotionInfo_Request:
+    """`play_motion2_msgs/srv/GetMotionInfo_Request`"""
+    motion_key: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetMotionInfo_Response:
+    """`play_motion2_msgs/srv/GetMotionInfo_Response`"""
+    motion: Motion
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsJointListReady_Request:
+    """`play_motion2_msgs/srv/IsJointListReady_Request`"""
+    joints: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsJointListReady_Response:
+    """`play_motion2_msgs/srv/IsJointListReady_Response`"""
+    is_ready: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsMotionReady_Request:
+    """`play_motion2_msgs/srv/IsMotionReady_Request`"""
+    motion_key: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsMotionReady_Response:
+    """`play_motion2_msgs/srv/IsMotionReady_Response`"""
+    is_ready: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class play_motion2_msgs__srv__ListMotions_Request:
+    """`play_motion2_msgs/srv/ListMotions_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class play_motion2_msgs__srv__ListMotions_Response:
+    """`play_motion2_msgs/srv/ListMotions_Response`"""
+    motion_keys: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RemoveMotion_Request:
+    """`play_motion2_msgs/srv/RemoveMotion_Request`"""
+    motion_key: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RemoveMotion_Response:
+    """`play_motion2_msgs/srv/RemoveMotion_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+# play_motion_msgs
+
+@dataclass
+class PlayMotion_Feedback:
+    """`play_motion_msgs/action/PlayMotion_Feedback`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlayMotion_Goal:
+    """`play_motion_msgs/action/PlayMotion_Goal`"""
+    motion_name: str
+    skip_planning: bool
+    priority: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PlayMotion_Result:
+    """`play_motion_msgs/action/PlayMotion_Result`"""
+    error_code: int
+    error_string: str
+    SUCCEEDED: ClassVar[int] = 1
+    MOTION_NOT_FOUND: ClassVar[int] = -1
+    CONTROLLER_BUSY: ClassVar[int] = -3
+    MISSING_CONTROLLER: ClassVar[int] = -4
+    TRAJECTORY_ERROR: ClassVar[int] = -5
+    GOAL_NOT_REACHED: ClassVar[int] = -6
+    PLANNER_OFFLINE: ClassVar[int] = -7
+    NO_PLAN_FOUND: ClassVar[int] = -8
+    OTHER_ERROR: ClassVar[int] = -42
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MotionInfo:
+    """`play_motion_msgs/msg/MotionInfo`"""
+    name: str
+    joints: list[str]
+    duration: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsAlreadyThere_Request:
+    """`play_motion_msgs/srv/IsAlreadyThere_Request`"""
+    motion_name: str
+    tolerance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IsAlreadyThere_Response:
+    """`play_motion_msgs/srv/IsAlreadyThere_Response`"""
+    already_there: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class play_motion_msgs__srv__ListMotions_Request:
+    """`play_motion_msgs/srv/ListMotions_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class play_motion_msgs__srv__ListMotions_Response:
+    """`play_motion_msgs/srv/ListMotions_Response`"""
+    motions: list[MotionInfo]
+    __msgtype__: ClassVar[str]
+
+# rcl_interfaces
+
+@dataclass
+class FloatingPointRange:
+    """`rcl_interfaces/msg/FloatingPointRange`"""
+    from_value: float
+    to_value: float
+    step: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IntegerRange:
+    """`rcl_interfaces/msg/IntegerRange`"""
+    from_value: int
+    to_value: int
+    step: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListParametersResult:
+    """`rcl_interfaces/msg/ListParametersResult`"""
+    names: list[str]
+    prefixes: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Log:
+    """`rcl_interfaces/msg/Log`"""
+    stamp: Time
+    level: int
+    name: str
+    msg: str
+    file: str
+    function: str
+    line: int
+    DEBUG: ClassVar[int] = 10
+    INFO: ClassVar[int] = 20
+    WARN: ClassVar[int] = 30
+    ERROR: ClassVar[int] = 40
+    FATAL: ClassVar[int] = 50
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LoggerLevel:
+    """`rcl_interfaces/msg/LoggerLevel`"""
+    name: str
+    level: int
+    LOG_LEVEL_UNKNOWN: ClassVar[int] = 0
+    LOG_LEVEL_DEBUG: ClassVar[int] = 10
+    LOG_LEVEL_INFO: ClassVar[int] = 20
+    LOG_LEVEL_WARN: ClassVar[int] = 30
+    LOG_LEVEL_ERROR: ClassVar[int] = 40
+    LOG_LEVEL_FATAL: ClassVar[int] = 50
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Parameter:
+    """`rcl_interfaces/msg/Parameter`"""
+    name: str
+    value: ParameterValue
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParameterDescriptor:
+    """`rcl_interfaces/msg/ParameterDescriptor`"""
+    name: str
+    type: int
+    description: str
+    additional_constraints: str
+    read_only: bool
+    dynamic_typing: bool
+    floating_point_range: list[FloatingPointRange]
+    integer_range: list[IntegerRange]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParameterEvent:
+    """`rcl_interfaces/msg/ParameterEvent`"""
+    stamp: Time
+    node: str
+    new_parameters: list[Parameter]
+    changed_parameters: list[Parameter]
+    deleted_parameters: list[Parameter]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParameterEventDescriptors:
+    """`rcl_interfaces/msg/ParameterEventDescriptors`"""
+    new_parameters: list[ParameterDescriptor]
+    changed_parameters: list[ParameterDescriptor]
+    deleted_parameters: list[ParameterDescriptor]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParameterType:
+    """`rcl_interfaces/msg/ParameterType`"""
+    structure_needs_at_least_one_member: int = 0
+    PARAMETER_NOT_SET: ClassVar[int] = 0
+    PARAMETER_BOOL: ClassVar[int] = 1
+    PARAMETER_INTEGER: ClassVar[int] = 2
+    PARAMETER_DOUBLE: ClassVar[int] = 3
+    PARAMETER_STRING: ClassVar[int] = 4
+    PARAMETER_BYTE_ARRAY: ClassVar[int] = 5
+    PARAMETER_BOOL_ARRAY: ClassVar[int] = 6
+    PARAMETER_INTEGER_ARRAY: ClassVar[int] = 7
+    PARAMETER_DOUBLE_ARRAY: ClassVar[int] = 8
+    PARAMETER_STRING_ARRAY: ClassVar[int] = 9
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParameterValue:
+    """`rcl_interfaces/msg/ParameterValue`"""
+    type: int
+    bool_value: bool
+    integer_value: int
+    double_value: float
+    string_value: str
+    byte_array_value: NDArray[np.uint8]
+    bool_array_value: NDArray[np.bool_]
+    integer_array_value: NDArray[np.int64]
+    double_array_value: NDArray[np.float64]
+    string_array_value: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLoggerLevelsResult:
+    """`rcl_interfaces/msg/SetLoggerLevelsResult`"""
+    successful: bool
+    reason: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetParametersResult:
+    """`rcl_interfaces/msg/SetParametersResult`"""
+    successful: bool
+    reason: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DescribeParameters_Request:
+    """`rcl_interfaces/srv/DescribeParameters_Request`"""
+    names: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class DescribeParameters_Response:
+    """`rcl_interfaces/srv/DescribeParameters_Response`"""
+    descriptors: list[ParameterDescriptor]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetParameterTypes_Request:
+    """`rcl_interfaces/srv/GetParameterTypes_Request`"""
+    names: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetParameterTypes_Response:
+    """`rcl_interfaces/srv/GetParameterTypes_Response`"""
+    types: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetParameters_Request:
+    """`rcl_interfaces/srv/GetParameters_Request`"""
+    names: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetParameters_Response:
+    """`rcl_interfaces/srv/GetParameters_Response`"""
+    values: list[ParameterValue]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListParameters_Request:
+    """`rcl_interfaces/srv/ListParameters_Request`"""
+    prefixes: list[str]
+    depth: int
+    DEPTH_RECURSIVE: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ListParameters_Response:
+    """`rcl_interfaces/srv/ListParameters_Response`"""
+    result: ListParametersResult
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetParametersAtomically_Request:
+    """`rcl_interfaces/srv/SetParametersAtomically_Request`"""
+    parameters: list[Parameter]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetParametersAtomically_Response:
+    """`rcl_interfaces/srv/SetParametersAtomically_Response`"""
+    result: SetParametersResult
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetParameters_Request:
+    """`rcl_interfaces/srv/SetParameters_Request`"""
+    parameters: list[Parameter]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetParameters_Response:
+    """`rcl_interfaces/srv/SetParameters_Response`"""
+    results: list[SetParametersResult]
+    __msgtype__: ClassVar[str]
+
+# rmw_dds_common
+
+@dataclass
+class Gid:
+    """`rmw_dds_common/msg/Gid`"""
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NodeEntitiesInfo:
+    """`rmw_dds_common/msg/NodeEntitiesInfo`"""
+    node_namespace: str
+    node_name: str
+    reader_gid_seq: list[Gid]
+    writer_gid_seq: list[Gid]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ParticipantEntitiesInfo:
+    """`rmw_dds_common/msg/ParticipantEntitiesInfo`"""
+    gid: Gid
+    node_entities_info_seq: list[NodeEntitiesInfo]
+    __msgtype__: ClassVar[str]
+
+# ros_gz_interfaces
+
+@dataclass
+class AirSpeed:
+    """`ros_gz_interfaces/msg/AirSpeed`"""
+    header: Header
+    diff_pressure: float
+    temperature: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Altimeter:
+    """`ros_gz_interfaces/msg/Altimeter`"""
+    header: Header
+    vertical_position: float
+    vertical_velocity: float
+    vertical_reference: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Contact:
+    """`ros_gz_interfaces/msg/Contact`"""
+    collision1: Entity
+    collision2: Entity
+    positions: list[Vector3]
+    normals: list[Vector3]
+    depths: NDArray[np.float64]
+    wrenches: list[JointWrench]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Contacts:
+    """`ros_gz_interfaces/msg/Contacts`"""
+    header: Header
+    contacts: list[Contact]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Entity:
+    """`ros_gz_interfaces/msg/Entity`"""
+    id: int
+    name: str
+    type: int
+    NONE: ClassVar[int] = 0
+    LIGHT: ClassVar[int] = 1
+    MODEL: ClassVar[int] = 2
+    LINK: ClassVar[int] = 3
+    VISUAL: ClassVar[int] = 4
+    COLLISION: ClassVar[int] = 5
+    SENSOR: ClassVar[int] = 6
+    JOINT: ClassVar[int] = 7
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityFactory:
+    """`ros_gz_interfaces/msg/EntityFactory`"""
+    name: str
+    allow_renaming: bool
+    sdf: str
+    sdf_filename: str
+    clone_name: str
+    pose: Pose
+    relative_to: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityWrench:
+    """`ros_gz_interfaces/msg/EntityWrench`"""
+    header: Header
+    entity: Entity
+    wrench: Wrench
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Float32Array:
+    """`ros_gz_interfaces/msg/Float32Array`"""
+    data: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointWrench:
+    """`ros_gz_interfaces/msg/JointWrench`"""
+    header: Header
+    body_1_name: String
+    body_1_id: UInt32
+    body_2_name: String
+    body_2_id: UInt32
+    body_1_wrench: Wrench
+    body_2_wrench: Wrench
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Light:
+    """`ros_gz_interfaces/msg/Light`"""
+    header: Header
+    name: str
+    type: int
+    pose: Pose
+    diffuse: ColorRGBA
+    specular: ColorRGBA
+    attenuation_constant: float
+    attenuation_linear: float
+    attenuation_quadratic: float
+    direction: Vector3
+    range: float
+    cast_shadows: bool
+    spot_inner_angle: float
+    spot_outer_angle: float
+    spot_falloff: float
+    id: int
+    parent_id: int
+    intensity: float
+    POINT: ClassVar[int] = 0
+    SPOT: ClassVar[int] = 1
+    DIRECTIONAL: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LogPlaybackStatistics:
+    """`ros_gz_interfaces/msg/LogPlaybackStatistics`"""
+    header: Header
+    start_time: Time
+    end_time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LogicalCameraImage:
+    """`ros_gz_interfaces/msg/LogicalCameraImage`"""
+    header: Header
+    pose: Pose
+    model: list[LogicalCameraImageModel]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LogicalCameraImageModel:
+    """`ros_gz_interfaces/msg/LogicalCameraImageModel`"""
+    name: str
+    pose: Pose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MaterialColor:
+    """`ros_gz_interfaces/msg/MaterialColor`"""
+    header: Header
+    entity: Entity
+    ambient: ColorRGBA
+    diffuse: ColorRGBA
+    specular: ColorRGBA
+    emissive: ColorRGBA
+    shininess: float
+    entity_match: int
+    FIRST: ClassVar[int] = 0
+    ALL: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WorldControl:
+    """`ros_gz_interfaces/msg/WorldControl`"""
+    pause: bool
+    step: bool
+    multi_step: int
+    reset: WorldReset
+    seed: int
+    run_to_sim_time: Time
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WorldReset:
+    """`ros_gz_interfaces/msg/WorldReset`"""
+    all: bool
+    time_only: bool
+    model_only: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WorldStatistics:
+    """`ros_gz_interfaces/msg/WorldStatistics`"""
+    header: Header
+    sim_time: Time
+    pause_time: Time
+    real_time: Time
+    paused: bool
+    iterations: int
+    model_count: int
+    log_playback_statistics: LogPlaybackStatistics
+    real_time_factor: float
+    step_size: Time
+    stepping: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ControlWorld_Request:
+    """`ros_gz_interfaces/srv/ControlWorld_Request`"""
+    world_control: WorldControl
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ControlWorld_Response:
+    """`ros_gz_interfaces/srv/ControlWorld_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ros_gz_interfaces__srv__DeleteEntity_Request:
+    """`ros_gz_interfaces/srv/DeleteEntity_Request`"""
+    entity: Entity
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ros_gz_interfaces__srv__DeleteEntity_Response:
+    """`ros_gz_interfaces/srv/DeleteEntity_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityPose_Request:
+    """`ros_gz_interfaces/srv/SetEntityPose_Request`"""
+    entity: Entity
+    pose: Pose
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityPose_Response:
+    """`ros_gz_interfaces/srv/SetEntityPose_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ros_gz_interfaces__srv__SpawnEntity_Request:
+    """`ros_gz_interfaces/srv/SpawnEntity_Request`"""
+    entity_factory: EntityFactory
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ros_gz_interfaces__srv__SpawnEntity_Response:
+    """`ros_gz_interfaces/srv/SpawnEntity_Response`"""
+    success: bool
+    __msgtype__: ClassVar[str]
+
+# rosbag2_interfaces
+
+@dataclass
+class ReadSplitEvent:
+    """`rosbag2_interfaces/msg/ReadSplitEvent`"""
+    closed_file: str
+    opened_file: str
+    node_name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WriteSplitEvent:
+    """`rosbag2_interfaces/msg/WriteSplitEvent`"""
+    closed_file: str
+    opened_file: str
+    node_name: str
+    __msgtype__: ClassVar[str]
+
+# rosgraph_msgs
+
+@dataclass
+class Clock:
+    """`rosgraph_msgs/msg/Clock`"""
+    clock: Time
+    __msgtype__: ClassVar[str]
+
+# sensor_msgs
+
+@dataclass
+class BatteryState:
+    """`sensor_msgs/msg/BatteryState`"""
+    header: Header
+    voltage: float
+    temperature: float
+    current: float
+    charge: float
+    capacity: float
+    design_capacity: float
+    percentage: float
+    power_supply_status: int
+    power_supply_health: int
+    power_supply_technology: int
+    present: bool
+    cell_voltage: NDArray[np.float32]
+    cell_temperature: NDArray[np.float32]
+    location: str
+    serial_number: str
+    POWER_SUPPLY_STATUS_UNKNOWN: ClassVar[int] = 0
+    POWER_SUPPLY_STATUS_CHARGING: ClassVar[int] = 1
+    POWER_SUPPLY_STATUS_DISCHARGING: ClassVar[int] = 2
+    POWER_SUPPLY_STATUS_NOT_CHARGING: ClassVar[int] = 3
+    POWER_SUPPLY_STATUS_FULL: ClassVar[int] = 4
+    POWER_SUPPLY_HEALTH_UNKNOWN: ClassVar[int] = 0
+    POWER_SUPPLY_HEALTH_GOOD: ClassVar[int] = 1
+    POWER_SUPPLY_HEALTH_OVERHEAT: ClassVar[int] = 2
+    POWER_SUPPLY_HEALTH_DEAD: ClassVar[int] = 3
+    POWER_SUPPLY_HEALTH_OVERVOLTAGE: ClassVar[int] = 4
+    POWER_SUPPLY_HEALTH_UNSPEC_FAILURE: ClassVar[int] = 5
+    POWER_SUPPLY_HEALTH_COLD: ClassVar[int] = 6
+    POWER_SUPPLY_HEALTH_WATCHDOG_TIMER_EXPIRE: ClassVar[int] = 7
+    POWER_SUPPLY_HEALTH_SAFETY_TIMER_EXPIRE: ClassVar[int] = 8
+    POWER_SUPPLY_TECHNOLOGY_UNKNOWN: ClassVar[int] = 0
+    POWER_SUPPLY_TECHNOLOGY_NIMH: ClassVar[int] = 1
+    POWER_SUPPLY_TECHNOLOGY_LION: ClassVar[int] = 2
+    POWER_SUPPLY_TECHNOLOGY_LIPO: ClassVar[int] = 3
+    POWER_SUPPLY_TECHNOLOGY_LIFE: ClassVar[int] = 4
+    POWER_SUPPLY_TECHNOLOGY_NICD: ClassVar[int] = 5
+    POWER_SUPPLY_TECHNOLOGY_LIMN: ClassVar[int] = 6
+    POWER_SUPPLY_TECHNOLOGY_TERNARY: ClassVar[int] = 7
+    POWER_SUPPLY_TECHNOLOGY_VRLA: ClassVar[int] = 8
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CameraInfo:
+    """`sensor_msgs/msg/CameraInfo`"""
+    header: Header
+    height: int
+    width: int
+    distortion_model: str
+    d: NDArray[np.float64]
+    k: NDArray[np.float64]
+    r: NDArray[np.float64]
+    p: NDArray[np.float64]
+    binning_x: int
+    binning_y: int
+    roi: RegionOfInterest
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ChannelFloat32:
+    """`sensor_msgs/msg/ChannelFloat32`"""
+    name: str
+    values: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class CompressedImage:
+    """`sensor_msgs/msg/CompressedImage`"""
+    header: Header
+    format: str
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FluidPressure:
+    """`sensor_msgs/msg/FluidPressure`"""
+    header: Header
+    fluid_pressure: float
+    variance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Illuminance:
+    """`sensor_msgs/msg/Illuminance`"""
+    header: Header
+    illuminance: float
+    variance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Image:
+    """`sensor_msgs/msg/Image`"""
+    header: Header
+    height: int
+    width: int
+    encoding: str
+    is_bigendian: int
+    step: int
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Imu:
+    """`sensor_msgs/msg/Imu`"""
+    header: Header
+    orientation: Quaternion
+    orientation_covariance: NDArray[np.float64]
+    angular_velocity: Vector3
+    angular_velocity_covariance: NDArray[np.float64]
+    linear_acceleration: Vector3
+    linear_acceleration_covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointState:
+    """`sensor_msgs/msg/JointState`"""
+    header: Header
+    name: list[str]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    effort: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Joy:
+    """`sensor_msgs/msg/Joy`"""
+    header: Header
+    axes: NDArray[np.float32]
+    buttons: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JoyFeedback:
+    """`sensor_msgs/msg/JoyFeedback`"""
+    type: int
+    id: int
+    intensity: float
+    TYPE_LED: ClassVar[int] = 0
+    TYPE_RUMBLE: ClassVar[int] = 1
+    TYPE_BUZZER: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JoyFeedbackArray:
+    """`sensor_msgs/msg/JoyFeedbackArray`"""
+    array: list[JoyFeedback]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LaserEcho:
+    """`sensor_msgs/msg/LaserEcho`"""
+    echoes: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class LaserScan:
+    """`sensor_msgs/msg/LaserScan`"""
+    header: Header
+    angle_min: float
+    angle_max: float
+    angle_increment: float
+    time_increment: float
+    scan_time: float
+    range_min: float
+    range_max: float
+    ranges: NDArray[np.float32]
+    intensities: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MagneticField:
+    """`sensor_msgs/msg/MagneticField`"""
+    header: Header
+    magnetic_field: Vector3
+    magnetic_field_covariance: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiDOFJointState:
+    """`sensor_msgs/msg/MultiDOFJointState`"""
+    header: Header
+    joint_names: list[str]
+    transforms: list[Transform]
+    twist: list[Twist]
+    wrench: list[Wrench]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiEchoLaserScan:
+    """`sensor_msgs/msg/MultiEchoLaserScan`"""
+    header: Header
+    angle_min: float
+    angle_max: float
+    angle_increment: float
+    time_increment: float
+    scan_time: float
+    range_min: float
+    range_max: float
+    ranges: list[LaserEcho]
+    intensities: list[LaserEcho]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavSatFix:
+    """`sensor_msgs/msg/NavSatFix`"""
+    header: Header
+    status: NavSatStatus
+    latitude: float
+    longitude: float
+    altitude: float
+    position_covariance: NDArray[np.float64]
+    position_covariance_type: int
+    COVARIANCE_TYPE_UNKNOWN: ClassVar[int] = 0
+    COVARIANCE_TYPE_APPROXIMATED: ClassVar[int] = 1
+    COVARIANCE_TYPE_DIAGONAL_KNOWN: ClassVar[int] = 2
+    COVARIANCE_TYPE_KNOWN: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class NavSatStatus:
+    """`sensor_msgs/msg/NavSatStatus`"""
+    status: int
+    service: int
+    STATUS_UNKNOWN: ClassVar[int] = -2
+    STATUS_NO_FIX: ClassVar[int] = -1
+    STATUS_FIX: ClassVar[int] = 0
+    STATUS_SBAS_FIX: ClassVar[int] = 1
+    STATUS_GBAS_FIX: ClassVar[int] = 2
+    SERVICE_UNKNOWN: ClassVar[int] = 0
+    SERVICE_GPS: ClassVar[int] = 1
+    SERVICE_GLONASS: ClassVar[int] = 2
+    SERVICE_COMPASS: ClassVar[int] = 4
+    SERVICE_GALILEO: ClassVar[int] = 8
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointCloud:
+    """`sensor_msgs/msg/PointCloud`"""
+    header: Header
+    points: list[Point32]
+    channels: list[ChannelFloat32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointCloud2:
+    """`sensor_msgs/msg/PointCloud2`"""
+    header: Header
+    height: int
+    width: int
+    fields: list[PointField]
+    is_bigendian: bool
+    point_step: int
+    row_step: int
+    data: NDArray[np.uint8]
+    is_dense: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PointField:
+    """`sensor_msgs/msg/PointField`"""
+    name: str
+    offset: int
+    datatype: int
+    count: int
+    INT8: ClassVar[int] = 1
+    UINT8: ClassVar[int] = 2
+    INT16: ClassVar[int] = 3
+    UINT16: ClassVar[int] = 4
+    INT32: ClassVar[int] = 5
+    UINT32: ClassVar[int] = 6
+    FLOAT32: ClassVar[int] = 7
+    FLOAT64: ClassVar[int] = 8
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Range:
+    """`sensor_msgs/msg/Range`"""
+    header: Header
+    radiation_type: int
+    field_of_view: float
+    min_range: float
+    max_range: float
+    range: float
+    variance: float
+    ULTRASOUND: ClassVar[int] = 0
+    INFRARED: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RegionOfInterest:
+    """`sensor_msgs/msg/RegionOfInterest`"""
+    x_offset: int
+    y_offset: int
+    height: int
+    width: int
+    do_rectify: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class RelativeHumidity:
+    """`sensor_msgs/msg/RelativeHumidity`"""
+    header: Header
+    relative_humidity: float
+    variance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Temperature:
+    """`sensor_msgs/msg/Temperature`"""
+    header: Header
+    temperature: float
+    variance: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TimeReference:
+    """`sensor_msgs/msg/TimeReference`"""
+    header: Header
+    time_ref: Time
+    source: str
+    __msgtype__: ClassVar[str]
+
+# service_msgs
+
+@dataclass
+class ServiceEventInfo:
+    """`service_msgs/msg/ServiceEventInfo`"""
+    event_type: int
+    stamp: Time
+    client_gid: NDArray[np.uint8]
+    sequence_number: int
+    REQUEST_SENT: ClassVar[int] = 0
+    REQUEST_RECEIVED: ClassVar[int] = 1
+    RESPONSE_SENT: ClassVar[int] = 2
+    RESPONSE_RECEIVED: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+# shape_msgs
+
+@dataclass
+class Mesh:
+    """`shape_msgs/msg/Mesh`"""
+    triangles: list[MeshTriangle]
+    vertices: list[Point]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MeshTriangle:
+    """`shape_msgs/msg/MeshTriangle`"""
+    vertex_indices: NDArray[np.uint32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Plane:
+    """`shape_msgs/msg/Plane`"""
+    coef: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SolidPrimitive:
+    """`shape_msgs/msg/SolidPrimitive`"""
+    type: int
+    dimensions: NDArray[np.float64]
+    polygon: Polygon
+    BOX: ClassVar[int] = 1
+    SPHERE: ClassVar[int] = 2
+    CYLINDER: ClassVar[int] = 3
+    CONE: ClassVar[int] = 4
+    PRISM: ClassVar[int] = 5
+    BOX_X: ClassVar[int] = 0
+    BOX_Y: ClassVar[int] = 1
+    BOX_Z: ClassVar[int] = 2
+    SPHERE_RADIUS: ClassVar[int] = 0
+    CYLINDER_HEIGHT: ClassVar[int] = 0
+    CYLINDER_RADIUS: ClassVar[int] = 1
+    CONE_HEIGHT: ClassVar[int] = 0
+    CONE_RADIUS: ClassVar[int] = 1
+    PRISM_HEIGHT: ClassVar[int] = 0
+    __msgtype__: ClassVar[str]
+
+# simkit_msgs
+
+@dataclass
+class LogicalCameraSensor:
+    """`simkit_msgs/msg/LogicalCameraSensor`"""
+    header: Header
+    near_clip: float
+    far_clip: float
+    horizontal_fov: float
+    aspect_ratio: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class PerformerStatus:
+    """`simkit_msgs/msg/PerformerStatus`"""
+    header: Header
+    name: str
+    pose: Pose
+    state: bool
+    count: int
+    keys: list[str]
+    values: list[str]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SceneEntity:
+    """`simkit_msgs/msg/SceneEntity`"""
+    entity: Entity
+    parent: str
+    pose: Pose
+    is_static: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Wind:
+    """`simkit_msgs/msg/Wind`"""
+    header: Header
+    linear_velocity: Vector3
+    enable_wind: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityRequest_Request:
+    """`simkit_msgs/srv/EntityRequest_Request`"""
+    entity: Entity
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class EntityRequest_Response:
+    """`simkit_msgs/srv/EntityRequest_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GenerateWorldSdf_Request:
+    """`simkit_msgs/srv/GenerateWorldSdf_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GenerateWorldSdf_Response:
+    """`simkit_msgs/srv/GenerateWorldSdf_Response`"""
+    success: bool
+    status_message: str
+    sdf: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetScene_Request:
+    """`simkit_msgs/srv/GetScene_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class GetScene_Response:
+    """`simkit_msgs/srv/GetScene_Response`"""
+    name: str
+    header: Header
+    entities: list[SceneEntity]
+    ambient: ColorRGBA
+    background: ColorRGBA
+    shadows: bool
+    grid: bool
+    sky: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityPoses_Request:
+    """`simkit_msgs/srv/SetEntityPoses_Request`"""
+    entities: list[Entity]
+    poses: list[Pose]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetEntityPoses_Response:
+    """`simkit_msgs/srv/SetEntityPoses_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLight_Request:
+    """`simkit_msgs/srv/SetLight_Request`"""
+    light: Light
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetLight_Response:
+    """`simkit_msgs/srv/SetLight_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMaterialColor_Request:
+    """`simkit_msgs/srv/SetMaterialColor_Request`"""
+    material_color: MaterialColor
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetMaterialColor_Response:
+    """`simkit_msgs/srv/SetMaterialColor_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetSphericalCoordinates_Request:
+    """`simkit_msgs/srv/SetSphericalCoordinates_Request`"""
+    surface_model: int
+    latitude_deg: float
+    longitude_deg: float
+    elevation: float
+    heading_deg: float
+    entity: Entity
+    EARTH_WGS84: ClassVar[int] = 0
+    MOON_SCS: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetSphericalCoordinates_Response:
+    """`simkit_msgs/srv/SetSphericalCoordinates_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetWheelSlip_Request:
+    """`simkit_msgs/srv/SetWheelSlip_Request`"""
+    entity: Entity
+    slip_compliance_lateral: float
+    slip_compliance_longitudinal: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetWheelSlip_Response:
+    """`simkit_msgs/srv/SetWheelSlip_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpawnEntities_Request:
+    """`simkit_msgs/srv/SpawnEntities_Request`"""
+    entity_factories: list[EntityFactory]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SpawnEntities_Response:
+    """`simkit_msgs/srv/SpawnEntities_Response`"""
+    success: bool
+    status_message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WindInfo_Request:
+    """`simkit_msgs/srv/WindInfo_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class WindInfo_Response:
+    """`simkit_msgs/srv/WindInfo_Response`"""
+    wind: Wind
+    velocity: Vector3
+    __msgtype__: ClassVar[str]
+
+# statistics_msgs
+
+@dataclass
+class MetricsMessage:
+    """`statistics_msgs/msg/MetricsMessage`"""
+    measurement_source_name: str
+    metrics_source: str
+    unit: str
+    window_start: Time
+    window_stop: Time
+    statistics: list[StatisticDataPoint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StatisticDataPoint:
+    """`statistics_msgs/msg/StatisticDataPoint`"""
+    data_type: int
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class StatisticDataType:
+    """`statistics_msgs/msg/StatisticDataType`"""
+    structure_needs_at_least_one_member: int = 0
+    STATISTICS_DATA_TYPE_UNINITIALIZED: ClassVar[int] = 0
+    STATISTICS_DATA_TYPE_AVERAGE: ClassVar[int] = 1
+    STATISTICS_DATA_TYPE_MINIMUM: ClassVar[int] = 2
+    STATISTICS_DATA_TYPE_MAXIMUM: ClassVar[int] = 3
+    STATISTICS_DATA_TYPE_STDDEV: ClassVar[int] = 4
+    STATISTICS_DATA_TYPE_SAMPLE_COUNT: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+# std_msgs
+
+@dataclass
+class Bool:
+    """`std_msgs/msg/Bool`"""
+    data: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Byte:
+    """`std_msgs/msg/Byte`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ByteMultiArray:
+    """`std_msgs/msg/ByteMultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Char:
+    """`std_msgs/msg/Char`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ColorRGBA:
+    """`std_msgs/msg/ColorRGBA`"""
+    r: float
+    g: float
+    b: float
+    a: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Empty:
+    """`std_msgs/msg/Empty`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Float32:
+    """`std_msgs/msg/Float32`"""
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Float32MultiArray:
+    """`std_msgs/msg/Float32MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.float32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Float64:
+    """`std_msgs/msg/Float64`"""
+    data: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Float64MultiArray:
+    """`std_msgs/msg/Float64MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.float64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Header:
+    """`std_msgs/msg/Header`"""
+    stamp: Time
+    frame_id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int16:
+    """`std_msgs/msg/Int16`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int16MultiArray:
+    """`std_msgs/msg/Int16MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.int16]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int32:
+    """`std_msgs/msg/Int32`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int32MultiArray:
+    """`std_msgs/msg/Int32MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.int32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int64:
+    """`std_msgs/msg/Int64`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int64MultiArray:
+    """`std_msgs/msg/Int64MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.int64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int8:
+    """`std_msgs/msg/Int8`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Int8MultiArray:
+    """`std_msgs/msg/Int8MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.int8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiArrayDimension:
+    """`std_msgs/msg/MultiArrayDimension`"""
+    label: str
+    size: int
+    stride: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiArrayLayout:
+    """`std_msgs/msg/MultiArrayLayout`"""
+    dim: list[MultiArrayDimension]
+    data_offset: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class String:
+    """`std_msgs/msg/String`"""
+    data: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt16:
+    """`std_msgs/msg/UInt16`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt16MultiArray:
+    """`std_msgs/msg/UInt16MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.uint16]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt32:
+    """`std_msgs/msg/UInt32`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt32MultiArray:
+    """`std_msgs/msg/UInt32MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.uint32]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt64:
+    """`std_msgs/msg/UInt64`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt64MultiArray:
+    """`std_msgs/msg/UInt64MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.uint64]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt8:
+    """`std_msgs/msg/UInt8`"""
+    data: int
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UInt8MultiArray:
+    """`std_msgs/msg/UInt8MultiArray`"""
+    layout: MultiArrayLayout
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+# std_srvs
+
+@dataclass
+class Empty_Request:
+    """`std_srvs/srv/Empty_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Empty_Response:
+    """`std_srvs/srv/Empty_Response`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetBool_Request:
+    """`std_srvs/srv/SetBool_Request`"""
+    data: bool
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class SetBool_Response:
+    """`std_srvs/srv/SetBool_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Trigger_Request:
+    """`std_srvs/srv/Trigger_Request`"""
+    structure_needs_at_least_one_member: int = 0
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Trigger_Response:
+    """`std_srvs/srv/Trigger_Response`"""
+    success: bool
+    message: str
+    __msgtype__: ClassVar[str]
+
+# stereo_msgs
+
+@dataclass
+class DisparityImage:
+    """`stereo_msgs/msg/DisparityImage`"""
+    header: Header
+    image: Image
+    f: float
+    t: float
+    valid_window: RegionOfInterest
+    min_disparity: float
+    max_disparity: float
+    delta_d: float
+    __msgtype__: ClassVar[str]
+
+# tf2_msgs
+
+@dataclass
+class TF2Error:
+    """`tf2_msgs/msg/TF2Error`"""
+    error: int
+    error_string: str
+    NO_ERROR: ClassVar[int] = 0
+    LOOKUP_ERROR: ClassVar[int] = 1
+    CONNECTIVITY_ERROR: ClassVar[int] = 2
+    EXTRAPOLATION_ERROR: ClassVar[int] = 3
+    INVALID_ARGUMENT_ERROR: ClassVar[int] = 4
+    TIMEOUT_ERROR: ClassVar[int] = 5
+    TRANSFORM_ERROR: ClassVar[int] = 6
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TFMessage:
+    """`tf2_msgs/msg/TFMessage`"""
+    transforms: list[TransformStamped]
+    __msgtype__: ClassVar[str]
+
+# trajectory_msgs
+
+@dataclass
+class JointTrajectory:
+    """`trajectory_msgs/msg/JointTrajectory`"""
+    header: Header
+    joint_names: list[str]
+    points: list[JointTrajectoryPoint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class JointTrajectoryPoint:
+    """`trajectory_msgs/msg/JointTrajectoryPoint`"""
+    positions: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    accelerations: NDArray[np.float64]
+    effort: NDArray[np.float64]
+    time_from_start: Duration
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiDOFJointTrajectory:
+    """`trajectory_msgs/msg/MultiDOFJointTrajectory`"""
+    header: Header
+    joint_names: list[str]
+    points: list[MultiDOFJointTrajectoryPoint]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MultiDOFJointTrajectoryPoint:
+    """`trajectory_msgs/msg/MultiDOFJointTrajectoryPoint`"""
+    transforms: list[Transform]
+    velocities: list[Twist]
+    accelerations: list[Twist]
+    time_from_start: Duration
+    __msgtype__: ClassVar[str]
+
+# type_description_interfaces
+
+@dataclass
+class Field:
+    """`type_description_interfaces/msg/Field`"""
+    name: str
+    type: FieldType
+    default_value: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class FieldType:
+    """`type_description_interfaces/msg/FieldType`"""
+    type_id: int
+    capacity: int
+    string_capacity: int
+    nested_type_name: str
+    FIELD_TYPE_NOT_SET: ClassVar[int] = 0
+    FIELD_TYPE_NESTED_TYPE: ClassVar[int] = 1
+    FIELD_TYPE_INT8: ClassVar[int] = 2
+    FIELD_TYPE_UINT8: ClassVar[int] = 3
+    FIELD_TYPE_INT16: ClassVar[int] = 4
+    FIELD_TYPE_UINT16: ClassVar[int] = 5
+    FIELD_TYPE_INT32: ClassVar[int] = 6
+    FIELD_TYPE_UINT32: ClassVar[int] = 7
+    FIELD_TYPE_INT64: ClassVar[int] = 8
+    FIELD_TYPE_UINT64: ClassVar[int] = 9
+    FIELD_TYPE_FLOAT: ClassVar[int] = 10
+    FIELD_TYPE_DOUBLE: ClassVar[int] = 11
+    FIELD_TYPE_LONG_DOUBLE: ClassVar[int] = 12
+    FIELD_TYPE_CHAR: ClassVar[int] = 13
+    FIELD_TYPE_WCHAR: ClassVar[int] = 14
+    FIELD_TYPE_BOOLEAN: ClassVar[int] = 15
+    FIELD_TYPE_BYTE: ClassVar[int] = 16
+    FIELD_TYPE_STRING: ClassVar[int] = 17
+    FIELD_TYPE_WSTRING: ClassVar[int] = 18
+    FIELD_TYPE_FIXED_STRING: ClassVar[int] = 19
+    FIELD_TYPE_FIXED_WSTRING: ClassVar[int] = 20
+    FIELD_TYPE_BOUNDED_STRING: ClassVar[int] = 21
+    FIELD_TYPE_BOUNDED_WSTRING: ClassVar[int] = 22
+    FIELD_TYPE_NESTED_TYPE_ARRAY: ClassVar[int] = 49
+    FIELD_TYPE_INT8_ARRAY: ClassVar[int] = 50
+    FIELD_TYPE_UINT8_ARRAY: ClassVar[int] = 51
+    FIELD_TYPE_INT16_ARRAY: ClassVar[int] = 52
+    FIELD_TYPE_UINT16_ARRAY: ClassVar[int] = 53
+    FIELD_TYPE_INT32_ARRAY: ClassVar[int] = 54
+    FIELD_TYPE_UINT32_ARRAY: ClassVar[int] = 55
+    FIELD_TYPE_INT64_ARRAY: ClassVar[int] = 56
+    FIELD_TYPE_UINT64_ARRAY: ClassVar[int] = 57
+    FIELD_TYPE_FLOAT_ARRAY: ClassVar[int] = 58
+    FIELD_TYPE_DOUBLE_ARRAY: ClassVar[int] = 59
+    FIELD_TYPE_LONG_DOUBLE_ARRAY: ClassVar[int] = 60
+    FIELD_TYPE_CHAR_ARRAY: ClassVar[int] = 61
+    FIELD_TYPE_WCHAR_ARRAY: ClassVar[int] = 62
+    FIELD_TYPE_BOOLEAN_ARRAY: ClassVar[int] = 63
+    FIELD_TYPE_BYTE_ARRAY: ClassVar[int] = 64
+    FIELD_TYPE_STRING_ARRAY: ClassVar[int] = 65
+    FIELD_TYPE_WSTRING_ARRAY: ClassVar[int] = 66
+    FIELD_TYPE_FIXED_STRING_ARRAY: ClassVar[int] = 67
+    FIELD_TYPE_FIXED_WSTRING_ARRAY: ClassVar[int] = 68
+    FIELD_TYPE_BOUNDED_STRING_ARRAY: ClassVar[int] = 69
+    FIELD_TYPE_BOUNDED_WSTRING_ARRAY: ClassVar[int] = 70
+    FIELD_TYPE_NESTED_TYPE_BOUNDED_SEQUENCE: ClassVar[int] = 97
+    FIELD_TYPE_INT8_BOUNDED_SEQUENCE: ClassVar[int] = 98
+    FIELD_TYPE_UINT8_BOUNDED_SEQUENCE: ClassVar[int] = 99
+    FIELD_TYPE_INT16_BOUNDED_SEQUENCE: ClassVar[int] = 100
+    FIELD_TYPE_UINT16_BOUNDED_SEQUENCE: ClassVar[int] = 101
+    FIELD_TYPE_INT32_BOUNDED_SEQUENCE: ClassVar[int] = 102
+    FIELD_TYPE_UINT32_BOUNDED_SEQUENCE: ClassVar[int] = 103
+    FIELD_TYPE_INT64_BOUNDED_SEQUENCE: ClassVar[int] = 104
+    FIELD_TYPE_UINT64_BOUNDED_SEQUENCE: ClassVar[int] = 105
+    FIELD_TYPE_FLOAT_BOUNDED_SEQUENCE: ClassVar[int] = 106
+    FIELD_TYPE_DOUBLE_BOUNDED_SEQUENCE: ClassVar[int] = 107
+    FIELD_TYPE_LONG_DOUBLE_BOUNDED_SEQUENCE: ClassVar[int] = 108
+    FIELD_TYPE_CHAR_BOUNDED_SEQUENCE: ClassVar[int] = 109
+    FIELD_TYPE_WCHAR_BOUNDED_SEQUENCE: ClassVar[int] = 110
+    FIELD_TYPE_BOOLEAN_BOUNDED_SEQUENCE: ClassVar[int] = 111
+    FIELD_TYPE_BYTE_BOUNDED_SEQUENCE: ClassVar[int] = 112
+    FIELD_TYPE_STRING_BOUNDED_SEQUENCE: ClassVar[int] = 113
+    FIELD_TYPE_WSTRING_BOUNDED_SEQUENCE: ClassVar[int] = 114
+    FIELD_TYPE_FIXED_STRING_BOUNDED_SEQUENCE: ClassVar[int] = 115
+    FIELD_TYPE_FIXED_WSTRING_BOUNDED_SEQUENCE: ClassVar[int] = 116
+    FIELD_TYPE_BOUNDED_STRING_BOUNDED_SEQUENCE: ClassVar[int] = 117
+    FIELD_TYPE_BOUNDED_WSTRING_BOUNDED_SEQUENCE: ClassVar[int] = 118
+    FIELD_TYPE_NESTED_TYPE_UNBOUNDED_SEQUENCE: ClassVar[int] = 145
+    FIELD_TYPE_INT8_UNBOUNDED_SEQUENCE: ClassVar[int] = 146
+    FIELD_TYPE_UINT8_UNBOUNDED_SEQUENCE: ClassVar[int] = 147
+    FIELD_TYPE_INT16_UNBOUNDED_SEQUENCE: ClassVar[int] = 148
+    FIELD_TYPE_UINT16_UNBOUNDED_SEQUENCE: ClassVar[int] = 149
+    FIELD_TYPE_INT32_UNBOUNDED_SEQUENCE: ClassVar[int] = 150
+    FIELD_TYPE_UINT32_UNBOUNDED_SEQUENCE: ClassVar[int] = 151
+    FIELD_TYPE_INT64_UNBOUNDED_SEQUENCE: ClassVar[int] = 152
+    FIELD_TYPE_UINT64_UNBOUNDED_SEQUENCE: ClassVar[int] = 153
+    FIELD_TYPE_FLOAT_UNBOUNDED_SEQUENCE: ClassVar[int] = 154
+    FIELD_TYPE_DOUBLE_UNBOUNDED_SEQUENCE: ClassVar[int] = 155
+    FIELD_TYPE_LONG_DOUBLE_UNBOUNDED_SEQUENCE: ClassVar[int] = 156
+    FIELD_TYPE_CHAR_UNBOUNDED_SEQUENCE: ClassVar[int] = 157
+    FIELD_TYPE_WCHAR_UNBOUNDED_SEQUENCE: ClassVar[int] = 158
+    FIELD_TYPE_BOOLEAN_UNBOUNDED_SEQUENCE: ClassVar[int] = 159
+    FIELD_TYPE_BYTE_UNBOUNDED_SEQUENCE: ClassVar[int] = 160
+    FIELD_TYPE_STRING_UNBOUNDED_SEQUENCE: ClassVar[int] = 161
+    FIELD_TYPE_WSTRING_UNBOUNDED_SEQUENCE: ClassVar[int] = 162
+    FIELD_TYPE_FIXED_STRING_UNBOUNDED_SEQUENCE: ClassVar[int] = 163
+    FIELD_TYPE_FIXED_WSTRING_UNBOUNDED_SEQUENCE: ClassVar[int] = 164
+    FIELD_TYPE_BOUNDED_STRING_UNBOUNDED_SEQUENCE: ClassVar[int] = 165
+    FIELD_TYPE_BOUNDED_WSTRING_UNBOUNDED_SEQUENCE: ClassVar[int] = 166
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class IndividualTypeDescription:
+    """`type_description_interfaces/msg/IndividualTypeDescription`"""
+    type_name: str
+    fields: list[Field]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class type_description_interfaces__msg__KeyValue:
+    """`type_description_interfaces/msg/KeyValue`"""
+    key: str
+    value: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TypeDescription:
+    """`type_description_interfaces/msg/TypeDescription`"""
+    type_description: IndividualTypeDescription
+    referenced_type_descriptions: list[IndividualTypeDescription]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class TypeSource:
+    """`type_description_interfaces/msg/TypeSource`"""
+    type_name: str
+    encoding: str
+    raw_file_contents: str
+    __msgtype__: ClassVar[str]
+
+# unique_identifier_msgs
+
+@dataclass
+class UUID:
+    """`unique_identifier_msgs/msg/UUID`"""
+    uuid: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+# vision_msgs
+
+@dataclass
+class BoundingBox2D:
+    """`vision_msgs/msg/BoundingBox2D`"""
+    center: vision_msgs__msg__Pose2D
+    size_x: float
+    size_y: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class BoundingBox3D:
+    """`vision_msgs/msg/BoundingBox3D`"""
+    center: Pose
+    size: Vector3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Detection2D:
+    """`vision_msgs/msg/Detection2D`"""
+    header: Header
+    results: list[ObjectHypothesisWithPose]
+    bbox: BoundingBox2D
+    id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Detection2DArray:
+    """`vision_msgs/msg/Detection2DArray`"""
+    header: Header
+    detections: list[Detection2D]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Detection3D:
+    """`vision_msgs/msg/Detection3D`"""
+    header: Header
+    results: list[ObjectHypothesisWithPose]
+    bbox: BoundingBox3D
+    id: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Detection3DArray:
+    """`vision_msgs/msg/Detection3DArray`"""
+    header: Header
+    detections: list[Detection3D]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ObjectHypothesis:
+    """`vision_msgs/msg/ObjectHypothesis`"""
+    class_id: str
+    score: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class ObjectHypothesisWithPose:
+    """`vision_msgs/msg/ObjectHypothesisWithPose`"""
+    hypothesis: ObjectHypothesis
+    pose: PoseWithCovariance
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Point2D:
+    """`vision_msgs/msg/Point2D`"""
+    x: float
+    y: float
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class vision_msgs__msg__Pose2D:
+    """`vision_msgs/msg/Pose2D`"""
+    position: Point2D
+    theta: float
+    __msgtype__: ClassVar[str]
+
+# visualization_msgs
+
+@dataclass
+class ImageMarker:
+    """`visualization_msgs/msg/ImageMarker`"""
+    header: Header
+    ns: str
+    id: int
+    type: int
+    action: int
+    position: Point
+    scale: float
+    outline_color: ColorRGBA
+    filled: int
+    fill_color: ColorRGBA
+    lifetime: Duration
+    points: list[Point]
+    outline_colors: list[ColorRGBA]
+    CIRCLE: ClassVar[int] = 0
+    LINE_STRIP: ClassVar[int] = 1
+    LINE_LIST: ClassVar[int] = 2
+    POLYGON: ClassVar[int] = 3
+    POINTS: ClassVar[int] = 4
+    ADD: ClassVar[int] = 0
+    REMOVE: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InteractiveMarker:
+    """`visualization_msgs/msg/InteractiveMarker`"""
+    header: Header
+    pose: Pose
+    name: str
+    description: str
+    scale: float
+    menu_entries: list[MenuEntry]
+    controls: list[InteractiveMarkerControl]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InteractiveMarkerControl:
+    """`visualization_msgs/msg/InteractiveMarkerControl`"""
+    name: str
+    orientation: Quaternion
+    orientation_mode: int
+    interaction_mode: int
+    always_visible: bool
+    markers: list[Marker]
+    independent_marker_orientation: bool
+    description: str
+    INHERIT: ClassVar[int] = 0
+    FIXED: ClassVar[int] = 1
+    VIEW_FACING: ClassVar[int] = 2
+    NONE: ClassVar[int] = 0
+    MENU: ClassVar[int] = 1
+    BUTTON: ClassVar[int] = 2
+    MOVE_AXIS: ClassVar[int] = 3
+    MOVE_PLANE: ClassVar[int] = 4
+    ROTATE_AXIS: ClassVar[int] = 5
+    MOVE_ROTATE: ClassVar[int] = 6
+    MOVE_3D: ClassVar[int] = 7
+    ROTATE_3D: ClassVar[int] = 8
+    MOVE_ROTATE_3D: ClassVar[int] = 9
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InteractiveMarkerFeedback:
+    """`visualization_msgs/msg/InteractiveMarkerFeedback`"""
+    header: Header
+    client_id: str
+    marker_name: str
+    control_name: str
+    event_type: int
+    pose: Pose
+    menu_entry_id: int
+    mouse_point: Point
+    mouse_point_valid: bool
+    KEEP_ALIVE: ClassVar[int] = 0
+    POSE_UPDATE: ClassVar[int] = 1
+    MENU_SELECT: ClassVar[int] = 2
+    BUTTON_CLICK: ClassVar[int] = 3
+    MOUSE_DOWN: ClassVar[int] = 4
+    MOUSE_UP: ClassVar[int] = 5
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InteractiveMarkerInit:
+    """`visualization_msgs/msg/InteractiveMarkerInit`"""
+    server_id: str
+    seq_num: int
+    markers: list[InteractiveMarker]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InteractiveMarkerPose:
+    """`visualization_msgs/msg/InteractiveMarkerPose`"""
+    header: Header
+    pose: Pose
+    name: str
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class InteractiveMarkerUpdate:
+    """`visualization_msgs/msg/InteractiveMarkerUpdate`"""
+    server_id: str
+    seq_num: int
+    type: int
+    markers: list[InteractiveMarker]
+    poses: list[InteractiveMarkerPose]
+    erases: list[str]
+    KEEP_ALIVE: ClassVar[int] = 0
+    UPDATE: ClassVar[int] = 1
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class Marker:
+    """`visualization_msgs/msg/Marker`"""
+    header: Header
+    ns: str
+    id: int
+    type: int
+    action: int
+    pose: Pose
+    scale: Vector3
+    color: ColorRGBA
+    lifetime: Duration
+    frame_locked: bool
+    points: list[Point]
+    colors: list[ColorRGBA]
+    texture_resource: str
+    texture: CompressedImage
+    uv_coordinates: list[UVCoordinate]
+    text: str
+    mesh_resource: str
+    mesh_file: MeshFile
+    mesh_use_embedded_materials: bool
+    ARROW: ClassVar[int] = 0
+    CUBE: ClassVar[int] = 1
+    SPHERE: ClassVar[int] = 2
+    CYLINDER: ClassVar[int] = 3
+    LINE_STRIP: ClassVar[int] = 4
+    LINE_LIST: ClassVar[int] = 5
+    CUBE_LIST: ClassVar[int] = 6
+    SPHERE_LIST: ClassVar[int] = 7
+    POINTS: ClassVar[int] = 8
+    TEXT_VIEW_FACING: ClassVar[int] = 9
+    MESH_RESOURCE: ClassVar[int] = 10
+    TRIANGLE_LIST: ClassVar[int] = 11
+    ARROW_STRIP: ClassVar[int] = 12
+    ADD: ClassVar[int] = 0
+    MODIFY: ClassVar[int] = 0
+    DELETE: ClassVar[int] = 2
+    DELETEALL: ClassVar[int] = 3
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MarkerArray:
+    """`visualization_msgs/msg/MarkerArray`"""
+    markers: list[Marker]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MenuEntry:
+    """`visualization_msgs/msg/MenuEntry`"""
+    id: int
+    parent_id: int
+    title: str
+    command: str
+    command_type: int
+    FEEDBACK: ClassVar[int] = 0
+    ROSRUN: ClassVar[int] = 1
+    ROSLAUNCH: ClassVar[int] = 2
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class MeshFile:
+    """`visualization_msgs/msg/MeshFile`"""
+    filename: str
+    data: NDArray[np.uint8]
+    __msgtype__: ClassVar[str]
+
+@dataclass
+class UVCoordinate:
+    """`visualization_msgs/msg/UVCoordinate`"""
+    u: float
+    v: float
+    __msgtype__: ClassVar[str]
