@@ -229,7 +229,7 @@ def check(
     base: str = "auto",
 ) -> Diagnostics:
     """Every problem of a file, also of compiling it and of loading its plugins; never raises for one."""
-    from simkit.compiler.lint import lint
+    from simkit.compiler.lint import lint_world
     from simkit.errors import PluginError
 
     diagnostics = Diagnostics()
@@ -243,7 +243,7 @@ def check(
             base=base,
         ) as simulation:
             diagnostics.extend(simulation.diagnostics)
-            diagnostics.extend(lint(simulation))
+            diagnostics.extend(lint_world(simulation.world, simulation.compiled))
     except LoadError as error:
         diagnostics.extend(error.diagnostics)
     except PluginError as error:

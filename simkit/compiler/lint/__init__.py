@@ -1,26 +1,24 @@
-"""Physics lint: what of a sound file will most likely make trouble, told before the first step.
+"""Lint of a compiled world: reports what will most likely make trouble, before the first step.
 
-Every finding names the numbers it was made from. It is part of `simkit check` and of nothing else: a world that loads
-is run as it is written.
+A scene and its compiled model enter, diagnostics leave; nothing is stepped and nothing is changed. Every finding names
+the numbers it was made from. `simkit check` alone uses it: a world that loads is run as it is written.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from simkit.compiler.lint.joints import check_joints
+from simkit.compiler.lint.links import check_links
+from simkit.compiler.lint.time_step import check_time_step
+from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
+from simkit.scene import SceneWorld
 
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
-
-__all__ = ["lint"]
+__all__ = ["lint_world"]
 
 
-def lint(sim: Simulation) -> Diagnostics:
-    """What is likely to go wrong with a loaded world; nothing is stepped and nothing is changed."""
-    from simkit.compiler.lint import joints, links, time_step
-
+def lint_world(world: SceneWorld, compiled: Compiled) -> Diagnostics:
+    """Report what is likely to go wrong with a world; nothing is stepped and nothing is changed."""
     found = Diagnostics()
-    for look in (time_step.look, joints.look, links.look):
-        look(sim, found)
+    for check in (check_time_step, check_joints, check_links):
+        check(world, compiled, found)
     return found

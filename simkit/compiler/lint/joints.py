@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 
 from simkit.compiler.lint.links import first_state
+from simkit.compiler.name_map import JointBinding
+from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics, Where
-
-if TYPE_CHECKING:
-    from simkit.compiler import JointBinding
-    from simkit.params import Params
-    from simkit.runtime import Simulation
+from simkit.params import Params
+from simkit.scene import SceneWorld
 
 _GAIN_LIMIT: Final = 1.5  # as in simkit.compiler.servos: gains beyond this are capped
 _RINGING_DAMPING: Final = 2.0  # of d·dt/I, for a force that is computed once a step
@@ -34,34 +34,33 @@ class JointGains:
     where: Where
 
 
-def look(sim: Simulation, found: Diagnostics) -> None:
+def check_joints(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
     """Reports gains that ring, springs too stiff for the step, ranges of no width, and heavy loads on light links."""
-    felt = _JointInertia(sim)
-    for joint in sim.names.joints.values():
+    felt = _JointInertia(compiled.model)
+    step = world.physics.max_step_size
+    for joint in compiled.names.joints.values():
         _check_range(joint, found)
-        _check_spring(joint, felt, sim.timestep, found)
-    _check_servos(sim, felt, found)
-    for model in sim.world.models:
+        _check_spring(joint, felt, step, found)
+    _check_servos(compiled, felt, step, found)
+    for model in world.models:
         for nested in model.all_models():
             for plugin in nested.plugins:
                 for gains in controller_gains(plugin.params, plugin.name or plugin.filename, plugin.where):
-                    _check_gains(gains, _find_joint(sim, nested.scoped, gains.joint), felt, sim.timestep, found)
-    _check_loads(sim, found)
+                    _check_gains(gains, _find_joint(compiled, nested.scoped, gains.joint), felt, step, found)
+    _check_loads(compiled, found)
 
 
 class _JointInertia:
     """Inertia [kg·m² or kg] at a degree of freedom, all else free to move: 1 / (M⁻¹)_jj at the start."""
 
-    def __init__(self, sim: Simulation) -> None:
-        import mujoco
-
-        self._model, self._mujoco = sim.mj_model, mujoco
-        self._data: Any = None
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self._model = model
+        self._data: mujoco.MjData | None = None
         self._known: dict[int, float] = {}
 
     def at(self, dof: int) -> float:
         if dof not in self._known:
-            model, mujoco = self._model, self._mujoco
+            model = self._model
             if self._data is None:
                 self._data = first_state(model)
                 mujoco.mj_makeM(model, self._data)
@@ -96,20 +95,20 @@ def _check_spring(joint: JointBinding, felt: _JointInertia, step: float, found: 
             )
 
 
-def _check_servos(sim: Simulation, felt: _JointInertia, found: Diagnostics) -> None:
+def _check_servos(compiled: Compiled, felt: _JointInertia, step: float, found: Diagnostics) -> None:
     """Gains that a plugin asked for and that its servo does not get."""
-    for record in sim.compiled.builder.records.values():
+    for record in compiled.builder.records.values():
         for ref in record.actuators:
-            joint = sim.names.joints.get(ref.joint)
+            joint = compiled.names.joints.get(ref.joint)
             if joint is None or ref.axis >= len(joint.dofs) or ref.kv is None:
                 continue
             inertia = felt.at(joint.dofs[ref.axis])
-            most = _GAIN_LIMIT * inertia / sim.timestep
+            most = _GAIN_LIMIT * inertia / step
             if ref.kv > most:
                 found.warning(
                     "SK-LINT-003",
                     f"joint {joint.scoped!r}: the velocity gain {ref.kv:g} that {ref.owner} asks for would ring at a "
-                    f"step of {sim.timestep * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used",
+                    f"step of {step * 1e3:g} ms on an inertia of {inertia:.3g}; {most:.3g} is used",
                     joint.scene.where,
                     "ask for less, or take a smaller step",
                 )
@@ -141,8 +140,8 @@ def _numbers(params: Params, name: str) -> list[float]:
     return found
 
 
-def _find_joint(sim: Simulation, model: str, name: str) -> JointBinding | None:
-    joints = sim.names.joints
+def _find_joint(compiled: Compiled, model: str, name: str) -> JointBinding | None:
+    joints = compiled.names.joints
     return joints.get(f"{model}::{name}") or next((j for n, j in joints.items() if n.endswith("::" + name)), None)
 
 
@@ -168,16 +167,14 @@ def _check_gains(
         )
 
 
-def _check_loads(sim: Simulation, found: Diagnostics) -> None:
+def _check_loads(compiled: Compiled, found: Diagnostics) -> None:
     """Contacts of the first state between bodies of very different mass."""
-    import mujoco
-
-    model = sim.mj_model
+    model = compiled.model
     data = first_state(model)
     mujoco.mj_collision(model, data)
     seen: set[tuple[str, str]] = set()
     for pair in data.contact.geom[: data.ncon]:
-        owners = [sim.names.geom_owner(int(g))[0] for g in pair]
+        owners = [compiled.names.geom_owner(int(g))[0] for g in pair]
         roots = [int(model.body_rootid[model.geom_bodyid[int(g)]]) for g in pair]
         if roots[0] == roots[1] or any(int(model.body_dofnum[r]) == 0 for r in roots):
             continue
@@ -191,6 +188,6 @@ def _check_loads(sim: Simulation, found: Diagnostics) -> None:
                 "SK-LINT-006",
                 f"{owners[heavy]} ({masses[heavy]:.4g} kg) stands on {owners[light]} ({masses[light]:.4g} kg): a ratio "
                 f"of {masses[heavy] / masses[light]:.0f}, above {LARGEST_LOAD_RATIO:g} it sinks in by more than 1 mm",
-                sim.names.link(owners[light]).scene.where,
+                compiled.names.link(owners[light]).scene.where,
                 "give the lower one more mass",
             )

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Final
+from typing import Final
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from simkit.compiler.name_map import LinkBinding
+from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
-from simkit.scene import SceneModel
-
-if TYPE_CHECKING:
-    from simkit.compiler import LinkBinding
-    from simkit.runtime import Simulation
+from simkit.scene import SceneModel, SceneWorld
 
 Floats = npt.NDArray[np.float64]
 
@@ -34,26 +33,24 @@ LEAST_EXTENT: Final = 1e-9
 """[m³]; a density of less is about rounding."""
 
 
-def look(sim: Simulation, found: Diagnostics) -> None:
+def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
     """Reports masses and inertias that do not go with the size of their links."""
-    for model in sim.world.models:
+    for model in world.models:
         _check_default_masses(model, found)
     groups: dict[int, list[LinkBinding]] = {}
-    for link in sim.names.links.values():
-        if not link.static and int(sim.mj_model.body_weldid[link.body]) != 0:
-            groups.setdefault(int(sim.mj_model.body_weldid[link.body]), []).append(link)
-    state = first_state(sim.mj_model)
+    for link in compiled.names.links.values():
+        if not link.static and int(compiled.model.body_weldid[link.body]) != 0:
+            groups.setdefault(int(compiled.model.body_weldid[link.body]), []).append(link)
+    state = first_state(compiled.model)
     for links in groups.values():
         if all(link.scene.inertial.given for link in links):
-            _check_inertia(sim.mj_model, state, links, found)
-    for link in sim.names.links.values():
-        _check_collision_size(sim.mj_model, state, link, found)
+            _check_inertia(compiled.model, state, links, found)
+    for link in compiled.names.links.values():
+        _check_collision_size(compiled.model, state, link, found)
 
 
-def first_state(model: Any) -> Any:
+def first_state(model: mujoco.MjModel) -> mujoco.MjData:
     """Where everything stands at the start."""
-    import mujoco
-
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
@@ -77,7 +74,7 @@ def _check_default_masses(top: SceneModel, found: Diagnostics) -> None:
     )
 
 
-def _check_inertia(model: Any, state: Any, links: list[LinkBinding], found: Diagnostics) -> None:
+def _check_inertia(model: mujoco.MjModel, state: mujoco.MjData, links: list[LinkBinding], found: Diagnostics) -> None:
     """Mass and inertia of links that are rigidly one against the box around them."""
     foot = min(links, key=lambda link: link.body)
     mass, centre, tensor = _total_inertia(model, state, [link.body for link in links])
@@ -109,7 +106,7 @@ def _check_inertia(model: Any, state: Any, links: list[LinkBinding], found: Diag
         )
 
 
-def _check_collision_size(model: Any, state: Any, link: LinkBinding, found: Diagnostics) -> None:
+def _check_collision_size(model: mujoco.MjModel, state: mujoco.MjData, link: LinkBinding, found: Diagnostics) -> None:
     """A collision much larger than what is drawn."""
     solid, drawn = (_corners(model, state, ids) for ids in (link.geoms, link.visuals))
     if solid is None or drawn is None or any(_is_unbounded(model, g) for g in (*link.geoms, *link.visuals)):
@@ -118,13 +115,14 @@ def _check_collision_size(model: Any, state: Any, link: LinkBinding, found: Diag
     if a > LARGEST_COLLISION_RATIO * b:
         found.warning(
             "SK-LINT-010",
-            f"link {link.scoped!r}: its collisions fill {_box_in_words(solid)} m, what is drawn of it {_box_in_words(drawn)} m",
+            f"link {link.scoped!r}: its collisions fill {_box_in_words(solid)} m, "
+            f"what is drawn of it {_box_in_words(drawn)} m",
             link.scene.where,
             "check the scale of the collision's mesh",
         )
 
 
-def _total_inertia(model: Any, data: Any, bodies: Iterable[int]) -> tuple[float, Floats, Floats]:
+def _total_inertia(model: mujoco.MjModel, data: mujoco.MjData, bodies: Iterable[int]) -> tuple[float, Floats, Floats]:
     """Mass, centre of mass and tensor of bodies as they stand, in world axes, about that centre."""
     ids = list(bodies)
     masses = np.array([model.body_mass[b] for b in ids])
@@ -139,7 +137,7 @@ def _total_inertia(model: Any, data: Any, bodies: Iterable[int]) -> tuple[float,
     return float(masses.sum()), centre, total
 
 
-def _corners(model: Any, data: Any, geoms: Iterable[int]) -> Floats | None:
+def _corners(model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]) -> Floats | None:
     """Corners of the boxes around geoms in the first state, in the world, shape (8 n, 3); None where there is none."""
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     found = []
@@ -151,9 +149,7 @@ def _corners(model: Any, data: Any, geoms: Iterable[int]) -> Floats | None:
     return np.concatenate(found) if found else None
 
 
-def _is_unbounded(model: Any, geom: int) -> bool:
-    import mujoco
-
+def _is_unbounded(model: mujoco.MjModel, geom: int) -> bool:
     return int(model.geom_type[geom]) in (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 
 

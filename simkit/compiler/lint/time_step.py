@@ -4,43 +4,43 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from simkit.compiler.spec_builder import Compiled
 from simkit.diagnostics import Diagnostics
-
-if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+from simkit.scene import SceneWorld
 
 LONGEST_STEP: Final = 0.005
 """[s]; with a longer one a body falling at 1 m/s enters the ground by more than 5 mm before contact sees it."""
 
 
-def look(sim: Simulation, found: Diagnostics) -> None:
+def check_time_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
     """Reports a step too long for contacts, and rates that the step cannot keep."""
-    _check_step(sim, found)
-    for model in sim.world.models:
+    step = world.physics.max_step_size
+    _check_step(world, compiled, found)
+    for model in world.models:
         for sensor in model.all_sensors():
-            text = rate_pattern(sensor.rate, sim.timestep)
-            if text and sensor.rate * sim.timestep <= 1:  # a load has told of more
+            text = rate_pattern(sensor.rate, step)
+            if text and sensor.rate * step <= 1:  # a load has told of more
                 found.note("SK-LINT-002", f"sensor {sensor.scoped!r}: {text}", sensor.where, _rate_hint(sensor.rate))
 
 
-def _check_step(sim: Simulation, found: Diagnostics) -> None:
-    step = sim.timestep
-    moving = [b for b in sim.names.links.values() if not b.static and b.geoms and _can_move(sim, b.body)]
+def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
+    step = world.physics.max_step_size
+    moving = [b for b in compiled.names.links.values() if not b.static and b.geoms and _can_move(compiled, b.body)]
     if step > LONGEST_STEP and moving:
         found.warning(
             "SK-LINT-001",
             f"the step is {step * 1e3:g} ms and {len(moving)} moving links collide: contacts get soft or throw things "
             f"about beyond {LONGEST_STEP * 1e3:g} ms",
-            sim.world.physics.where,
+            world.physics.where,
             "write <max_step_size>0.001</max_step_size>, or try --set physics.max_step_size=0.001",
         )
 
 
-def _can_move(sim: Simulation, body: int) -> bool:
+def _can_move(compiled: Compiled, body: int) -> bool:
     """Whether anything can move a body: it is not rigidly one with the world."""
-    return int(sim.mj_model.body_weldid[body]) != 0
+    return int(compiled.model.body_weldid[body]) != 0
 
 
 def rate_pattern(rate: float, step: float) -> str:
