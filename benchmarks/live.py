@@ -177,7 +177,7 @@ def _open_and_close(client: Client) -> None:
 
 def _break_off(client: Client) -> None:
     client.subscribe("/odom")
-    client._socket.send(b"\xff\xff\x00\x00\x01 half a frame")
+    client._link._socket.send(b"\xff\xff\x00\x00\x01 half a frame")
     time.sleep(0.2)
 
 

@@ -35,7 +35,7 @@ def test_every_block_of_the_page_runs(run: Callable[..., Any], capsys: pytest.Ca
 
 def test_the_page_has_every_question() -> None:
     table = PAGE[PAGE.index("| question |") :]
-    assert set(requests.QUESTIONS) == set(
+    assert set(requests.REQUESTS) == set(
         re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M)))
     )
 

@@ -1,4 +1,4 @@
-"""What a client has open: subscriptions, publishers, goals."""
+"""Handles of what a client has open: subscriptions, publishers and goals."""
 
 from __future__ import annotations
 
@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simkit import msgs
 from simkit.bridges.live.protocol import LiveClosed, LiveError, message_frame
+from simkit.bridges.live.server_link import ServerLink
 
 if TYPE_CHECKING:
-    from simkit.bridges.live.client import Client
     from simkit.runtime.communication.action_server import GoalStatus
 
 
 def _goal_statuses() -> type[GoalStatus]:
-    from simkit.runtime.communication.action_server import (
-        GoalStatus,  # the runtime loads the engine, which nobody else here needs
-    )
+    # the runtime loads the engine, which a client has no other use for
+    from simkit.runtime.communication.action_server import GoalStatus
 
     return GoalStatus
 
@@ -50,8 +49,8 @@ class LiveSubscription:
         lost: how many messages were dropped, since more came than were looked at.
     """
 
-    def __init__(self, client: Client, number: int, topic: str, depth: int) -> None:
-        self._client, self.number, self.topic = client, number, topic
+    def __init__(self, link: ServerLink, number: int, topic: str, depth: int) -> None:
+        self._link, self.number, self.topic = link, number, topic
         self.waiting: deque[Received] = deque()
         self._depth, self._lost_there, self._lost_here = max(1, depth), 0, 0
         self._closed = False
@@ -69,13 +68,13 @@ class LiveSubscription:
         if not self.waiting and not self._closed:
             if timeout is not None:
                 try:
-                    self._client._wait(lambda: bool(self.waiting), timeout)
+                    self._link.wait(lambda: bool(self.waiting), timeout)
                 except LiveClosed:
                     raise
                 except LiveError:
                     return None
             else:
-                self._client._wait(lambda: bool(self.waiting), None)
+                self._link.wait(lambda: bool(self.waiting), None)
         return self.waiting.popleft() if self.waiting else None
 
     def __iter__(self) -> Iterator[Received]:
@@ -94,11 +93,12 @@ class LiveSubscription:
         """Receives no more."""
         if not self._closed:
             self._closed = True
-            self._client._subscriptions.pop(self.number, None)
-            if not self._client.is_closed:
-                self._client.ask("unsubscribe", number=self.number)
+            self._link.subscriptions.pop(self.number, None)
+            if not self._link.is_closed:
+                self._link.request("unsubscribe", {"number": self.number})
 
-    def _take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
+    def take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
+        """Take a message that arrived."""
         self._lost_there = lost
         if len(self.waiting) >= self._depth:
             self.waiting.popleft()
@@ -114,8 +114,8 @@ class LivePublisher:
         type_name: such as `geometry_msgs/msg/Twist`.
     """
 
-    def __init__(self, client: Client, number: int, topic: str, type_name: str) -> None:
-        self._client, self.number, self.topic, self.type_name = client, number, topic, type_name
+    def __init__(self, link: ServerLink, number: int, topic: str, type_name: str) -> None:
+        self._link, self.number, self.topic, self.type_name = link, number, topic, type_name
 
     def publish(self, message: Any) -> None:
         """Sends a message, a dict of its fields, or its CDR.
@@ -130,12 +130,12 @@ class LivePublisher:
             data = msgs.serialize(
                 msgs.from_dict([self.type_name], message) if isinstance(message, Mapping) else message
             )
-        self._client._send(message_frame(self.number, data))
+        self._link.send(message_frame(self.number, data))
 
     def close(self) -> None:
         """Publishes no more."""
-        if not self._client.is_closed:
-            self._client.ask("unadvertise", number=self.number)
+        if not self._link.is_closed:
+            self._link.request("unadvertise", {"number": self.number})
 
 
 class LiveGoal:
@@ -150,8 +150,8 @@ class LiveGoal:
         reason: why it was rejected, or what else was said with its end.
     """
 
-    def __init__(self, client: Client, number: int, on_feedback: Callable[[Any], None] | None) -> None:
-        self._client, self.number, self._on_feedback = client, number, on_feedback
+    def __init__(self, link: ServerLink, number: int, on_feedback: Callable[[Any], None] | None) -> None:
+        self._link, self.number, self._on_feedback = link, number, on_feedback
         self.action, self.id = "", 0
         self.status: GoalStatus = _goal_statuses().UNKNOWN
         self.result: Any = None
@@ -178,17 +178,18 @@ class LiveGoal:
 
     def cancel(self) -> None:
         """Asks for it to be called off; the action may go on."""
-        self._client.ask("cancel", number=self.number)
+        self._link.request("cancel", {"number": self.number})
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float | None) -> bool:
         try:
-            return self._client._wait(condition, timeout)
+            return self._link.wait(condition, timeout)
         except LiveClosed:
             raise
         except LiveError:
             return False
 
-    def _take(self, words: Mapping[str, Any], data: bytes) -> None:
+    def take(self, words: Mapping[str, Any], data: bytes) -> None:
+        """Take feedback, a status or a result."""
         message = msgs.deserialize(data, str(words["type"])) if "type" in words else None
         if "status" not in words:
             self.feedback = message

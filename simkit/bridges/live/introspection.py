@@ -1,21 +1,23 @@
-"""What there is in a simulation, as plain data."""
+"""Describe the topics, nodes, parameters and models of a simulation as plain data."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from simkit.bridges.live.connection import ClientConnection
+
 if TYPE_CHECKING:
-    from simkit.bridges.live.server import Server
     from simkit.pose import Pose
     from simkit.runtime.simulation import Simulation
 
 
-def topic_list(server: Server) -> list[dict[str, Any]]:
+def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[dict[str, Any]]:
     """Every topic with who publishes and who takes it, clients among them, sorted by name."""
-    sim, names = server.sim, NodeNames(server)
+    names = NodeNames(sim, clients)
     listed = sim.topics()
     found: dict[str, dict[str, Any]] = {}
     for topic in listed:
@@ -30,7 +32,7 @@ def topic_list(server: Server) -> list[dict[str, Any]]:
             row["publishers"].append({"node": who, "type": types[0], "latched": latched})
         else:
             row["subscribers"].append({"node": who, "types": list(types), "kind": "input"})
-    for peer in server.peers.values():
+    for peer in clients:
         for subscribed in peer.subscriptions.values():
             row = found.get(subscribed.topic, {})
             if row:
@@ -38,16 +40,16 @@ def topic_list(server: Server) -> list[dict[str, Any]]:
     return list(found.values())
 
 
-def node_list(server: Server) -> dict[str, dict[str, Any]]:
+def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[str, dict[str, Any]]:
     """Node -> its `publishers`, `subscribers`, `services`, `actions` (name -> types) and `parameters` (names)."""
-    sim, names = server.sim, NodeNames(server)
+    names = NodeNames(sim, clients)
     found: dict[str, dict[str, Any]] = {}
 
     def entry(node: str) -> dict[str, Any]:
         fresh: dict[str, Any] = {"publishers": {}, "subscribers": {}, "services": {}, "actions": {}, "parameters": []}
         return found.setdefault(node, fresh)
 
-    for row in topic_list(server):
+    for row in topic_list(sim, clients):
         for end in row["publishers"]:
             entry(end["node"])["publishers"][row["name"]] = [end["type"]]
         for end in row["subscribers"]:
@@ -62,7 +64,7 @@ def node_list(server: Server) -> dict[str, dict[str, Any]]:
             entry(names.of(action.owner))["actions"][name] = [action.type_name]
     for node, parameters in sim.parameters.items():
         entry(node)["parameters"] = list(parameters)
-    for peer in server.peers.values():
+    for peer in clients:
         entry(peer.node)
     return dict(sorted(found.items()))
 
@@ -126,15 +128,12 @@ def _pose_dict(pose: Pose) -> dict[str, Any]:
 class NodeNames:
     """What the nodes are called that ends of topics, services and actions belong to."""
 
-    def __init__(self, server: Server) -> None:
-        self._world = "/" + _name_part(server.sim.world.name)
+    def __init__(self, sim: Simulation, clients: Iterable[ClientConnection]) -> None:
+        self._world = "/" + _name_part(sim.world.name)
         self._nodes = {
-            id(p.owner): node
-            for node, found in server.sim.parameters.items()
-            for p in found.values()
-            if p.owner is not None
+            id(p.owner): node for node, found in sim.parameters.items() for p in found.values() if p.owner is not None
         }
-        self._clients = {id(end): peer.node for peer in server.peers.values() for end in peer.publishers.values()}
+        self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}
 
     def of_end(self, end: Any) -> str:
         """The node of an end of a topic."""

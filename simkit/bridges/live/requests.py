@@ -1,20 +1,21 @@
-"""What clients may ask, and what is answered: a value, or a message. Each argument is looked at before it is used."""
+"""Requests of clients and their answers: a value or a message. Every argument is validated before it is used."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 from simkit import msgs
 from simkit.bridges.live.connection import MOST_OPEN, ClientConnection, ClientSubscription
 from simkit.bridges.live.introspection import model_state, node_list, parameter_list, topic_list
 from simkit.bridges.live.protocol import TELL
+from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import SimkitError
 
 if TYPE_CHECKING:
-    from simkit.bridges.live.server import Server
     from simkit.runtime.simulation import Simulation
 
 T = TypeVar("T")
@@ -23,18 +24,37 @@ _NEW_TOPIC = re.compile(r"(/[A-Za-z0-9_.-]+)+")
 
 
 class RequestRefused(Exception):
-    """A question that cannot be answered."""
+    """A request that cannot be answered; says why."""
 
     def __init__(self, message: str, code: str = "SK-LIVE-008") -> None:
         super().__init__(message)
         self.code = code
 
 
+class RequestHost(Protocol):
+    """What requests need of the server that answers them.
+
+    Attributes:
+        peers: connections of clients, by file number.
+        feeds: the topics that clients subscribe to.
+        founded: topics that only clients had when they were opened.
+    """
+
+    sim: Simulation
+    peers: dict[int, ClientConnection]
+    feeds: TopicFeeds
+    founded: set[str]
+
+    def measured_rtf(self) -> float:
+        """Return the real-time factor of the last moments."""
+        ...
+
+
 @dataclass(frozen=True)
 class Request:
-    """A question of a client: its arguments, and the CDR behind them."""
+    """A request of a client: its arguments, and the CDR behind them."""
 
-    server: Server
+    server: RequestHost
     peer: ClientConnection
     args: dict[str, Any]
     data: bytes
@@ -94,41 +114,31 @@ class Response:
 
 
 RequestHandler = Callable[[Request], Any]
-QUESTIONS: dict[str, RequestHandler] = {}
 
 
-def _question(function: RequestHandler) -> RequestHandler:
-    QUESTIONS[function.__name__] = function
-    return function
-
-
-@_question
 def ping(_: Request) -> Any:
     return "pong"
 
 
-@_question
-def node(asked: Request) -> Any:
+def node(request: Request) -> Any:
     """Gives the client its name, or the first of `name_2`, `name_3`, … that no other one has."""
-    wanted = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", asked.arg("name", str))[:100].strip("/") or "client")
-    taken = {p.node for p in asked.server.peers.values() if p is not asked.peer}
-    asked.peer.node, number = wanted, 1
-    while asked.peer.node in taken:
+    wanted = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", request.arg("name", str))[:100].strip("/") or "client")
+    taken = {p.node for p in request.server.peers.values() if p is not request.peer}
+    request.peer.node, number = wanted, 1
+    while request.peer.node in taken:
         number += 1
-        asked.peer.node = f"{wanted}_{number}"
-    return asked.peer.node
+        request.peer.node = f"{wanted}_{number}"
+    return request.peer.node
 
 
-@_question
-def state(asked: Request) -> Any:
-    sim = asked.sim
+def state(request: Request) -> Any:
+    sim = request.sim
     found = {"time_ns": sim.time_ns, "tick": sim.tick, "timestep": sim.timestep, "paused": sim.paused}
-    return {**found, "rtf": sim.pausing.pace, "measured_rtf": asked.server.measured_rtf()}
+    return {**found, "rtf": sim.pausing.pace, "measured_rtf": request.server.measured_rtf()}
 
 
-@_question
-def control(asked: Request) -> Any:
-    pausing, action, value = asked.sim.pausing, asked.arg("action", str), asked.args.get("value")
+def control(request: Request) -> Any:
+    pausing, action, value = request.sim.pausing, request.arg("action", str), request.args.get("value")
     if action == "pause":
         if not pausing.is_paused:
             pausing.pause()
@@ -149,140 +159,151 @@ def control(asked: Request) -> Any:
         pausing.pace = None if value is None else float(value)
     else:
         raise RequestRefused(f"control: found {action!r:.80}, allowed is pause, resume, step or rtf")
-    return state(asked)
+    return state(request)
 
 
 # ---------------------------------------------------------------------- topics
 
 
-@_question
-def topics(asked: Request) -> Any:
-    return topic_list(asked.server)
+def topics(request: Request) -> Any:
+    return topic_list(request.sim, request.server.peers.values())
 
 
-@_question
-def subscribe(asked: Request) -> Any:
-    number, topic = asked.new_number(asked.peer.subscriptions), asked.topic()
-    subscribed = asked.peer.subscriptions[number] = ClientSubscription(
-        asked.peer, number, topic, asked.arg("depth", int)
+def subscribe(request: Request) -> Any:
+    number, topic = request.new_number(request.peer.subscriptions), request.topic()
+    subscribed = request.peer.subscriptions[number] = ClientSubscription(
+        request.peer, number, topic, request.arg("depth", int)
     )
-    asked.server.feeds.add(subscribed)
-    types = (types[0] for _, end, types, _ in asked.sim.bus.ends(topic) if end.active)
+    request.server.feeds.add(subscribed)
+    types = (types[0] for _, end, types, _ in request.sim.bus.ends(topic) if end.active)
     return {"topic": topic, "type": next(types, None)}
 
 
-@_question
-def unsubscribe(asked: Request) -> Any:
-    subscribed = asked.peer.subscriptions.pop(asked.arg("number", int), None)
+def unsubscribe(request: Request) -> Any:
+    subscribed = request.peer.subscriptions.pop(request.arg("number", int), None)
     if subscribed is None:
         raise RequestRefused("there is no such subscription")
-    asked.server.feeds.remove(subscribed)
-    asked.peer.forget(subscribed)
+    request.server.feeds.remove(subscribed)
+    request.peer.forget(subscribed)
     return {"lost": subscribed.lost}
 
 
-@_question
-def advertise(asked: Request) -> Any:
-    number, topic, bus = asked.new_number(asked.peer.publishers), asked.topic(), asked.sim.bus
+def advertise(request: Request) -> Any:
+    number, topic, bus = request.new_number(request.peer.publishers), request.topic(), request.sim.bus
     taken = [t for _, end, types, _ in bus.ends(topic) if end.active for t in types]
-    if asked.args.get("type") is None and not taken:
+    if request.args.get("type") is None and not taken:
         raise RequestRefused(f"there is no topic {topic!r} yet, so that its type has to be given")
-    type_name = msgs.full_name(taken[0] if asked.args.get("type") is None else asked.arg("type", str))
+    type_name = msgs.full_name(taken[0] if request.args.get("type") is None else request.arg("type", str))
     if taken and type_name not in taken:
         raise RequestRefused(f"{topic!r} takes {' or '.join(dict.fromkeys(taken))}, got {type_name}", "SK-MSG-001")
     msgs.type_of(type_name)
     if not taken:
-        _count_new_topic(asked, topic)
-    asked.peer.publishers[number] = bus.advertise(topic, type_name)
+        _count_new_topic(request, topic)
+    request.peer.publishers[number] = bus.advertise(topic, type_name)
     return {"topic": topic, "type": type_name}
 
 
-def _count_new_topic(asked: Request, topic: str) -> None:
+def _count_new_topic(request: Request, topic: str) -> None:
     """Counts a topic that only a client has: who records or counts topics knows it for as long as the run goes on."""
     if not _NEW_TOPIC.fullmatch(topic):
         raise RequestRefused(f"{topic!r} is no name of a topic; allowed are letters, digits and _ between slashes")
-    names = asked.server.founded
+    names = request.server.founded
     if topic not in names and len(names) >= MOST_OPEN:
         message = f"clients of this run have made {MOST_OPEN} topics that nobody else has, and no more are made"
         raise RequestRefused(message, "SK-LIVE-007")
     names.add(topic)
 
 
-@_question
-def unadvertise(asked: Request) -> Any:
-    publisher = asked.peer.publishers.pop(asked.arg("number", int), None)
+def unadvertise(request: Request) -> Any:
+    publisher = request.peer.publishers.pop(request.arg("number", int), None)
     if publisher is None:
         raise RequestRefused("there is no such publisher")
-    asked.sim.bus.close(publisher)
+    request.sim.bus.close(publisher)
     return None
 
 
 # ---------------------------------------------------------------------- services, actions, parameters
 
 
-@_question
-def services(asked: Request) -> Any:
-    return asked.sim.services()
+def services(request: Request) -> Any:
+    return request.sim.services()
 
 
-@_question
-def call(asked: Request) -> Any:
-    return Response(asked.sim.call(asked.arg("name", str), asked.message()))
+def call(request: Request) -> Any:
+    return Response(request.sim.call(request.arg("name", str), request.message()))
 
 
-@_question
-def actions(asked: Request) -> Any:
-    return asked.sim.actions()
+def actions(request: Request) -> Any:
+    return request.sim.actions()
 
 
-@_question
-def goal(asked: Request) -> Any:
-    number = asked.new_number(asked.peer.goals)
+def goal(request: Request) -> Any:
+    number = request.new_number(request.peer.goals)
 
     def on_feedback(feedback: Any) -> None:
-        if not asked.peer.is_gone and not asked.peer.is_clogged:
+        if not request.peer.is_gone and not request.peer.is_clogged:
             words = {"tell": "goal", "number": number, "type": msgs.type_name(feedback)}
-            asked.peer.say(TELL, words, msgs.serialize(feedback))
+            request.peer.say(TELL, words, msgs.serialize(feedback))
 
-    sent = asked.sim.send_goal(asked.arg("name", str), asked.message(), on_feedback)
-    asked.peer.goals[number] = sent, int(sent.status)
+    sent = request.sim.send_goal(request.arg("name", str), request.message(), on_feedback)
+    request.peer.goals[number] = sent, int(sent.status)
     return [sent._action.name, sent.id]
 
 
-@_question
-def cancel(asked: Request) -> Any:
-    found = asked.peer.goals.get(asked.arg("number", int))
+def cancel(request: Request) -> Any:
+    found = request.peer.goals.get(request.arg("number", int))
     if found is not None:  # else it has ended
         found[0].cancel()
     return found is not None
 
 
-@_question
-def parameters(asked: Request) -> Any:
-    return parameter_list(asked.sim)
+def parameters(request: Request) -> Any:
+    return parameter_list(request.sim)
 
 
-@_question
-def set_parameter(asked: Request) -> Any:
-    value = asked.args.get("value")
+def set_parameter(request: Request) -> Any:
+    value = request.args.get("value")
     found = tuple(value) if isinstance(value, list) else value
-    asked.sim.set_parameter(asked.arg("node", str), asked.arg("name", str), found)
+    request.sim.set_parameter(request.arg("node", str), request.arg("name", str), found)
     return None
 
 
-@_question
-def nodes(asked: Request) -> Any:
-    return node_list(asked.server)
+def nodes(request: Request) -> Any:
+    return node_list(request.sim, request.server.peers.values())
 
 
 # ---------------------------------------------------------------------- models
 
 
-@_question
-def models(asked: Request) -> Any:
-    return list(asked.sim.models)
+def models(request: Request) -> Any:
+    return list(request.sim.models)
 
 
-@_question
-def model(asked: Request) -> Any:
-    return model_state(asked.sim, asked.arg("name", str))
+def model(request: Request) -> Any:
+    return model_state(request.sim, request.arg("name", str))
+
+
+REQUESTS: Final[Mapping[str, RequestHandler]] = MappingProxyType(
+    {
+        "ping": ping,
+        "node": node,
+        "state": state,
+        "control": control,
+        "topics": topics,
+        "subscribe": subscribe,
+        "unsubscribe": unsubscribe,
+        "advertise": advertise,
+        "unadvertise": unadvertise,
+        "services": services,
+        "call": call,
+        "actions": actions,
+        "goal": goal,
+        "cancel": cancel,
+        "parameters": parameters,
+        "set_parameter": set_parameter,
+        "nodes": nodes,
+        "models": models,
+        "model": model,
+    }
+)
+"""What answers each request, by the word that a client sends."""

@@ -1,6 +1,6 @@
-"""The other end of the line: what `simkit run` has open for clients, and looks at between two slices of the run.
+"""The server that `simkit run` opens for clients of other processes; the run polls it between two slices.
 
-Nothing here runs beside the physics. What clients send goes through the same doors as what callers in the process do,
+Nothing here runs beside the physics. What clients send takes the same way as what callers in the process do,
 so that the run's bits depend only on what came at which tick; what they only read changes none.
 """
 
@@ -20,7 +20,7 @@ from simkit.bridges.live import socket_files
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.message_reader import reader_of
 from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, read_json_frame
-from simkit.bridges.live.requests import QUESTIONS, Request, RequestRefused, Response
+from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response
 from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import PluginError, SimkitError, SimulationDiverged
 from simkit.runtime.communication.command_queue import QUEUE_DEPTH
@@ -223,9 +223,9 @@ class Server:
         answer: dict[str, Any] = {"id": number}
         found = b""
         try:
-            if question not in QUESTIONS:
+            if question not in REQUESTS:
                 raise RequestRefused(f"there is no question {question!r}")
-            given = QUESTIONS[question](Request(self, peer, words, data))
+            given = REQUESTS[question](Request(self, peer, words, data))
             if isinstance(given, Response):
                 answer["type"], found = msgs.type_name(given.message), msgs.serialize(given.message)
             else:

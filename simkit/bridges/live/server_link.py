@@ -1,0 +1,251 @@
+"""The client's end of the socket: sends requests to a simulation in another process and sorts what it sends back."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import select
+import socket
+import struct
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Protocol
+
+from simkit.bridges.live.protocol import (
+    ANSWER,
+    ASK,
+    LARGEST_IN,
+    LARGEST_OUT,
+    MESSAGE,
+    MESSAGE_HEAD,
+    PROTOCOL,
+    TELL,
+    BadFrame,
+    FrameReader,
+    LiveClosed,
+    LiveError,
+    json_frame,
+    read_json_frame,
+)
+
+_PIECE = 1 << 18  # [bytes] taken from the socket at once
+_LONGEST_TIMEOUT = 1e6  # [s] for which a system waits at once without complaint
+CONNECT_PERIOD = 0.05
+"""[s] of wall time between two attempts to connect to a simulation that has not started or lets nobody in yet."""
+
+
+class MessageReceiver(Protocol):
+    """Receives the messages of one subscription."""
+
+    def take(self, time_ns: int, type_name: str, data: bytes, lost: int) -> None:
+        """Take a message: its time [ns], type and CDR, and how many were dropped so far."""
+
+
+class GoalListener(Protocol):
+    """Learns how far one goal is."""
+
+    def take(self, words: Mapping[str, Any], data: bytes) -> None:
+        """Take feedback, a status or a result."""
+
+
+class ServerLink:
+    """A connection to the socket of a running simulation; for one thread at a time.
+
+    Args:
+        path: of the socket.
+        timeout: how long an answer may take [s], wall time.
+        node: what the simulation calls the client in its lists.
+
+    Attributes:
+        info: `name`, `world`, `pid` and `version` of the simulation, and `node`, what it calls this client.
+        subscriptions, goals: what messages and news of goals are handed to, by number.
+    """
+
+    def __init__(self, path: Path, timeout: float, node: str | None) -> None:
+        self.path, self.timeout = path, timeout
+        self.info: dict[str, Any] = {}
+        self.subscriptions: dict[int, MessageReceiver] = {}
+        self.goals: dict[int, GoalListener] = {}
+        self._numbers = itertools.count(1)
+        self._reader = FrameReader(LARGEST_OUT, (ANSWER, TELL, MESSAGE))
+        self._answers: dict[int, tuple[dict[str, Any], bytes]] = {}
+        self._types: dict[int, str] = {}
+        self._closed: LiveClosed | None = None
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            self._open(node)
+        except BaseException:
+            self._socket.close()
+            raise
+
+    def _open(self, node: str | None) -> None:
+        name = self.path.stem
+        self._socket.settimeout(min(self.timeout, _LONGEST_TIMEOUT))
+        end = time.monotonic() + self.timeout
+        try:
+            while not self._is_connected():  # others call at the same time, and wait to be let in
+                if time.monotonic() >= end:
+                    raise self._no_answer()
+                time.sleep(CONNECT_PERIOD)
+        except TimeoutError:
+            raise self._no_answer() from None
+        except OSError as error:
+            raise LiveError(f"simulation {name!r} cannot be reached: {error.strerror}", "SK-LIVE-003") from None
+        self.wait(lambda: bool(self.info), self.timeout)
+        if self.info.pop("protocol", None) != PROTOCOL:
+            found = self.info.get("version")
+            raise LiveError(f"simulation {name!r} is of simkit {found}, which speaks another protocol", "SK-LIVE-006")
+        self.info["node"] = self.request("node", {"name": node or f"simkit_{os.getpid()}"})[0]
+
+    def _is_connected(self) -> bool:
+        """Connects; False where so many wait to be let in that nobody else can."""
+        try:
+            self._socket.connect(str(self.path))
+        except BlockingIOError:
+            return False
+        return True
+
+    def request(self, question: str, args: Mapping[str, Any], data: bytes = b"") -> tuple[Any, bytes, str]:
+        """Return the answer to a request, with the CDR behind it and its type.
+
+        Raises:
+            LiveError: the simulation cannot answer it; with the code and the words of its error.
+            LiveClosed: it has ended.
+        """
+        return self.answer(self.send_request(question, args, data))
+
+    def send_request(self, question: str, args: Mapping[str, Any], data: bytes = b"") -> int:
+        """Send a request; return the number of its answer."""
+        number = next(self._numbers)
+        try:
+            frame = json_frame(ASK, {"id": number, "ask": question, **args}, data)
+        except (TypeError, ValueError) as error:
+            raise LiveError(f"the arguments of {question!r} cannot be sent: {error}", "SK-LIVE-008") from None
+        self.send(frame)
+        return number
+
+    def answer(self, number: int) -> tuple[Any, bytes, str]:
+        """Wait for the answer of that number."""
+        self.wait(lambda: number in self._answers, self.timeout)
+        words, found = self._answers.pop(number)
+        if "error" in words:
+            raise LiveError(str(words["error"]), str(words.get("code", "SK-LIVE-008")))
+        return words.get("ok"), found, str(words.get("type", ""))
+
+    def next_number(self) -> int:
+        """Return a number for something that is opened."""
+        return next(self._numbers)
+
+    def receive(self, timeout: float | None = 0.0) -> bool:
+        """Takes in what has come, into subscriptions and goals; whether anything came.
+
+        Args:
+            timeout: how long to wait for something [s]; None for as long as it takes.
+
+        Raises:
+            LiveClosed: the simulation has ended.
+        """
+        if self._closed is not None:
+            raise self._closed
+        ready, _, _ = select.select([self._socket], [], [], None if timeout is None else min(timeout, _LONGEST_TIMEOUT))
+        if ready:
+            self._receive_piece()
+        return bool(ready)
+
+    def fileno(self) -> int:
+        """Of the socket, to wait for together with others."""
+        return self._socket.fileno()
+
+    def send(self, frame: bytes) -> None:
+        """Send a whole frame.
+
+        Raises:
+            LiveClosed: the simulation has ended.
+        """
+        if self._closed is not None:
+            raise self._closed
+        if len(frame) > LARGEST_IN:
+            text = f"a message of {len(frame)} bytes is too large to be sent; allowed are {LARGEST_IN}"
+            raise LiveError(text, "SK-LIVE-008")
+        try:
+            self._socket.sendall(frame)
+        except TimeoutError:
+            self._fail(LiveClosed(f"simulation {self.path.stem!r} has stopped taking what is sent"))
+        except OSError:
+            with suppress(LiveClosed):
+                while True:  # it may have said why
+                    self._receive_piece()
+            self._fail(self._closed or LiveClosed(self._end_message()))
+        except BaseException:
+            self.close()  # half a frame may be on its way
+            raise
+
+    def wait(self, condition: Callable[[], bool], timeout: float | None) -> bool:
+        """Receives until something holds; False, or SK-LIVE-004 within an ask, when it does not in time."""
+        end = None if timeout is None else time.monotonic() + timeout
+        while not condition():
+            left = None if end is None else end - time.monotonic()
+            if left is not None and left <= 0:
+                raise self._no_answer()
+            self.receive(left)
+        return True
+
+    def _receive_piece(self) -> None:
+        try:
+            data = self._socket.recv(_PIECE)
+        except OSError:
+            data = b""
+        if not data:
+            self._fail(self._closed or LiveClosed(self._end_message()))
+        self._reader.feed(data)
+        try:
+            while (frame := self._reader.next()) is not None:
+                self._dispatch(*frame)
+        except (BadFrame, ValueError, KeyError, TypeError, struct.error) as error:
+            self._fail(LiveClosed(f"simulation {self.path.stem!r} sent something odd: {error}", "SK-LIVE-006"))
+
+    def _dispatch(self, kind: int, body: bytes) -> None:
+        if kind == MESSAGE:
+            number, type_number, time_ns, lost = MESSAGE_HEAD.unpack_from(body)
+            subscription = self.subscriptions.get(number)
+            if subscription is not None:
+                subscription.take(time_ns, self._types[type_number], body[MESSAGE_HEAD.size :], lost)
+            return
+        words, data = read_json_frame(body)
+        if kind == ANSWER:
+            self._answers[int(words["id"])] = words, data
+        elif words["tell"] == "type":
+            self._types[int(words["number"])] = str(words["type"])
+        elif words["tell"] == "goal" and int(words["number"]) in self.goals:
+            self.goals[int(words["number"])].take(words, data)
+        elif words["tell"] == "hello":
+            self.info = {k: v for k, v in words.items() if k != "tell"}
+        elif words["tell"] == "bye":
+            self._closed = LiveClosed(str(words["why"]), str(words.get("code", "SK-LIVE-005")))
+            self._socket.close()
+
+    def _fail(self, error: LiveClosed) -> None:
+        """Close the socket for an error, and raise it."""
+        self._closed = error
+        self._socket.close()
+        raise error
+
+    def _end_message(self) -> str:
+        return f"simulation {self.path.stem!r} has ended"
+
+    def _no_answer(self) -> LiveError:
+        return LiveError(
+            f"simulation {self.path.stem!r} does not answer (waited {self.timeout:g} s); is it stopped?", "SK-LIVE-004"
+        )
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the connection has ended."""
+        return self._closed is not None
+
+    def close(self) -> None:
+        """Hangs up; does nothing the second time."""
+        self._closed = self._closed or LiveClosed("the client is closed")
+        self._socket.close()
