@@ -18,7 +18,7 @@ from simkit.cli.terminal.output import (
     print_names,
     report_errors_quietly,
 )
-from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
+from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name, node_names
 
 node = typer.Typer(help="Nodes of a running simulation: its plugins, sensors and clients.", no_args_is_help=True)
 Hidden = Annotated[bool, typer.Option("--all", "-a", "--include-hidden", help="Shows hidden ones too.")]
@@ -83,8 +83,3 @@ def info(
         if not rows:
             print_line()
     return 0
-
-
-def node_names(client: Any, *, hidden: bool = False) -> list[str]:
-    """Names of the nodes, sorted."""
-    return sorted(name for name in client.ask("nodes") if hidden or not is_hidden(name))

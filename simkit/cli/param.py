@@ -20,10 +20,9 @@ from simkit.cli.terminal.output import (
     report_errors_quietly,
 )
 from simkit.cli.terminal.parameter_values import KINDS, parse_parameter_value, plain_value, read_parameter_file
-from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
+from simkit.cli.terminal.topic_sources import LIST_PARAMETERS, connect_to_simulation, connection_name, parameter_nodes
 from simkit.errors import InputError
 
-_LIST = "/list_parameters"
 param = typer.Typer(help="Live parameters of a running simulation.", no_args_is_help=True)
 Node = Annotated[
     str, typer.Argument(help="Name of a node.", metavar="NODE", show_default=False, autocompletion=completion.nodes)
@@ -69,7 +68,7 @@ def list_(
     found: dict[str, dict[str, str]] = {}
     with connect_to_simulation(sim) as client:
         for name in parameter_nodes(client) if node is None else [_node(client, node)]:
-            names = sorted(client.call(name + _LIST, {"prefixes": prefix}).result.names)
+            names = sorted(client.call(name + LIST_PARAMETERS, {"prefixes": prefix}).result.names)
             names = [n for n in names if wanted is None or wanted.search(n)]
             types = client.call(f"{name}/get_parameter_types", {"names": names}).types if names else []
             found[name] = {n: KINDS[int(t)] for n, t in zip(names, types, strict=True)}
@@ -211,7 +210,7 @@ def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
 
     with connect_to_simulation(sim) as client:
         full = _node(client, node)
-        names = sorted(client.call(full + _LIST, {}).result.names)
+        names = sorted(client.call(full + LIST_PARAMETERS, {}).result.names)
         values = client.call(f"{full}/get_parameters", {"names": names}).values
     tree: dict[str, Any] = {}
     for name, value in zip(names, values, strict=True):
@@ -254,11 +253,6 @@ def load(
     return 0 if all(good for _, good, _ in rows) else 2
 
 
-def parameter_nodes(client: Any) -> list[str]:
-    """Nodes that have parameters, sorted."""
-    return sorted(name.removesuffix(_LIST) for name in client.services() if name.endswith(_LIST))
-
-
 def _node(client: Any, name: str) -> str:
     nodes = parameter_nodes(client)
     wanted = absolute_name(name)
@@ -272,6 +266,6 @@ def _known(client: Any, node: str, names: list[str]) -> list[Any]:
     values = list(client.call(f"{node}/get_parameters", {"names": names}).values)
     for name, value in zip(names, values, strict=True):
         if not int(value.type):
-            there = client.call(node + _LIST, {}).result.names
+            there = client.call(node + LIST_PARAMETERS, {}).result.names
             raise not_found_error("parameter", name, sorted(there), "SK-CLI-034", f"node {node}")
     return values

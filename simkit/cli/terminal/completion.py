@@ -208,7 +208,7 @@ def _types_of(ctx: typer.Context, what: str, kind: str) -> list[str]:
 @_silent
 def nodes(ctx: typer.Context) -> Iterable[str]:
     """Nodes with parameters."""
-    from simkit.cli.param import parameter_nodes
+    from simkit.cli.terminal.topic_sources import parameter_nodes
 
     with _client(ctx) as client:
         return parameter_nodes(client)
@@ -217,7 +217,7 @@ def nodes(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def all_nodes(ctx: typer.Context) -> Iterable[str]:
     """All nodes."""
-    from simkit.cli.node import node_names
+    from simkit.cli.terminal.topic_sources import node_names
 
     with _client(ctx) as client:
         return node_names(client)
@@ -256,10 +256,10 @@ def joints(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def frames(ctx: typer.Context) -> Iterable[str]:
     """Frames that come over /tf within a moment."""
-    from simkit.cli.tf import Frames, listen
+    from simkit.cli.terminal.frame_tree import FrameTree, receive_transforms
 
     with _source(ctx) as source:
-        found = Frames()
-        for _ in listen(source, found, lasting=_PATIENCE / 2):
+        found = FrameTree()
+        for _ in receive_transforms(source, found, duration=_PATIENCE / 2):
             pass
     return found.names()

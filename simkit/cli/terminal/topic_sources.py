@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
     from simkit.recording.bags.reader import BagReader
 
-
+LIST_PARAMETERS = "/list_parameters"
+"""What follows the name of a node in that of the service that lists its parameters."""
 LONGEST_WAIT = 1e6  # [s] of wall time for which a command sleeps at most
 _POLL_PERIOD = 0.05  # [s] of wall time between two looks at its clock, at most
 _SLOWEST = 1e-3  # real-time factor below which it counts as standing still
@@ -365,3 +366,13 @@ def find_topic(source: Source, name: str) -> TopicEntry:
         there = [t for t in topics if not is_hidden(t)]
         raise not_found_error("topic", wanted, there, "SK-CLI-030", source.where)
     return topics[wanted]
+
+
+def node_names(client: Any, *, hidden: bool = False) -> list[str]:
+    """Names of the nodes, sorted."""
+    return sorted(name for name in client.ask("nodes") if hidden or not is_hidden(name))
+
+
+def parameter_nodes(client: Any) -> list[str]:
+    """Nodes that have parameters, sorted."""
+    return sorted(name.removesuffix(LIST_PARAMETERS) for name in client.services() if name.endswith(LIST_PARAMETERS))
