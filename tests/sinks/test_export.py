@@ -280,11 +280,12 @@ def test_an_export_replaces_an_export_only_and_only_where_asked(tmp_path: Path) 
 def test_an_export_that_is_killed_leaves_nothing_half_and_the_next_one_tidies_up(tmp_path: Path) -> None:
     bag = written(tmp_path / "a.mcap", *((float(t), "/image", image(COLOURS, "rgb8")) for t in range(30)))
     program = (
-        "import os, signal, sys\nfrom pathlib import Path\nfrom simkit.recording.export import Wish, export, pictures\n"
-        "usual, count = pictures.PngSeries.take, []\n"
+        "import os, signal, sys\nfrom pathlib import Path\n"
+        "from simkit.recording.export import ExportOptions, export_bag, images\n"
+        "usual, count = images.PngFiles.take, []\n"
         "def take(self, *given):\n    count.append(1)\n"
         "    if len(count) == 20:\n        os.kill(os.getpid(), signal.SIGKILL)\n    return usual(self, *given)\n"
-        "pictures.PngSeries.take = take\nexport(Path(sys.argv[1]), Path(sys.argv[2]), Wish())\n"
+        "images.PngFiles.take = take\nexport_bag(Path(sys.argv[1]), Path(sys.argv[2]), ExportOptions())\n"
     )
     ended = subprocess.run([sys.executable, "-c", program, bag, tmp_path / "out"], check=False, timeout=60)
     assert ended.returncode == -signal.SIGKILL

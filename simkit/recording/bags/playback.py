@@ -11,7 +11,6 @@ from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
 from simkit.recording.bags.reader import BagMessage, BagReader, open_bag_to_read
-from simkit.recording.charts.series import bag_duration, time_origin
 from simkit.runtime.communication.topic_bus import absolute_name
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ class Playback:
             self._bag.close()
             raise
         self._first_tick = sim.tick
-        self._origin = time_origin(self._bag)
+        self._origin = self._bag.time_origin
         self._messages: Iterator[BagMessage] = self._bag.messages(list(self.names))
         self._next = next(self._messages, None)
 
@@ -83,7 +82,7 @@ class Playback:
     @property
     def duration(self) -> float:
         """Time from the start to the bag's last message, played or not [s]."""
-        return bag_duration(self._bag)
+        return self._bag.duration
 
     @property
     def next_tick(self) -> int | None:

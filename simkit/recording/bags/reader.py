@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
@@ -22,6 +22,8 @@ from simkit.errors import InputError, MessageError
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
+LATEST_SIMULATED_TIME: Final = 100_000_000 * 1_000_000_000
+"""Times [ns] before this one, in March 1973, are counted from a simulation's start; later ones by a calendar."""
 _UNREADABLE = "SK-CLI-035"
 _UNKNOWN_TYPE = "SK-CLI-036"
 
@@ -92,6 +94,16 @@ class BagReader:
     def count(self) -> int:
         """How many messages it holds."""
         return sum(topic.count for topic in self.topics)
+
+    @property
+    def time_origin(self) -> int:
+        """Time that counts as zero [ns]: a simulation's start, else the bag's."""
+        return 0 if self.start < LATEST_SIMULATED_TIME else self.start
+
+    @property
+    def duration(self) -> float:
+        """Time from `time_origin` to the last message [s]."""
+        return max(0.0, (self.end - self.time_origin) * 1e-9)
 
     @property
     def size(self) -> int:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,9 @@ from numpy.typing import NDArray
 from simkit.recording.charts.fields import Curve
 
 if TYPE_CHECKING:
-    from pathlib import Path
 
     from simkit.recording.bags.reader import BagReader
     from simkit.runtime import Simulation
-
-LATEST_SIMULATED_TIME: Final = 100_000_000 * 1_000_000_000
-"""Times [ns] before this one, in March 1973, are counted from a simulation's start; later ones by a calendar."""
 
 
 @dataclass
@@ -64,28 +60,6 @@ class Series:
         return {"label": self.label, "unit": self.unit, "count": int(finite.size), **told}
 
 
-def time_origin(bag: BagReader) -> int:
-    """The time of a bag that counts as zero [ns]: a simulation's start, else the bag's."""
-    return 0 if bag.start < LATEST_SIMULATED_TIME else bag.start
-
-
-def bag_duration(bag: BagReader) -> float:
-    """Time from the start to a bag's last message [s]."""
-    return max(0.0, (bag.end - time_origin(bag)) * 1e-9)
-
-
-def bag_file_duration(path: Path) -> float:
-    """Time from the start to the last message of a bag's file or folder [s].
-
-    Raises:
-        InputError: SK-CLI-035 it cannot be read.
-    """
-    from simkit.recording.bags.reader import open_bag_to_read
-
-    with open_bag_to_read(path) as bag:
-        return bag_duration(bag)
-
-
 def bag_series(bag: BagReader, curves: Sequence[Curve]) -> list[Series]:
     """The numbers of a bag.
 
@@ -94,7 +68,7 @@ def bag_series(bag: BagReader, curves: Sequence[Curve]) -> list[Series]:
     """
     found = _SeriesCollector(curves)
     topics = list(dict.fromkeys(curve.topic for curve in curves))
-    origin = time_origin(bag)
+    origin = bag.time_origin
     for message in bag.messages(topics) if topics else ():
         found.take(message.topic, (message.time_ns - origin) * 1e-9, bag.decode(message))
     return found.series()

@@ -17,7 +17,6 @@ from simkit.errors import InputError
 from simkit.recording.atomic_output import abandoned_folders, unfinished_folder
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
 from simkit.recording.bags.recorder import matches_topic
-from simkit.recording.charts.series import time_origin
 from simkit.recording.export.images import NpzFile, PngFiles, VideoFile
 from simkit.recording.export.point_clouds import CloudFiles
 from simkit.recording.export.tables import TEXT, WRITERS, Column, check_parquet, columns_of
@@ -225,7 +224,7 @@ def _selected_topics(bag: BagReader, wish: ExportOptions) -> list[BagTopic]:
 def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, wish: ExportOptions) -> list[ExportedTopic]:
     names = _file_names(topics)
     takers = {(t.name, t.type_name): _TopicExport(bag, t, names[t.name, t.type_name], folder, wish) for t in topics}
-    origin = time_origin(bag)
+    origin = bag.time_origin
     start = None if wish.start is None else origin + round(wish.start * _NS)
     end = None if wish.end is None else origin + round(wish.end * _NS)
     try:

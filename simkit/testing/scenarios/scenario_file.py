@@ -181,7 +181,7 @@ class ScenarioReader(ValueReader):
 
     def _played(self) -> float:
         """How long the recording is that is played [s]; 10 s where none is."""
-        from simkit.recording.charts.series import bag_file_duration
+        from simkit.recording.bags.reader import open_bag_to_read
 
         said = self._said.get("play")
         if said is None and "play_topics" in self._said:
@@ -192,7 +192,8 @@ class ScenarioReader(ValueReader):
                 self._wrong(said, "the name of a bag", "play")
             return 10.0
         try:
-            return bag_file_duration(self._document.path.parent / said)
+            with open_bag_to_read(self._document.path.parent / said) as bag:
+                return bag.duration
         except InputError as error:
             self._document.error(error.code, f"play: {str(error).removeprefix(error.code).strip()}", "play")
             return 10.0
