@@ -136,7 +136,7 @@ def load(
     builder.files_read += [one.file.path for one in given]
     parts = _all_parts(world, builder, diagnostics, allowed, plugins)
     if given and not diagnostics.has_errors:  # a plugin whose parameters are at fault is not among the parts
-        from simkit.plugins.ros2_control.run_parameter_files import report_unused_parameter_files
+        from simkit.plugins.ros2_control.control_plugin import report_unused_parameter_files
 
         report_unused_parameter_files(
             given, [plugin for one in parts.values() for plugin, _ in one.plugins], world, diagnostics

@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 
 from simkit.cli import app
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "motion"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "plugins" / "play_motion"))
 import planar_arm as arm
 
 

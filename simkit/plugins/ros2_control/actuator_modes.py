@@ -15,8 +15,7 @@ from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
-    from simkit.plugins.ros2_control.hardware import HardwareJoint
-    from simkit.plugins.ros2_control.hardware_description import PidGains
+    from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 
 Mask = npt.NDArray[np.bool_]
 

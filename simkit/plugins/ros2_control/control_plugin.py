@@ -1,30 +1,37 @@
-"""Gazebo's plugins that host a controller manager: gz_ros2_control, gazebo_ros2_control and ROS 1's
-gazebo_ros_control.
-"""
+"""Plugins of Gazebo that run a controller manager: gz_ros2_control, gazebo_ros2_control and gazebo_ros_control."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from simkit.diagnostics import did_you_mean
+from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.lookups import find_plugin_file
+from simkit.plugins.ros2_control.controller_manager import ControllerManager
+from simkit.plugins.ros2_control.controller_manager_services import offer_services
+from simkit.plugins.ros2_control.hardware import Hardware
+from simkit.plugins.ros2_control.hardware_description import describe_hardware
+from simkit.plugins.ros2_control.hardware_joint import PidGains, read_pid_gains
 from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
+from simkit.plugins.ros2_control.parameter_block import ParameterBlock
+from simkit.plugins.ros2_control.parameter_file_checks import report_high_rates, report_unused_parameters
+from simkit.plugins.ros2_control.parameter_files import ParameterFiles, read_parameter_file
+from simkit.plugins.ros2_control.run_parameter_files import adapt_to_manager
+from simkit.plugins.ros2_control.transmissions import transmissions_of
 from simkit.plugins.ros_names import RosNames
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.plugins.ros2_control.controller_manager import ControllerManager
-    from simkit.plugins.ros2_control.hardware import Hardware
-    from simkit.plugins.ros2_control.hardware_description import PidGains
-    from simkit.plugins.ros2_control.parameter_files import ParameterFile, ParameterFiles
-    from simkit.scene import SceneModel
-
+    from simkit.plugins.ros2_control.parameter_files import ParameterFile
+    from simkit.plugins.ros2_control.run_parameter_files import RunParameterFile
+    from simkit.scene import SceneModel, SceneWorld
 
 UPDATE_RATE: Final = 100.0
 """[Hz] of a controller manager whose file says nothing."""
 _PARAMS_FILE_HINT: Final = "--params-file FILE, params_files=[FILE] in Python"
+_ROS_1_NODE: Final = "gazebo_ros_control"
 
 
 class ControlPlugin(ModelPlugin):
@@ -44,11 +51,6 @@ class ControlPlugin(ModelPlugin):
     files: ParameterFiles
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        from simkit.plugins.ros2_control.hardware import Hardware
-        from simkit.plugins.ros2_control.hardware_description import describe_hardware
-        from simkit.plugins.ros2_control.parameter_files import ParameterFiles
-        from simkit.plugins.ros2_control.transmissions import transmissions_of
-
         transmissions = transmissions_of(scene, [*scene.controls, *params.all("ros2_control")])
         self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
         self._manager_name = params.text("controller_manager_name", "") or "controller_manager"
@@ -101,8 +103,6 @@ class ControlPlugin(ModelPlugin):
 
     def gains_of_joints(self, block: Params) -> dict[str, PidGains]:
         """Gains in a block by joint; a joint that the hardware does not have is told."""
-        from simkit.plugins.ros2_control.parameter_block import ParameterBlock
-
         found = {}
         forms = block.forms if isinstance(block, ParameterBlock) else {}
         for name, (_, where) in forms.items():
@@ -133,16 +133,11 @@ class ControlPlugin(ModelPlugin):
     def _fitted(self, given: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
         """The files that the run was given, as this manager looks for what they say."""
         if given:
-            from simkit.plugins.ros2_control.run_parameter_files import adapt_to_manager
-
             for file in given:
                 namespace, name = self.ros.namespace, self._manager_name
                 yield adapt_to_manager(file, namespace, name, params.diagnostics, is_ros_1=self.is_ros_1)
 
     def _read_files(self, params: Params, builder: SpecBuilder, *, any_given: bool) -> Iterator[ParameterFile]:
-        from simkit.plugins.lookups import find_plugin_file
-        from simkit.plugins.ros2_control.parameter_files import read_parameter_file
-
         elements = params.all("parameters")
         for element in elements:
             for uri in [element.value] if element.value.startswith("$(") else element.value.split():
@@ -165,10 +160,6 @@ class ControlPlugin(ModelPlugin):
     # ------------------------------------------------------------------ at work
 
     def load(self, parent: Any, params: Params) -> None:
-        from simkit.plugins.ros2_control.controller_manager import ControllerManager
-        from simkit.plugins.ros2_control.controller_manager_services import offer_services
-        from simkit.plugins.ros2_control.parameter_file_checks import report_high_rates, report_unused_parameters
-
         self.hardware.load(self.sim)
         self.manager = ControllerManager(self, self.hardware, self.files, self._manager_name, params.diagnostics)
         self._stand_apart(parent.scoped.partition("::")[0], params)
@@ -225,24 +216,6 @@ class ControlPlugin(ModelPlugin):
         manager.set_state(state["manager"])
 
 
-def read_pid_gains(params: Params) -> PidGains:
-    """Gains of a joint: `kp`, `ki`, `kd` and `max_integral_error`, or `p`, `i`, `d` and `i_clamp` as in ROS 1."""
-    from simkit.plugins.ros2_control.hardware_description import PidGains
-
-    i = params.number("ki", params.number("i", 0.0))
-    clamp = abs(params.number("i_clamp", 0.0))
-    if params.has("max_integral_error"):
-        clamp = abs(i * params.number("max_integral_error", 0.0, minimum=0.0))
-    params.child("antiwindup")
-    return PidGains(
-        p=params.number("kp", params.number("p", 0.0)),
-        i=i,
-        d=params.number("kd", params.number("d", 0.0)),
-        i_max=params.number("i_clamp_max", clamp),
-        i_min=params.number("i_clamp_min", -clamp),
-    )
-
-
 def _split_names(element: Params) -> list[str]:
     return element.value.replace(",", " ").split()
 
@@ -258,9 +231,6 @@ class GazeboRos2Control(ControlPlugin):
     """Runs the controllers that the files in `<parameters>` declare; see `docs/ros2_control.md`."""
 
     filenames = ("libgazebo_ros2_control.so",)
-
-
-_ROS_1_NODE: Final = "gazebo_ros_control"
 
 
 class GazeboRosControl(ControlPlugin):
@@ -309,3 +279,31 @@ class GazeboRosControl(ControlPlugin):
         """One set of gains is for whichever interface the joint has."""
         interfaces = self.hardware.joints[joint].command_interfaces
         return {name: gains for name in (POSITION, VELOCITY) if name in interfaces}
+
+
+def report_unused_parameter_files(
+    given: Iterable[RunParameterFile], plugins: Iterable[Any], world: SceneWorld, diagnostics: Diagnostics
+) -> None:
+    """Warn about parameter files of a run that no control plugin reads.
+
+    Args:
+        given: the files.
+        plugins: all plugins of the world.
+        world: the world with its models.
+        diagnostics: gets the warnings.
+    """
+    models = [model for top in world.models for model in top.all_models()]
+    with_hosts = {plugin.scoped for plugin in plugins if isinstance(plugin, ControlPlugin)}
+    hosts = [model for model in models if model.scoped in with_hosts]
+    for one in given:
+        if any(one.is_for(model) for model in hosts):
+            continue
+        name, where = one.file.path.name, Where(str(one.file.path), 1)
+        if one.model and not any(one.is_for(model) for model in models):
+            message = f"{name} is for the model {one.model!r}, which is not there; a model spawned later reads it"
+            hint = did_you_mean(one.model, [m.name for m in models])
+        else:
+            owner = f"model {one.model!r}" if one.model else "no model"
+            message = f"{name} has nobody who reads it: {owner} has {'no' if one.model else 'a'} control plugin"
+            hint = "a robot needs libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control"
+        diagnostics.warning("SK-CONTROL-060", message, where, hint)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.plugins.ros2_control.actuator_modes import EFFORT_MODE, FREE, POSITION_MODE, SPRING_MODE, VELOCITY_MODE
+from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 from simkit.plugins.ros2_control.hardware_sensors import HardwareSensor, find_sensor
 from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY, InterfaceTable
 from simkit.plugins.ros2_control.joint_actuators import JointActuators
@@ -19,46 +20,12 @@ from simkit.pose import Vector
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.diagnostics import Diagnostics
-    from simkit.plugins.ros2_control.hardware_description import ComponentDescription, JointDescription, PidGains
+    from simkit.plugins.ros2_control.hardware_description import ComponentDescription, JointDescription
     from simkit.runtime import Simulation
     from simkit.scene import SceneJoint, SceneModel
     from simkit.scene.actuation import Transmission
 
 _MODES = {POSITION: POSITION_MODE, VELOCITY: VELOCITY_MODE, EFFORT: EFFORT_MODE}
-
-
-@dataclass(frozen=True, slots=True)
-class HardwareJoint:
-    """A joint as `<ros2_control>` or `<transmission>` describes it.
-
-    Attributes:
-        name: plain name.
-        joint: the simulation's handle; None before the load.
-        command_interfaces, state_interfaces: position, velocity, effort.
-        lower, upper: position limits [rad or m]; infinite where there are none.
-        max_velocity: [rad/s or m/s]; infinite where there is none.
-        max_effort: [N·m or N]; infinite where there is none.
-        scoped: scoped name.
-        is_continuous: whether its angle has no ends, so that it is wrapped.
-        initial: first position; NaN for that of the file.
-        leader: what it mimics; empty for nothing.
-        multiplier, offset: position = multiplier · leader's + offset.
-    """
-
-    name: str
-    joint: Any
-    command_interfaces: tuple[str, ...]
-    state_interfaces: tuple[str, ...]
-    lower: float = -float("inf")
-    upper: float = float("inf")
-    max_velocity: float = float("inf")
-    max_effort: float = float("inf")
-    scoped: str = ""
-    is_continuous: bool = False
-    initial: float = math.nan
-    leader: str = ""
-    multiplier: float = 1.0
-    offset: float = 0.0
 
 
 @dataclass(slots=True)
@@ -157,7 +124,7 @@ class Hardware:
         self.joints = {n: replace(j, joint=sim.joint(j.scoped)) for n, j in self.joints.items()}
         for joint in self.joints.values():
             if math.isfinite(joint.initial):
-                joint.joint.set_position(joint.initial)
+                joint.handle.set_position(joint.initial)
         self.drives.load(sim)
         self._switch()
 

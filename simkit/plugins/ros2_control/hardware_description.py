@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where, did_you_mean
 from simkit.params import Params
+from simkit.plugins.ros2_control.hardware_joint import PidGains
 from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
 
 if TYPE_CHECKING:
     from simkit.scene import SceneJoint, SceneModel
 
 
-_LARGEST_NUMBER: Final = (
-    1e15  # of positions [rad or m], gains and the like; with larger ones no motion can be worked out
-)
+_LARGEST_NUMBER: Final = 1e15
+"""Of positions [rad or m], gains and the like; no motion can be computed with larger ones."""
 _ELEMENTS: Final = ("hardware", "joint", "sensor", "gpio", "transmission")
 _JOINT_ELEMENTS: Final = ("command_interface", "state_interface", "param", "limits", "property", "properties")
 _GAINS: Final = ("kp", "ki", "kd", "max_integral_error")
@@ -108,24 +108,6 @@ class InterfaceDescription:
     minimum: float = -math.inf
     maximum: float = math.inf
     initial: float = math.nan
-
-
-@dataclass(frozen=True, slots=True)
-class PidGains:
-    """Gains of a joint's own loop: effort per error, per error and second, per error's rate.
-
-    Attributes:
-        i_max, i_min: bounds of the integral's part of the effort.
-        u_max, u_min: bounds of the whole effort.
-    """
-
-    p: float = 0.0
-    i: float = 0.0
-    d: float = 0.0
-    i_max: float = 0.0
-    i_min: float = 0.0
-    u_max: float = math.inf
-    u_min: float = -math.inf
 
 
 @dataclass(frozen=True, slots=True)

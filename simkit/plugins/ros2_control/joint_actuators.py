@@ -31,8 +31,7 @@ from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
-    from simkit.plugins.ros2_control.hardware import HardwareJoint
-    from simkit.plugins.ros2_control.hardware_description import PidGains
+    from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
     from simkit.runtime import Simulation
 
 _LARGEST_CONTROL: Final = 9e9  # controls of 1e10 or more are none for the engine

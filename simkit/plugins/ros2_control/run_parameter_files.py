@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.diagnostics import Diagnostics, Where, did_you_mean
+from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.plugins.ros2_control.parameter_files import Entry, ParameterFile, read_parameter_file
 
 if TYPE_CHECKING:
-    from simkit.scene import SceneModel, SceneWorld
+    from simkit.scene import SceneModel
 
 ParameterFileArgument = str | os.PathLike[str] | tuple[str, str | os.PathLike[str]]
 """A file, the text `MODEL=FILE`, or the pair of both."""
@@ -106,36 +106,6 @@ def _closest_file_name(text: str) -> str:
         return did_you_mean(Path(text).name, [p.name for p in folder.iterdir() if p.suffix in (".yaml", ".yml")])
     except (OSError, ValueError):
         return ""
-
-
-def report_unused_parameter_files(
-    given: Iterable[RunParameterFile], plugins: Iterable[Any], world: SceneWorld, diagnostics: Diagnostics
-) -> None:
-    """Tells of files that no control plugin reads.
-
-    Args:
-        given: the files.
-        plugins: all that there are.
-        world: everything there is.
-        diagnostics: gets the warnings.
-    """
-    from simkit.plugins.ros2_control.control_plugin import ControlPlugin
-
-    models = [model for top in world.models for model in top.all_models()]
-    with_hosts = {plugin.scoped for plugin in plugins if isinstance(plugin, ControlPlugin)}
-    hosts = [model for model in models if model.scoped in with_hosts]
-    for one in given:
-        if any(one.is_for(model) for model in hosts):
-            continue
-        name, where = one.file.path.name, Where(str(one.file.path), 1)
-        if one.model and not any(one.is_for(model) for model in models):
-            message = f"{name} is for the model {one.model!r}, which is not there; a model spawned later reads it"
-            hint = did_you_mean(one.model, [m.name for m in models])
-        else:
-            owner = f"model {one.model!r}" if one.model else "no model"
-            message = f"{name} has nobody who reads it: {owner} has {'no' if one.model else 'a'} control plugin"
-            hint = "a robot needs libgazebo_ros_control.so, libgazebo_ros2_control.so or gz_ros2_control"
-        diagnostics.warning("SK-CONTROL-060", message, where, hint)
 
 
 # ------------------------------------------------------------------ as the manager of a robot looks for it

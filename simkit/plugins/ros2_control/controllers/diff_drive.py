@@ -276,7 +276,7 @@ class DiffDriveController(Controller):
         joints = [self.hardware.joints.get(name) for name in (left, right)]
         if joints[0] is None or joints[1] is None:
             return None, None
-        scenes = [joint.joint.scene for joint in joints if joint is not None]
+        scenes = [joint.handle.scene for joint in joints if joint is not None]
         apart = scenes[0].pose_world.position - scenes[1].pose_world.position
         shapes = [c.geometry for c in self.sim.link(scenes[0].child_link).scene.collisions]
         radii = [shape.radius for shape in shapes if isinstance(shape, (Cylinder, Sphere))]

@@ -116,7 +116,7 @@ class PointHeadAction(Controller):
             axis = self._own_axis
         if not (np.abs(axis) <= _FARTHEST).all() or not (length := float(np.linalg.norm(axis))):
             raise InputError("the pointing axis is not a direction")
-        tilt = self.hardware.joints[self._joints[1]].joint
+        tilt = self.hardware.joints[self._joints[1]].handle
         frame = request.pointing_frame or self._own_frame or tilt.scene.child_link
         is_fixed = frame.lstrip("/") in ("world", "map", *self._odometry_frames())
         if is_fixed or not is_moved_by_joint(self.sim, frame_link(self.sim, self.plugin.scoped, frame)[0], tilt.scoped):
@@ -143,11 +143,11 @@ class PointHeadAction(Controller):
         """As it is now."""
         data = self.sim.physics.fresh()
         joints = [self.hardware.joints[name] for name in self._joints]
-        ids = [int(self.sim.mj_model.dof_jntid[joint.joint.mj_dofs[0]]) for joint in joints]
+        ids = [int(self.sim.mj_model.dof_jntid[joint.handle.mj_dofs[0]]) for joint in joints]
         return HeadJoints(
             np.array(data.xanchor[ids]),
             np.array(data.xaxis[ids]),
-            np.array([float(joint.joint.position) for joint in joints]),
+            np.array([float(joint.handle.position) for joint in joints]),
             np.array([joint.lower for joint in joints]),
             np.array([joint.upper for joint in joints]),
             self._frame(look[0]),

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from simkit.runtime.communication.action_server import GoalStatus
-from tests.control.followers import FOLLOW, TOPIC, arm, codes, send
-from tests.control.perfect_joints import trajectory
+from tests.plugins.ros2_control.followers import FOLLOW, TOPIC, arm, codes, send
+from tests.plugins.ros2_control.perfect_joints import trajectory
 
 # ---------------------------------------------------------------------- following
 

@@ -10,7 +10,7 @@ import pytest
 
 import simkit
 from simkit.runtime.communication.action_server import GoalStatus
-from tests.control.perfect_joints import trajectory
+from tests.plugins.ros2_control.perfect_joints import trajectory
 
 FOLLOW = "/arm_controller/follow_joint_trajectory"
 JOINTS = ["shoulder", "elbow"]

@@ -9,7 +9,7 @@ from simkit.plugins import plugin_kinds
 from simkit.plugins.authoring.catalogue_page import page
 from simkit.plugins.discovery.unsupported_plugins import UNSUPPORTED_REASONS
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "catalogue.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "catalogue.md"
 
 
 def test_the_page_is_written_from_the_classes() -> None:

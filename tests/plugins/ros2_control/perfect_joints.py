@@ -11,7 +11,8 @@ import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.plugins.ros2_control.controller import Controller
-from simkit.plugins.ros2_control.hardware import Hardware, HardwareJoint
+from simkit.plugins.ros2_control.hardware import Hardware
+from simkit.plugins.ros2_control.hardware_joint import HardwareJoint
 from simkit.plugins.ros2_control.interfaces import InterfaceTable
 
 PERIOD = 0.01  # [s]

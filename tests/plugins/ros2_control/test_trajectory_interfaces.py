@@ -9,8 +9,8 @@ import pytest
 
 from simkit.plugins.ros2_control.controllers import joint_trajectory_ros1
 from simkit.runtime.communication.action_server import GoalStatus
-from tests.control.followers import arm, codes, send
-from tests.control.perfect_joints import trajectory
+from tests.plugins.ros2_control.followers import arm, codes, send
+from tests.plugins.ros2_control.perfect_joints import trajectory
 
 # ---------------------------------------------------------------------- interfaces
 

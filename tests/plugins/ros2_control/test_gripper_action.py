@@ -11,7 +11,7 @@ from control_robots import ALL, arm, interfaces, opened, told
 
 from simkit.plugins.ros2_control.controllers import gripper_action
 from simkit.runtime.communication.action_server import GoalStatus
-from tests.control.perfect_joints import PerfectJoints, host
+from tests.plugins.ros2_control.perfect_joints import PerfectJoints, host
 
 ACTION = "/arm_controller/gripper_cmd"
 

@@ -12,7 +12,7 @@ import pytest
 import simkit
 from simkit.plugins import gz_python
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "gazebo_python.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "gazebo_python.md"
 TEXT = PAGE.read_text(encoding="utf-8")
 
 

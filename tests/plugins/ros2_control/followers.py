@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from simkit.plugins.ros2_control.controllers import joint_trajectory
-from tests.control.perfect_joints import PerfectJoints, host, trajectory
+from tests.plugins.ros2_control.perfect_joints import PerfectJoints, host, trajectory
 
 FOLLOW = "/arm_controller/follow_joint_trajectory"
 TOPIC = "/arm_controller/joint_trajectory"
