@@ -1,4 +1,4 @@
-"""From a motion to what the joints are to do: the way to its first point, its time, and what is in the way."""
+"""Planning of a motion: the approach to its first point, its timing, its limits and the collisions on its way."""
 
 from __future__ import annotations
 
@@ -28,17 +28,15 @@ NO_PLAN_FOUND: Final = -8
 OTHER_ERROR: Final = -42
 APPROACH_SPEED: Final = 0.5
 """[rad/s or m/s], where nobody says anything."""
-_STEPS: Final = {"prismatic": 0.005}  # [m] between two places that are looked at
+_STEPS: Final = {"prismatic": 0.005}  # [m] between two positions that are checked for collisions
 _STEP: Final = 0.03  # [rad]
 _REACHED_DISTANCE: Final = 1e-3  # [rad or m] from the first point, where no way to it is needed
-_MIMIC_TOLERANCE: Final = (
-    1e-3  # [rad or m] that a joint may be wanted off the place that it has by the one that it follows
-)
+_MIMIC_TOLERANCE: Final = 1e-3  # [rad or m] between a joint's position and the one that its leader gives it
 _LONGEST_DURATION: Final = 2.0**31 - 1.0  # [s] that the time of a trajectory's point can tell
 
 
 class MotionRefused(Exception):
-    """A motion is not played.
+    """A motion is refused.
 
     Attributes:
         code: why, as `play_motion_msgs/action/PlayMotion` numbers it.
@@ -68,7 +66,7 @@ def plan_motion(
     sim: Simulation,
     robot: Model,
     motion: Motion,
-    movers: Sequence[TrajectoryController],
+    controllers: Sequence[TrajectoryController],
     approach: Approach,
     *,
     looks_around: bool = True,
@@ -79,14 +77,14 @@ def plan_motion(
         sim: the simulation.
         robot: whose joints they are.
         motion: what is to be done.
-        movers: controllers that can do it.
+        controllers: controllers that can do it.
         approach: how to get to its first point.
         looks_around: whether it is to touch nothing.
 
     Raises:
-        Refused: it cannot be done, or leaves the limits, or something is in the way.
+        MotionRefused: it cannot be done, or leaves the limits, or something is in the way.
     """
-    joints = find_joints(robot, motion.joints, movers)
+    joints = find_joints(robot, motion.joints, controllers)
     beyond = limit_violations(motion, joints)
     if beyond:
         raise MotionRefused(OTHER_ERROR, f"motion {motion.key!r} leaves the limits: {'; '.join(beyond)}")
@@ -101,15 +99,15 @@ def plan_motion(
     return found
 
 
-def find_joints(robot: Model, names: Sequence[str], movers: Sequence[TrajectoryController]) -> dict[str, Joint]:
-    """The joints of a motion by name, each of which a controller moves. Raises Refused."""
+def find_joints(robot: Model, names: Sequence[str], controllers: Sequence[TrajectoryController]) -> dict[str, Joint]:
+    """The joints of a motion by name, each of which a controller moves. Raises MotionRefused."""
     missing = [name for name in names if name not in robot.joints]
     if missing:
         near = did_you_mean(missing[0], robot.joints)
         raise MotionRefused(
             MISSING_CONTROLLER, f"{robot.name!r} has no joint {missing[0]!r}" + (f"; {near}" if near else "")
         )
-    free = unclaimed_joints(robot, names, movers)
+    free = unclaimed_joints(robot, names, controllers)
     if free:
         listed = ", ".join(map(repr, free))
         plural = "s" if len(free) > 1 else ""
@@ -138,7 +136,7 @@ def add_leader_joints(robot: Model, motion: Motion) -> Motion:
 
 
 def check_mimic_joints(robot: Model, motion: Motion) -> None:
-    """Raises Refused where a joint that follows another one is to be elsewhere than that one takes it."""
+    """Raises MotionRefused where a joint that follows another one is to be elsewhere than that one takes it."""
     for column, name in enumerate(motion.joints):
         law = mimic_of(robot, name)
         if law is None or leader_name(law) not in motion.joints:
@@ -174,7 +172,7 @@ def check_collisions(
     joints: Mapping[str, Joint],
     free_joints: Collection[str],
 ) -> None:
-    """Goes along a course in a copy of the state. Raises Refused where two links come into each other."""
+    """Goes along a course in a copy of the state. Raises MotionRefused where two links come into each other."""
     from simkit.plugins.play_motion.collision_check import CollisionCheck
 
     clearance = CollisionCheck(sim, robot, list(joints.values()), free_joints)
@@ -188,10 +186,10 @@ def check_collisions(
             raise MotionRefused(NO_PLAN_FOUND, f"motion {motion.key!r} collides {where}: {meeting}")
 
 
-def trajectory_goal(found: Course, motion: Motion, mover: TrajectoryController, robot: Model) -> dict[str, Any]:
+def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryController, robot: Model) -> dict[str, Any]:
     """The goal of one controller: its joints of a course; those that the motion leaves out stay where they are."""
-    columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in mover.joints]
-    here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in mover.joints]
+    columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in controller.joints]
+    here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in controller.joints]
 
     def row(values: Vector, otherwise: Sequence[float]) -> list[float]:
         return [otherwise[k] if c is None else float(values[c]) for k, c in enumerate(columns)]
@@ -206,4 +204,4 @@ def trajectory_goal(found: Course, motion: Motion, mover: TrajectoryController, 
                 "time_from_start": msgs.duration(round(float(found.times[k]) * 1e9)),
             }
         )
-    return {"trajectory": {"joint_names": list(mover.joints), "points": points}}
+    return {"trajectory": {"joint_names": list(controller.joints), "points": points}}

@@ -212,32 +212,32 @@ class PlayMotion(ModelPlugin):
         self._play(goal, motion)
 
     def _play(self, goal: GoalHandle, motion: Motion) -> None:
-        movers = active_controllers(self.sim, self.robot)
+        controllers = active_controllers(self.sim, self.robot)
         motion = add_leader_joints(self.robot, motion)
-        needed = [mover for mover in movers if set(mover.joints) & set(motion.joints)]
-        names = tuple(mover.name for mover in needed)
+        needed = [controller for controller in controllers if set(controller.joints) & set(motion.joints)]
+        names = tuple(controller.name for controller in needed)
         try:
             self._check_idle(goal, names)
-            find_joints(self.robot, motion.joints, movers)
+            find_joints(self.robot, motion.joints, controllers)
         except MotionRefused as refused:
             self._refuse(goal, refused, rejects=True)
             return
         try:
             checked = not goal.request.skip_planning
-            found = plan_motion(self.sim, self.robot, motion, movers, self._approach, looks_around=checked)
+            found = plan_motion(self.sim, self.robot, motion, controllers, self._approach, looks_around=checked)
         except MotionRefused as refused:
             self._refuse(goal, refused, rejects=False)
             return
         until = self.sim.time_ns + round((2.0 * found.duration + 1.0) * 1e9)
         run = _RunningMotion(goal, motion.key, names, until)
         self._runs.append(run)
-        for mover in needed:
-            request = trajectory_goal(found, motion, mover, self.robot)
+        for controller in needed:
+            request = trajectory_goal(found, motion, controller, self.robot)
             send = self.sim.action_table.send
-            run.parts[mover.name] = send(mover.action, request, self._on_feedback, self._on_part_done)
+            run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_part_done)
 
     def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
-        """Raises Refused while another motion is being played; in ROS 1 only one with the same controllers counts."""
+        """Raises MotionRefused while another motion is being played; in ROS 1 only one with the same controllers counts."""
         for run in self._runs:
             common = [name for name in names if name in run.controllers]
             if not _is_ros_1(goal):

@@ -1,20 +1,44 @@
-"""Services about the motions that a robot knows: those of play_motion2, and ROS 1's of play_motion."""
+"""Services about the motions of a robot: those of play_motion2, and of ROS 1's play_motion."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+import logging
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
-from simkit.plugins.play_motion.motion import limit_violations, motion_of_message
+from simkit.plugins.play_motion.motion import Motion, limit_violations, motion_of_message
 from simkit.plugins.play_motion.motion_planning import MotionRefused, find_joints
 from simkit.plugins.play_motion.trajectory_controllers import active_controllers
 
 if TYPE_CHECKING:
-    from simkit.plugins.play_motion.play_motion_plugin import PlayMotion
+    from simkit.runtime import Model, Simulation
 
 
-def offer_services(player: PlayMotion) -> None:
-    """Opens the services of a robot that plays motions."""
+class MotionPlayer(Protocol):
+    """The plugin whose motions the services are about.
+
+    Attributes:
+        sim: the simulation.
+        robot: the robot that plays the motions.
+        known: motions by key.
+        log: gets the reason why a motion is not added.
+    """
+
+    sim: Simulation
+    robot: Model
+    known: dict[str, Motion]
+    log: logging.Logger
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no motion is being played."""
+
+    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> object:
+        """Offer a service below the plugin's namespace."""
+
+
+def offer_services(player: MotionPlayer) -> None:
+    """Offer the services of a robot that plays motions."""
     answers = _ServiceHandlers(player)
     package = "play_motion2_msgs/srv"
     player.offer("play_motion2/list_motions", f"{package}/ListMotions", answers.keys)
@@ -28,9 +52,9 @@ def offer_services(player: PlayMotion) -> None:
 
 
 class _ServiceHandlers:
-    """What the services answer, from what the robot knows at that moment."""
+    """Answers of the services, from the motions that the robot knows at that moment."""
 
-    def __init__(self, player: PlayMotion) -> None:
+    def __init__(self, player: MotionPlayer) -> None:
         self._player = player
 
     def keys(self, _: Any) -> dict[str, Any]:

@@ -1,10 +1,10 @@
-"""Who moves which joint: the active controllers that follow trajectories, and what else may be asked of a robot."""
+"""Active trajectory controllers of a robot, and the joints that each of them moves."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.plugins.ros2_control.control_plugin import ControlPlugin
 from simkit.plugins.ros2_control.controllers.joint_trajectory import JointTrajectoryController
@@ -30,21 +30,18 @@ class TrajectoryController:
 
 
 def active_controllers(sim: Simulation, robot: Model) -> list[TrajectoryController]:
-    """The active trajectory controllers of a robot, in the order in which they were loaded."""
+    """List the active trajectory controllers of a robot in the order in which they were loaded."""
     found = []
-    for host in sim.structure.all_plugins():
-        if (
-            not isinstance(host, ControlPlugin)
-            or not _is_within(host.scoped, robot.scoped)
-            or not hasattr(host, "manager")
-        ):
+    plugins = (plugin for plugin in sim.structure.all_plugins() if isinstance(plugin, ControlPlugin))
+    for plugin in plugins:
+        if not _is_within(plugin.scoped, robot.scoped) or not hasattr(plugin, "manager"):
             continue
-        for name, loaded in host.manager.controllers.items():
-            controller: Any = loaded.controller
+        for name, loaded in plugin.manager.controllers.items():
+            controller = loaded.controller
             if loaded.state != "active" or not isinstance(controller, JointTrajectoryController):
                 continue
             joints = dict.fromkeys(one.rpartition("/")[0] for one in controller.command_interfaces() if "/" in one)
-            action = host.ros.topic(controller.topic("~/follow_joint_trajectory"))
+            action = plugin.ros.topic(controller.topic("~/follow_joint_trajectory"))
             found.append(TrajectoryController(name, action, tuple(joints)))
     return found
 
@@ -53,19 +50,19 @@ def _is_within(scoped: str, robot: str) -> bool:
     return scoped == robot or scoped.startswith(f"{robot}::")
 
 
-def unclaimed_joints(robot: Model, joints: Sequence[str], movers: Sequence[TrajectoryController]) -> list[str]:
-    """Which of these joints no active controller moves, itself or by a joint that they mimic."""
-    moved = {joint for mover in movers for joint in mover.joints}
+def unclaimed_joints(robot: Model, joints: Sequence[str], controllers: Sequence[TrajectoryController]) -> list[str]:
+    """List the joints that no active controller moves, neither itself nor by a joint that they mimic."""
+    moved = {joint for controller in controllers for joint in controller.joints}
     laws = {joint: mimic_of(robot, joint) for joint in joints if joint not in moved}
     return [joint for joint, law in laws.items() if law is None or leader_name(law) not in moved]
 
 
 def mimic_of(robot: Model, joint: str) -> Mimic | None:
-    """How a joint follows another one; None where it follows none."""
+    """Return how a joint mimics another one; None where it mimics none."""
     axes = robot.joints[joint].scene.axes if joint in robot.joints else ()
     return axes[0].mimic if axes else None
 
 
 def leader_name(law: Mimic) -> str:
-    """The plain name of the joint that is followed."""
+    """Return the plain name of the joint that is mimicked."""
     return law.joint.rpartition("::")[2]
