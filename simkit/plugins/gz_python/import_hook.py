@@ -1,7 +1,7 @@
 """Which modules of Gazebo's Python are known under which names, and how an import finds them.
 
 Every version and both spellings mean one implementation: `gz.sim8`, `gz.sim`, `ignition.gazebo6` are
-`simkit.plugins.gz_python.sim`. They can be imported only while somebody asked for it (`enter` and `leave`, or `install`), and
+`simkit.plugins.gz_python.sim`. They can be imported only between `enter` and `leave`, or after `install`, and
 what is really installed under such a name goes first unless it is to be shadowed.
 """
 

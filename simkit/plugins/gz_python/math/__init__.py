@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import Any, Final
 
 from simkit.plugins.gz_python.math.angle import Angle
-from simkit.plugins.gz_python.math.color import AxisAlignedBox, Color, Temperature
+from simkit.plugins.gz_python.math.axis_aligned_box import AxisAlignedBox
+from simkit.plugins.gz_python.math.color import Color, Temperature
 from simkit.plugins.gz_python.math.inertia import Inertiald, MassMatrix3d
 from simkit.plugins.gz_python.math.matrices import Matrix3d, Matrix4d
 from simkit.plugins.gz_python.math.missing_names import missing_name_error

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
+from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.scalars import format_number
 from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE
 
@@ -12,10 +13,10 @@ from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE
 class Angle:
     """An angle; `==` and the order are those of gz-math: within 1e-3 is the same."""
 
-    ZERO: ClassVar[Angle]
-    PI: ClassVar[Angle]
-    HALF_PI: ClassVar[Angle]
-    TWO_PI: ClassVar[Angle]
+    ZERO = ClassConstant(0.0)
+    PI = ClassConstant(math.pi)
+    HALF_PI = ClassConstant(math.pi / 2)
+    TWO_PI = ClassConstant(math.tau)
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, radian: Any = 0.0) -> None:
@@ -85,6 +86,3 @@ class Angle:
 
     def __repr__(self) -> str:
         return format_number(self._value)
-
-
-Angle.ZERO, Angle.PI, Angle.HALF_PI, Angle.TWO_PI = map(Angle, (0.0, math.pi, math.pi / 2, math.tau))

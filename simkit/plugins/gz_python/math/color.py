@@ -1,13 +1,13 @@
-"""Colours, temperatures and boxes of gz-math."""
+"""Colours and temperatures of gz-math."""
 
 from __future__ import annotations
 
 import math
 import sys
-from typing import Any, ClassVar, Final
+from typing import Any, Final
 
+from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, clamp, format_number
-from simkit.plugins.gz_python.math.vectors import Vector3d
 
 _KELVIN: Final = 273.15
 _LARGEST: Final = sys.float_info.max
@@ -16,14 +16,14 @@ _LARGEST: Final = sys.float_info.max
 class Color:
     """Red, green, blue and alpha from 0 to 1; what is beyond is cut off. `c.r()` reads, `c.r(0.5)` sets."""
 
-    WHITE: ClassVar[Color]
-    BLACK: ClassVar[Color]
-    RED: ClassVar[Color]
-    GREEN: ClassVar[Color]
-    BLUE: ClassVar[Color]
-    YELLOW: ClassVar[Color]
-    MAGENTA: ClassVar[Color]
-    CYAN: ClassVar[Color]
+    WHITE = ClassConstant(1, 1, 1)
+    BLACK = ClassConstant(0, 0, 0)
+    RED = ClassConstant(1, 0, 0)
+    GREEN = ClassConstant(0, 1, 0)
+    BLUE = ClassConstant(0, 0, 1)
+    YELLOW = ClassConstant(1, 1, 0)
+    MAGENTA = ClassConstant(1, 0, 1)
+    CYAN = ClassConstant(0, 1, 1)
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: Any) -> None:
@@ -89,11 +89,6 @@ class Color:
         return " ".join(format_number(v) for v in self._c)
 
 
-Color.WHITE, Color.BLACK = Color(1, 1, 1), Color(0, 0, 0)
-Color.RED, Color.GREEN, Color.BLUE = Color(1, 0, 0), Color(0, 1, 0), Color(0, 0, 1)
-Color.YELLOW, Color.MAGENTA, Color.CYAN = Color(1, 1, 0), Color(1, 0, 1), Color(0, 1, 1)
-
-
 class Temperature:
     """A temperature; without an argument 0 K."""
 
@@ -145,73 +140,3 @@ class Temperature:
 
     def __repr__(self) -> str:
         return format_number(self._kelvin)
-
-
-class AxisAlignedBox:
-    """A box along the axes: `()` is empty; two corners, or six numbers."""
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __init__(self, *values: Any) -> None:
-        self._min, self._max = Vector3d(*[_LARGEST] * 3), Vector3d(*[-_LARGEST] * 3)
-        if len(values) == 1:
-            values = (values[0].min(), values[0].max())
-        elif len(values) == 6:
-            values = (Vector3d(*values[:3]), Vector3d(*values[3:]))
-        if values:
-            first, second = Vector3d(values[0]), Vector3d(values[1])
-            self._min, self._max = Vector3d(first), Vector3d(first)
-            self._min.min(second)
-            self._max.max(second)
-
-    def min(self) -> Vector3d:
-        return self._min
-
-    def max(self) -> Vector3d:
-        return self._max
-
-    def _empty(self) -> bool:
-        return any(a > b for a, b in zip(self._min, self._max, strict=True))
-
-    def size(self) -> Vector3d:
-        return Vector3d() if self._empty() else self._max - self._min
-
-    def x_length(self) -> float:
-        return float(self.size().x())
-
-    def y_length(self) -> float:
-        return float(self.size().y())
-
-    def z_length(self) -> float:
-        return float(self.size().z())
-
-    def center(self) -> Vector3d:
-        return (self._min + self._max) * 0.5
-
-    def volume(self) -> float:
-        return math.prod(self.size())
-
-    def contains(self, point: Any) -> bool:
-        return all(a <= p <= b for a, p, b in zip(self._min, Vector3d(point), self._max, strict=True))
-
-    def intersects(self, other: AxisAlignedBox) -> bool:
-        return all(a <= d and c <= b for a, b, c, d in zip(self._min, self._max, other._min, other._max, strict=True))
-
-    def merge(self, other: AxisAlignedBox) -> None:
-        """Grows to hold the other box too."""
-        self._min.min(other._min)
-        self._max.max(other._max)
-
-    def __add__(self, other: AxisAlignedBox) -> AxisAlignedBox:
-        both = AxisAlignedBox()
-        both.merge(self)
-        both.merge(other)
-        return both
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, AxisAlignedBox):
-            return NotImplemented
-        return self._min == other._min and self._max == other._max
-
-    def __repr__(self) -> str:
-        return f"Min[{self._min}] Max[{self._max}]"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
@@ -15,6 +16,21 @@ from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
 
 TOLERANCE: Final = 10.0
 """In units of what rounding does, as gz-math's default."""
+
+
+def _moment_getter(attribute: str, index: int) -> Callable[[MassMatrix3d], float]:
+    def read(self: MassMatrix3d) -> float:
+        return float(getattr(self, attribute)[index])
+
+    return read
+
+
+def _moment_setter(attribute: str, index: int) -> Callable[[MassMatrix3d, float], bool]:
+    def write(self: MassMatrix3d, value: float) -> bool:
+        getattr(self, attribute)[index] = value
+        return self.is_valid()
+
+    return write
 
 
 class MassMatrix3d:
@@ -50,6 +66,13 @@ class MassMatrix3d:
     def set_off_diagonal_moments(self, moments: Any) -> bool:
         self._rest = Vector3d(moments)
         return self.is_valid()
+
+    ixx, set_ixx = _moment_getter("_diagonal", 0), _moment_setter("_diagonal", 0)
+    iyy, set_iyy = _moment_getter("_diagonal", 1), _moment_setter("_diagonal", 1)
+    izz, set_izz = _moment_getter("_diagonal", 2), _moment_setter("_diagonal", 2)
+    ixy, set_ixy = _moment_getter("_rest", 0), _moment_setter("_rest", 0)
+    ixz, set_ixz = _moment_getter("_rest", 1), _moment_setter("_rest", 1)
+    iyz, set_iyz = _moment_getter("_rest", 2), _moment_setter("_rest", 2)
 
     def moi(self) -> Matrix3d:
         """The moments as a matrix."""
@@ -177,29 +200,6 @@ class MassMatrix3d:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> MassMatrix3d:
         return MassMatrix3d(self)
-
-
-def _add_components() -> None:
-    """Gives the moments their methods `ixx`, `set_ixx`, … one by one."""
-
-    def reader(part: str, index: int) -> Any:
-        return lambda self: float(getattr(self, part)[index])
-
-    def writer(part: str, index: int) -> Any:
-        def write(self: MassMatrix3d, value: float) -> bool:
-            getattr(self, part)[index] = value
-            return self.is_valid()
-
-        return write
-
-    names = {"_diagonal": ("ixx", "iyy", "izz"), "_rest": ("ixy", "ixz", "iyz")}
-    for part, components in names.items():
-        for index, name in enumerate(components):
-            setattr(MassMatrix3d, name, reader(part, index))
-            setattr(MassMatrix3d, f"set_{name}", writer(part, index))
-
-
-_add_components()
 
 
 class Inertiald:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit.plugins.gz_python.math.class_constant import ClassConstant
+from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number
 from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
@@ -17,8 +19,8 @@ Rows = npt.NDArray[np.float64]
 class Matrix3d:
     """Three by three numbers: `Matrix3d()`, nine numbers row by row, or of a rotation; `m(row, column)` reads one."""
 
-    IDENTITY: ClassVar[Matrix3d]
-    ZERO: ClassVar[Matrix3d]
+    IDENTITY = ClassConstant(1, 0, 0, 0, 1, 0, 0, 0, 1)
+    ZERO = ClassConstant()
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: Any) -> None:
@@ -114,15 +116,11 @@ class Matrix3d:
         return " ".join(format_number(v) for v in self._m.reshape(9).tolist())
 
 
-Matrix3d.IDENTITY = Matrix3d(1, 0, 0, 0, 1, 0, 0, 0, 1)
-Matrix3d.ZERO = Matrix3d()
-
-
 class Matrix4d:
     """Four by four numbers, mostly a homogeneous transform: nothing, 16 numbers, a rotation or a pose."""
 
-    IDENTITY: ClassVar[Matrix4d]
-    ZERO: ClassVar[Matrix4d]
+    IDENTITY = ClassConstant(*np.eye(4).reshape(16).tolist())
+    ZERO = ClassConstant()
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: Any) -> None:
@@ -150,10 +148,8 @@ class Matrix4d:
     def rotation(self) -> Quaterniond:
         return Quaterniond(Matrix3d.of(self._m[:3, :3]))
 
-    def pose(self) -> Any:
+    def pose(self) -> Pose3d:
         """The transform as a pose."""
-        from simkit.plugins.gz_python.math.pose import Pose3d
-
         return Pose3d(self.translation(), self.rotation())
 
     def determinant(self) -> float:
@@ -182,7 +178,3 @@ class Matrix4d:
 
     def __repr__(self) -> str:
         return " ".join(format_number(v) for v in self._m.reshape(16).tolist())
-
-
-Matrix4d.IDENTITY = Matrix4d(*np.eye(4).reshape(16).tolist())
-Matrix4d.ZERO = Matrix4d()

@@ -1,11 +1,26 @@
-"""What controllers written for gz-math use: its PID and its rolling mean."""
+"""PID controller and rolling mean of gz-math."""
 
 from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 from datetime import timedelta
 from typing import Any
+
+
+def _getter(attribute: str) -> Callable[[PID], float]:
+    def read(self: PID) -> float:
+        return float(getattr(self, attribute))
+
+    return read
+
+
+def _setter(attribute: str) -> Callable[[PID, float], None]:
+    def write(self: PID, value: float) -> None:
+        setattr(self, attribute, float(value))
+
+    return write
 
 
 class PID:
@@ -72,6 +87,15 @@ class PID:
         self._cmd = _clamp_if_ordered(wanted, self._cmd_min, self._cmd_max)
         return self._cmd
 
+    p_gain, set_p_gain = _getter("_p"), _setter("_p")
+    i_gain, set_i_gain = _getter("_i"), _setter("_i")
+    d_gain, set_d_gain = _getter("_d"), _setter("_d")
+    i_max, set_i_max = _getter("_i_max"), _setter("_i_max")
+    i_min, set_i_min = _getter("_i_min"), _setter("_i_min")
+    cmd_max, set_cmd_max = _getter("_cmd_max"), _setter("_cmd_max")
+    cmd_min, set_cmd_min = _getter("_cmd_min"), _setter("_cmd_min")
+    cmd_offset, set_cmd_offset = _getter("_offset"), _setter("_offset")
+
     def cmd(self) -> float:
         """The last command."""
         return self._cmd
@@ -82,26 +106,6 @@ class PID:
     def errors(self) -> tuple[float, float, float]:
         """Error, integral's part and rate of the error."""
         return self._error, self._integral, self._rate
-
-
-def _add_gains() -> None:
-    """Gives each gain and bound its methods `p_gain`, `set_p_gain`, …"""
-
-    def reader(part: str) -> Any:
-        return lambda self: getattr(self, part)
-
-    def writer(part: str) -> Any:
-        return lambda self, value: setattr(self, part, float(value))
-
-    names = {"p_gain": "_p", "i_gain": "_i", "d_gain": "_d", "cmd_offset": "_offset"}
-    for name in ("i_max", "i_min", "cmd_max", "cmd_min"):
-        names[name] = f"_{name}"
-    for name, part in names.items():
-        setattr(PID, name, reader(part))
-        setattr(PID, f"set_{name}", writer(part))
-
-
-_add_gains()
 
 
 class RollingMean:

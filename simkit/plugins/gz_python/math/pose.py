@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
+from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.vectors import Vector3d
 
@@ -15,7 +16,7 @@ class Pose3d:
     `pos()` and `rot()` give the very objects, so changing them changes the pose.
     """
 
-    ZERO: ClassVar[Pose3d]
+    ZERO = ClassConstant()
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: Any) -> None:
@@ -166,6 +167,3 @@ class Pose3d:
 
     def __repr__(self) -> str:
         return f"{self._p} {self._q}"
-
-
-Pose3d.ZERO = Pose3d()

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import Any, Final, Protocol
 
+from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
 from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE, Vector3d, components_of
 
-if TYPE_CHECKING:
-    from simkit.plugins.gz_python.math.matrices import Matrix3d
-
 _POLE: Final = 1e-15
 _NEARLY_ONE_AXIS: Final = 1e-3
+
+
+class RotationMatrix(Protocol):
+    """A rotation matrix that gives its elements: `Matrix3d`, or another library's of the same kind."""
+
+    def __call__(self, row: int, column: int) -> float: ...
 
 
 class Quaterniond:
@@ -23,8 +27,8 @@ class Quaterniond:
     `(quaternion)`.
     """
 
-    IDENTITY: ClassVar[Quaterniond]
-    ZERO: ClassVar[Quaterniond]
+    IDENTITY = ClassConstant()
+    ZERO = ClassConstant(0, 0, 0, 0)
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: Any) -> None:
@@ -141,7 +145,7 @@ class Quaterniond:
             return Vector3d(1, 0, 0), 0.0
         return Vector3d(x, y, z) / math.sqrt(square), 2.0 * math.acos(max(-1.0, min(1.0, w)))
 
-    def set_from_matrix(self, matrix: Matrix3d) -> None:
+    def set_from_matrix(self, matrix: RotationMatrix) -> None:
         """From a rotation matrix."""
         m = [[float(matrix(i, j)) for j in range(3)] for i in range(3)]
         trace = m[0][0] + m[1][1] + m[2][2]
@@ -334,7 +338,3 @@ class Quaterniond:
 
     def __repr__(self) -> str:
         return repr(self.euler())
-
-
-Quaterniond.IDENTITY = Quaterniond()
-Quaterniond.ZERO = Quaterniond(0, 0, 0, 0)

@@ -7,6 +7,7 @@ import operator
 from collections.abc import Callable, Iterator
 from typing import Any, ClassVar, Final, TypeVar
 
+from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number, round_half_away
 
 V = TypeVar("V", bound="Vector")
@@ -243,21 +244,21 @@ class Vector2d(Vector):
     """Two numbers."""
 
     SIZE = 2
-    ZERO: ClassVar[Vector2d]
-    ONE: ClassVar[Vector2d]
-    NAN: ClassVar[Vector2d]
+    ZERO = ClassConstant(0, 0)
+    ONE = ClassConstant(1, 1)
+    NAN = ClassConstant(math.nan, math.nan)
 
 
 class Vector3d(Vector):
     """Three numbers."""
 
     SIZE = 3
-    ZERO: ClassVar[Vector3d]
-    ONE: ClassVar[Vector3d]
-    UNIT_X: ClassVar[Vector3d]
-    UNIT_Y: ClassVar[Vector3d]
-    UNIT_Z: ClassVar[Vector3d]
-    NAN: ClassVar[Vector3d]
+    ZERO = ClassConstant(0, 0, 0)
+    ONE = ClassConstant(1, 1, 1)
+    UNIT_X = ClassConstant(1, 0, 0)
+    UNIT_Y = ClassConstant(0, 1, 0)
+    UNIT_Z = ClassConstant(0, 0, 1)
+    NAN = ClassConstant(math.nan, math.nan, math.nan)
 
     def z(self, *value: float) -> Any:
         """The third component; with an argument, sets it."""
@@ -293,9 +294,9 @@ class Vector4d(Vector):
     """Four numbers."""
 
     SIZE = 4
-    ZERO: ClassVar[Vector4d]
-    ONE: ClassVar[Vector4d]
-    NAN: ClassVar[Vector4d]
+    ZERO = ClassConstant(0, 0, 0, 0)
+    ONE = ClassConstant(1, 1, 1, 1)
+    NAN = ClassConstant(math.nan, math.nan, math.nan, math.nan)
 
     def z(self, *value: float) -> Any:
         """The third component; with an argument, sets it."""
@@ -322,29 +323,18 @@ class Vector2i(Vector2d):
     """Two whole numbers."""
 
     NUMBER = int
+    NAN = Vector2d.NAN
 
 
 class Vector3i(Vector3d):
     """Three whole numbers."""
 
     NUMBER = int
+    NAN = Vector3d.NAN
 
 
 class Vector4i(Vector4d):
     """Four whole numbers."""
 
     NUMBER = int
-
-
-def _constants() -> None:
-    for cls in (Vector2d, Vector2f, Vector2i, Vector3d, Vector3f, Vector3i, Vector4d, Vector4f, Vector4i):
-        named = {"ZERO": [0] * cls.SIZE, "ONE": [1] * cls.SIZE}
-        if cls.SIZE == 3:
-            named |= {"UNIT_X": [1, 0, 0], "UNIT_Y": [0, 1, 0], "UNIT_Z": [0, 0, 1]}
-        for name, values in named.items():
-            setattr(cls, name, cls(*values))
-        if cls.NUMBER is float:
-            cls.NAN = cls(*[math.nan] * cls.SIZE)
-
-
-_constants()
+    NAN = Vector4d.NAN

@@ -8,12 +8,13 @@ from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.sim import components
 from simkit.plugins.gz_python.sim.components import ComponentState
 from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
+from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY
 from simkit.plugins.gz_python.sim.fixture import Server, ServerConfig, TestFixture
 from simkit.plugins.gz_python.sim.joint import Joint
 from simkit.plugins.gz_python.sim.link import Link
 from simkit.plugins.gz_python.sim.model import Model
 from simkit.plugins.gz_python.sim.sensors_lights_actors import Actor, Light, Sensor
-from simkit.plugins.gz_python.sim.update_info import K_NULL_ENTITY, EventManager, UpdateInfo
+from simkit.plugins.gz_python.sim.update_info import EventManager, UpdateInfo
 from simkit.plugins.gz_python.sim.world import World, world_entity, world_pose
 
 K_COMPONENT_TYPE_ID_INVALID: Final = 0

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterator
 from enum import IntEnum
 from typing import Any, Final
 
+from simkit.plugins.gz_python.math.inertia import Inertiald as _Inertiald
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.math.simkit_conversion import simkit_pose, three_numbers
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
 from simkit.plugins.gz_python.sim.entity_table import EntityRecord
+from simkit.plugins.gz_python.sim.entity_view import EntityView
 from simkit.plugins.gz_python.sim.joint import Joint as _Joint
 from simkit.plugins.gz_python.sim.link import Link as _Link
 from simkit.plugins.gz_python.sim.model import Model as _Model
@@ -66,7 +67,7 @@ def register_custom_component(name: str) -> ComponentProxy:
 
 
 _TAGS: Final = ("World", "Model", "Link", "Joint", "Visual", "Collision", "Sensor", "Light", "Actor")
-_Reader = Callable[[EntityComponentManager, EntityRecord], Any]
+_Reader = Callable[[EntityView, EntityRecord], Any]
 
 
 def _kind_reader(kind: str, read: _Reader) -> _Reader:
@@ -76,7 +77,7 @@ def _kind_reader(kind: str, read: _Reader) -> _Reader:
 _HANDLES: Final = {"model": _Model, "link": _Link, "joint": _Joint, "sensor": _Sensor, "world": _World}
 
 
-def _handle_reader(kind: str, method: Callable[[Any, EntityComponentManager], Any]) -> _Reader:
+def _handle_reader(kind: str, method: Callable[[Any, EntityView], Any]) -> _Reader:
     """What a method of the handle says."""
     return _kind_reader(kind, lambda ecm, record: method(_HANDLES[kind](record.entity), ecm))
 
@@ -85,7 +86,7 @@ def _reader_for_kinds(kinds: tuple[str, ...], read: _Reader) -> _Reader:
     return lambda ecm, record: read(ecm, record) if record.kind in kinds else None
 
 
-def _local_pose(ecm: EntityComponentManager, record: EntityRecord) -> Any:
+def _local_pose(ecm: EntityView, record: EntityRecord) -> Any:
     """In the frame of the entity it is in."""
     if record.kind == "joint":
         return _Joint(record.entity).pose(ecm)
@@ -93,21 +94,19 @@ def _local_pose(ecm: EntityComponentManager, record: EntityRecord) -> Any:
     return own if record.parent <= 1 else world_pose(record.parent, ecm).inverse() * own
 
 
-def _in_link_axes(read: Callable[[_Link, EntityComponentManager], Any]) -> _Reader:
-    def turned(ecm: EntityComponentManager, record: EntityRecord) -> Any:
+def _in_link_axes(read: Callable[[_Link, EntityView], Any]) -> _Reader:
+    def turned(ecm: EntityView, record: EntityRecord) -> Any:
         value, pose = read(_Link(record.entity), ecm), _Link(record.entity).world_pose(ecm)
         return pose.rot().rotate_vector_reverse(value) if value is not None and pose is not None else None
 
     return turned
 
 
-def _inertial(ecm: EntityComponentManager, record: EntityRecord) -> Any:
-    from simkit.plugins.gz_python.math.inertia import Inertiald
-
+def _inertial(ecm: EntityView, record: EntityRecord) -> Any:
     link, pose = _Link(record.entity).world_inertial(ecm), _Link(record.entity).world_pose(ecm)
     if link is None or pose is None:
         return None
-    return Inertiald(link.mass_matrix(), pose.inverse() * link.pose())
+    return _Inertiald(link.mass_matrix(), pose.inverse() * link.pose())
 
 
 _READERS: Final[dict[str, _Reader]] = {
@@ -200,7 +199,7 @@ def _check_component(kind: Any) -> ComponentProxy:
     return kind
 
 
-def read_component(ecm: EntityComponentManager, entity: int, kind: Any) -> Any:
+def read_component(ecm: EntityView, entity: int, kind: Any) -> Any:
     """The data of a component; of a tag the tag itself; None where the entity has none."""
     proxy = _check_component(kind)
     kept = ecm.custom.get(proxy.name, {})
@@ -217,7 +216,7 @@ def read_component(ecm: EntityComponentManager, entity: int, kind: Any) -> Any:
     return reader(ecm, record) if reader is not None else None
 
 
-def write_component(ecm: EntityComponentManager, entity: int, kind: Any, *data: Any) -> None:
+def write_component(ecm: EntityView, entity: int, kind: Any, *data: Any) -> None:
     """Gives a component, or a command where it is one.
 
     Raises:
@@ -259,7 +258,7 @@ def _read_only_error(proxy: ComponentProxy, record: EntityRecord) -> NotImplemen
     return NotImplementedError(f"{what} is what the simulation says; use a command such as WorldPoseCmd")
 
 
-def mark_changed(ecm: EntityComponentManager, entity: int, kind: Any) -> None:
+def mark_changed(ecm: EntityView, entity: int, kind: Any) -> None:
     """Takes note that data was changed in place, which is all where it was given from here.
 
     Raises:
@@ -270,7 +269,7 @@ def mark_changed(ecm: EntityComponentManager, entity: int, kind: Any) -> None:
         raise _read_only_error(proxy, record)
 
 
-def remove_component(ecm: EntityComponentManager, entity: int, kind: Any) -> bool:
+def remove_component(ecm: EntityView, entity: int, kind: Any) -> bool:
     """Takes away a component that was given; whether it was there."""
     proxy = _check_component(kind)
     if proxy.name in _COMMANDS and getattr(ecm.commands, _COMMANDS[proxy.name][1]).pop(entity, None) is not None:
@@ -299,7 +298,7 @@ class ComponentCursor:
         return iter((self.entity, tuple(self.components)))
 
 
-def each_entity(ecm: EntityComponentManager, kinds: list[Any]) -> Iterator[ComponentCursor]:
+def each_entity(ecm: EntityView, kinds: list[Any]) -> Iterator[ComponentCursor]:
     """Every entity that has them all, by number; the same cursor each time."""
     proxies, cursor = [_check_component(kind) for kind in kinds], ComponentCursor()
     for record in list(ecm.sync()):

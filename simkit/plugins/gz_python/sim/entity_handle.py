@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any, ClassVar, TypeVar
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
-from simkit.plugins.gz_python.sim.entity_table import EntityRecord
-from simkit.plugins.gz_python.sim.update_info import K_NULL_ENTITY
+from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, EntityRecord
+from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 E = TypeVar("E", bound="EntityHandle")
 
@@ -31,28 +30,28 @@ class EntityHandle:
         """Makes it a handle of another entity."""
         self._entity = int(new_entity)
 
-    def valid(self, ecm: EntityComponentManager) -> bool:
+    def valid(self, ecm: EntityView) -> bool:
         """Whether the entity is there and of this kind."""
         return self._record(ecm) is not None
 
-    def name(self, ecm: EntityComponentManager) -> str | None:
+    def name(self, ecm: EntityView) -> str | None:
         """Its own name, without those it is in; None where it is not there."""
         record = ecm.record(self._entity)
         return record.name if record is not None else None
 
-    def _record(self, ecm: EntityComponentManager) -> EntityRecord | None:
+    def _record(self, ecm: EntityView) -> EntityRecord | None:
         return ecm.record(self._entity, self.KIND)
 
-    def _handle(self, ecm: EntityComponentManager) -> Any:
+    def _handle(self, ecm: EntityView) -> Any:
         return ecm.handle(self._entity, self.KIND)
 
-    def _named(self, ecm: EntityComponentManager, kind: str, name: str) -> int:
+    def _named(self, ecm: EntityView, kind: str, name: str) -> int:
         return ecm.sync().named(self._entity, kind, name)
 
-    def _below(self, ecm: EntityComponentManager, kind: str) -> list[int]:
+    def _below(self, ecm: EntityView, kind: str) -> list[int]:
         return ecm.sync().below(self._entity, kind)
 
-    def _reading(self, ecm: EntityComponentManager, what: str) -> bool | None:
+    def _reading(self, ecm: EntityView, what: str) -> bool | None:
         return ecm.is_enabled(self._entity, what)
 
     def __getattr__(self, name: str) -> Any:

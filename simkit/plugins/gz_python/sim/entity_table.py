@@ -12,6 +12,9 @@ from typing import Any, Final
 
 from simkit.scene import SceneLink, SceneModel
 
+K_NULL_ENTITY: Final = 0
+"""No entity; the name is gz-sim's."""
+
 WORLD_ENTITY: Final = 1
 FIRST_ENTITY: Final = 4
 """The number of the first entity after the world's own."""

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Final
 
 from simkit.plugins.gz_python import transport
 from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager, manager_of
+from simkit.plugins.gz_python.sim.system_hub import update_paused
 from simkit.plugins.gz_python.sim.update_info import EventManager, UpdateInfo
 
 _EMPTY: Final = "<sdf version='1.9'><world name='default'/></sdf>"
@@ -128,8 +129,6 @@ class Server:
             return
         while not self._stops and (not iterations or done < iterations):
             if paused:
-                from simkit.plugins.gz_python.sim.system_hub import update_paused
-
                 update_paused(self.simulation)
             else:
                 self.simulation.step()

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import gz_pose
+from simkit.plugins.gz_python.msgs import message_class
 from simkit.plugins.gz_python.sdformat import JointAxis, JointType
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
-
-if TYPE_CHECKING:
-    from simkit.plugins.gz_python.sim.model import Model
+from simkit.plugins.gz_python.sim.entity_view import EntityView
+from simkit.plugins.gz_python.sim.model import Model
 
 _POSITION, _VELOCITY, _WRENCH = "position", "velocity", "wrench"
 
@@ -26,20 +25,18 @@ class Joint(EntityHandle):
 
     # ------------------------------------------------------------------ what it is
 
-    def parent_model(self, ecm: EntityComponentManager) -> Model | None:
-        from simkit.plugins.gz_python.sim.model import Model
-
+    def parent_model(self, ecm: EntityView) -> Model | None:
         record = self._record(ecm)
         return Model(record.parent) if record is not None else None
 
-    def parent_link_name(self, ecm: EntityComponentManager) -> str | None:
+    def parent_link_name(self, ecm: EntityView) -> str | None:
         """As seen from its model; `world` where it hangs on the world."""
         return self._end(ecm, "parent_link")
 
-    def child_link_name(self, ecm: EntityComponentManager) -> str | None:
+    def child_link_name(self, ecm: EntityView) -> str | None:
         return self._end(ecm, "child_link")
 
-    def _end(self, ecm: EntityComponentManager, which: str) -> str | None:
+    def _end(self, ecm: EntityView, which: str) -> str | None:
         record = self._record(ecm)
         if record is None:
             return None
@@ -47,7 +44,7 @@ class Joint(EntityHandle):
         scope = f"{model.scene.scoped}::" if model is not None else ""
         return str(getattr(record.scene, which)).removeprefix(scope)
 
-    def pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def pose(self, ecm: EntityView) -> Pose3d | None:
         """In its child link's frame."""
         record = self._record(ecm)
         if record is None:
@@ -58,63 +55,61 @@ class Joint(EntityHandle):
             return gz_pose(scene.pose_world)
         return gz_pose(child.scene.pose_world.inverse() @ scene.pose_world)
 
-    def thread_pitch(self, ecm: EntityComponentManager) -> float | None:
+    def thread_pitch(self, ecm: EntityView) -> float | None:
         """Of a screw [m per turn]."""
         record = self._record(ecm)
         return float(record.scene.thread_pitch) if record is not None else None
 
-    def axis(self, ecm: EntityComponentManager) -> list[JointAxis] | None:
+    def axis(self, ecm: EntityView) -> list[JointAxis] | None:
         record = self._record(ecm)
         return [JointAxis(axis) for axis in record.scene.axes] if record is not None else None
 
-    def type(self, ecm: EntityComponentManager) -> JointType | None:
+    def type(self, ecm: EntityView) -> JointType | None:
         record = self._record(ecm)
         if record is None:
             return None
         return JointType.__members__.get(record.scene.type.upper(), JointType.INVALID)
 
-    def sensor_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def sensor_by_name(self, ecm: EntityView, name: str) -> int:
         return self._named(ecm, "sensor", name)
 
-    def sensors(self, ecm: EntityComponentManager) -> list[int]:
+    def sensors(self, ecm: EntityView) -> list[int]:
         return self._below(ecm, "sensor")
 
-    def sensor_count(self, ecm: EntityComponentManager) -> int:
+    def sensor_count(self, ecm: EntityView) -> int:
         return len(self.sensors(ecm))
 
     # ------------------------------------------------------------------ readings
 
-    def enable_position_check(self, ecm: EntityComponentManager, enable: bool = True) -> None:
+    def enable_position_check(self, ecm: EntityView, enable: bool = True) -> None:
         if self.valid(ecm):
             ecm.enable(self._entity, _POSITION, enable)
 
-    def enable_velocity_check(self, ecm: EntityComponentManager, enable: bool = True) -> None:
+    def enable_velocity_check(self, ecm: EntityView, enable: bool = True) -> None:
         if self.valid(ecm):
             ecm.enable(self._entity, _VELOCITY, enable)
 
-    def enable_transmitted_wrench_check(self, ecm: EntityComponentManager, enable: bool = True) -> None:
+    def enable_transmitted_wrench_check(self, ecm: EntityView, enable: bool = True) -> None:
         if self.valid(ecm):
             ecm.enable(self._entity, _WRENCH, enable)
 
-    def position(self, ecm: EntityComponentManager) -> list[float] | None:
+    def position(self, ecm: EntityView) -> list[float] | None:
         """[rad or m], one number for each axis."""
         return self._values(ecm, _POSITION)
 
-    def velocity(self, ecm: EntityComponentManager) -> list[float] | None:
+    def velocity(self, ecm: EntityView) -> list[float] | None:
         """[rad/s or m/s], one number for each axis."""
         return self._values(ecm, _VELOCITY)
 
-    def _values(self, ecm: EntityComponentManager, what: str) -> list[float] | None:
+    def _values(self, ecm: EntityView, what: str) -> list[float] | None:
         is_read, joint = self._reading(ecm, what), self._handle(ecm)
         if is_read is None or joint is None:
             return None
         values: list[float] = np.atleast_1d(getattr(joint, what)).tolist() if is_read else []
         return values
 
-    def transmitted_wrench(self, ecm: EntityComponentManager) -> list[Any] | None:
+    def transmitted_wrench(self, ecm: EntityView) -> list[Any] | None:
         """One `gz.msgs` Wrench: force [N] and torque [N·m] by the parent on the child, in the joint frame."""
-        from simkit.plugins.gz_python.msgs import message_class
-
         is_read, joint = self._reading(ecm, _WRENCH), self._handle(ecm)
         if is_read is None or joint is None:
             return None
@@ -127,7 +122,7 @@ class Joint(EntityHandle):
 
     # ------------------------------------------------------------------ commands
 
-    def set_velocity(self, ecm: EntityComponentManager, velocities: Sequence[float]) -> None:
+    def set_velocity(self, ecm: EntityView, velocities: Sequence[float]) -> None:
         """Velocities [rad/s or m/s] to have after the next step, as far as the effort limits go.
 
         As in gz-sim the joint is then held at rest from step to step unless it is set again, and nothing happens
@@ -136,36 +131,36 @@ class Joint(EntityHandle):
         if self.valid(ecm):
             ecm.commands.velocity[self._entity] = self._numbers(velocities)
 
-    def set_force(self, ecm: EntityComponentManager, forces: Sequence[float]) -> None:
+    def set_force(self, ecm: EntityView, forces: Sequence[float]) -> None:
         """Efforts [N·m or N] for the next step, within the limits."""
         if self.valid(ecm):
             ecm.commands.force[self._entity] = self._numbers(forces)
 
-    def reset_position(self, ecm: EntityComponentManager, positions: Sequence[float]) -> None:
+    def reset_position(self, ecm: EntityView, positions: Sequence[float]) -> None:
         """Puts the joint there [rad or m] before the next step, once."""
         if self.valid(ecm):
             ecm.commands.position_reset[self._entity] = self._numbers(positions)
 
-    def reset_velocity(self, ecm: EntityComponentManager, velocities: Sequence[float]) -> None:
+    def reset_velocity(self, ecm: EntityView, velocities: Sequence[float]) -> None:
         """Gives the joint these velocities [rad/s or m/s] before the next step, once."""
         if self.valid(ecm):
             ecm.commands.velocity_reset[self._entity] = self._numbers(velocities)
 
-    def set_position_limits(self, ecm: EntityComponentManager, limits: Sequence[Any]) -> None:
+    def set_position_limits(self, ecm: EntityView, limits: Sequence[Any]) -> None:
         """(lower, upper) [rad or m] for each axis, as `Vector2d`."""
         self._limit(ecm, "position", limits)
 
     set_position_imits = set_position_limits  # so it is spelled in gz-sim 8
 
-    def set_velocity_limits(self, ecm: EntityComponentManager, limits: Sequence[Any]) -> None:
+    def set_velocity_limits(self, ecm: EntityView, limits: Sequence[Any]) -> None:
         """The larger magnitude of each pair [rad/s or m/s] counts."""
         self._limit(ecm, "velocity", limits)
 
-    def set_effort_limits(self, ecm: EntityComponentManager, limits: Sequence[Any]) -> None:
+    def set_effort_limits(self, ecm: EntityView, limits: Sequence[Any]) -> None:
         """The larger magnitude of each pair [N·m or N] counts."""
         self._limit(ecm, "effort", limits)
 
-    def _limit(self, ecm: EntityComponentManager, what: str, limits: Sequence[Any]) -> None:
+    def _limit(self, ecm: EntityView, what: str, limits: Sequence[Any]) -> None:
         if self.valid(ecm):
             pairs = tuple((float(one.x()), float(one.y())) for one in limits)
             ecm.commands.limits[self._entity, what] = pairs

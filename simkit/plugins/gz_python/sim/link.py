@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.plugins.gz_python.math.color import AxisAlignedBox
+from simkit.plugins.gz_python.math.axis_aligned_box import AxisAlignedBox
 from simkit.plugins.gz_python.math.inertia import Inertiald, MassMatrix3d
 from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import cross_product, gz_pose, gz_vector, three_numbers
 from simkit.plugins.gz_python.math.vectors import Vector3d
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
+from simkit.plugins.gz_python.sim.entity_view import EntityView
+from simkit.plugins.gz_python.sim.model import Model
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
-    from simkit.plugins.gz_python.sim.model import Model
     from simkit.runtime import Simulation
 
 
@@ -63,13 +63,11 @@ class Link(EntityHandle):
 
     # ------------------------------------------------------------------ what it is
 
-    def parent_model(self, ecm: EntityComponentManager) -> Model | None:
-        from simkit.plugins.gz_python.sim.model import Model
-
+    def parent_model(self, ecm: EntityView) -> Model | None:
         record = self._record(ecm)
         return Model(record.parent) if record is not None else None
 
-    def is_canonical(self, ecm: EntityComponentManager) -> bool:
+    def is_canonical(self, ecm: EntityView) -> bool:
         """Whether its motion is that of the model it is in."""
         record = self._record(ecm)
         if record is None:
@@ -77,50 +75,50 @@ class Link(EntityHandle):
         model = ecm.record(record.parent)
         return bool(model is not None and model.scene.canonical_link == record.scene.scoped)
 
-    def wind_mode(self, ecm: EntityComponentManager) -> bool:
+    def wind_mode(self, ecm: EntityView) -> bool:
         record = self._record(ecm)
         return bool(record is not None and record.scene.enable_wind)
 
-    def collision_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def collision_by_name(self, ecm: EntityView, name: str) -> int:
         return self._named(ecm, "collision", name)
 
-    def visual_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def visual_by_name(self, ecm: EntityView, name: str) -> int:
         return self._named(ecm, "visual", name)
 
-    def sensor_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def sensor_by_name(self, ecm: EntityView, name: str) -> int:
         return self._named(ecm, "sensor", name)
 
-    def collisions(self, ecm: EntityComponentManager) -> list[int]:
+    def collisions(self, ecm: EntityView) -> list[int]:
         return self._below(ecm, "collision")
 
-    def visuals(self, ecm: EntityComponentManager) -> list[int]:
+    def visuals(self, ecm: EntityView) -> list[int]:
         return self._below(ecm, "visual")
 
-    def sensors(self, ecm: EntityComponentManager) -> list[int]:
+    def sensors(self, ecm: EntityView) -> list[int]:
         return self._below(ecm, "sensor")
 
-    def collision_count(self, ecm: EntityComponentManager) -> int:
+    def collision_count(self, ecm: EntityView) -> int:
         return len(self.collisions(ecm))
 
-    def visual_count(self, ecm: EntityComponentManager) -> int:
+    def visual_count(self, ecm: EntityView) -> int:
         return len(self.visuals(ecm))
 
-    def sensor_count(self, ecm: EntityComponentManager) -> int:
+    def sensor_count(self, ecm: EntityView) -> int:
         return len(self.sensors(ecm))
 
     # ------------------------------------------------------------------ where it is and how it moves
 
-    def world_pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def world_pose(self, ecm: EntityView) -> Pose3d | None:
         """Of the link frame; None only where there is no such link."""
         link = self._handle(ecm)
         return gz_pose(link.pose) if link is not None else None
 
-    def world_inertial_pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def world_inertial_pose(self, ecm: EntityView) -> Pose3d | None:
         """Of the centre of mass, with the axes of its inertia."""
         inertial = self.world_inertial(ecm)
         return inertial.pose() if inertial is not None else None
 
-    def world_inertial(self, ecm: EntityComponentManager) -> Inertiald | None:
+    def world_inertial(self, ecm: EntityView) -> Inertiald | None:
         """Mass and moments at the centre of mass in the world; the moments are in the link's axes."""
         link = self._handle(ecm)
         if link is None:
@@ -129,20 +127,20 @@ class Link(EntityHandle):
         matrix = MassMatrix3d(own.mass, Vector3d(*own.inertia[:3]), Vector3d(*own.inertia[3:]))
         return Inertiald(matrix, gz_pose(link.pose) * Pose3d(*own.com, 0, 0, 0))
 
-    def world_inertia_matrix(self, ecm: EntityComponentManager) -> Matrix3d | None:
+    def world_inertia_matrix(self, ecm: EntityView) -> Matrix3d | None:
         """The moments about the centre of mass, in world axes."""
         inertial = self.world_inertial(ecm)
         return inertial.moi() if inertial is not None else None
 
-    def enable_velocity_checks(self, ecm: EntityComponentManager, enable: bool = True) -> None:
+    def enable_velocity_checks(self, ecm: EntityView, enable: bool = True) -> None:
         if self.valid(ecm):
             ecm.enable(self._entity, _VELOCITY, enable)
 
-    def enable_acceleration_checks(self, ecm: EntityComponentManager, enable: bool = True) -> None:
+    def enable_acceleration_checks(self, ecm: EntityView, enable: bool = True) -> None:
         if self.valid(ecm):
             ecm.enable(self._entity, _ACCELERATION, enable)
 
-    def world_linear_velocity(self, ecm: EntityComponentManager, offset: Any = None) -> Vector3d | None:
+    def world_linear_velocity(self, ecm: EntityView, offset: Any = None) -> Vector3d | None:
         """[m/s] of the origin, or of the point at `offset` [m] in the link frame."""
         is_read = self._reading(ecm, _VELOCITY)
         link = self._handle(ecm)
@@ -155,7 +153,7 @@ class Link(EntityHandle):
             velocity = velocity + np.cross(link.angular_velocity, link.pose.rotate(three_numbers(offset)))
         return gz_vector(velocity)
 
-    def world_angular_velocity(self, ecm: EntityComponentManager) -> Vector3d | None:
+    def world_angular_velocity(self, ecm: EntityView) -> Vector3d | None:
         """[rad/s]"""
         is_read = self._reading(ecm, _VELOCITY)
         link = self._handle(ecm)
@@ -163,7 +161,7 @@ class Link(EntityHandle):
             return None
         return gz_vector(link.angular_velocity) if is_read else Vector3d()
 
-    def world_linear_acceleration(self, ecm: EntityComponentManager) -> Vector3d | None:
+    def world_linear_acceleration(self, ecm: EntityView) -> Vector3d | None:
         """[m/s²] of the origin; that of a body that falls freely is gravity."""
         is_read = self._reading(ecm, _ACCELERATION)
         link = self._handle(ecm)
@@ -171,7 +169,7 @@ class Link(EntityHandle):
             return None
         return gz_vector(link.linear_acceleration) if is_read else Vector3d()
 
-    def world_angular_acceleration(self, ecm: EntityComponentManager) -> Vector3d | None:
+    def world_angular_acceleration(self, ecm: EntityView) -> Vector3d | None:
         """[rad/s²]"""
         is_read = self._reading(ecm, _ACCELERATION)
         link = self._handle(ecm)
@@ -179,7 +177,7 @@ class Link(EntityHandle):
             return None
         return gz_vector(_angular_acceleration(ecm, link)) if is_read else Vector3d()
 
-    def world_kinetic_energy(self, ecm: EntityComponentManager) -> float | None:
+    def world_kinetic_energy(self, ecm: EntityView) -> float | None:
         """[J]; None until velocities are enabled."""
         is_read = self._reading(ecm, _VELOCITY)
         inertial = self.world_inertial(ecm)
@@ -193,27 +191,27 @@ class Link(EntityHandle):
 
     # ------------------------------------------------------------------ the box around it
 
-    def enable_bounding_box_checks(self, ecm: EntityComponentManager, enable: bool = True) -> None:
+    def enable_bounding_box_checks(self, ecm: EntityView, enable: bool = True) -> None:
         if self.valid(ecm):
             ecm.enable(self._entity, _BOX, enable)
 
-    def axis_aligned_box(self, ecm: EntityComponentManager) -> AxisAlignedBox | None:
+    def axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
         """Around its collisions, along the link's axes; None until it is enabled, empty without collisions."""
         return None if self._reading(ecm, _BOX) is None else self.compute_axis_aligned_box(ecm)
 
-    def world_axis_aligned_box(self, ecm: EntityComponentManager) -> AxisAlignedBox | None:
+    def world_axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
         """Along the world's axes, around the box along the link's; None until it is enabled."""
         box = self.axis_aligned_box(ecm)
         return box_at_pose(box, self._handle(ecm).pose) if box is not None else None
 
-    def compute_axis_aligned_box(self, ecm: EntityComponentManager) -> AxisAlignedBox | None:
+    def compute_axis_aligned_box(self, ecm: EntityView) -> AxisAlignedBox | None:
         """Around its collisions, along the link's axes, whether enabled or not."""
         link = self._handle(ecm)
         return link_box(ecm.simulation, link.scoped) if link is not None else None
 
     # ------------------------------------------------------------------ commands
 
-    def set_linear_velocity(self, ecm: EntityComponentManager, velocity: Any) -> None:
+    def set_linear_velocity(self, ecm: EntityView, velocity: Any) -> None:
         """Velocity [m/s] in the link's axes, which what it moves freely with has at the start of the next step.
 
         As in gz-sim it is then 0 at the start of every step after that, unless it is set again.
@@ -221,12 +219,12 @@ class Link(EntityHandle):
         if self.valid(ecm):
             ecm.commands.linear[self._entity] = three_numbers(velocity)
 
-    def set_angular_velocity(self, ecm: EntityComponentManager, velocity: Any) -> None:
+    def set_angular_velocity(self, ecm: EntityView, velocity: Any) -> None:
         """The same of the turning [rad/s], in the link's axes."""
         if self.valid(ecm):
             ecm.commands.angular[self._entity] = three_numbers(velocity)
 
-    def add_world_force(self, ecm: EntityComponentManager, force: Any, position: Any = None) -> None:
+    def add_world_force(self, ecm: EntityView, force: Any, position: Any = None) -> None:
         """Force [N] in world axes for the next step, at the centre of mass or at an offset [m] from it in link axes."""
         link = self._handle(ecm)
         if link is None:
@@ -237,13 +235,13 @@ class Link(EntityHandle):
         about = cross_product(link.pose.rotate(own).tolist(), pushed) if any(own) else (0.0, 0.0, 0.0)
         ecm.commands.add_wrench(self._entity, pushed, about)
 
-    def add_link_force(self, ecm: EntityComponentManager, force: Any, position: Any = None) -> None:
+    def add_link_force(self, ecm: EntityView, force: Any, position: Any = None) -> None:
         """The same with the force in the link's axes."""
         link = self._handle(ecm)
         if link is not None:
             self.add_world_force(ecm, link.pose.rotate(three_numbers(force)).tolist(), position)
 
-    def add_world_wrench(self, ecm: EntityComponentManager, force: Any, torque: Any, offset: Any = None) -> None:
+    def add_world_wrench(self, ecm: EntityView, force: Any, torque: Any, offset: Any = None) -> None:
         """Force [N] and torque [N·m] in world axes for the next step, at the link's origin or at an offset from it."""
         link = self._handle(ecm)
         if link is None:
@@ -255,7 +253,7 @@ class Link(EntityHandle):
             ecm.commands.add_wrench(self._entity, (0.0, 0.0, 0.0), cross_product(arm, pushed))
 
 
-def _angular_acceleration(ecm: EntityComponentManager, link: Any) -> Any:
+def _angular_acceleration(ecm: EntityView, link: Any) -> Any:
     """[rad/s²] in world axes, shape (3,)."""
     import mujoco
 

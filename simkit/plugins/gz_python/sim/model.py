@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from simkit.plugins.gz_python.math.simkit_conversion import simkit_pose
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
-from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
-from simkit.plugins.gz_python.sim.update_info import K_NULL_ENTITY
+from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, WORLD_ENTITY
+from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 
 class Model(EntityHandle):
@@ -16,54 +15,54 @@ class Model(EntityHandle):
 
     KIND = "model"
 
-    def static(self, ecm: EntityComponentManager) -> bool:
+    def static(self, ecm: EntityView) -> bool:
         record = self._record(ecm)
         return bool(record is not None and record.scene.static)
 
-    def self_collide(self, ecm: EntityComponentManager) -> bool:
+    def self_collide(self, ecm: EntityView) -> bool:
         record = self._record(ecm)
         return bool(record is not None and record.scene.self_collide)
 
-    def wind_mode(self, ecm: EntityComponentManager) -> bool:
+    def wind_mode(self, ecm: EntityView) -> bool:
         """Whether the wind pushes it: all of its links."""
         record = self._record(ecm)
         links = record.scene.links if record is not None else ()
         return bool(links) and all(link.enable_wind for link in links)
 
-    def source_file_path(self, ecm: EntityComponentManager) -> str:
+    def source_file_path(self, ecm: EntityView) -> str:
         """The file it stands in; empty where it came as a text."""
         record = self._record(ecm)
         return (record.scene.where.file or "") if record is not None else ""
 
-    def joint_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def joint_by_name(self, ecm: EntityView, name: str) -> int:
         """0 where there is none."""
         return self._named(ecm, "joint", name)
 
-    def link_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def link_by_name(self, ecm: EntityView, name: str) -> int:
         """0 where there is none."""
         return self._named(ecm, "link", name)
 
-    def model_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def model_by_name(self, ecm: EntityView, name: str) -> int:
         """A nested model; 0 where there is none."""
         return self._named(ecm, "model", name)
 
-    def joints(self, ecm: EntityComponentManager) -> list[int]:
+    def joints(self, ecm: EntityView) -> list[int]:
         return self._below(ecm, "joint")
 
-    def links(self, ecm: EntityComponentManager) -> list[int]:
+    def links(self, ecm: EntityView) -> list[int]:
         return self._below(ecm, "link")
 
-    def models(self, ecm: EntityComponentManager) -> list[int]:
+    def models(self, ecm: EntityView) -> list[int]:
         """The models directly in it."""
         return self._below(ecm, "model")
 
-    def joint_count(self, ecm: EntityComponentManager) -> int:
+    def joint_count(self, ecm: EntityView) -> int:
         return len(self.joints(ecm))
 
-    def link_count(self, ecm: EntityComponentManager) -> int:
+    def link_count(self, ecm: EntityView) -> int:
         return len(self.links(ecm))
 
-    def canonical_link(self, ecm: EntityComponentManager) -> int:
+    def canonical_link(self, ecm: EntityView) -> int:
         """The link whose motion is the model's; it may be in a nested model. 0 where there is none."""
         record = self._record(ecm)
         if record is None:
@@ -71,7 +70,7 @@ class Model(EntityHandle):
         wanted = record.scene.canonical_link
         return next((r.entity for r in ecm.sync() if r.kind == "link" and r.scene.scoped == wanted), K_NULL_ENTITY)
 
-    def set_world_pose_cmd(self, ecm: EntityComponentManager, pose: Any) -> None:
+    def set_world_pose_cmd(self, ecm: EntityView, pose: Any) -> None:
         """Puts the model at a pose in the world, before the next step.
 
         A nested model stays where it is, as in gz-sim, and a warning says so.
@@ -90,7 +89,7 @@ class Model(EntityHandle):
         ecm.commands.pose[self._entity] = simkit_pose(pose)
 
 
-def _warned_models(ecm: EntityComponentManager) -> set[Any]:
+def _warned_models(ecm: EntityView) -> set[Any]:
     """What has been said already of a simulation."""
     told: set[Any] = vars(ecm).setdefault("_said", set())
     return told

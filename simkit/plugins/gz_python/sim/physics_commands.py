@@ -7,7 +7,7 @@ was given a force no longer takes velocities.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,10 +16,11 @@ from simkit.plugins.gz_python.math.simkit_conversion import cross_product
 from simkit.pose import Pose, quat_conjugate, quat_rotate
 
 if TYPE_CHECKING:
-    from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
     from simkit.runtime import Simulation
 
 Numbers = tuple[float, ...]
+FindHandle = Callable[[int, str], Any]
+"""Gives simkit's handle of an entity that is of a kind; None where it is not."""
 
 
 class PhysicsCommands:
@@ -65,37 +66,36 @@ class PhysicsCommands:
     def is_empty(self) -> bool:
         return not any(vars(self).values())
 
-    def carry_out(self, ecm: EntityComponentManager) -> None:
-        """Puts all of it into effect; what is for an entity that is gone is dropped."""
-        sim = ecm.simulation
+    def carry_out(self, sim: Simulation, handle: FindHandle) -> None:
+        """Carry out all commands; those for an entity that was removed are dropped."""
         for (entity, what), bounds in self.limits.items():
-            if joint := ecm.handle(entity, "joint"):
+            if joint := handle(entity, "joint"):
                 _set_limit(joint, what, bounds)
         for entity, position in self.position_reset.items():
-            if joint := ecm.handle(entity, "joint"):
+            if joint := handle(entity, "joint"):
                 joint.set_position(_first_numbers(position, joint.dof, joint.position))
         for entity, velocity in self.velocity_reset.items():
-            if joint := ecm.handle(entity, "joint"):
+            if joint := handle(entity, "joint"):
                 joint.set_velocity(_first_numbers(velocity, joint.dof, joint.velocity))
         for entity, (force, torque) in self.wrench.items():
-            if link := ecm.handle(entity, "link"):
+            if link := handle(entity, "link"):
                 com = link.scene.inertial.com
                 about = cross_product(link.pose.rotate(com).tolist(), force) if any(com) else (0.0, 0.0, 0.0)
                 link.apply_wrench(force, [t - a for t, a in zip(torque, about, strict=True)])
         for entity, pose in self.pose.items():
-            if model := ecm.handle(entity, "model"):
+            if model := handle(entity, "model"):
                 model.set_pose(pose)
         for part, velocities in (("angular", self.angular), ("linear", self.linear)):
             for entity, velocity in velocities.items():
-                root = _free_root(ecm, entity)
+                root = _free_root(sim, entity, handle)
                 if root is not None:
                     _set_link_velocity(sim, *root, part, velocity)
         for entity, effort in self.force.items():
             # a zero is what is left of an earlier command, and must not undo what another plugin asks of the joint
-            if any(effort) and (joint := ecm.handle(entity, "joint")):
+            if any(effort) and (joint := handle(entity, "joint")):
                 joint.set_effort(_first_numbers(effort, joint.dof, 0.0))
         held = [e for e in self.velocity if e not in self.force and e not in self.velocity_reset]
-        turned = [(joint, self.velocity[e]) for e in held if (joint := ecm.handle(e, "joint"))]
+        turned = [(joint, self.velocity[e]) for e in held if (joint := handle(e, "joint"))]
         if turned:
             _set_angular_velocities(sim, turned)
         self._settle()
@@ -130,26 +130,26 @@ def _set_limit(joint: Any, what: str, bounds: tuple[Numbers, ...]) -> None:
         joint.effort_limit = max(abs(lower), abs(upper))
 
 
-def _free_root(ecm: EntityComponentManager, entity: int) -> tuple[Any, Pose] | None:
+def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Any, Pose] | None:
     """The link that carries what a model or link moves with, and the frame its velocity is given in.
 
     None where nothing of it is free.
     """
-    link, model = ecm.handle(entity, "link"), ecm.handle(entity, "model")
+    link, model = handle(entity, "link"), handle(entity, "model")
     if link is not None:
         start, frame = link, link.pose
     elif model is not None:
         links = model.scene.all_links()
         if not links:
             return None
-        start, frame = ecm.simulation.link(model.scene.canonical_link or links[0].scoped), model.pose
+        start, frame = sim.link(model.scene.canonical_link or links[0].scoped), model.pose
     else:
         return None
-    names, mj_model = ecm.simulation.names, ecm.simulation.mj_model
+    names, mj_model = sim.names, sim.mj_model
     root = int(mj_model.body_rootid[names.link(start.scoped).body])
     for scoped, binding in names.links.items():
         if int(binding.body) == root and binding.root_joint_qpos >= 0:
-            return ecm.simulation.link(scoped), frame
+            return sim.link(scoped), frame
     return None
 
 

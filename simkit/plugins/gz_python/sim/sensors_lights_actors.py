@@ -11,8 +11,8 @@ from simkit.plugins.gz_python.math.color import Color
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import gz_pose, gz_vector, simkit_pose
 from simkit.plugins.gz_python.math.vectors import Vector3d
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
+from simkit.plugins.gz_python.sim.entity_view import EntityView
 
 T = TypeVar("T")
 
@@ -22,11 +22,11 @@ class Sensor(EntityHandle):
 
     KIND = "sensor"
 
-    def parent(self, ecm: EntityComponentManager) -> int | None:
+    def parent(self, ecm: EntityView) -> int | None:
         record = self._record(ecm)
         return record.parent if record is not None else None
 
-    def pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def pose(self, ecm: EntityView) -> Pose3d | None:
         """In the frame of the link or joint that it is on."""
         record = self._record(ecm)
         if record is None:
@@ -35,7 +35,7 @@ class Sensor(EntityHandle):
         assert owner is not None
         return gz_pose(owner.scene.pose_world.inverse() @ record.scene.pose_world)
 
-    def topic(self, ecm: EntityComponentManager) -> str | None:
+    def topic(self, ecm: EntityView) -> str | None:
         """The topic of its readings; None where it is not simulated."""
         sensor = self._handle(ecm)
         return str(sensor.topic) if sensor is not None else None
@@ -46,47 +46,47 @@ class Actor(EntityHandle):
 
     KIND = "actor"
 
-    def pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def pose(self, ecm: EntityView) -> Pose3d | None:
         """The origin of its trajectory, in the world."""
         record = self._record(ecm)
         return gz_pose(record.scene.pose_world) if record is not None else None
 
-    def trajectory_pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def trajectory_pose(self, ecm: EntityView) -> Pose3d | None:
         """What was set, seen from `pose`; None before."""
         return self._kept(ecm, "trajectory_pose", Pose3d)
 
-    def set_trajectory_pose(self, ecm: EntityComponentManager, pose: Any) -> None:
+    def set_trajectory_pose(self, ecm: EntityView, pose: Any) -> None:
         self._keep(ecm, "trajectory_pose", gz_pose(simkit_pose(pose)))
 
-    def world_pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def world_pose(self, ecm: EntityView) -> Pose3d | None:
         """Where it is in the world."""
         model = ecm.simulation.models.get(self.name(ecm) or "")
         return gz_pose(model.pose) if model is not None else None
 
-    def animation_name(self, ecm: EntityComponentManager) -> str | None:
+    def animation_name(self, ecm: EntityView) -> str | None:
         return self._kept(ecm, "animation_name", str)
 
-    def set_animation_name(self, ecm: EntityComponentManager, name: str) -> None:
+    def set_animation_name(self, ecm: EntityView, name: str) -> None:
         self._keep(ecm, "animation_name", str(name))
 
-    def animation_time(self, ecm: EntityComponentManager) -> timedelta | None:
+    def animation_time(self, ecm: EntityView) -> timedelta | None:
         return self._kept(ecm, "animation_time", timedelta)
 
-    def set_animation_time(self, ecm: EntityComponentManager, time: timedelta | float) -> None:
+    def set_animation_time(self, ecm: EntityView, time: timedelta | float) -> None:
         """A duration, or whole milliseconds as in gz-sim 8."""
         self._keep(ecm, "animation_time", time if isinstance(time, timedelta) else timedelta(milliseconds=time))
 
-    def bone_transforms(self, ecm: EntityComponentManager) -> dict[str, Pose3d] | None:
+    def bone_transforms(self, ecm: EntityView) -> dict[str, Pose3d] | None:
         return self._kept(ecm, "bone_transforms", dict)
 
-    def set_bone_transforms(self, ecm: EntityComponentManager, transforms: dict[str, Any]) -> None:
+    def set_bone_transforms(self, ecm: EntityView, transforms: dict[str, Any]) -> None:
         self._keep(ecm, "bone_transforms", {name: gz_pose(simkit_pose(pose)) for name, pose in transforms.items()})
 
-    def _kept(self, ecm: EntityComponentManager, what: str, kind: type[T]) -> T | None:
+    def _kept(self, ecm: EntityView, what: str, kind: type[T]) -> T | None:
         kept = ecm.values.get((self._entity, what))
         return kept if isinstance(kept, kind) else None
 
-    def _keep(self, ecm: EntityComponentManager, what: str, value: Any) -> None:
+    def _keep(self, ecm: EntityView, what: str, value: Any) -> None:
         if self.valid(ecm):
             ecm.values[self._entity, what] = value
             ecm.simulation.log.debug("actor %s: %s is kept, only its script moves it", self.name(ecm), what)
@@ -97,17 +97,17 @@ class Light(EntityHandle):
 
     KIND = "light"
 
-    def parent(self, ecm: EntityComponentManager) -> int | None:
+    def parent(self, ecm: EntityView) -> int | None:
         """The world or a link."""
         record = self._record(ecm)
         return record.parent if record is not None else None
 
-    def pose(self, ecm: EntityComponentManager) -> Pose3d | None:
+    def pose(self, ecm: EntityView) -> Pose3d | None:
         """In the world, or in the frame of the link that carries it."""
         light = self._handle(ecm)
         return gz_pose(light.state.pose) if light is not None else None
 
-    def set_pose(self, ecm: EntityComponentManager, pose: Any) -> None:
+    def set_pose(self, ecm: EntityView, pose: Any) -> None:
         """In the world, or in the frame of the link that carries it; at once."""
         light = self._handle(ecm)
         if light is not None:
@@ -115,73 +115,73 @@ class Light(EntityHandle):
             own = simkit_pose(pose)
             light.set_pose(carrier @ own if carrier is not None else own)
 
-    def type(self, ecm: EntityComponentManager) -> str | None:
+    def type(self, ecm: EntityView) -> str | None:
         """point, directional or spot."""
         kind: str | None = self._read(ecm, "type")
         return kind
 
-    def diffuse_color(self, ecm: EntityComponentManager) -> Color | None:
+    def diffuse_color(self, ecm: EntityView) -> Color | None:
         colour = self._read(ecm, "diffuse")
         return Color(*colour) if colour is not None else None
 
-    def specular_color(self, ecm: EntityComponentManager) -> Color | None:
+    def specular_color(self, ecm: EntityView) -> Color | None:
         colour = self._read(ecm, "specular")
         return Color(*colour) if colour is not None else None
 
-    def cast_shadows(self, ecm: EntityComponentManager) -> bool | None:
+    def cast_shadows(self, ecm: EntityView) -> bool | None:
         casts: bool | None = self._read(ecm, "cast_shadows")
         return casts
 
-    def intensity(self, ecm: EntityComponentManager) -> float | None:
+    def intensity(self, ecm: EntityView) -> float | None:
         intensity: float | None = self._read(ecm, "intensity")
         return intensity
 
-    def direction(self, ecm: EntityComponentManager) -> Vector3d | None:
+    def direction(self, ecm: EntityView) -> Vector3d | None:
         """A unit vector in the light's own frame."""
         direction = self._read(ecm, "direction")
         return gz_vector(direction) if direction is not None else None
 
-    def attenuation_range(self, ecm: EntityComponentManager) -> float | None:
+    def attenuation_range(self, ecm: EntityView) -> float | None:
         """[m]"""
         return self._part(ecm, "attenuation", 0)
 
-    def attenuation_constant(self, ecm: EntityComponentManager) -> float | None:
+    def attenuation_constant(self, ecm: EntityView) -> float | None:
         return self._part(ecm, "attenuation", 1)
 
-    def attenuation_linear(self, ecm: EntityComponentManager) -> float | None:
+    def attenuation_linear(self, ecm: EntityView) -> float | None:
         """[1/m]"""
         return self._part(ecm, "attenuation", 2)
 
-    def attenuation_quadratic(self, ecm: EntityComponentManager) -> float | None:
+    def attenuation_quadratic(self, ecm: EntityView) -> float | None:
         """[1/m²]"""
         return self._part(ecm, "attenuation", 3)
 
-    def spot_inner_angle(self, ecm: EntityComponentManager) -> Angle | None:
+    def spot_inner_angle(self, ecm: EntityView) -> Angle | None:
         angle = self._part(ecm, "spot", 0)
         return Angle(angle) if angle is not None else None
 
-    def spot_outer_angle(self, ecm: EntityComponentManager) -> Angle | None:
+    def spot_outer_angle(self, ecm: EntityView) -> Angle | None:
         angle = self._part(ecm, "spot", 1)
         return Angle(angle) if angle is not None else None
 
-    def spot_falloff(self, ecm: EntityComponentManager) -> float | None:
+    def spot_falloff(self, ecm: EntityView) -> float | None:
         return self._part(ecm, "spot", 2)
 
     # ------------------------------------------------------------------ changing it, at once
 
-    def set_diffuse_color(self, ecm: EntityComponentManager, color: Any) -> None:
+    def set_diffuse_color(self, ecm: EntityView, color: Any) -> None:
         self._change(ecm, diffuse=_rgba(color))
 
-    def set_specular_color(self, ecm: EntityComponentManager, color: Any) -> None:
+    def set_specular_color(self, ecm: EntityView, color: Any) -> None:
         self._change(ecm, specular=_rgba(color))
 
-    def set_cast_shadows(self, ecm: EntityComponentManager, cast_shadows: bool) -> None:
+    def set_cast_shadows(self, ecm: EntityView, cast_shadows: bool) -> None:
         self._change(ecm, cast_shadows=bool(cast_shadows))
 
-    def set_intensity(self, ecm: EntityComponentManager, value: float) -> None:
+    def set_intensity(self, ecm: EntityView, value: float) -> None:
         self._change(ecm, intensity=float(value))
 
-    def set_direction(self, ecm: EntityComponentManager, direction: Any) -> None:
+    def set_direction(self, ecm: EntityView, direction: Any) -> None:
         """In the light's own frame; its length does not matter, and a zero vector is ignored."""
         wanted = Vector3d(direction)
         light = self._handle(ecm)
@@ -190,49 +190,49 @@ class Light(EntityHandle):
             turned = light.pose.rotate((x, y, z)).tolist()
             self._change(ecm, direction=(x, y, z), direction_world=tuple(turned))
 
-    def set_attenuation_range(self, ecm: EntityComponentManager, range: float) -> None:
+    def set_attenuation_range(self, ecm: EntityView, range: float) -> None:
         """[m]"""
         self._change_part(ecm, "attenuation", 0, range)
 
-    def set_attenuation_constant(self, ecm: EntityComponentManager, value: float) -> None:
+    def set_attenuation_constant(self, ecm: EntityView, value: float) -> None:
         self._change_part(ecm, "attenuation", 1, value)
 
-    def set_attenuation_linear(self, ecm: EntityComponentManager, value: float) -> None:
+    def set_attenuation_linear(self, ecm: EntityView, value: float) -> None:
         """[1/m]"""
         self._change_part(ecm, "attenuation", 2, value)
 
-    def set_attenuation_quadratic(self, ecm: EntityComponentManager, color: float) -> None:
+    def set_attenuation_quadratic(self, ecm: EntityView, color: float) -> None:
         """[1/m²]; gz-sim calls the number `color` too."""
         self._change_part(ecm, "attenuation", 3, color)
 
-    def set_spot_inner_angle(self, ecm: EntityComponentManager, angle: Angle) -> None:
+    def set_spot_inner_angle(self, ecm: EntityView, angle: Angle) -> None:
         self._change_part(ecm, "spot", 0, float(angle.radian()))
 
-    def set_spot_outer_angle(self, ecm: EntityComponentManager, angle: Angle) -> None:
+    def set_spot_outer_angle(self, ecm: EntityView, angle: Angle) -> None:
         self._change_part(ecm, "spot", 1, float(angle.radian()))
 
-    def set_spot_falloff(self, ecm: EntityComponentManager, falloff: float) -> None:
+    def set_spot_falloff(self, ecm: EntityView, falloff: float) -> None:
         self._change_part(ecm, "spot", 2, falloff)
 
     # ------------------------------------------------------------------ inside
 
-    def _read(self, ecm: EntityComponentManager, name: str) -> Any:
+    def _read(self, ecm: EntityView, name: str) -> Any:
         """What it is like now, or as in the file where it is not simulated."""
         record, light = self._record(ecm), self._handle(ecm)
         if record is None:
             return None
         return getattr(light.scene if light is not None else record.scene, name)
 
-    def _part(self, ecm: EntityComponentManager, name: str, index: int) -> float | None:
+    def _part(self, ecm: EntityView, name: str, index: int) -> float | None:
         values = self._read(ecm, name)
         return float(values[index]) if values is not None else None
 
-    def _change(self, ecm: EntityComponentManager, **fields: Any) -> None:
+    def _change(self, ecm: EntityView, **fields: Any) -> None:
         light = self._handle(ecm)
         if light is not None:
             light.change(replace(light.scene, **fields))
 
-    def _change_part(self, ecm: EntityComponentManager, name: str, index: int, value: float) -> None:
+    def _change_part(self, ecm: EntityView, name: str, index: int, value: float) -> None:
         values = self._read(ecm, name)
         if values is not None:
             changed = tuple(float(value) if i == index else v for i, v in enumerate(values))

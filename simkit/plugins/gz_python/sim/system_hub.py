@@ -61,7 +61,7 @@ class SystemHub:
     def carry_out(self) -> None:
         """Puts the commands of all systems into effect."""
         if not self.ecm.commands.is_empty:
-            self.ecm.commands.carry_out(self.ecm)
+            self.ecm.commands.carry_out(self._sim, self.ecm.handle)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> SystemHub:
         return self

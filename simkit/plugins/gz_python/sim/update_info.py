@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 from datetime import timedelta
-from typing import Final
-
-K_NULL_ENTITY: Final = 0
-"""No entity."""
 
 
 class UpdateInfo:

@@ -11,10 +11,9 @@ from simkit.plugins.gz_python.math.simkit_conversion import gz_pose, gz_vector
 from simkit.plugins.gz_python.math.spherical_coordinates import SphericalCoordinates, Surface
 from simkit.plugins.gz_python.math.vectors import Vector3d
 from simkit.plugins.gz_python.sdformat import Atmosphere
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
-from simkit.plugins.gz_python.sim.entity_table import WORLD_ENTITY
-from simkit.plugins.gz_python.sim.update_info import K_NULL_ENTITY
+from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, WORLD_ENTITY
+from simkit.plugins.gz_python.sim.entity_view import EntityView
 from simkit.scene import SphericalCoordinates as Place
 
 
@@ -23,25 +22,25 @@ class World(EntityHandle):
 
     KIND = "world"
 
-    def gravity(self, ecm: EntityComponentManager) -> Vector3d | None:
+    def gravity(self, ecm: EntityView) -> Vector3d | None:
         """[m/s²]"""
         return gz_vector(ecm.simulation.mj_model.opt.gravity) if self.valid(ecm) else None
 
-    def magnetic_field(self, ecm: EntityComponentManager) -> Vector3d | None:
+    def magnetic_field(self, ecm: EntityView) -> Vector3d | None:
         """[T] in world axes."""
         return gz_vector(ecm.simulation.world.magnetic_field) if self.valid(ecm) else None
 
-    def atmosphere(self, ecm: EntityComponentManager) -> Atmosphere | None:
+    def atmosphere(self, ecm: EntityView) -> Atmosphere | None:
         if not self.valid(ecm):
             return None
         air = ecm.simulation.world.atmosphere
         return Atmosphere(air.temperature, air.temperature_gradient, air.pressure)
 
-    def spherical_coordinates(self, ecm: EntityComponentManager) -> SphericalCoordinates | None:
+    def spherical_coordinates(self, ecm: EntityView) -> SphericalCoordinates | None:
         """Where on its planet the origin lies; None where nothing says it."""
         return _coordinates(ecm.simulation.site.place) if self.valid(ecm) else None
 
-    def set_spherical_coordinates(self, ecm: EntityComponentManager, coordinates: SphericalCoordinates) -> None:
+    def set_spherical_coordinates(self, ecm: EntityView, coordinates: SphericalCoordinates) -> None:
         """Lays the origin somewhere else, at once; sensors of position and field go by it from now on."""
         if not self.valid(ecm):
             return
@@ -59,36 +58,36 @@ class World(EntityHandle):
             )
         )
 
-    def light_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def light_by_name(self, ecm: EntityView, name: str) -> int:
         """0 where there is none."""
         return self._named(ecm, "light", name)
 
-    def actor_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def actor_by_name(self, ecm: EntityView, name: str) -> int:
         """0 where there is none."""
         return self._named(ecm, "actor", name)
 
-    def model_by_name(self, ecm: EntityComponentManager, name: str) -> int:
+    def model_by_name(self, ecm: EntityView, name: str) -> int:
         """0 where there is none."""
         return self._named(ecm, "model", name)
 
-    def lights(self, ecm: EntityComponentManager) -> list[int]:
+    def lights(self, ecm: EntityView) -> list[int]:
         """The lights that are on no link."""
         return self._below(ecm, "light")
 
-    def actors(self, ecm: EntityComponentManager) -> list[int]:
+    def actors(self, ecm: EntityView) -> list[int]:
         return self._below(ecm, "actor")
 
-    def models(self, ecm: EntityComponentManager) -> list[int]:
+    def models(self, ecm: EntityView) -> list[int]:
         """The models that are in no other."""
         return self._below(ecm, "model")
 
-    def light_count(self, ecm: EntityComponentManager) -> int:
+    def light_count(self, ecm: EntityView) -> int:
         return len(self.lights(ecm))
 
-    def actor_count(self, ecm: EntityComponentManager) -> int:
+    def actor_count(self, ecm: EntityView) -> int:
         return len(self.actors(ecm))
 
-    def model_count(self, ecm: EntityComponentManager) -> int:
+    def model_count(self, ecm: EntityView) -> int:
         return len(self.models(ecm))
 
 
@@ -109,7 +108,7 @@ def world_entity(*values: Any) -> int:
     return WORLD_ENTITY if ecm.record(WORLD_ENTITY, "world") is not None else K_NULL_ENTITY
 
 
-def world_pose(entity: int, ecm: EntityComponentManager) -> Pose3d:
+def world_pose(entity: int, ecm: EntityView) -> Pose3d:
     """Of any entity, in the world; no rotation at the origin for what has no pose."""
     record = ecm.record(entity)
     if record is None or not record.kind or record.kind == "world":
