@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from simkit.loaders import loader_kinds
-from simkit.plugins import plugin_kinds
+from simkit.plugins.discovery.plugin_kinds import plugin_kinds
 from simkit.plugins.ros2_control.controller_manager import controller_kinds
 from simkit.registry import Kinds, discover
 from simkit.sensors import sensor_kinds

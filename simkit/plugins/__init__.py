@@ -1,136 +1,15 @@
-"""Plugins: base classes, the kinds that come with simkit, and how a name in a file finds its class."""
+"""Plugins: Python that hangs on a world, a model, a visual or a sensor and is called as the run goes.
+
+A plugin of a file enters as a `ScenePlugin` with its parameters and leaves as an instance of its class, which
+`discovery` finds by name and attaches. One kind is one file: `gz` and `classic` hold Gazebo's two generations,
+`world` what every world brings, `ros2_control`, `play_motion` and `gz_python` whole subsystems; `drives`, `joints`,
+`fluids` and `actors` hold what several kinds share, and the files beside them what all share. A plugin never touches
+the MuJoCo spec itself: what it needs before the compile it asks of the builder in `prepare`.
+"""
 
 from __future__ import annotations
 
-import functools
-import re
-from collections.abc import Sequence
-from pathlib import Path
-
-from simkit.diagnostics import Diagnostics, closest
-from simkit.plugins.base import ModelPlugin, ParentKind, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
+from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
 from simkit.plugins.ros_names import RosNames
-from simkit.registry import Kinds, discover
-from simkit.scene import ScenePlugin
 
-__all__ = [
-    "ModelPlugin",
-    "Plugin",
-    "RosNames",
-    "SensorPlugin",
-    "VisualPlugin",
-    "WorldPlugin",
-    "find_plugin",
-    "normalise",
-    "plugin_kinds",
-]
-
-GROUP = "simkit.plugins"
-
-
-def normalise(name: str) -> str:
-    """One spelling for the many of one plugin: `libignition-gazebo6-imu-system.so` is `gz-sim-imu-system`.
-
-    Folder, `lib` and the library's ending go; Ignition's names and version numbers become gz-sim's.
-    """
-    stem = name.strip().replace("\\", "/").rsplit("/", 1)[-1]
-    stem = re.sub(r"\.(so|dylib|dll)(\.\d+)*$", "", stem)
-    stem = stem.removeprefix("lib")
-    stem = re.sub(r"^(ignition-gazebo|gz-sim)\d*(-|$)", r"gz-sim\2", stem)
-    return re.sub(r"^(ignition::gazebo|gz::sim)::(v\d+::)?", "gz::sim::", stem)
-
-
-@functools.cache
-def plugin_kinds() -> Kinds[Plugin]:
-    """Every known plugin class by each normalised name it answers to; computed once, read-only."""
-
-    def names(cls: type[Plugin]) -> list[str]:
-        return [normalise(name) for name in (*cls.filenames, *cls.names)]
-
-    packages = ("simkit.plugins",)
-    return discover(packages, GROUP, Plugin, names, ("filenames", "names"), normalise)  # type: ignore[type-abstract]
-
-
-def find_plugin(
-    plugin: ScenePlugin,
-    plugin_paths: Sequence[Path] = (),
-    diagnostics: Diagnostics | None = None,
-    parent: ParentKind = "any",
-) -> type[Plugin] | None:
-    """The class behind a plugin of a file, or None after a diagnostic that says why.
-
-    A file can name only what is installed or allowed: kinds of simkit, classes of entry points in the group
-    `simkit.plugins` (by alias or as `module:Class`), and modules that lie in a folder of `plugin_paths`.
-
-    Args:
-        plugin: as read from the file.
-        plugin_paths: folders whose modules the user allows (`--plugin-path`).
-        diagnostics: where problems go; the file's own where not given.
-        parent: what the plugin hangs on; a class for another kind of parent is left out. "any": a plugin that is
-            scoped to nothing hangs on the world, of others nothing is known.
-    """
-    found = diagnostics if diagnostics is not None else plugin.params.diagnostics
-    kinds = plugin_kinds()
-    cls = next((kinds[alias] for alias in aliases(plugin) if alias in kinds), None)
-    if cls is None:
-        from simkit.plugins.discovery.user_plugins import find_user_plugin
-
-        said = len(found)
-        cls = find_user_plugin(plugin, plugin_paths, found)
-        if cls is None and len(found) == said:
-            _report_unknown(plugin, found)
-    if parent == "any" and not plugin.scoped:
-        parent = "world"
-    if cls is not None and not _fits(cls, plugin, parent, found):
-        return None
-    return cls
-
-
-def aliases(plugin: ScenePlugin) -> list[str]:
-    """The normalised names a plugin of a file may be known by: its library, then its gz class.
-
-    A name without `::` is only what the file's author called it.
-    """
-    names = [plugin.filename, plugin.name if "::" in plugin.name else ""]
-    return [normalise(name) for name in names if name]
-
-
-def _fits(cls: type[Plugin], plugin: ScenePlugin, parent: ParentKind, diagnostics: Diagnostics) -> bool:
-    """Whether the class may hang where the file puts it; a warning says where it belongs."""
-    kinds = (cls.parent_kind,) if isinstance(cls.parent_kind, str) else cls.parent_kind
-    if parent == "any" or "any" in kinds or parent in kinds:
-        return True
-    places = " or a ".join(kinds)
-    message = f"plugin {plugin.filename!r} belongs on a {places}, the file puts it on a {parent}; it is left out"
-    hint = f"move it into the {' or '.join(f'<{kind}>' for kind in kinds)} that it is for"
-    diagnostics.warning("SK-PLUGIN-007", message, plugin.where, hint)
-    return False
-
-
-def _report_unknown(plugin: ScenePlugin, diagnostics: Diagnostics) -> None:
-    from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS, UNSUPPORTED_REASONS
-
-    names = aliases(plugin)
-    reason = next((UNSUPPORTED_REASONS[name] for name in names if name in UNSUPPORTED_REASONS), None)
-    if reason is not None or GAZEBO_PLUGINS.intersection(names):
-        named = f"plugin {plugin.filename!r} (name {plugin.name!r})"
-        why = f": {reason}" if reason else ""
-        message = f"{named} is a Gazebo plugin that simkit does not have; it is left out{why}"
-        hint = "what there is: docs/catalogue.md; write it in Python: docs/writing_a_plugin.md"
-        diagnostics.warning("SK-PLUGIN-002", message, plugin.where, hint)
-        return
-    spelled = plugin_kinds().written
-    cores = {_core(name): spelled[name] for name in sorted(spelled, reverse=True)}
-    near = next(filter(None, (closest(_core(name), cores) for name in names)), None)
-    if near:
-        hint = f"did you mean {cores[near]!r}?"
-    else:
-        nearest = closest(names[0] if names else "", spelled, least=0.0)
-        hint = f"no name is near; the closest known one is {spelled[nearest]!r}" if nearest else ""
-    message = f"unknown plugin {plugin.filename!r} (name {plugin.name!r}); it is left out"
-    diagnostics.warning("SK-PLUGIN-001", message, plugin.where, hint)
-
-
-def _core(name: str) -> str:
-    """What of a normalised name is not the same in all of its family, and so says how near two are."""
-    return re.sub(r"^(gazebo_ros_|gz-sim-|gz::sim::systems::)|-system$", "", name) or name
+__all__ = ["ModelPlugin", "Plugin", "RosNames", "SensorPlugin", "VisualPlugin", "WorldPlugin"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.msgs.topics import valid_topic
@@ -127,3 +127,15 @@ def find_plugin_file(plugin: Plugin, uri: str, builder: SpecBuilder, places: Seq
 def read_numbers(params: Params, name: str, minimum: float | None = None) -> list[float]:
     """The numbers of all elements of that name, in document order."""
     return [one.number(name, minimum=minimum) for one in params.each(name)]
+
+
+def read_frame(sensor: Any, params: Params) -> str:
+    """`<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
+    name = params.text("frame_name", "") or params.text("frameName", "")
+    return name or sensor.scene.parent.rsplit("::", 1)[-1]
+
+
+def private_topic(plugin: Plugin, private: str, old_element: str) -> str:
+    """The topic behind `~/<private>`; ROS 1 files name it in `old_element` instead."""
+    old = plugin.params.text(old_element, "")
+    return plugin.ros.topic(old if old else f"~/{private}")

@@ -1,17 +1,13 @@
-"""Topic and frame names as a ROS node sees them: namespace, remapping, `~/private` names."""
+"""Topic names as a ROS node sees them: namespace, remapping, `~/private` names."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
 
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
-
-if TYPE_CHECKING:
-    from simkit.plugins.base import SensorPlugin
 
 _RULE = re.compile(r"^(?P<from>[^=]+?):=(?P<to>.+)$")
 
@@ -89,15 +85,3 @@ class RosNames:
 
     def __deepcopy__(self, memo: dict[int, object]) -> RosNames:
         return self
-
-
-def read_frame(sensor: Any, params: Params) -> str:
-    """`<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
-    name = params.text("frame_name", "") or params.text("frameName", "")
-    return name or sensor.scene.parent.rsplit("::", 1)[-1]
-
-
-def private_topic(plugin: SensorPlugin, private: str, old_element: str) -> str:
-    """The topic behind `~/<private>`; ROS 1 files name it in `old_element` instead."""
-    old = plugin.params.text(old_element, "")
-    return plugin.ros.topic(old if old else f"~/{private}")

@@ -10,7 +10,8 @@ import proof_worlds
 import pytest
 from renderer import RENDERS
 
-from simkit.plugins import Plugin, plugin_kinds
+from simkit.plugins import Plugin
+from simkit.plugins.discovery.plugin_kinds import plugin_kinds
 from simkit.testing.certify.plugin_calls import PluginCallRecorder, record_plugin_calls
 from simkit.testing.certify.topic_hashes import plugin_title
 

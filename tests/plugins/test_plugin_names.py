@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 
 from simkit.params import Params
-from simkit.plugins import ModelPlugin, Plugin, SensorPlugin, WorldPlugin, find_plugin, normalise, plugin_kinds
+from simkit.plugins import ModelPlugin, Plugin, SensorPlugin, WorldPlugin
+from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
+from simkit.plugins.plugin_names import normalise
 from simkit.scene import ScenePlugin
 
 HELLO = """

@@ -136,7 +136,7 @@ def actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics
 
 def is_led_by_plugin(actor: SceneActor) -> bool:
     """Whether a plugin of its own takes the actor where it goes."""
-    from simkit.plugins import aliases
+    from simkit.plugins.plugin_names import aliases
 
     return any(alias in _LEADERS for plugin in actor.plugins for alias in aliases(plugin))
 

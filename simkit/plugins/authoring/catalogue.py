@@ -13,10 +13,12 @@ from typing import Any
 from simkit.diagnostics import Diagnostics, closest
 from simkit.errors import InputError
 from simkit.params import Params
-from simkit.plugins import GROUP, Plugin, find_plugin, normalise, plugin_kinds
+from simkit.plugins import Plugin
 from simkit.plugins.authoring.abstract_values import Block, Hole
 from simkit.plugins.authoring.plugin_facts import Facts
 from simkit.plugins.authoring.source_interpreter import Interpreter
+from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
+from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, normalise
 from simkit.scene import ScenePlugin
 
 _UNKNOWN = "SK-PLUGIN-070"
@@ -85,7 +87,7 @@ def known_plugins(plugin_paths: Sequence[Path] = (), problems: Diagnostics | Non
         problems: is told which of those cannot be.
     """
     classes: dict[type[Plugin], list[str]] = {cls: [] for cls in plugin_kinds().values()}
-    for point in entry_points(group=GROUP):
+    for point in entry_points(group=ENTRY_POINT_GROUP):
         for cls, names in classes.items():
             if f"{cls.__module__}:{cls.__qualname__}" == point.value.replace(" ", ""):
                 names.append(point.value)

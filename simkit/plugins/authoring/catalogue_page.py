@@ -1,6 +1,7 @@
 """`docs/catalogue.md`: every plugin name of Gazebo, and what becomes of it, written from the classes themselves.
 
-`python -m simkit.plugins.authoring.catalogue_page > docs/catalogue.md` writes the page; a test compares it with the classes.
+`python -m simkit.plugins.authoring.catalogue_page > docs/catalogue.md` writes the page; a test compares it with the
+classes.
 """
 
 from __future__ import annotations
@@ -8,9 +9,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator
 
-from simkit.plugins import Plugin, normalise
+from simkit.plugins import Plugin
 from simkit.plugins.authoring.catalogue import Entry, known_plugins
 from simkit.plugins.discovery.unsupported_plugins import GAZEBO_PLUGINS, UNSUPPORTED_REASONS
+from simkit.plugins.plugin_names import normalise
 
 _INTRODUCTION = """# Plugins of Gazebo: which there are, which are left out
 

@@ -12,9 +12,10 @@ from pathlib import Path
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.errors import InputError
 from simkit.params import Params
-from simkit.plugins import find_plugin, normalise, plugin_kinds
 from simkit.plugins.authoring.element_types import Element, elements_of
 from simkit.plugins.base import ParentKind
+from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
+from simkit.plugins.plugin_names import normalise
 from simkit.plugins.ros_names import RosNames
 from simkit.scene import Scene, SceneJoint, SceneLink, SceneModel, ScenePlugin
 

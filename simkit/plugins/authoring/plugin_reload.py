@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from simkit.diagnostics import Diagnostics
 from simkit.errors import LoadError, SimkitError
 from simkit.params import Params
-from simkit.plugins import find_plugin
+from simkit.plugins.discovery.plugin_kinds import find_plugin
 from simkit.plugins.gz_python.import_hook import importable
 
 if TYPE_CHECKING:

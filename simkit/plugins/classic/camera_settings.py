@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
-from simkit.plugins.ros_names import read_frame
+from simkit.plugins.lookups import read_frame
 
 EMPTY: Final = ("std_msgs/msg/Empty", "std_msgs/msg/Bool")
 """What triggers a camera of Classic; the first is Classic's own."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.ros_names import read_frame
+from simkit.plugins.lookups import read_frame
 
 _KINDS = ("gps", "navsat")
 _BACKWARDS = -0.999  # cosine of a heading of 180 degrees, or nearly

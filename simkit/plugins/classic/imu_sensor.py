@@ -6,7 +6,7 @@ from typing import Any
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
-from simkit.plugins.ros_names import private_topic, read_frame
+from simkit.plugins.lookups import private_topic, read_frame
 
 _WORLD = (1.0, 0.0, 0.0, 0.0)
 

@@ -7,7 +7,7 @@ from typing import Any
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.classic.ray_sensor import RADIATION
-from simkit.plugins.ros_names import read_frame
+from simkit.plugins.lookups import read_frame
 
 
 class GazeboRosRange(SensorPlugin):

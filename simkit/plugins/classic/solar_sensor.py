@@ -40,9 +40,10 @@ class SolarSensor(ModelPlugin):
     every step.
 
     Beyond the course, all of them off where the file does not ask: `<simkit:shadow>`, `<simkit:field_of_view>`,
-    `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` as of the `solar_irradiance` sensor, their
-    readings on topics below this one; `<simkit:angular_noise>` [rad], which turns the direction about a random axis at
-    right angles to it; `<simkit:towards>` `direction`, which takes a directional light's rays for parallel.
+    `<simkit:irradiance>`, `<simkit:panel>`, `<simkit:falloff>` and `<simkit:normal>` as of the `solar_irradiance`
+    sensor, their readings on topics below this one; `<simkit:angular_noise>` [rad], which turns the direction about a
+    random axis at right angles to it; `<simkit:towards>` `direction`, which takes a directional light's rays for
+    parallel.
     """
 
     filenames = ("libsolar_sensor.so",)

@@ -8,7 +8,6 @@ from typing import Any
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.plugins.base import Plugin
-from simkit.plugins.discovery.gz_hooks import as_plugin
 from simkit.scene import SceneModel, SceneWorld
 
 
@@ -39,6 +38,9 @@ def attach_plugins(made: Iterable[Any], world: SceneWorld, diagnostics: Diagnost
         world: what there is.
         diagnostics: gets errors; who has one is left out.
     """
+    # loads the code of gz's Python, which few worlds need
+    from simkit.plugins.discovery.gz_hooks import as_plugin
+
     found = []
     for item in made:
         name, one = item if isinstance(item, tuple) and len(item) == 2 else ("", item)

@@ -8,12 +8,11 @@ from typing import Any
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.plugins.base import Plugin
+from simkit.plugins.gz.gz_system import HOOKS, GzSystem
 
 
 def as_plugin(made: Any, diagnostics: Diagnostics, where: Where = NOWHERE) -> Plugin | None:
     """A plugin of what was handed over; None after an error that says what may be."""
-    from simkit.plugins.gz.gz_system import GzSystem
-
     if isinstance(made, Plugin):
         return made
     if inspect.isclass(made) and issubclass(made, Plugin) and not inspect.isabstract(made):
@@ -29,8 +28,6 @@ def as_plugin(made: Any, diagnostics: Diagnostics, where: Where = NOWHERE) -> Pl
 
 def as_class(found: Any) -> type[Plugin] | None:
     """The class of plugins that a class, or a module with gz's hooks, stands for; None where it is no plugin."""
-    from simkit.plugins.gz.gz_system import GzSystem
-
     if inspect.isclass(found) and issubclass(found, Plugin):
         return None if inspect.isabstract(found) else found
     if not (isinstance(found, ModuleType) or inspect.isclass(found)) or not has_hooks(found):
@@ -45,8 +42,6 @@ def as_class(found: Any) -> type[Plugin] | None:
 
 def has_hooks(made: Any) -> bool:
     """Whether a class, an object or a module has one of gz's hooks, or the function that gives a system."""
-    from simkit.plugins.gz.gz_system import HOOKS
-
     if isinstance(made, Plugin) or (inspect.isclass(made) and issubclass(made, Plugin)):
         return False
     return any(callable(getattr(made, name, None)) for name in (*HOOKS, "get_system"))
@@ -54,8 +49,6 @@ def has_hooks(made: Any) -> bool:
 
 def system_of(made: Any) -> Any:
     """The object whose hooks are called: what `get_system` gives, an instance of the class, or the thing itself."""
-    from simkit.plugins.gz.gz_system import HOOKS
-
     if inspect.isclass(made):
         return made()
     has_own = any(callable(getattr(made, name, None)) for name in HOOKS)
@@ -64,8 +57,6 @@ def system_of(made: Any) -> Any:
 
 def describe_allowed_plugins() -> str:
     """What may be a plugin, in words."""
-    from simkit.plugins.gz.gz_system import HOOKS
-
     return f"a class derived from simkit's Plugin with a load method, or one with hooks of gz ({', '.join(HOOKS)})"
 
 

@@ -174,7 +174,7 @@ def _add_plugin(
     diagnostics: Diagnostics,
     plugin_paths: Sequence[Path],
 ) -> None:
-    from simkit.plugins import find_plugin
+    from simkit.plugins.discovery.plugin_kinds import find_plugin
     from simkit.runtime.engine.world_structure import FROM_FILE
 
     plugin, scene = one.plugin, one.scene

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from simkit.diagnostics import Diagnostics
-from simkit.plugins import GROUP, aliases, normalise
 from simkit.plugins.base import Plugin
 from simkit.plugins.discovery.gz_hooks import as_class, describe_allowed_plugins, has_hooks
+from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, aliases, normalise
 from simkit.registry import entry_points_of
 from simkit.scene import ScenePlugin
 
@@ -34,7 +34,7 @@ def find_user_plugin(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Di
 def _find_by_class_name(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
     match = _CLASS.match(plugin.filename)
     assert match is not None
-    for point in entry_points_of(GROUP):
+    for point in entry_points_of(ENTRY_POINT_GROUP):
         if point.value.replace(" ", "") == plugin.filename:
             return _load_entry_point(point, plugin, diagnostics)
     relative = Path(*match["module"].split("."))
@@ -74,7 +74,7 @@ def _find_by_file(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagn
 def _find_by_alias(plugin: ScenePlugin, paths: Sequence[Path], diagnostics: Diagnostics) -> type[Plugin] | None:
     """Looks among the names of entry points, then for the classes' own in modules directly in the allowed folders."""
     wanted = set(aliases(plugin))
-    for point in entry_points_of(GROUP):
+    for point in entry_points_of(ENTRY_POINT_GROUP):
         if normalise(point.name) in wanted:
             return _load_entry_point(point, plugin, diagnostics)
     for folder in paths:

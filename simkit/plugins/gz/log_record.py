@@ -64,7 +64,8 @@ class LogRecord(WorldPlugin):
         if path is None or (path.exists() and not path.is_dir()):
             what = "is no folder" if path else "lies outside the folders that may be written to"
             message = f"plugin {self.name!r}: <record_path> {written} {what}; nothing is recorded"
-            hint = f"a path below the working directory, or the folder's name in the environment variable {SAVE_PATH_VARIABLE}"
+            variable = f"the environment variable {SAVE_PATH_VARIABLE}"
+            hint = f"a path below the working directory, or the folder's name in {variable}"
             params.diagnostics.warning("SK-PLUGIN-127", message, params.block("record_path").where, hint)
             return None
         return path

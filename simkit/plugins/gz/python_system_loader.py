@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.params import Params
-from simkit.plugins import GROUP
 from simkit.plugins.gz.gz_system import HOOKS, GzSystem, line_of
 from simkit.plugins.gz_python import import_hook
+from simkit.plugins.plugin_names import ENTRY_POINT_GROUP
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -64,7 +64,9 @@ class PythonSystemLoader(GzSystem):
                 params.error("SK-PLUGIN-081", message, "def get_system(): return MySystem()")
                 return
             self._import(params, folder, folders)
-        elif any(point.value.split(":")[0].strip() == self._module_name for point in entry_points(group=GROUP)):
+        elif any(
+            point.value.split(":")[0].strip() == self._module_name for point in entry_points(group=ENTRY_POINT_GROUP)
+        ):
             self._import(params, None, folders)
         else:
             searched = ", ".join(map(str, folders)) or "no folder, since none is allowed"

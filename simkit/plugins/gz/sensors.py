@@ -91,7 +91,7 @@ def _coloured(world: SceneWorld, plugins: tuple[ScenePlugin, ...], models: tuple
 
 
 def _is_sensors_system(plugin: ScenePlugin) -> bool:
-    from simkit.plugins import aliases
+    from simkit.plugins.plugin_names import aliases
 
     return any(name in (*SensorsSystem.filenames, *SensorsSystem.names) for name in aliases(plugin))
 

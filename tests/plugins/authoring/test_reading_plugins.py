@@ -9,10 +9,10 @@ import pytest
 
 import simkit
 from simkit import ModelPlugin, Params, SensorPlugin, WorldPlugin
-from simkit.plugins import plugin_kinds
 from simkit.plugins.authoring.catalogue import common_facts, facts_of
 from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Topic
 from simkit.plugins.discovery.gz_hooks import as_class
+from simkit.plugins.discovery.plugin_kinds import plugin_kinds
 
 _BOUNDS = {"low": -1.0, "high": 1.0}
 
