@@ -212,16 +212,23 @@ class Plugin(abc.ABC):
         Returns:
             The parameter, whose `value` is always the present one.
         """
-        from simkit.plugins.live_parameters import declare
+        from simkit.plugins.live_parameters import declare_at
 
-        return declare(
+        own = f"{self.ros.namespace}/{self.name}"
+        otherwise = "/" + "/".join(filter(None, (*self.scoped.split("::"), self.name)))
+        # a model has several of one class under one name: then the plugin itself says what tells them apart
+        otherwise = getattr(self, "node", otherwise)
+        node = self.sim.parameter_table.node_of(self, otherwise if "::" in self.name else own, otherwise)
+        return declare_at(
             self,
+            node,
             name,
             default,
             minimum=minimum,
             maximum=maximum,
             choices=choices,
             description=description,
+            params=self.params,
             element=element or name,
             on_change=on_change,
         )
@@ -278,7 +285,7 @@ class Plugin(abc.ABC):
         """Warns about what the file says and the plugin did not read; done after `load`."""
         from simkit.plugins.unread_parameters import report_unread
 
-        report_unread(self)
+        report_unread(self.params, f"plugin {self.name!r}", getattr(self, "system", self) or self)
 
     def _setup(self, sim: Simulation, source: ScenePlugin | None = None) -> None:
         """Ties the instance to its simulation; done before `load`."""

@@ -3,52 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from simkit.params import Params
 from simkit.runtime.communication.parameter_server import Parameter, offer_parameter_services
 
 if TYPE_CHECKING:
-    from simkit.plugins.base import Plugin
+    from simkit.runtime import Simulation
 
 T = TypeVar("T", bound="bool | int | float | str | tuple[float, ...]")
 
 
-def declare(
-    plugin: Plugin,
-    name: str,
-    default: T,
-    *,
-    minimum: float | None,
-    maximum: float | None,
-    choices: Sequence[T],
-    description: str,
-    element: str,
-    on_change: Callable[[T], None] | None,
-) -> Parameter[T]:
-    """Reads the first value, adds the parameter to the plugin's node, and opens the node's services."""
-    own = f"{plugin.ros.namespace}/{plugin.name}"
-    otherwise = "/" + "/".join(filter(None, (*plugin.scoped.split("::"), plugin.name)))
-    # a model has several of one class under one name: then the plugin itself says what tells them apart
-    otherwise = getattr(plugin, "node", otherwise)
-    node = plugin.sim.parameter_table.node_of(plugin, otherwise if "::" in plugin.name else own, otherwise)
-    return declare_at(
-        plugin,
-        node,
-        name,
-        default,
-        minimum=minimum,
-        maximum=maximum,
-        choices=choices,
-        description=description,
-        params=plugin.params,
-        element=element,
-        on_change=on_change,
-    )
+class ParameterOwner(Protocol):
+    """A plugin, as a live parameter needs it."""
+
+    sim: Simulation
 
 
 def declare_at(
-    plugin: Plugin,
+    plugin: ParameterOwner,
     node: str,
     name: str,
     default: T,
@@ -61,7 +34,7 @@ def declare_at(
     element: str,
     on_change: Callable[[T], None] | None,
 ) -> Parameter[T]:
-    """The same at any node, with the first value from an element in `params`."""
+    """Read the first value from an element in `params`, add the parameter to a node, and open the node's services."""
     table = plugin.sim.parameter_table
     if on_change is not None:
         on_change = plugin.sim.faults.guard(plugin, f"its callback for parameter {name!r}", on_change)

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from simkit.diagnostics import did_you_mean
-from simkit.plugins.base import Plugin
+from simkit.params import Params
 
 _READERS = frozenset(
     ("all", "attribute", "block", "boolean", "child", "choice", "declare", "each", "has", "integer", "number")  # noqa: RUF005
@@ -26,7 +26,7 @@ def _is_reader(method: str) -> bool:
 
 def names_read(cls: Any) -> frozenset[str]:
     """Names of elements and attributes that the modules of a class and its bases ask for; the source is only parsed."""
-    own = (c for c in cls.__mro__ if c is not Plugin and not c.__module__.startswith("simkit.plugins.base"))
+    own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
     modules = dict.fromkeys(c.__module__ for c in own if c is not object)
     return frozenset(name for module in modules for name in _names_in_module(module))
 
@@ -51,10 +51,15 @@ def _names_in_tree(tree: ast.Module) -> Iterator[str]:
                     yield value.value
 
 
-def report_unread(plugin: Plugin) -> None:
-    """Warns about each element and attribute of a plugin that it did not read."""
-    params, owner = plugin.params, f"plugin {plugin.name!r}"
-    names = _KnownNames(plugin)
+def report_unread(params: Params, owner: str, reader: object) -> None:
+    """Warn about each element and attribute that was not read.
+
+    Args:
+        params: the parameters.
+        owner: whose they are, for messages.
+        reader: the plugin, system or module whose source tells which names it could read.
+    """
+    names = _KnownNames(reader)
     for element, suggestion in params.unread():
         text = f"{owner}: <{element.name}> is not used"
         if suggestion.endswith(" is"):  # it comes twice
@@ -73,11 +78,11 @@ def report_unread(plugin: Plugin) -> None:
 class _KnownNames:
     """What the class's source reads, looked up once it is needed."""
 
-    def __init__(self, plugin: Plugin) -> None:
-        self._of = getattr(plugin, "system", plugin) or plugin
+    def __init__(self, reader: object) -> None:
+        self._reader = reader
 
     @property
     def known(self) -> frozenset[str]:
-        if isinstance(self._of, ModuleType):
-            return _names_in_module(self._of.__name__)
-        return names_read(type(self._of))
+        if isinstance(self._reader, ModuleType):
+            return _names_in_module(self._reader.__name__)
+        return names_read(type(self._reader))

@@ -13,7 +13,7 @@ from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive, read_options
 from simkit.plugins.drives.odometry import DeadReckoning, WheelOdometry, command_of, planar_covariance
-from simkit.plugins.gz.diff_drive import SpeedLimiter, speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimiter, speed_limits
 
 WHEELS = {"left_joint": "l", "right_joint": "r"}
 

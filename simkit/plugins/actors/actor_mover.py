@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from simkit.plugins.actors.actor_model import AnimatedActor
+from simkit.plugins.actors.animated_actor import AnimatedActor
 from simkit.plugins.base import WorldPlugin
 from simkit.runtime.engine.physics import STALE
 

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from simkit.compiler.meshes.collada_skin import Skin, read_skin
 from simkit.compiler.meshes.mesh_part import MeshFileError
 from simkit.diagnostics import Diagnostics
+from simkit.plugins.actors.animated_actor import (
+    AT_THE_HIPS,
+    ROOT_LINK,
+    AnimatedActor,
+    FindFile,
+    is_led_by_plugin,
+    scripted_model,
+)
 from simkit.plugins.actors.script import Floats, Script, Stride, Track
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Animation, Mesh, SceneActor, SceneLink, SceneModel, SceneVisual
-
-if TYPE_CHECKING:
-    from simkit.plugins.actors.actor_model import FindFile
-
-_AT_THE_HIPS: Final = (0.5, 1.5)
-_ROOT: Final = "link"
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,6 @@ def _times(clip: Clip, track: Track) -> Floats:
 
 def skinned_actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Diagnostics) -> SceneModel | None:
     """The actor in its own skin; None where there is none that can be read, which is reported."""
-    from simkit.plugins.actors.actor_model import is_led_by_plugin
-
     if not actor.skin:
         return None
     skin = _read_file(actor, actor.skin, "skin", find_file, diagnostics)
@@ -101,17 +100,15 @@ def skinned_actor_model(actor: SceneActor, find_file: FindFile, diagnostics: Dia
     script = Script(actor, 0.0 if actor.trajectories and actor.trajectories[0].waypoints else first.length)
     base = script.pose(0.0)
     goes = is_led_by_plugin(actor) or any(t.moves for t in script.tracks)
-    at_the_hips = goes and _AT_THE_HIPS[0] <= base.position[2] <= _AT_THE_HIPS[1]
+    at_the_hips = goes and AT_THE_HIPS[0] <= base.position[2] <= AT_THE_HIPS[1]
     return _model(actor, skin, file, carrying, script, SkinRig(clips, at_the_hips))
 
 
 def _model(actor: SceneActor, skin: Skin, file: Path, carrying: list[int], script: Script, rig: SkinRig) -> SceneModel:
-    from simkit.plugins.actors.actor_model import AnimatedActor, is_led_by_plugin, scripted_model
-
     cast = AnimatedActor(actor.name, script, rig, is_led_by_plugin(actor))
     poses = cast.poses(0.0)
     sizes = [_size(m) for m in _worlds(skin, {i: bone.rest[None] for i, bone in enumerate(skin.bones)}, 1)]
-    links = [SceneLink(_ROOT, f"{actor.name}::{_ROOT}", Pose(poses[0, :3], poses[0, 3:]))]
+    links = [SceneLink(ROOT_LINK, f"{actor.name}::{ROOT_LINK}", Pose(poses[0, :3], poses[0, 3:]))]
     for row, place in enumerate(carrying, 1):
         name = skin.bones[place].name or f"bone_{place}"
         scoped, scale = f"{actor.name}::{name}", sizes[place] * skin.unit * actor.skin_scale

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 
 from simkit.plugins.actors import person
-from simkit.plugins.actors.actor_model import AnimatedActor, WalkingPerson, link_poses_in_world
+from simkit.plugins.actors.actor_model import WalkingPerson
+from simkit.plugins.actors.animated_actor import AnimatedActor, link_poses_in_world
 from simkit.plugins.actors.script import Floats, Stride
 from simkit.plugins.actors.skin import SkinRig
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin, WorldPlugin
+from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, transforms_message
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
-from simkit.plugins.entity_poses import EntityPoses, PosedEntity, transforms_message
 from simkit.plugins.on_demand import publish_while_subscribed
 from simkit.pose import Pose
 

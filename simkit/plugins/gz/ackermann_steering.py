@@ -16,9 +16,9 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
+from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.steering import AckermannOdometry, find_drive_joint, joint_angles, steering_angles
 from simkit.plugins.drives.wheel_joints import find_wheels
-from simkit.plugins.gz.diff_drive import speed_limits
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 

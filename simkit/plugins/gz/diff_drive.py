@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import (
     COMMAND_TYPES,
+    LONGEST,
+    MEAN_STEPS,
     ODOMETRY,
     TRANSFORMS,
     TrueMotion,
@@ -23,67 +27,17 @@ from simkit.plugins.drives.odometry import (
     wheel_angles,
 )
 from simkit.plugins.drives.odometry_noise import NoisyOdometry, read_odometry_noise
+from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.wheel_joints import find_wheels
-from simkit.plugins.gz.diff_drive_fleet import DriveFleet, fleet_of
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.pose import Vector
+
+_NS = 1_000_000_000
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
-
-
-@dataclass(frozen=True, slots=True)
-class SpeedLimiter:
-    """Bounds on a commanded speed and its first two derivatives (SI units); infinite where there are none."""
-
-    velocity: tuple[float, float] = (-math.inf, math.inf)
-    acceleration: tuple[float, float] = (-math.inf, math.inf)
-    jerk: tuple[float, float] = (-math.inf, math.inf)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> SpeedLimiter:
-        return self
-
-    def limit(self, target: float, last: float, before_last: float, step: float) -> float:
-        """The speed to command now, bounded in jerk, then acceleration, then speed (gz-math's SpeedLimiter).
-
-        Args:
-            target: wanted speed.
-            last, before_last: the two speeds commanded before.
-            step: time between commands [s].
-        """
-        old = (last - before_last) / step
-        jerk = _clamp(((target - last) / step - old) / step, self.jerk)
-        acceleration = _clamp(old + jerk * step, self.acceleration)
-        reached = last + acceleration * step
-        # without an active bound the target itself, not the target after rounding
-        if abs(reached - target) <= 1e-12 * max(1.0, abs(target)):
-            reached = target
-        return _clamp(reached, self.velocity)
-
-
-def speed_limits(params: Params) -> tuple[SpeedLimiter, SpeedLimiter]:
-    """Of the linear and the angular speed: `<max_linear_velocity>` and the like; for both directions `<max_velocity>`.
-
-    A lower bound is not positive and an upper one not negative, so that a drive can stand still.
-    """
-
-    def read(side: str, quantity: str) -> list[float]:
-        endless, least, most = (-math.inf, None, 0.0) if side == "min" else (math.inf, 0.0, None)
-
-        def bound(name: str, default: float) -> float:
-            return params.number(name, default, minimum=least, maximum=most, finite=False)
-
-        general = bound(f"{side}_{quantity}", endless)
-        return [bound(f"{side}_{direction}_{quantity}", general) for direction in ("linear", "angular")]
-
-    pairs = [list(zip(read("min", q), read("max", q), strict=True)) for q in ("velocity", "acceleration", "jerk")]
-    linear, angular = (SpeedLimiter(*bounds) for bounds in zip(*pairs, strict=True))
-    return linear, angular
-
-
-def _clamp(value: float, bounds: tuple[float, float]) -> float:
-    return max(bounds[0], min(bounds[1], value))
 
 
 class DiffDrive(ModelPlugin):
@@ -214,3 +168,188 @@ class DiffDrive(ModelPlugin):
             self._tf.publish_later(partial(transforms, now, (self._frame, self._child, pose)))
         if self._truth is not None and self._truth.wanted:
             self._truth.publish(odometry_message(now, "world", self._child, *self._true.state()))
+
+
+class DriveFleet:
+    """Drives of one simulation, in the order of the document."""
+
+    def __init__(self, drives: Sequence[DiffDrive]) -> None:
+        self._drives, self._sim = list(drives), drives[0].sim
+        self._physics = self._sim.physics
+        self._wheels = np.array([wheel._one_qpos for drive in drives for wheel in drive._pair], dtype=np.intp)
+        self._rows: list[Vector] = []
+        self._odometries = [drive._odometry for drive in drives]
+        for odometry in self._odometries:
+            odometry.catch_up()  # with the fleet before
+            odometry.noter = self.hand_over
+        self._radius = np.array([odometry._radius for odometry in self._odometries])
+        self._separation = np.array([odometry._separation for odometry in self._odometries])
+        self._reckoned: tuple[Vector, list[Vector]] | None = None  # angles up to which, and those of the steps before
+        self._twists: list[tuple[float, float]] = []
+
+    def holds(self, drives: Sequence[DiffDrive]) -> bool:
+        """Whether it is of these drives, in the state that they are in."""
+        return len(drives) == len(self._drives) and all(
+            drive is mine and drive._odometry is odometry
+            for drive, mine, odometry in zip(drives, self._drives, self._odometries, strict=True)
+        )
+
+    # ------------------------------------------------------------------ before a step
+
+    def before_step(self, rota: Iterable[DiffDrive]) -> None:
+        """What `DiffDrive.before_step` does, for all of them."""
+        if self._drives[0]._odometry is not self._odometries[0]:
+            for drive in rota:  # back at another state, and no new schedule yet
+                drive.before_step()
+            return
+        self._rows.append(self._physics.data.qpos.take(self._wheels))
+        if len(self._rows) >= LONGEST:
+            self.hand_over()
+        if [True for drive in self._drives if not drive._settled]:
+            for drive in rota:
+                if not drive._settled:
+                    drive._command()
+
+    # ------------------------------------------------------------------ after a step
+
+    def after_step(self, rota: Iterable[DiffDrive]) -> None:
+        """What `DiffDrive.after_step` does, for all of them."""
+        if self._drives[0]._odometry is not self._odometries[0] or not self._take_over():
+            for drive in rota:
+                drive.after_step()
+            return
+        self._reckon()
+        now, physics, tick = self._sim.time_ns, self._physics, self._physics.tick
+        for drive, odometry, twist in zip(rota, self._odometries, self._twists, strict=True):
+            way, odom, tf = odometry.reckoning, drive._odom, drive._tf
+            told = now, drive._frame, drive._child, way.x, way.y, way.yaw
+            if odom.wanted:
+                if odom.is_live:
+                    odom.publish(planar_odometry(*told, *twist))
+                else:
+                    odom.publish_later(partial(planar_odometry, *told, *twist))
+            if tf.wanted:
+                if tf.is_live:
+                    tf.publish(planar_transform(*told))
+                else:
+                    tf.publish_later(partial(planar_transform, *told))
+            if drive._truth is not None and drive._truth.wanted:
+                drive._truth.publish(odometry_message(now, "world", drive._child, *drive._true.state()))
+            if physics.tick != tick:  # who was called went back to another state
+                return
+
+    def _take_over(self) -> bool:
+        """Holds what the odometries do from now on; False where they are not alike."""
+        if self._reckoned is not None:
+            return True
+        first, all_of = self._odometries[0], self._odometries
+        if first._at is None or first._noted or not first._recent:
+            return False
+        for drive, odometry in zip(self._drives, all_of, strict=True):
+            alike = odometry._at is not None and len(odometry._recent) == len(first._recent)
+            if not alike or odometry._noted or drive._erring is not None:
+                return False
+        at = np.array([odometry._at for odometry in all_of]).reshape(-1)
+        recent = np.array([odometry._recent for odometry in all_of])  # drive, step, wheel
+        self._reckoned = at, list(recent.transpose(1, 0, 2).reshape(len(first._recent), -1))
+        return True
+
+    def _reckon(self) -> None:
+        """`WheelOdometry.reckon` of all."""
+        assert self._reckoned is not None
+        (last, recent), rows = self._reckoned, self._rows
+        mean, step = MEAN_STEPS, self._odometries[0]._step
+        angles = self._physics.data.qpos.take(self._wheels)
+        for point in (*rows[mean::mean], angles):
+            rolled = (point - last).reshape(-1, 2) * self._radius[:, None]
+            for odometry, (left, right) in zip(self._odometries, rolled.tolist(), strict=True):
+                odometry.reckoning.advance(left, right, odometry._separation)
+            last = point
+        recent = [*recent, *rows][-mean:]
+        self._reckoned, self._rows = (angles, recent), []
+        left, right = ((angles - recent[0]).reshape(-1, 2) * self._radius[:, None]).T
+        elapsed = len(recent) * step
+        ahead, turn = (left + right) / 2 / elapsed, (right - left) / self._separation / elapsed
+        self._twists = list(zip(ahead.tolist(), turn.tolist(), strict=True))
+
+    # ------------------------------------------------------------------ whoever looks
+
+    def hand_over(self) -> None:
+        """Gives every odometry what is held for it."""
+        held, self._reckoned = self._reckoned, None
+        if held is not None:
+            ends, before = held[0].reshape(-1, 2).tolist(), np.stack(held[1]).reshape(len(held[1]), -1, 2)
+            recent = before.transpose(1, 0, 2).tolist()
+            for odometry, end, steps, twist in zip(self._odometries, ends, recent, self._twists, strict=True):
+                odometry.take((end[0], end[1]), [(left, right) for left, right in steps], twist)
+        if self._rows:
+            columns = np.stack(self._rows).reshape(len(self._rows), -1, 2).transpose(1, 0, 2).tolist()
+            self._rows = []
+            for odometry, steps in zip(self._odometries, columns, strict=True):
+                odometry.note_all([(left, right) for left, right in steps])
+
+
+def fleet_of(drives: Sequence[DiffDrive]) -> DriveFleet:
+    """The fleet that reads the wheels of these drives; one of their own where they are parts of several."""
+    noter = getattr(drives[0]._odometry.noter, "__self__", None)
+    return noter if isinstance(noter, DriveFleet) and noter.holds(drives) else SeparateReadings(drives)
+
+
+class SeparateReadings(DriveFleet):
+    """Drives that are due together after a step, and are read before it with others: each for itself."""
+
+    def __init__(self, drives: Sequence[DiffDrive]) -> None:
+        self._drives = list(drives)
+
+    def after_step(self, rota: Iterable[DiffDrive]) -> None:
+        for drive in rota:
+            tick = drive.sim.tick
+            drive.after_step()
+            if drive.sim.tick != tick:
+                return
+
+
+def _attitude(yaw: float) -> tuple[float, float, float, float]:
+    """What `quat_from_rpy` gives of a yaw alone, its zeros with their signs, as (w, x, y, z)."""
+    cos, sin = math.cos(yaw / 2), math.sin(yaw / 2)
+    return cos + 0.0 * sin, 0.0 * cos - 0.0 * sin, 0.0 * cos + 0.0 * sin, sin - 0.0 * cos
+
+
+def planar_odometry(
+    time_ns: int, frame: str, child: str, x: float, y: float, yaw: float, ahead: float, turn: float
+) -> Any:
+    """A `nav_msgs/msg/Odometry` in the plane, without covariance: pose [m, rad], speed ahead [m/s], turning [rad/s]."""
+    types = _types()
+    w, qx, qy, qz = _attitude(yaw)
+    place = types["Pose"](types["Point"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))
+    vector = types["Vector3"]
+    motion = types["Twist"](vector(ahead, 0.0, 0.0), vector(0.0, 0.0, turn))
+    return types["Odometry"](
+        types["Header"](types["Time"](*divmod(time_ns, _NS)), frame),
+        child,
+        types["PoseWithCovariance"](place, np.zeros(36)),
+        types["TwistWithCovariance"](motion, np.zeros(36)),
+    )
+
+
+def planar_transform(time_ns: int, frame: str, child: str, x: float, y: float, yaw: float) -> Any:
+    """A `tf2_msgs/msg/TFMessage` of one transform in the plane [m, rad]."""
+    types = _types()
+    w, qx, qy, qz = _attitude(yaw)
+    place = types["Transform"](types["Vector3"](x, y, 0.0), types["Quaternion"](qx, qy, qz, w))
+    stamped = types["TransformStamped"]
+    return types["TFMessage"]([stamped(types["Header"](types["Time"](*divmod(time_ns, _NS)), frame), child, place)])
+
+
+_made: dict[str, Any] = {}
+
+
+def _types() -> dict[str, Any]:
+    """The classes themselves: filling them directly is several times faster than `msgs.make`."""
+    if not _made:
+        geometry = "Point Vector3 Quaternion Pose Twist PoseWithCovariance TwistWithCovariance Transform"
+        names = {name: f"geometry_msgs/msg/{name}" for name in (*geometry.split(), "TransformStamped")}
+        others = ("nav_msgs/msg/Odometry", "tf2_msgs/msg/TFMessage", "std_msgs/msg/Header")
+        names |= {full.rsplit("/", 1)[1]: full for full in (*others, "builtin_interfaces/msg/Time")}
+        _made.update({name: msgs.type_of(full) for name, full in names.items()})
+    return _made

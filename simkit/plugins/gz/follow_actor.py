@@ -9,7 +9,7 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
-from simkit.plugins.actors.actor_model import AnimatedActor
+from simkit.plugins.actors.animated_actor import AnimatedActor
 from simkit.plugins.actors.skin import SkinRig
 from simkit.plugins.actors.walk_cycle import Gait
 from simkit.plugins.base import ModelPlugin

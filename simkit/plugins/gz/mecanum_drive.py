@@ -15,9 +15,9 @@ from simkit.compiler.contact_friction import has_directional_friction
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, odometry_message, transforms
+from simkit.plugins.drives.speed_limits import speed_limits
 from simkit.plugins.drives.steering import Motion, TravelOdometry, joint_angles
 from simkit.plugins.drives.wheel_joints import find_wheels
-from simkit.plugins.gz.diff_drive import speed_limits
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 

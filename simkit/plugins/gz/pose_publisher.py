@@ -10,8 +10,7 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.drives.odometry import TRANSFORMS
-from simkit.plugins.entity_poses import (
+from simkit.plugins.drives.entity_poses import (
     EntityPoses,
     PosedEntity,
     PoseSample,
@@ -19,6 +18,7 @@ from simkit.plugins.entity_poses import (
     stamped_transform,
     transforms_message,
 )
+from simkit.plugins.drives.odometry import TRANSFORMS
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.drives.speed_limits import SpeedLimiter
 from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
-from simkit.plugins.gz.diff_drive import SpeedLimiter
 from simkit.plugins.lookups import find_link, read_topic
 from simkit.plugins.on_demand import publish_while_subscribed
 from simkit.plugins.one_time_warnings import OneTimeWarnings

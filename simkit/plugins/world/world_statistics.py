@@ -12,8 +12,8 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
+from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, PoseSample, pose_numbers, transforms_message
 from simkit.plugins.drives.odometry import TRANSFORMS
-from simkit.plugins.entity_poses import EntityPoses, PosedEntity, PoseSample, pose_numbers, transforms_message
 from simkit.plugins.world.clock import TYPE as CLOCK
 
 if TYPE_CHECKING:

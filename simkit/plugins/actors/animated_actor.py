@@ -1,0 +1,107 @@
+"""Actors that move along their scripts: the poses of their links over time, and the model that follows them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final, Protocol
+
+import numpy as np
+
+from simkit.plugins.actors.script import Floats, Script, Track
+from simkit.plugins.plugin_names import aliases
+from simkit.pose import Pose
+from simkit.scene import SceneActor, SceneLink, SceneModel
+
+FindFile = Callable[[str, Path | None], Path | None]
+
+ROOT_LINK: Final = "link"
+_LEADERS: Final = frozenset(("gz-sim-follow-actor-system", "gz::sim::systems::FollowActor"))
+AT_THE_HIPS: Final = (0.5, 1.5)
+"""[m] over the ground: where a script's way lies if it is that of the hips, as with Gazebo's own skins."""
+
+
+class Rig(Protocol):
+    """How the parts of an actor lie about its origin."""
+
+    def lie(self, track: Track, rests: bool) -> tuple[Floats, Floats]:
+        """Positions (rows, n, 3) [m] and quaternions (rows, n, 4) of the parts in the actor's frame, along a track.
+
+        Args:
+            track: where it is, and how fast.
+            rests: whether it stands, at the end of its way or before its beginning.
+        """
+        ...
+
+
+class AnimatedActor:
+    """One actor at work.
+
+    Args:
+        name: its name.
+        script: its ways.
+        rig: how its parts lie; None where it has none that move against its origin.
+        is_led: whether a plugin of its own takes it where it goes.
+
+    Attributes:
+        moves: whether anything of it ever moves by its script.
+    """
+
+    def __init__(self, name: str, script: Script, rig: Rig | None, is_led: bool = False) -> None:
+        self.name, self.script, self.rig, self.is_led = name, script, rig, is_led
+        self.moves = script.moves or (rig is not None and script.length > 0.0)
+        self._going = [link_poses_in_world(track, rig, False) for track in script.tracks]
+        self._resting = [table[[0, -1]] for table in (link_poses_in_world(t, rig, True) for t in script.tracks)]
+
+    def __deepcopy__(self, memo: dict[int, object]) -> AnimatedActor:
+        return self
+
+    def poses(self, time: float) -> Floats:
+        """Where its links are in the world: the origin, then the parts; position and quaternion, shape (n, 7)."""
+        number, inside, rests = self.script.at(time)
+        if rests:
+            return np.asarray(self._resting[number][0 if inside <= 0.0 else 1])
+        row, part = self.script.tracks[number].row(inside)
+        table = self._going[number]
+        poses: Floats = table[row] * (1.0 - part)
+        poses += table[row + 1] * part
+        return poses
+
+
+def link_poses_in_world(track: Track, rig: Rig | None, rests: bool) -> Floats:
+    """Poses of all links in the world, shape (rows, n, 7)."""
+    origin = track.poses[:, None, :]
+    if rig is None:
+        return origin
+    places, turns = rig.lie(track, rests)
+    turn = origin[..., 3:]
+    w, v = turn[..., :1], turn[..., 1:]
+    across = np.cross(v, places)
+    placed = origin[..., :3] + places + 2.0 * (w * across + np.cross(v, across))
+    wp, vp = turns[..., :1], turns[..., 1:]
+    real = w * wp - np.sum(v * vp, axis=-1, keepdims=True)
+    turned = np.concatenate([real, w * vp + wp * v + np.cross(v, vp)], axis=-1)
+    flips = np.cumprod(np.where(np.sum(turned[1:] * turned[:-1], axis=-1, keepdims=True) < 0.0, -1.0, 1.0), axis=0)
+    turned[1:] *= flips
+    return np.concatenate([origin, np.concatenate([placed, turned], axis=-1)], axis=1)
+
+
+def is_led_by_plugin(actor: SceneActor) -> bool:
+    """Whether a plugin of its own takes the actor where it goes."""
+    return any(alias in _LEADERS for plugin in actor.plugins for alias in aliases(plugin))
+
+
+def scripted_model(actor: SceneActor, pose: Pose, links: Sequence[SceneLink], cast: AnimatedActor) -> SceneModel:
+    """A model that only its script moves."""
+    return SceneModel(
+        name=actor.name,
+        scoped=actor.name,
+        pose_world=pose,
+        static=True,
+        declared_static=True,
+        canonical_link=links[0].scoped,
+        links=tuple(links),
+        plugins=actor.plugins,
+        where=actor.where,
+        moved_by=cast,
+    )
