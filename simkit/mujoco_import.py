@@ -9,7 +9,8 @@ def import_mujoco() -> None:
     """Imports MuJoCo; where that fails for what `MUJOCO_GL` says, once more without a renderer.
 
     MuJoCo opens the renderer's library when it is imported: a value that it does not know, or a library that is not
-    there, would end a run that draws nothing. Whoever does draw gets the reason from `simkit.sensors.cameras.rendering.gl_context`.
+    there, would end a run that draws nothing. Whoever does draw gets the reason from
+    `simkit.sensors.cameras.rendering.gl_context`.
 
     Its warnings then go neither to the terminal nor to a log file in the working folder, unless somebody else hears
     them already: those of a simulation are among its diagnostics.

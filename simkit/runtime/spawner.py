@@ -217,7 +217,8 @@ class Spawner:
         sim.entities.bind(structure)
         sim.labels.bind(structure)
         sim.temperatures.bind(structure)
-        sim.friction.bind(structure)
+        sim.friction.bind(compiled, [plugin for part in structure.parts.values() for plugin, _ in part.plugins])
+        sim.fast_body_reports.names = compiled.names
         sim.physics.fast_bodies.tell = sim.fast_body_reports
         sim.stand_wrenches(are_applied=True)
         sim.set_active(sim.faults.living(structure))

@@ -9,7 +9,7 @@ import pytest
 from belt_worlds import BELT, CENTRE, conveyor, crate, rubs, wall, world
 
 import simkit
-from simkit.runtime.contact import contact_law, moving_surface
+from simkit.runtime.contact import contact_law, friction_contacts
 
 G = 9.8
 
@@ -242,8 +242,8 @@ def test_many_contacts_have_the_bits_that_few_have(step: float, friction: str, m
     """Many are worked out on arrays, few as plain numbers: where the one begins changes nothing."""
 
     def run(many: int) -> bytes:
-        for module in (contact_law, moving_surface):
-            monkeypatch.setattr(module, "MANY", many)
+        for module in (contact_law, friction_contacts):
+            monkeypatch.setattr(module, "ARRAY_THRESHOLD", many)
         crates = [crate(f"{0.2 * n} 0 0.05 0 0 {0.3 * n}", f"crate{n}") for n in range(4)]
         crates[3] = crates[3].replace("<mu>1.0</mu><mu2>1.0</mu2>", "<mu>0.9</mu><mu2>0.4</mu2><fdir1>1 0.5 0</fdir1>")
         belt = conveyor("<max_acceleration>9</max_acceleration>", surface=friction)

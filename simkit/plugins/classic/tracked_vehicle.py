@@ -18,7 +18,7 @@ from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.lookups import find_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import IDENTITY
-from simkit.runtime.contact.moving_surface import Belt, BeltMotion
+from simkit.runtime.contact.belt import Belt, BeltMotion
 from simkit.scene import Cylinder, SceneJoint, SceneLink
 
 if TYPE_CHECKING:

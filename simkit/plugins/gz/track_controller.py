@@ -15,7 +15,7 @@ from simkit.plugins.lookups import find_link, read_topic
 from simkit.plugins.on_demand import publish_while_subscribed
 from simkit.plugins.one_time_warnings import OneTimeWarnings
 from simkit.pose import Pose
-from simkit.runtime.contact.moving_surface import Belt, BeltMotion
+from simkit.runtime.contact.belt import Belt, BeltMotion
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder

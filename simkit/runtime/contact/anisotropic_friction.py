@@ -12,31 +12,26 @@ pass (`Physics.shaper`), whoever asks for it: no reader makes a difference. `sof
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import mujoco
 import numpy as np
 
 from simkit.compiler.contact_friction import directional_friction, directional_slip, has_directional_friction
 from simkit.diagnostics import NOWHERE, Where
+from simkit.runtime.contact.belt import Belt, BeltMotion
 from simkit.runtime.contact.contact_slip import ContactSlip
+from simkit.runtime.contact.friction_contacts import FrictionContactArrays, FrictionContacts, find_friction_contacts
 from simkit.runtime.contact.friction_tangents import FrictionRow, FrictionTangents, RowContacts
-from simkit.runtime.contact.moving_surface import (
-    Belt,
-    BeltMotion,
-    FrictionContactArrays,
-    FrictionContacts,
-    MovingSurfaces,
-    find_friction_contacts,
-)
-from simkit.runtime.engine.physics import STALE
+from simkit.runtime.contact.moving_surface import MovingSurfaces
 
 if TYPE_CHECKING:
+    from simkit.compiler import Compiled
     from simkit.compiler.name_map import LinkBinding, NameMap
-    from simkit.runtime.engine.world_structure import WorldStructure
-    from simkit.runtime.simulation import Simulation
+    from simkit.diagnostics import Diagnostics
+    from simkit.runtime.contact.contact_law import ContactShaper
     from simkit.scene import SceneCollision
 
 Numbers = list[float]
@@ -71,25 +66,41 @@ class ContactRequest(NamedTuple):
     slips: list[list[Pair]]
 
 
-class AnisotropicFriction:
-    """The directed and slipping contacts of a simulation; where there are none it costs nothing."""
+class ShapedPhysics(Protocol):
+    """Physics whose contacts are changed before they are solved for."""
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
-        self._is_told = False
+    shaper: ContactShaper | None
+
+    def changed_contacts(self) -> None:
+        """Says that contacts are to be found anew."""
+
+
+class AnisotropicFriction:
+    """Contacts of a simulation whose friction has a direction or slips; without any it costs nothing.
+
+    Args:
+        physics: whose contacts are changed.
+        reports: receives a warning if the integrator has no place for such contacts.
+    """
+
+    def __init__(self, physics: ShapedPhysics, reports: Diagnostics) -> None:
+        self._physics, self._reports = physics, reports
+        self._compiled: Compiled
+        self._plugins: frozenset[int] = frozenset()
+        self._is_reported = False
         self._wheels: weakref.WeakKeyDictionary[Any, tuple[tuple[SlippingWheel, ...], WheelSlips]]
         self._wheels = weakref.WeakKeyDictionary()
         self._belts: weakref.WeakKeyDictionary[Any, Callable[[], Sequence[Belt]]] = weakref.WeakKeyDictionary()
 
-    def bind(self, structure: WorldStructure) -> None:
-        """Finds what collides in a directed way in a structure."""
-        table = self._table(structure)
-        there = {id(plugin) for part in structure.parts.values() for plugin, _ in part.plugins}
+    def bind(self, compiled: Compiled, plugins: Iterable[object]) -> None:
+        """Binds to another compiled model; only wheels and belts of these plugins count from now on."""
+        self._compiled, self._plugins = compiled, frozenset(map(id, plugins))
+        table = self._table()
         for owner, (wheels, slips) in self._wheels.items():
-            if id(owner) in there:
+            if id(owner) in self._plugins:
                 table.add_wheels(owner, wheels, slips)
         for owner, belts in self._belts.items():
-            if id(owner) in there:
+            if id(owner) in self._plugins:
                 table.add_belts(owner, belts())
         self._install(table)
 
@@ -101,10 +112,10 @@ class AnisotropicFriction:
             belts: gives them in the present engine model.
         """
         self._belts[owner] = belts
-        table = self._table(self._sim.structure)
+        table = self._table()
         table.add_belts(owner, belts())
         self._install(table)
-        self._sim.physics.changed(STALE)
+        self._physics.changed_contacts()
 
     def add_wheels(self, owner: Any, wheels: Sequence[SlippingWheel], slips: WheelSlips) -> None:
         """Has the contacts of wheels slip from now on, for as long as their plugin is there.
@@ -115,30 +126,29 @@ class AnisotropicFriction:
             slips: asked in every forward pass, so that they are part of the plugin's state.
         """
         self._wheels[owner] = tuple(wheels), slips
-        table = self._table(self._sim.structure)
+        table = self._table()
         table.add_wheels(owner, wheels, slips)
         self._install(table)
-        self._sim.physics.changed(STALE)
+        self._physics.changed_contacts()
 
     def _install(self, table: _ModelFriction) -> None:
         """Have the physics use it, if there is anything in it and the engine's integrator lets it."""
-        physics, has_place = self._sim.physics, table.model.opt.integrator != _DISCRETE
+        physics, has_place = self._physics, table.model.opt.integrator != _DISCRETE
         physics.shaper = table if table and has_place else None
-        if table and not has_place and not self._is_told:
-            self._is_told = True
+        if table and not has_place and not self._is_reported:
+            self._is_reported = True
             message = (
                 "directions and slip of friction, and surfaces that run, have no effect: the engine's integrator is "
                 "discrete, which has no place for them between velocities and forces"
             )
-            self._sim.reports.warning("SK-PHYS-030", message, table.where(), 'integrator="implicitfast" in <option>')
+            self._reports.warning("SK-PHYS-030", message, table.where(), 'integrator="implicitfast" in <option>')
 
     def owners(self) -> list[Any]:
         """The plugins whose wheels slip, of those that are there."""
-        there = {id(plugin) for part in self._sim.structure.parts.values() for plugin, _ in part.plugins}
-        return [owner for owner in self._wheels if id(owner) in there]
+        return [owner for owner in self._wheels if id(owner) in self._plugins]
 
-    def _table(self, structure: WorldStructure) -> _ModelFriction:
-        compiled = structure.compiled
+    def _table(self) -> _ModelFriction:
+        compiled = self._compiled
         made: _ModelFriction = compiled.names.shared(
             _SHARED_KEY, lambda: _ModelFriction(compiled.model, compiled.names)
         )
@@ -148,7 +158,7 @@ class AnisotropicFriction:
 class _ModelFriction:
     """What one compiled model has of them, and how its contacts are changed."""
 
-    def __init__(self, model: Any, names: NameMap) -> None:
+    def __init__(self, model: mujoco.MjModel, names: NameMap) -> None:
         self.model, self._names = model, names
         self._rows: dict[str, FrictionRow] = {}
         self._sources: dict[int, tuple[list[str], WheelSlips]] = {}
@@ -249,7 +259,7 @@ class _ModelFriction:
         """Return what plugins ask for now."""
         return ContactRequest(self.surfaces.runs(), [slips() for _, slips in self._sources.values()])
 
-    def shape(self, data: Any, request: Any = None) -> None:
+    def shape(self, data: mujoco.MjData, request: Any = None) -> None:
         """Gives the contacts of such collisions their tangents, coefficients and softness."""
         model, surfaces = self.model, self.surfaces
         runs, wheels = self.request() if request is None else request
@@ -279,7 +289,11 @@ class _ModelFriction:
                 self._softness.soften_pyramid(data, number, slip)
 
     def _soft(
-        self, data: Any, found: FrictionContacts | FrictionContactArrays, places: RowContacts, wheels: list[list[Pair]]
+        self,
+        data: mujoco.MjData,
+        found: FrictionContacts | FrictionContactArrays,
+        places: RowContacts,
+        wheels: list[list[Pair]],
     ) -> list[tuple[int, int, Pair]]:
         """The contacts that slip, with the tree that does and their compliances [m/s/N]."""
         slips = self._slip

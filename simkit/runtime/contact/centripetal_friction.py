@@ -17,7 +17,7 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
-from simkit.runtime.contact.contact_correction import ARRAY_THRESHOLD
+from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD
 
 _MIN_ANGULAR_VELOCITY: Final = 0.03
 """Angular velocity [rad/s] from which the correction counts: at 1 m it is 0.9 mm/s²."""
@@ -35,7 +35,7 @@ class CentripetalFriction:
         model: of the engine.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
         self._is_elliptic = model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         bodies = model.geom_bodyid
@@ -46,7 +46,7 @@ class CentripetalFriction:
         self._can_carry = model.ntree > 1 and self._is_elliptic
         self._jacobian = np.empty((3, model.nv))
 
-    def find(self, data: Any) -> list[tuple[int, int, int]]:
+    def find(self, data: mujoco.MjData) -> list[tuple[int, int, int]]:
         """Return the contacts between bodies of different models that turn together: number and both bodies.
 
         Args:
@@ -79,7 +79,7 @@ class CentripetalFriction:
                 found.append((number, one, other))
         return found
 
-    def correct(self, data: Any, carried: list[tuple[int, int, int]]) -> list[tuple[int, float]]:
+    def correct(self, data: mujoco.MjData, carried: list[tuple[int, int, int]]) -> list[tuple[int, float]]:
         """Take the term off the references of the tangents; for each pair of bodies that of its first contact's place.
 
         Args:
@@ -112,7 +112,7 @@ class CentripetalFriction:
                 aref[place] = old - share * along
         return before
 
-    def _bias(self, data: Any, point: Any, body: int) -> Any:
+    def _bias(self, data: mujoco.MjData, point: Any, body: int) -> Any:
         """Return the acceleration of a point of a body [m/s²] that follows from velocities alone, world frame."""
         mujoco.mj_jacDot(self._model, data, self._jacobian, None, point, body)
         return self._jacobian @ data.qvel

@@ -42,7 +42,7 @@ def collision_table(compiled: Any) -> CollisionTable:
     return found
 
 
-def _build_collision_table(names: Any, model: Any) -> CollisionTable:
+def _build_collision_table(names: Any, model: mujoco.MjModel) -> CollisionTable:
     number: dict[str, int] = {}
     of_geom = np.full(model.ngeom + 1, -1, dtype=np.intp)
     for geom in range(model.ngeom):
@@ -72,7 +72,7 @@ class CollisionContacts:
     wrenches: Floats
 
 
-def find_contacts(model: Any, data: Any, mine: Bools) -> CollisionContacts | None:
+def find_contacts(model: mujoco.MjModel, data: mujoco.MjData, mine: Bools) -> CollisionContacts | None:
     """The contacts that geoms of `mine` take part in; None where there are none.
 
     A contact is where two surfaces touch or overlap, or where one pushes the other before that. What only comes within

@@ -1,127 +1,35 @@
-"""Contacts whose normal reference the contact law corrects, and the size of the correction.
+"""Contacts whose normal reference the contact law corrects, and the size of the correction, on plain numbers.
 
-The same law stands here twice, with the same bits: on plain numbers, which are faster for up to some 60 contacts (an
-array of four numbers costs as much as one of four hundred), and on arrays.
+`contact_correction_arrays` has the same law on arrays, with the same bits. Plain numbers are faster for up to some 60
+contacts: an array of four numbers costs as much as one of four hundred.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any, Final
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
-ARRAY_THRESHOLD: Final = 64
-"""From this number of contacts on arrays are faster than plain numbers; the results have the same bits."""
+from simkit.runtime.contact.anderson_acceleration import AndersonAcceleration
+from simkit.runtime.contact.contact_conditions import (
+    CLOSING_ACCURACY,
+    CLOSING_SPEED,
+    DEEP_PENETRATION,
+    EXIT_SPEED,
+    LIFT_FACTOR,
+    MIN_PENETRATION,
+    NO_FORCE,
+    OPENING_SPEED,
+    ContactConditions,
+    rebound,
+)
 
-EXIT_SPEED: Final = 0.05
-"""Speed [m/s] at which a contact lets go, or overlapping bodies part, at most: a hop of 0.13 mm."""
-
-DEEP_PENETRATION: Final = 1e-3
-"""Penetration [m] from which the way out is watched even before it begins; a contact at rest has some micrometres."""
-
-_OPENING_SPEED: Final = 0.2 * EXIT_SPEED  # [m/s] from which a contact counts as on its way out
-
-_PYRAMID: Final = mujoco.mjtCone.mjCONE_PYRAMIDAL
-_NO_FORCE: Final = -1e9  # [m/s²] asked of a contact that shall not push
-_CLOSING_SPEED: Final = -EXIT_SPEED  # [m/s] of a contact below which it closes fast
-_MIN_PENETRATION: Final = 1e-4  # [m] of penetration from which the impedance is looked at
-_LIFT_FACTOR: Final = 10.0  # times (1 - d) / d: the lift that a contact bears in units of the tolerance
-_RESTING_FACTOR: Final = 4.0  # times the speed that gravity gives in a step: slower contacts rest and do not rebound
-_NEAR_FACTOR: Final = 50.0  # tolerances
-_MAX_EXTRAPOLATION: Final = 100.0  # times the square of a miss by which the acceleration goes beyond what was given
-_CLOSING_ACCURACY: Final = 2e-4  # of what is asked of a contact that closes fast
+if TYPE_CHECKING:
+    import mujoco
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.integer[Any]]
-
-
-@dataclass(slots=True)
-class ContactConditions:
-    """Quantities besides the state that the correction of contacts depends on.
-
-    Attributes:
-        step: [s].
-        gravity: [m/s²].
-        tolerance: of normal references [m/s²].
-        closing: speed [m/s] that is left to each geom when its contact is stopped, where contacts are speculative.
-        inner: numbers of contacts that get no force.
-        softest: longest time constant [s] of a rigid contact; a softer one, by a `<kp>`, closes and opens as it is.
-    """
-
-    step: float
-    gravity: list[float]
-    tolerance: float
-    closing: list[float] | None
-    inner: frozenset[int] = frozenset()
-    softest: float = math.inf
-
-
-class AndersonAcceleration:
-    """Anderson's acceleration of a fixed-point iteration, with the last two differences.
-
-    Plain repetition gains a tenth of the distance a time where wheels are light, and 2 % where four wheels share the
-    load of a stiff vehicle, as a change of that share moves nothing.
-
-    Attributes:
-        best: what was asked when the least was missed, for contacts whose iteration does not converge: where friction
-            on a lever presses harder the more it is pressed.
-    """
-
-    def __init__(self) -> None:
-        self.best: list[float] = []
-        self._least = math.inf
-        self._misses: list[list[float]] = []
-        self._given: list[list[float]] = []
-
-    def has_come_near(self, tolerance: float) -> bool:
-        """Return whether the root mean square of what was missed was ever within some tolerances, about g."""
-        return bool(self.best) and self._least < (_NEAR_FACTOR * tolerance) ** 2 * len(self.best)
-
-    def next(self, asked: list[float], given: list[float]) -> list[float]:
-        """Return what to ask next, after `asked` has given `given`."""
-        miss = [g - x for x, g in zip(asked, given, strict=True)]
-        size = math.fsum(one * one for one in miss)
-        if size < self._least:
-            self._least, self.best = size, asked
-        if self._misses and size > math.fsum(one * one for one in self._misses[-1]):
-            self._misses, self._given = [], []  # contacts have opened or closed: what was before says nothing
-        self._misses, self._given = [*self._misses[-2:], miss], [*self._given[-2:], given]
-        if len(self._misses) < 2:
-            return given
-        steps = [_difference(b, a) for a, b in pairwise(self._misses)]
-        moves = [_difference(b, a) for a, b in pairwise(self._given)]
-        shares = _least_squares(steps, miss)
-        further = [
-            -math.fsum(share * move[i] for share, move in zip(shares, moves, strict=True)) for i in range(len(given))
-        ]
-        if math.fsum(one * one for one in further) > _MAX_EXTRAPOLATION * size:
-            return given
-        return [g + one for g, one in zip(given, further, strict=True)]
-
-
-def _difference(a: list[float], b: list[float]) -> list[float]:
-    return [x - y for x, y in zip(a, b, strict=True)]
-
-
-def _least_squares(columns: list[list[float]], wanted: list[float]) -> list[float]:
-    """Return the shares of one or two columns that come nearest to a vector."""
-    first, second = columns[-1], columns[0]
-    a = math.fsum(x * x for x in first)
-    e = math.fsum(x * y for x, y in zip(first, wanted, strict=True))
-    if len(columns) == 1:
-        return [e / a if a > 0.0 else 0.0]
-    b = math.fsum(x * y for x, y in zip(first, second, strict=True))
-    c = math.fsum(x * x for x in second)
-    f = math.fsum(x * y for x, y in zip(second, wanted, strict=True))
-    determinant = a * c - b * b
-    if determinant <= 1e-8 * a * c:
-        return [0.0, e / a if a > 0.0 else 0.0]
-    return [(a * f - b * e) / determinant, (c * e - b * f) / determinant]
 
 
 class ContactCorrection:
@@ -137,7 +45,7 @@ class ContactCorrection:
 
     def __init__(
         self,
-        data: Any,
+        data: mujoco.MjData,
         contacts: list[tuple[int, list[float], float, float, bool, float]],
         changed: list[tuple[int, float]],
     ) -> None:
@@ -187,7 +95,7 @@ class ContactCorrection:
                 # a contact that closes is stopped, also by more than its softness asks; one that opens gets no more
                 wanted = goal + softness[row] * force[row]
                 normal = wanted if rebounds else max(normal, wanted) if normal < goal else min(normal, wanted)
-                most = max(most, _CLOSING_ACCURACY * goal)
+                most = max(most, CLOSING_ACCURACY * goal)
             now = normal - math.sqrt(total)
             given.append(now)
             if abs(now - last) > most:
@@ -217,7 +125,9 @@ class ContactCorrection:
             aref[row] = reference
 
 
-def find_correction(data: Any, around: ContactConditions, residual: Floats | None = None) -> ContactCorrection | None:
+def find_correction(
+    data: mujoco.MjData, around: ContactConditions, residual: Floats | None = None
+) -> ContactCorrection | None:
     """Return the contacts that slide, close or open fast, or overlap; None where there is none.
 
     Args:
@@ -238,7 +148,7 @@ def find_correction(data: Any, around: ContactConditions, residual: Floats | Non
         if row < 0:
             continue
         if number in inner:
-            found.append((row, [], aref[row], _NO_FORCE, False, around.tolerance))
+            found.append((row, [], aref[row], NO_FORCE, False, around.tolerance))
             continue
         dim, mus = dims[number], friction[number]
         if dim == 3:
@@ -251,13 +161,13 @@ def find_correction(data: Any, around: ContactConditions, residual: Floats | Non
                 total += one * one
         speed, depth = velocity[row], -distance[number]
         if (
-            _CLOSING_SPEED <= speed <= _OPENING_SPEED and depth <= _MIN_PENETRATION
+            CLOSING_SPEED <= speed <= OPENING_SPEED and depth <= MIN_PENETRATION
         ):  # it slides at most: most contacts, most of the time
             if total > square:
                 found.append((row, mus[: dim - 1], aref[row], nothing, False, around.tolerance))
             continue
         normal, goal, after, rebounds = aref[row], nothing, speed, False
-        closes, tolerance = speed < _CLOSING_SPEED, around.tolerance
+        closes, tolerance = speed < CLOSING_SPEED, around.tolerance
         if closes and closing is not None:  # what is stopped ahead of the surface goes on towards it, slowly
             first, second = contact.geom[number].tolist()
             left = closing[first] + closing[second]
@@ -266,210 +176,24 @@ def find_correction(data: Any, around: ContactConditions, residual: Floats | Non
             wanted, is_wrong = -after / step, depth >= 0.0
         else:
             wanted = max(0.0, (EXIT_SPEED - after) / step)
-            is_wrong = normal > wanted and (closes or speed > _OPENING_SPEED or depth > DEEP_PENETRATION)
+            is_wrong = normal > wanted and (closes or speed > OPENING_SPEED or depth > DEEP_PENETRATION)
         if is_wrong or closes:
             constant = contact.solref.item(number, 0)
             if constant > 0.0:
                 goal = wanted if is_wrong and constant <= around.softest else nothing
             elif closes:
-                goal, slower = _rebound(data, number, speed, around)
+                goal, slower = rebound(data, number, speed, around)
                 if goal == goal:
                     rebounds = True
                     total *= slower * slower
                     for place in range(row + 1, row + dim):
                         changed.append((place, aref[place]))
                         data.efc_aref[place] = slower * aref[place]
-        if depth > _MIN_PENETRATION:  # the impedance is near 1 there, and a contact is lost from less lift on
+        if depth > MIN_PENETRATION:  # the impedance is near 1 there, and a contact is lost from less lift on
             impedance = data.efc_KBIP.item(row, 2)
-            tolerance = min(tolerance, _LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
+            tolerance = min(tolerance, LIFT_FACTOR * tolerance * (1.0 - impedance) / impedance)
         if total > tolerance * tolerance:
             found.append((row, mus[: dim - 1], normal, goal, rebounds, tolerance))
         elif goal == goal:
             found.append((row, [], normal, goal, rebounds, tolerance))
     return ContactCorrection(data, found, changed) if found else None
-
-
-def _rebound(data: Any, number: int, speed: float, around: ContactConditions) -> tuple[float, float]:
-    """Return the acceleration with which a contact that closes leaves, and what is left of its tangents' references.
-
-    A bouncing contact has the damping d (1 + e) / dt (`simkit.compiler.contact_friction.bounce_solref`), which reverses the speed
-    within a step. The step in which a hit is noticed begins below the surface, by up to a step's way; the energy that
-    the integrator keeps in flight, u² / 2 + q u - g depth with q = g dt / 2, becomes e² of it as seen from the surface.
-    Friction has the same damping: without a share of 1 / (1 + e) of it, a hit would reverse the slip as well.
-
-    Returns:
-        The acceleration [m/s²], NaN for a contact that is too slow to rebound, and the share.
-    """
-    contact, gravity, step = data.contact, around.gravity, around.step
-    weight = math.sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2])
-    if speed > -_RESTING_FACTOR * weight * step:
-        return math.nan, 1.0
-    restitution = -contact.solref.item(number, 1) * step / contact.solimp.item(number, 1) - 1.0
-    if restitution < 0.0:  # stiffness and damping that an MJCF file gives
-        return math.nan, 1.0
-    x, y, z = contact.frame[number, :3].tolist()
-    along = abs(x * gravity[0] + y * gravity[1] + z * gravity[2])
-    depth = 0.0 if around.closing is not None else max(0.0, -contact.dist.item(number))
-    u, q = -speed, along * step / 2.0
-    arrives = max(0.0, u * u + 2.0 * q * u - 2.0 * along * depth)
-    leaves = -q + math.sqrt(q * q + restitution * restitution * arrives + 2.0 * along * depth)
-    return (leaves - speed) / step, 1.0 / (1.0 + restitution)
-
-
-class ArrayContactCorrection:
-    """Contacts under either cone, on arrays.
-
-    Args:
-        data: of the engine.
-        is_pyramid: whether the cone is one.
-        rows: of each contact, the row of its normal, or the first of its edges, shape (k,).
-        places: the rows of its friction, shape (k, most), or pairs of edges, shape (k, most, 2).
-        mu: their coefficients, zero for rows that it has not or that do not slide, shape (k, most).
-        edges: the rows that carry the normal, shape (k, n); rows that a contact has not repeat its first.
-        normals, goals, rebounds, tolerances: as for `ContactCorrection`, shape (k,).
-        changed: as for `ContactCorrection`.
-    """
-
-    def __init__(
-        self,
-        data: Any,
-        is_pyramid: bool,
-        rows: Ints,
-        places: Ints,
-        mu: Floats,
-        edges: Ints,
-        normals: Floats,
-        goals: Floats,
-        rebounds: npt.NDArray[np.bool_],
-        tolerances: Floats,
-        changed: list[tuple[int, float]],
-    ) -> None:
-        self._aref, self._softness, self._is_pyramid = data.efc_aref, data.efc_R, is_pyramid
-        self._rows, self._places, self._mu, self._edges, self._normals = rows, places, mu, edges, normals
-        self._goals, self._rebounds, self._tolerances, self._changed = goals, rebounds, tolerances, changed
-        self._has_goal = ~np.isnan(goals)
-        self._before: Floats = self._aref[edges]
-        self._tangents: Floats = self._before
-        self._compliance: Floats = self._softness[places]
-        self._asked: Floats = normals
-        self._sequence = AndersonAcceleration()
-
-    def guess(self, moves: Floats) -> None:
-        """As `FewContacts.guess`."""
-        self._tangents = self._aref[self._places]
-        normals = np.where(self._has_goal, self._goals, self._normals)
-        self._ask(normals - self._size(self._tangents - moves[self._places]))
-
-    def correct(self, moves: Floats, forces: Floats) -> bool:
-        """As `FewContacts.correct`."""
-        places = self._places
-        size = self._size(self._tangents - moves[places] - self._compliance * forces[places])
-        normals, most = self._normals, self._tolerances
-        if self._has_goal.any():
-            yields = (self._softness[self._edges] * forces[self._edges]).mean(axis=1)
-            wanted = self._goals + yields
-            limited = np.where(normals < self._goals, np.maximum(normals, wanted), np.minimum(normals, wanted))
-            normals = np.where(self._has_goal, np.where(self._rebounds, wanted, limited), normals)
-            most = np.where(self._has_goal, np.maximum(most, _CLOSING_ACCURACY * self._goals), most)
-        now = normals - size
-        if (np.abs(now - self._asked) <= most).all():
-            return True
-        now = np.array(self._sequence.next(self._asked.tolist(), now.tolist()))
-        self._ask(now)
-        return False
-
-    def settle(self) -> None:
-        """As `FewContacts.settle`."""
-        if self._sequence.has_come_near(float(self._tolerances[0])):
-            self._ask(np.array(self._sequence.best))
-        else:
-            self.restore()
-
-    def restore(self) -> None:
-        """Put the references back as they were."""
-        self._aref[self._edges] = self._before
-        for row, reference in self._changed:
-            self._aref[row] = reference
-
-    def _ask(self, normals: Floats) -> None:
-        self._asked = normals
-        changes = self._before + (normals - self._normals)[:, None]
-        self._aref[self._edges] = changes if self._is_pyramid else normals[:, None]
-
-    def _size(self, residual: Floats) -> Floats:
-        return _lift(residual, self._mu, self._is_pyramid)
-
-
-def _lift(residual: Floats, mu: Floats, is_pyramid: bool) -> Floats:
-    """Return by how much a contact is lifted for residuals along its friction rows or pairs of edges (k,) [m/s²]."""
-    if is_pyramid:
-        apart = np.abs(residual[..., 0] - residual[..., 1]) / 2.0
-        found: Floats = np.where(mu > 0.0, apart, 0.0).max(axis=1, initial=0.0)
-        return found
-    total: Floats = np.zeros(len(mu))
-    for one in (mu * residual).T:
-        total += one * one
-    lengths: Floats = np.sqrt(total)
-    return lengths
-
-
-def find_array_correction(
-    model: Any, data: Any, around: ContactConditions, residual: Floats | None = None
-) -> ArrayContactCorrection | None:
-    """As `find_correction`, for either cone."""
-    contact, is_pyramid, step = data.contact, bool(model.opt.cone == _PYRAMID), around.step
-    numbers = (contact.efc_address >= 0).nonzero()[0]
-    if not numbers.size:
-        return None
-    which: Any = slice(None) if numbers.size == data.ncon else numbers
-    rows, dims = contact.efc_address[which], contact.dim[which]
-    most = int(dims.max()) - 1
-    there = np.arange(most) < (dims - 1)[:, None]
-    mu = np.where(there, contact.friction[which, :most], 0.0)
-    if is_pyramid:
-        pairs = rows[:, None, None] + np.arange(2 * most).reshape(most, 2)
-        places = np.where(there[..., None], pairs, rows[:, None, None])
-        edges = places.reshape(len(rows), -1) if most else rows[:, None]
-    else:
-        places, edges = np.where(there, rows[:, None] + 1 + np.arange(most), rows[:, None]), rows[:, None]
-    aref, velocity = data.efc_aref, data.efc_vel
-    pair = edges[:, :2] if is_pyramid else edges
-    normals, speed = aref[pair], velocity[pair]
-    normals, speed = (normals.mean(axis=1), speed.mean(axis=1)) if is_pyramid else (normals[:, 0], speed[:, 0])
-    depth, closes = -contact.dist[which], speed < _CLOSING_SPEED
-    after = speed
-    if around.closing is not None:
-        geoms = np.array(around.closing)[contact.geom[which]]
-        left = geoms[:, 0] + geoms[:, 1]
-        after = np.where(closes & (speed < -left), speed + left, speed)
-    is_late = closes & (normals < -after / step)
-    wanted = np.where(is_late, -after / step, np.maximum(0.0, (EXIT_SPEED - after) / step))
-    is_fast = (normals > wanted) & (closes | (speed > _OPENING_SPEED) | (depth > DEEP_PENETRATION))
-    constants = contact.solref[which, 0]
-    is_rigid, bounces = (constants > 0.0) & (constants <= around.softest), constants <= 0.0
-    goals = np.where(np.where(is_late, depth >= 0.0, is_fast) & is_rigid, wanted, np.nan)
-    if around.inner:
-        goals = np.where(np.isin(numbers, list(around.inner)), _NO_FORCE, goals)
-    changed: list[tuple[int, float]] = []
-    for index in (closes & bounces).nonzero()[0].tolist():
-        goals[index], slower = _rebound(data, int(numbers[index]), float(speed[index]), around)
-        if goals[index] == goals[index]:
-            middle = normals[index] if is_pyramid else 0.0
-            for row in places[index][there[index]].reshape(-1).tolist():
-                changed.append((row, aref.item(row)))
-                aref[row] = middle + slower * (aref[row] - middle)
-    tolerances: Floats = np.full(len(rows), around.tolerance)
-    pressed = (depth > _MIN_PENETRATION).nonzero()[0]
-    if pressed.size:
-        impedance = data.efc_KBIP[rows[pressed], 2]
-        tolerances[pressed] = np.minimum(
-            around.tolerance, _LIFT_FACTOR * around.tolerance * (1.0 - impedance) / impedance
-        )
-    slides: npt.NDArray[np.bool_] = _lift((aref if residual is None else residual)[places], mu, is_pyramid) > tolerances
-    slides &= goals != _NO_FORCE
-    chosen = slides | ~np.isnan(goals)
-    if not chosen.any():
-        return None
-    mu = np.where(slides[:, None], mu, 0.0)[chosen]
-    rest = (edges[chosen], normals[chosen], goals[chosen], bounces[chosen], tolerances[chosen], changed)
-    return ArrayContactCorrection(data, is_pyramid, rows[chosen], places[chosen], mu, *rest)

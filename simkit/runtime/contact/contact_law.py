@@ -24,15 +24,9 @@ import numpy as np
 
 from simkit.compiler.engine_options import contact_time_constant, has_engine_contacts
 from simkit.runtime.contact.centripetal_friction import CentripetalFriction
-from simkit.runtime.contact.contact_correction import (
-    ARRAY_THRESHOLD,
-    DEEP_PENETRATION,
-    ArrayContactCorrection,
-    ContactConditions,
-    ContactCorrection,
-    find_array_correction,
-    find_correction,
-)
+from simkit.runtime.contact.contact_conditions import ARRAY_THRESHOLD, DEEP_PENETRATION, ContactConditions
+from simkit.runtime.contact.contact_correction import ContactCorrection, find_correction
+from simkit.runtime.contact.contact_correction_arrays import ArrayContactCorrection, find_array_correction
 from simkit.runtime.contact.height_field_contacts import HeightFieldContacts
 from simkit.runtime.contact.wheel_contacts import WheelContacts
 
@@ -76,13 +70,13 @@ def window_length(timestep: float) -> int:
 class ContactShaper(Protocol):
     """Changes contacts in every forward pass, once velocities are known and before forces are."""
 
-    model: Any
+    model: mujoco.MjModel
 
     @property
     def acts(self) -> bool:
         """Whether there is anything to change; else the engine's contacts stay as they are."""
 
-    def shape(self, data: Any, request: Any = None) -> None:
+    def shape(self, data: mujoco.MjData, request: Any = None) -> None:
         """Change the contacts of data of its model, as is asked for now or as was once asked for by `request`."""
 
     def request(self) -> Any:
@@ -96,7 +90,7 @@ class ContactLaw:
         model: of the engine.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
         self._gravity = model.opt.gravity  # a view: gravity can be changed while it runs
         self._product = np.empty(0)
@@ -121,7 +115,7 @@ class ContactLaw:
         """Whether `solve` may change the constraints, so that they have to be made anew for other velocities."""
         return bool(self._wheels)
 
-    def is_needed(self, data: Any) -> bool:
+    def is_needed(self, data: mujoco.MjData) -> bool:
         """Return whether some contact slides, hits or overlaps, or some model flies or is fast and may hit something.
 
         Never in a world that asks for the engine's own contacts.
@@ -137,7 +131,7 @@ class ContactLaw:
 
     def solve(
         self,
-        data: Any,
+        data: mujoco.MjData,
         closing: list[float] | None = None,
         *,
         keeps_references: bool = False,
@@ -183,7 +177,7 @@ class ContactLaw:
                 data.efc_aref[row] = reference
         return found is not None
 
-    def _finds(self, data: Any) -> bool:
+    def _finds(self, data: mujoco.MjData) -> bool:
         """Return whether some contact has to be corrected; leaves the references as they were."""
         found = self._find(data, None)
         if found is None:
@@ -191,7 +185,7 @@ class ContactLaw:
         found.restore()
         return True
 
-    def _has_flying(self, data: Any) -> bool:
+    def _has_flying(self, data: mujoco.MjData) -> bool:
         """Return whether some tree that can collide is awake and touches nothing: it may land within the window."""
         trees = self._colliding
         # what lies exactly on a surface has a contact without rows, and no force yet
@@ -203,14 +197,14 @@ class ContactLaw:
         touches[self._tree_of[touching]] = True
         return bool((~touches[trees] & (data.tree_asleep[trees] < 0)).any())
 
-    def _has_fast(self, data: Any) -> bool:
+    def _has_fast(self, data: mujoco.MjData) -> bool:
         """Return whether some body that moves freely is so fast that a hit within the window counts."""
         velocities = data.qvel
         if velocities.dot(velocities) <= FAST_SPEED * FAST_SPEED:  # nothing at all is
             return False
         return bool((np.abs(velocities[self._free]) > FAST_SPEED).any())
 
-    def _is_quiet(self, data: Any) -> bool:
+    def _is_quiet(self, data: mujoco.MjData) -> bool:
         """Return whether all constraints are nearly at rest and none is asked to part fast."""
         velocity, reference = data.efc_vel, data.efc_aref
         if velocity.dot(velocity) > QUIET_SPEED * QUIET_SPEED:
@@ -218,7 +212,7 @@ class ContactLaw:
         return bool(reference.dot(reference) < self._least_reference)
 
     def _find(
-        self, data: Any, closing: list[float] | None, residual: Any = None
+        self, data: mujoco.MjData, closing: list[float] | None, residual: Any = None
     ) -> ContactCorrection | ArrayContactCorrection | None:
         """Return the contacts whose normal reference has to be corrected."""
         gravity: list[float] = self._gravity.tolist()
@@ -233,7 +227,7 @@ class ContactLaw:
             return find_array_correction(self.model, data, around, residual)
         return find_correction(data, around, residual)
 
-    def _repeat(self, data: Any, found: ContactCorrection | ArrayContactCorrection) -> None:
+    def _repeat(self, data: mujoco.MjData, found: ContactCorrection | ArrayContactCorrection) -> None:
         """Solve, correct the normal references by the solution, and solve again until they stay."""
         model = self.model
         found.guess(self._multiplied(data, data.qacc_warmstart))
@@ -245,7 +239,7 @@ class ContactLaw:
             found.settle()
             mj_forward_skip(model, data, _AFTER_VELOCITIES, 1)
 
-    def _multiplied(self, data: Any, acceleration: Any) -> Any:
+    def _multiplied(self, data: mujoco.MjData, acceleration: Any) -> Any:
         """Return J a, shape (nefc,); the array is used again at the next call."""
         if self._product.size != data.nefc:
             self._product = np.empty(data.nefc)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -29,10 +28,10 @@ _MIN_COMPLIANCE_SHARE = (
 class ContactSlip:
     """Makes contacts of one compiled model soft, once its constraints are made."""
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
 
-    def soften(self, data: Any, soft: Sequence[SlippingContact]) -> None:
+    def soften(self, data: mujoco.MjData, soft: Sequence[SlippingContact]) -> None:
         """Makes the friction of elliptic contacts soft."""
         contact, step = data.contact, float(self.model.opt.timestep)
         firsts, dims, frictions = contact.efc_address.tolist(), contact.dim.tolist(), contact.friction.tolist()
@@ -58,7 +57,9 @@ class ContactSlip:
                 damping = resistance[tangent] / one if one > 0.0 else math.inf
                 terms[first + 1 + tangent, 1] = min(damping, most[tangent])
 
-    def _yields(self, data: Any, soft: Sequence[SlippingContact], firsts: Sequence[int]) -> dict[int, Numbers]:
+    def _yields(
+        self, data: mujoco.MjData, soft: Sequence[SlippingContact], firsts: Sequence[int]
+    ) -> dict[int, Numbers]:
         """How much all contacts of a tree yield to forces along their two tangents at most, summed [1/kg].
 
         A sum of diagonal elements is no less than any eigenvalue.
@@ -82,7 +83,7 @@ class ContactSlip:
             both[1] += given[2 * index + 1]
         return found
 
-    def soften_pyramid(self, data: Any, number: int, slip: Pair) -> None:
+    def soften_pyramid(self, data: mujoco.MjData, number: int, slip: Pair) -> None:
         """Takes of the damping of a pyramid's edges what is too much along each tangent.
 
         Their R holds up the load as well and stays, so it takes longer until they slip as they are to.

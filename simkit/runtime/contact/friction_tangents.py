@@ -10,12 +10,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from simkit.runtime.contact.moving_surface import (
-    BeltContactArrays,
-    BeltContacts,
-    FrictionContactArrays,
-    FrictionContacts,
-)
+from simkit.runtime.contact.friction_contacts import FrictionContactArrays, FrictionContacts
+from simkit.runtime.contact.moving_surface import BeltContactArrays, BeltContacts
 from simkit.runtime.contact.moving_surface_arrays import Floats, Ints, rotate_frames, rotate_surface_velocities
 
 Numbers = list[float]
@@ -59,7 +55,9 @@ class FrictionTangents:
         is_belt: of each row, whether it is of a surface that can run.
     """
 
-    def __init__(self, model: Any, rows: Sequence[FrictionRow], row_of: Sequence[int], is_belt: Sequence[bool]) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, rows: Sequence[FrictionRow], row_of: Sequence[int], is_belt: Sequence[bool]
+    ) -> None:
         self._model, self._rows, self._row_of, self._is_belt = model, rows, row_of, is_belt
         self._rows_of: Ints = np.array(row_of)
         self._belts = np.array(is_belt, dtype=bool)
@@ -89,7 +87,7 @@ class FrictionTangents:
 
     def turn(
         self,
-        data: Any,
+        data: mujoco.MjData,
         found: FrictionContacts | FrictionContactArrays,
         places: RowContacts,
         flow: BeltContacts | BeltContactArrays | None,
@@ -109,7 +107,7 @@ class FrictionTangents:
 
     def _turn(
         self,
-        data: Any,
+        data: mujoco.MjData,
         found: FrictionContacts,
         places: list[RowContact],
         flow: BeltContacts | BeltContactArrays | None,
@@ -153,7 +151,11 @@ class FrictionTangents:
             contact.surfacevel[which] = flows
 
     def _turn_many(
-        self, data: Any, found: FrictionContactArrays, asked: Ints, flow: BeltContacts | BeltContactArrays | None
+        self,
+        data: mujoco.MjData,
+        found: FrictionContactArrays,
+        asked: Ints,
+        flow: BeltContacts | BeltContactArrays | None,
     ) -> None:
         """The same on arrays, with the same bits."""
         contact, least = data.contact, mujoco.mjMINMU

@@ -25,7 +25,7 @@ class HeightFieldContacts:
         model: of the engine.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
         self._fields: dict[int, int] = {
             geom: int(model.geom_dataid[geom])
@@ -35,7 +35,7 @@ class HeightFieldContacts:
     def __bool__(self) -> bool:
         return bool(self._fields)
 
-    def inner(self, data: Any) -> frozenset[int]:
+    def inner(self, data: mujoco.MjData) -> frozenset[int]:
         """Return the numbers of the contacts with inner walls.
 
         Args:

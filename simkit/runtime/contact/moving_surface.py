@@ -8,103 +8,17 @@ what its upper side carries ahead, its lower side carries back, and its ends car
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from simkit.runtime.contact.contact_correction import ARRAY_THRESHOLD
-from simkit.runtime.contact.moving_surface_arrays import MIN_SINE, Floats, Ints, along_tangents, find_belt_contacts
+from simkit.runtime.contact.belt import ZERO_VECTOR, Belt, BeltMotion, Point
+from simkit.runtime.contact.friction_contacts import Floats, FrictionContactArrays, FrictionContacts, Ints, Numbers
+from simkit.runtime.contact.moving_surface_arrays import MIN_SINE, along_tangents, find_belt_contacts
 
-Point = tuple[float, float, float]
-Numbers = list[float]
-
-ZERO_VECTOR = (0.0, 0.0, 0.0)
-
-
-@dataclass(frozen=True, slots=True)
-class BeltMotion:
-    """How a belt runs now.
-
-    Attributes:
-        speed: [m/s]; a positive one carries what lies on top along x, where x, the axle and up are right-handed.
-        centre: of the circle, in the world, that its contacts are carried along [m]; None where it runs straight.
-    """
-
-    speed: float
-    centre: Point | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Belt:
-    """A surface that can run, in one compiled model.
-
-    Attributes:
-        geoms: ids of its geoms.
-        body: that they move with.
-        axle: unit vector in the body's frame that the belt runs round.
-        now: asked in every forward pass, so that it is part of its plugin's state; None while it stands still.
-        friction: coefficients along and across its way; None where they are those of the file.
-    """
-
-    geoms: tuple[int, ...]
-    body: int
-    axle: Point
-    now: Callable[[], BeltMotion | None]
-    friction: tuple[float, float] | None = None
-
-
-class FrictionContacts(NamedTuple):
-    """Contacts that rub, k of them; plain numbers where there are few, as arrays of three are slow, else `FrictionContactArrays`.
-
-    Attributes:
-        numbers: among the contacts.
-        geoms: the two geoms of each; -1 for none.
-        frames: normal (from the first geom to the second) and two tangents of each, 9 numbers.
-    """
-
-    numbers: list[int]
-    geoms: list[list[int]]
-    frames: list[Numbers]
-
-
-class FrictionContactArrays(NamedTuple):
-    """The same of many contacts, on arrays."""
-
-    numbers: Ints
-    geoms: Ints
-    frames: Floats
-
-
-def find_friction_contacts(data: Any, concerns: Sequence[bool]) -> FrictionContacts | FrictionContactArrays | None:
-    """The contacts that rub among those that are about certain geoms; None where there is none.
-
-    Args:
-        data: of the engine, with positions.
-        concerns: for each geom whether it is about it; the last is for -1.
-    """
-    contact = data.contact
-    if data.ncon > ARRAY_THRESHOLD:
-        one_side, other_side = np.array(concerns)[contact.geom].T
-        rubs = (contact.efc_address >= 0) & (contact.dim > 1) & (one_side | other_side)
-        many: Ints = rubs.nonzero()[0]
-        if many.size > ARRAY_THRESHOLD:
-            which: Any = slice(None) if many.size == data.ncon else many  # a slice is quicker
-            return FrictionContactArrays(many, contact.geom[which], contact.frame[which].copy())
-        numbers = many.tolist()
-        return FrictionContacts(numbers, contact.geom[rubs].tolist(), contact.frame[rubs].tolist()) if numbers else None
-    pairs = contact.geom.tolist()
-    numbers = [number for number, (one, other) in enumerate(pairs) if concerns[one] or concerns[other]]
-    if not numbers:
-        return None
-    rows, dims = contact.efc_address.tolist(), contact.dim.tolist()
-    numbers = [number for number in numbers if rows[number] >= 0 and dims[number] > 1]
-    if not numbers:
-        return None
-    if len(numbers) == len(pairs):
-        return FrictionContacts(numbers, pairs, contact.frame.tolist())
-    return FrictionContacts(numbers, [pairs[number] for number in numbers], contact.frame[numbers].tolist())
+if TYPE_CHECKING:
+    import mujoco
 
 
 class BeltContacts(NamedTuple):
@@ -139,7 +53,7 @@ class MovingSurfaces:
         concerns: for each geom whether it is part of one; the last is for -1: no geom.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
         self._belts: list[Belt] = []
         self._owner = [-1] * (model.ngeom + 1)
@@ -167,7 +81,10 @@ class MovingSurfaces:
     # ------------------------------------------------------------------ contacts
 
     def look(
-        self, data: Any, found: FrictionContacts | FrictionContactArrays | None, runs: Sequence[BeltMotion | None]
+        self,
+        data: mujoco.MjData,
+        found: FrictionContacts | FrictionContactArrays | None,
+        runs: Sequence[BeltMotion | None],
     ) -> BeltContacts | BeltContactArrays | None:
         """Finds the contacts with belts that run; also for `carry`.
 
@@ -185,7 +102,7 @@ class MovingSurfaces:
         return self._flow
 
     def _found_many(
-        self, data: Any, found: FrictionContactArrays, runs: Sequence[BeltMotion | None]
+        self, data: mujoco.MjData, found: FrictionContactArrays, runs: Sequence[BeltMotion | None]
     ) -> BeltContactArrays | None:
         axles = [
             ZERO_VECTOR if run is None else _world_axle(data, one) for one, run in zip(self._belts, runs, strict=True)
@@ -196,7 +113,9 @@ class MovingSurfaces:
         )
         return BeltContactArrays(found.numbers[places], places, directions, velocities) if places.size else None
 
-    def _found(self, data: Any, found: FrictionContacts, runs: Sequence[BeltMotion | None]) -> BeltContacts | None:
+    def _found(
+        self, data: mujoco.MjData, found: FrictionContacts, runs: Sequence[BeltMotion | None]
+    ) -> BeltContacts | None:
         owner, flow = self._owner, BeltContacts([], [], [], [])
         axles: dict[int, Point] = {}
         known: dict[Any, tuple[Point, Point]] = {}  # what lies flat on a straight belt has one normal
@@ -224,7 +143,7 @@ class MovingSurfaces:
 
     def _way(
         self,
-        data: Any,
+        data: mujoco.MjData,
         belts: Sequence[tuple[int, BeltMotion, float]],
         normal: Point,
         place: Sequence[float],
@@ -250,7 +169,7 @@ class MovingSurfaces:
             vx, vy, vz = vx + speed * dx, vy + speed * dy, vz + speed * dz
         return direction, (vx, vy, vz)
 
-    def carry(self, data: Any, frames: Sequence[Numbers] | Floats) -> None:
+    def carry(self, data: mujoco.MjData, frames: Sequence[Numbers] | Floats) -> None:
         """Gives the contacts found by `look` their surface velocity.
 
         Args:
@@ -271,7 +190,7 @@ class MovingSurfaces:
             surface[number, 1] = bx * x + by * y + bz * z
 
 
-def _world_axle(data: Any, belt: Belt) -> Point:
+def _world_axle(data: mujoco.MjData, belt: Belt) -> Point:
     """What a belt runs round, in the world."""
     a, b, c, d, e, f, g, h, i = data.xmat[belt.body].tolist()
     x, y, z = belt.axle

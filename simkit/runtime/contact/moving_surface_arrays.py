@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from simkit.runtime.contact.moving_surface import BeltMotion, Point
+    from simkit.runtime.contact.belt import BeltMotion, Point
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.integer[Any]]

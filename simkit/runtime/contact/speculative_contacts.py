@@ -1,10 +1,10 @@
 """Detection of bodies that move so far in one step that they could pass through what they meet.
 
 MuJoCo's speculative contacts sweep geoms along their velocities and stop them before they touch. They cost 1.1 to 2.7
-times a step even where nothing is fast, so they are switched on for windows of some steps (`window_length`), by a rule that
-looks at positions and velocities alone. In such a window all steps follow the contact law, which stops within one step
-what closes fast: a body that strikes with an edge begins to spin, and its other corners would sink through a soft
-contact.
+times a step even where nothing is fast, so they are switched on for windows of some steps (`window_length`), by a
+rule that looks at positions and velocities alone. In such a window all steps follow the contact law, which stops within
+one step what closes fast: a body that strikes with an edge begins to spin, and its other corners would sink through a
+soft contact.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ from simkit.runtime.contact.travel_bounds import (
 )
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.compiler.name_map import NameMap
+    from simkit.diagnostics import Diagnostics
 
 
 SPECULATIVE_FLAG: Final = int(mujoco.mjtEnableBit.mjENBL_SPECULATIVE)
@@ -87,7 +88,7 @@ class FastBodyDetector:
         tell: is given what cannot be helped, at each look that finds something; it may change no state.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self.model = model
         self.tell: Callable[[list[FastApproach]], None] | None = None
         step = float(model.opt.timestep)
@@ -135,7 +136,7 @@ class FastBodyDetector:
 
     # ------------------------------------------------------------------ the look
 
-    def wants(self, data: Any) -> bool:
+    def wants(self, data: mujoco.MjData) -> bool:
         """Return whether the next window needs speculative contacts, by `qpos`, `qvel` and mocap poses alone."""
         if not self._can_be_fast:
             return False
@@ -153,7 +154,7 @@ class FastBodyDetector:
             return bool((self._share @ speeds).max() <= 1.0)
         return bool(np.add.reduceat(speeds * self._weights, self._starts).max() <= 1.0)
 
-    def _meets(self, data: Any) -> bool:
+    def _meets(self, data: mujoco.MjData) -> bool:
         """Check whether a fast geom may pass through another within a window."""
         model, moving = self.model, self._moving
         scratch = self._positions(data)
@@ -185,7 +186,7 @@ class FastBodyDetector:
             self._find_helpless(scratch, one[keep], other[keep], both[keep], all_linear)
         return True
 
-    def _positions(self, data: Any) -> Any:
+    def _positions(self, data: mujoco.MjData) -> Any:
         """Compute positions and velocities of bodies aside: those in `data` are as old as its last forward pass."""
         model, scratch = self.model, self._scratch
         if scratch is None:
@@ -275,34 +276,41 @@ class FastBodyDetector:
 
 
 class FastBodyWarnings:
-    """Warns of what may pass through something else, once for each pair of collisions."""
+    """Warnings of collisions that may pass through each other, one for each pair.
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
-        self._told: set[frozenset[str]] = set()
+    Args:
+        reports: receives the warnings.
+        timestep: length of a step [s].
+
+    Attributes:
+        names: of the present compiled model.
+    """
+
+    def __init__(self, reports: Diagnostics, timestep: float) -> None:
+        self._reports, self._timestep = reports, timestep
+        self._reported: set[frozenset[str]] = set()
+        self.names: NameMap
 
     def __call__(self, approaches: list[FastApproach]) -> None:
         """Warn of the pairs that are new."""
-        sim = self._sim
-        names = sim.structure.compiled.names
+        names, timestep = self.names, self._timestep
         for found in approaches:
             link, one, _ = names.geom_owner(found.geom)
             _, other, _ = names.geom_owner(found.other)
             one, other = one or "a geom", other or "a geom"
             pair = frozenset((one, other))
-            if pair in self._told:
+            if pair in self._reported:
                 continue
-            self._told.add(pair)
+            self._reported.add(pair)
             what = f"the height map {other}" if found.is_height_field else other
-            travel = found.speed * sim.timestep
+            travel = found.speed * timestep
             message = (
                 f"{one} may pass through {what}: it comes at {found.speed:.3g} m/s, {travel:.3g} m in a step of "
-                f"{sim.timestep:g} s, and the thinner of the two is {found.thickness:.3g} m thick"
+                f"{timestep:g} s, and the thinner of the two is {found.thickness:.3g} m thick"
             )
             where = names.link(link).scene.where if link in names.links else NOWHERE
-            sim.reports.warning(
-                "SK-PHYS-031", message, where, f"<max_step_size>{_round_down(found.step):g}</max_step_size>"
-            )
+            hint = f"<max_step_size>{_round_down(found.step):g}</max_step_size>"
+            self._reports.warning("SK-PHYS-031", message, where, hint)
 
 
 def _round_down(value: float) -> float:

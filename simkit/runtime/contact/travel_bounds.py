@@ -26,7 +26,7 @@ _MAX_COMPARED_BODIES: Final = 64
 """Bodies of one kinematic tree up to which its pairs are looked at one by one."""
 
 
-def half_thickness(model: Any) -> Floats:
+def half_thickness(model: mujoco.MjModel) -> Floats:
     """Return half the least extent [m] of each geom; infinite for a plane, half the base for a height field.
 
     One entry more than there are geoms: an infinite one, for contacts of no geom (index -1).
@@ -38,26 +38,26 @@ def half_thickness(model: Any) -> Floats:
     return half
 
 
-def rotational_symmetries(model: Any) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+def rotational_symmetries(model: mujoco.MjModel) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
     """Return which geoms no rotation about their centre changes, and which none about their z axis does."""
     size, kind = model.geom_size, model.geom_type
     is_round = np.isin(kind, _ROUND) | ((kind == _ELLIPSOID) & (size[:, 0] == size[:, 1]))
     return kind == _SPHERE, is_round
 
 
-def can_collide(model: Any) -> npt.NDArray[np.bool_]:
+def can_collide(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     """Return which geoms may touch anything at all."""
     found: npt.NDArray[np.bool_] = (model.geom_contype | model.geom_conaffinity) != 0
     return found
 
 
-def can_touch(model: Any, one: Any, other: Any) -> Any:
+def can_touch(model: mujoco.MjModel, one: Any, other: Any) -> Any:
     """Return whether geoms may touch by their masks alone; the arguments are indices that broadcast."""
     types, affinities = model.geom_contype, model.geom_conaffinity
     return ((types[one] & affinities[other]) | (types[other] & affinities[one])) != 0
 
 
-def allowed_travel(model: Any, half: Floats, geoms: Ints) -> Floats:
+def allowed_travel(model: mujoco.MjModel, half: Floats, geoms: Ints) -> Floats:
     """Return the travel [m] up to which moving geoms pass through nothing.
 
     Two geoms can pass through each other once they travel, together, more than half the thickness of both. So what
@@ -93,7 +93,7 @@ def _minimum(values: Floats) -> float:
     return float(values.min()) if len(values) else np.inf
 
 
-def _can_touch_itself(model: Any, tree: int) -> bool:
+def _can_touch_itself(model: mujoco.MjModel, tree: int) -> bool:
     """Check whether two bodies of a kinematic tree may touch each other."""
     solid = np.unique(model.geom_bodyid[can_collide(model)])
     bodies = solid[model.body_treeid[solid] == tree].tolist()
@@ -102,7 +102,7 @@ def _can_touch_itself(model: Any, tree: int) -> bool:
     return any(not is_filtered(model, a, b) for n, a in enumerate(bodies) for b in bodies[:n])
 
 
-def is_filtered(model: Any, one: int, other: int) -> bool:
+def is_filtered(model: mujoco.MjModel, one: int, other: int) -> bool:
     """Return whether the engine leaves out contacts between two bodies, whatever their masks."""
     weld, parent = model.body_weldid, model.body_parentid
     a, b = int(weld[one]), int(weld[other])
@@ -119,7 +119,7 @@ def is_filtered(model: Any, one: int, other: int) -> bool:
     )
 
 
-def velocity_levers(model: Any, geoms: Ints) -> tuple[Ints, Ints, Floats]:
+def velocity_levers(model: mujoco.MjModel, geoms: Ints) -> tuple[Ints, Ints, Floats]:
     """Return rows of (place in `geoms`, degree of freedom, lever): surface points move by at most lever · |velocity|.
 
     The lever is 1 for a translation and a length [m] for a rotation, over all configurations.

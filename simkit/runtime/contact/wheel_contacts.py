@@ -11,7 +11,7 @@ the line of contact crosses the middle of the tread.
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -35,7 +35,7 @@ class WheelContacts:
         model: of the engine.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
         self._is_sparse = bool(mujoco.mj_isSparse(model))
         self._has_islands = not model.opt.disableflags & _NO_ISLANDS
@@ -76,7 +76,7 @@ class WheelContacts:
         is_wheel = along[column] > _ALIGNED and is_round and off_axis < _CENTRED * radius and size[column] <= radius
         return column if is_wheel else None
 
-    def merge(self, data: Any) -> bool:
+    def merge(self, data: mujoco.MjData) -> bool:
         """Give the contacts along a line one friction point: their Jacobians' tangent rows become the same.
 
         Args:
@@ -111,7 +111,7 @@ class WheelContacts:
         mujoco.mj_referenceConstraint(self._model, data)
         return True
 
-    def _lines(self, data: Any) -> list[tuple[int, int, float]]:
+    def _lines(self, data: mujoco.MjData) -> list[tuple[int, int, float]]:
         """Return the rows of both ends of each line of contact, and where between them the middle of the tread is."""
         contact, axis_of = data.contact, self._axis_of
         groups: dict[tuple[int, int], list[int]] = {}

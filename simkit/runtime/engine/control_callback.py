@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 
@@ -52,7 +52,7 @@ _previous: Callable[[int, int], None] | None = None
 
 
 @contextmanager
-def call_before_forces(data: Any, call: Callable[[], None]) -> Iterator[None]:
+def call_before_forces(data: mujoco.MjData, call: Callable[[], None]) -> Iterator[None]:
     """Have a function called in every forward pass of some data; not in those that the function itself makes.
 
     What it raises is raised at the end; until then it is not called again.

@@ -43,7 +43,7 @@ class PassiveTree:
         is_chain: whether it holds a chain; else it holds a body that may spin.
     """
 
-    def __init__(self, model: Any, number: int, is_chain: bool) -> None:
+    def __init__(self, model: mujoco.MjModel, number: int, is_chain: bool) -> None:
         self.number, self.is_chain = number, is_chain
         self.dofs = _index_range(model.tree_dofadr, model.tree_dofnum, number)
         joints = model.dof_jntid[self.dofs]
@@ -62,14 +62,14 @@ class FreeMotionIntegrator:
     Usage in every step: `prepare`, the engine's own step, `correct`.
     """
 
-    def __init__(self, model: Any, trees: list[PassiveTree]) -> None:
+    def __init__(self, model: mujoco.MjModel, trees: list[PassiveTree]) -> None:
         self.model, self.trees = model, trees
         self._data = mujoco.MjData(model)
         self._state = np.empty(mujoco.mj_stateSize(model, _STATE))
         self._moving: list[PassiveTree] = []
 
     @classmethod
-    def of(cls, model: Any) -> FreeMotionIntegrator | None:
+    def of(cls, model: mujoco.MjModel) -> FreeMotionIntegrator | None:
         """Return the integrator of a model; None where no tree needs it."""
         driven, lengths = _driven_trees(model), _chain_lengths(model)
         found = []
@@ -79,7 +79,7 @@ class FreeMotionIntegrator:
                 found.append(PassiveTree(model, number, is_chain))
         return cls(model, found) if found else None
 
-    def prepare(self, data: Any) -> None:
+    def prepare(self, data: mujoco.MjData) -> None:
         """Integrate over the coming step, from data that are not stepped yet."""
         model, own, option = self.model, self._data, self.model.opt
         step, velocity = float(option.timestep), data.qvel
@@ -103,7 +103,7 @@ class FreeMotionIntegrator:
             option.timestep, option.integrator = step, integrator
             option.disableflags, option.enableflags = disabled, enabled
 
-    def correct(self, data: Any) -> None:
+    def correct(self, data: mujoco.MjData) -> None:
         """Write the integrated states of all trees that no constraint has acted on to the stepped data."""
         own, forces = self._data, data.qfrc_constraint
         for tree in self._moving:
@@ -118,13 +118,13 @@ def _index_range(starts: Any, counts: Any, index: int) -> slice:
     return slice(int(starts[index]), int(starts[index]) + int(counts[index]))
 
 
-def _resisting_dofs(model: Any) -> npt.NDArray[np.bool_]:
+def _resisting_dofs(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
     """Return which degrees of freedom have damping, friction or armature."""
     found: npt.NDArray[np.bool_] = (model.dof_damping != 0) | (model.dof_frictionloss != 0) | (model.dof_armature != 0)
     return found
 
 
-def _chain_lengths(model: Any) -> dict[int, int]:
+def _chain_lengths(model: mujoco.MjModel) -> dict[int, int]:
     """Return how many bodies in a row move on passive joints alone, at most, by tree."""
     resisting = _resisting_dofs(model)
     longest: dict[int, int] = {}
@@ -140,7 +140,7 @@ def _chain_lengths(model: Any) -> dict[int, int]:
     return longest
 
 
-def _may_spin(model: Any, tree: int) -> bool:
+def _may_spin(model: mujoco.MjModel, tree: int) -> bool:
     """Check whether a tree is passive and turns on a ball joint, or flies and has nothing that collides."""
     dofs = _index_range(model.tree_dofadr, model.tree_dofnum, tree)
     kinds = set(model.jnt_type[model.dof_jntid[dofs]].tolist())
@@ -152,7 +152,7 @@ def _may_spin(model: Any, tree: int) -> bool:
     return _FREE in kinds and not (model.geom_contype[own] | model.geom_conaffinity[own]).any()
 
 
-def _driven_trees(model: Any) -> set[int]:
+def _driven_trees(model: mujoco.MjModel) -> set[int]:
     """Return the trees with a joint that an actuator moves; every other kind of actuator drives all of them."""
     driven: set[int] = set()
     joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))

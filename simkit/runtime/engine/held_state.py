@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import mujoco
 
 
 class HeldState:
@@ -26,7 +29,7 @@ class HeldState:
     def __init__(
         self,
         tick: int,
-        model: Any,
+        model: mujoco.MjModel,
         values: npt.NDArray[np.float64],
         request: Any,
         uses_law: bool | None,

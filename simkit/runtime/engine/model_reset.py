@@ -68,7 +68,7 @@ def _pair_by_name(kind: Any, count: int, old: Any, new: Any) -> list[tuple[int, 
     return found
 
 
-def _copy_activations(old: Any, old_data: Any, new: Any, data: Any) -> None:
+def _copy_activations(old: Any, old_data: Any, new: Any, data: mujoco.MjData) -> None:
     """Of actuators that were there; that of others belongs to plugins that go on."""
     for i, j in _pair_by_name(mujoco.mjtObj.mjOBJ_ACTUATOR, old.nu, old, new):
         a, b, count = int(old.actuator_actadr[i]), int(new.actuator_actadr[j]), int(old.actuator_actnum[i])
@@ -76,7 +76,7 @@ def _copy_activations(old: Any, old_data: Any, new: Any, data: Any) -> None:
             data.act[b : b + count] = old_data.act[a : a + count]
 
 
-def _copy_joints(old: Any, old_data: Any, new: Any, data: Any) -> None:
+def _copy_joints(old: Any, old_data: Any, new: Any, data: mujoco.MjData) -> None:
     for i, j in _pair_by_name(mujoco.mjtObj.mjOBJ_JOINT, old.njnt, old, new):
         wide, free = _JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
         a, b = int(old.jnt_qposadr[i]), int(new.jnt_qposadr[j])
@@ -90,7 +90,7 @@ def _copy_rows(kind: Any, old: Any, old_values: Any, new: Any, values: Any) -> N
         values[j] = old_values[i]
 
 
-def _copy_mocap(old: Any, old_data: Any, new: Any, data: Any) -> None:
+def _copy_mocap(old: Any, old_data: Any, new: Any, data: mujoco.MjData) -> None:
     for i, j in _pair_by_name(mujoco.mjtObj.mjOBJ_BODY, old.nbody, old, new):
         a, b = int(old.body_mocapid[i]), int(new.body_mocapid[j])
         if a >= 0 and b >= 0:

@@ -1,7 +1,8 @@
 """What becomes of a plugin that raises: it stops the run, or it is left out from then on.
 
-Everything of a plugin that is called while the run goes, hooks and callbacks, is called through `Faults.guard`. Who
-watches from another thread finds what is being called in the stack (`active_plugin_calls`), so that watching costs nothing.
+Everything of a plugin that is called while the run goes, hooks and callbacks, is called through `PluginFaults.guard`.
+Who watches from another thread finds what is being called in the stack (`active_plugin_calls`), so that watching costs
+nothing.
 """
 
 from __future__ import annotations

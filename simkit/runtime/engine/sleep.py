@@ -56,7 +56,7 @@ class Sleep:
         wants_all_awake: the next forward pass wakes everything.
     """
 
-    def __init__(self, model: Any, data: Any, enabled: bool) -> None:
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, enabled: bool) -> None:
         self._model, self._data = model, data
         self.enabled = enabled
         self.is_drowsy = self.rests = self.wants_all_awake = self.watches = self._can_rest = self.counts = False
@@ -102,7 +102,7 @@ class Sleep:
 
     # ------------------------------------------------------------------ falling asleep
 
-    def look(self, data: Any) -> None:
+    def look(self, data: mujoco.MjData) -> None:
         """Compares with the last look, and makes ready for sleep what rests; `data` has a fresh forward pass."""
         qpos = data.qpos.copy()
         asleep = data.tree_asleep >= 0
@@ -167,7 +167,7 @@ class Sleep:
             asleep[tree] = _AWAKE
         return False
 
-    def is_asleep(self, body: int, data: Any) -> bool:
+    def is_asleep(self, body: int, data: mujoco.MjData) -> bool:
         """Whether a body sleeps, of data with a fresh forward pass."""
         tree = int(self._model.body_treeid[body])
         return tree >= 0 and bool(data.tree_asleep[tree] >= 0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import mujoco
 
-from simkit.runtime.engine.physics import STALE, StepWindow
+from simkit.runtime.engine.physics_state import STALE, StepWindow
 from simkit.runtime.engine.world_structure import WorldStructure
 from simkit.runtime.handles.entity_handles import restore_compiled_fields
 from simkit.runtime.handles.model import Model
@@ -34,7 +34,7 @@ class Snapshot:
 
     tick: int
     structure: WorldStructure
-    data: Any
+    data: mujoco.MjData
     fields: dict[str, Any]
     sensors: list[tuple[Any, Any]]
     plugins: list[tuple[Any, Any]]

@@ -187,7 +187,7 @@ atexit.register(stop_other_loops)
 def guarded_hook(sim: Any, plugin: Any, hook: str) -> Callable[..., None]:
     """A plugin's hook as a task; whatever it raises becomes a PluginError with name, place and time.
 
-    Of a plugin that may be left out (`on_error="disable"`) the run goes on without it: see `simkit.runtime.engine.plugin_faults`.
+    Of a plugin that may be left out (`on_error="disable"`) the run goes on without it (`plugin_faults`).
     """
     found: Callable[..., None] = sim.faults.task(plugin, hook)
     return found
