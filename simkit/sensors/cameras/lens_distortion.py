@@ -66,7 +66,7 @@ def distort(x: Vector, y: Vector, lens: Distortion) -> tuple[Vector, Vector]:
 
 
 def undistort(bent_x: Vector, bent_y: Vector, lens: Distortion) -> tuple[Vector, Vector]:
-    """Where points of the bent picture lie in the straight one, both on the plane at distance 1: the inverse of `distort`.
+    """Return where points of the distorted picture lie in the undistorted one, on the plane at distance 1.
 
     Beyond the radius where the model folds back, and farther than 88 degrees off the axis, there is no answer: NaN.
     """

@@ -62,7 +62,8 @@ def _read_year(block: Params) -> float:
         year = float("nan")
     if FIRST_YEAR <= year <= LAST_YEAR:
         return year
-    message = f"found <date>{given.value[:60]}</date>, allowed is a date as 2026-07-01 or 2026.5 from {FIRST_YEAR:g} to {LAST_YEAR:g}"
+    allowed = f"allowed is a date as 2026-07-01 or 2026.5 from {FIRST_YEAR:g} to {LAST_YEAR:g}"
+    message = f"found <date>{given.value[:60]}</date>, {allowed}"
     given.error("SK-SENSOR-063", message)
     return DEFAULT_DATE
 

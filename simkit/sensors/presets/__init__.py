@@ -1,18 +1,18 @@
 """Presets: a sensor names a real device, `<simkit:preset>LDS-01</simkit:preset>`, and gets its published numbers.
 
-One file for each maker or family; what is in its `PRESETS` is found.
+A `<sensor>` enters, the same sensor with the device's settings under its own leaves. The numbers are data, in `data/`, one
+TOML file for each maker or family; no code here knows a device.
 """
 
 from __future__ import annotations
 
 import functools
-import importlib
-import pkgutil
 import re
 from collections.abc import Mapping
 from types import MappingProxyType
 
 from simkit.sensors.presets.preset import Preset
+from simkit.sensors.presets.preset_files import load_presets
 
 __all__ = ["Preset", "find", "normalise_name", "presets"]
 
@@ -24,11 +24,7 @@ def presets() -> tuple[Preset, ...]:
     Raises:
         RuntimeError: two of one kind answer to one name.
     """
-    found: list[Preset] = []
-    for info in pkgutil.iter_modules(__path__, __name__ + "."):
-        if not info.name.endswith("__main__"):
-            found += getattr(importlib.import_module(info.name), "PRESETS", ())
-    return tuple(sorted(found, key=lambda p: (p.kind, p.maker, p.name)))
+    return tuple(sorted(load_presets(), key=lambda p: (p.kind, p.maker, p.name)))
 
 
 @functools.cache

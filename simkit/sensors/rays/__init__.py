@@ -1,5 +1,5 @@
-"""Rays from one point: against the engine's own geoms where they are few, by NumPy and Embree where they are many."""
+"""Ray sensors (lidar, sonar) and the casting of rays from one point.
 
-from simkit.sensors.rays.ray_fan import MANY_RAYS, RayFan, fan_directions
-
-__all__ = ["MANY_RAYS", "RayFan", "fan_directions"]
+A `<sensor>` and the simulation enter; `LaserScan`, point clouds and `Range` messages leave. Few rays are cast by MuJoCo,
+many by NumPy on shapes and by Embree on triangles, all to the same distances. Nothing here needs OpenGL.
+"""

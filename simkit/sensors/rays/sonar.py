@@ -15,7 +15,7 @@ from simkit.params import Params
 from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
-from simkit.sensors.rays import RayFan
+from simkit.sensors.rays.ray_fan import RayFan
 
 if TYPE_CHECKING:
     from simkit.scene import SceneSensor
