@@ -1,8 +1,8 @@
 """Sensors: what samples the simulation and publishes readings; one file for each kind, in a subfolder of its field.
 
-A `<sensor>` of the scene and the running simulation enter; samples at the sensor's rate, with noise and latency, leave as
-messages on topics. A sensor never changes the physics, and one that nobody reads costs nothing. This folder holds what
-all kinds share; the kinds are discovered in the subfolders and in the entry points `simkit.sensors` when first asked for.
+A `<sensor>` of the scene and the running simulation enter; samples at the sensor's rate, with noise and latency, leave
+as messages on topics. A sensor never changes the physics, and one that nobody reads costs nothing. This folder holds
+what all kinds share; the kinds are discovered in the subfolders and in the entry points `simkit.sensors` at first use.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Load the presets from the TOML files in `data/`, one file for each maker or family.
 
-Keys above the first `[[preset]]` of a file hold for all presets of that file. Settings are in SI units; `xyz` and `xy` stand
-for axes with the same settings. A comment gives the number of the data sheet where its unit differs.
+Keys above the first `[[preset]]` of a file hold for all presets of that file. Settings are in SI units; `xyz` and `xy`
+stand for axes with the same settings. A comment gives the number of the data sheet where its unit differs.
 """
 
 from __future__ import annotations

@@ -17,8 +17,8 @@ from simkit.pose import Vector
 from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
 from simkit.sensors.point_cloud_messages import LEGACY_CLOUD_TYPE, legacy_point_cloud, point_cloud
-from simkit.sensors.rays.ray_fan import RayFan, fan_directions
 from simkit.sensors.rays.lidar_options import MAX_RANGE, LidarOptions, read_options
+from simkit.sensors.rays.ray_fan import RayFan, fan_directions
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms
 
 if TYPE_CHECKING:
