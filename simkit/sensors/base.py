@@ -189,7 +189,7 @@ class Sensor(Sampler):
         options, quirks = self.timing, sim.world.gazebo_quirks
         self._times = SampleTimes(options, sim.clock, sim.streams, self.scoped, in_milliseconds=quirks)
         if options.latency > 0:
-            self._flight = DelayedReadings(options, sim.clock, sim.streams, self.scoped)
+            self._delayed = DelayedReadings(options, sim.clock, sim.streams, self.scoped)
         self._report_timing(sim)
         if options.set_rate_topic:
             sim.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)

@@ -53,8 +53,8 @@ class Sampler(abc.ABC):
         self._skipped = 0  # samples of which nobody has looked at one; only the last can be looked at
         self._held: tuple[int, HeldState] | None = None  # the tick of that one, and its state
         self._index, self._time_ns = 0, -1
-        self._flight: DelayedReadings | None = None
-        self._departures: LatencyTimetable | None = None
+        self._delayed: DelayedReadings | None = None
+        self._latency_timetable: LatencyTimetable | None = None
         # what a kind does not override is not called at every sample
         self._is_choosy, self._is_reticent = self._overrides("accepts"), self._overrides("tells")
         self._evolves = self._overrides("evolve")
@@ -126,7 +126,7 @@ class Sampler(abc.ABC):
     @property
     def keeps_to_grid(self) -> bool:
         """Whether it samples and publishes at every tick of its rate and phase, with noise that does not wander."""
-        is_plain = self._flight is None and self.timing.jitter == 0 and not self._evolves
+        is_plain = self._delayed is None and self.timing.jitter == 0 and not self._evolves
         return is_plain and not (self._is_choosy or self._is_reticent)
 
     @property
@@ -145,15 +145,15 @@ class Sampler(abc.ABC):
     def timetable(self) -> Timetable | None:
         """When `sample` is to be called, at the rate of the moment; None is every step."""
         grid = self._times.grid(self.update_rate)
-        if self._flight is None or grid is None:
-            self._departures = None
+        if self._delayed is None or grid is None:
+            self._latency_timetable = None
             return grid
-        self._departures = LatencyTimetable(grid, self._flight, self)
-        return self._departures
+        self._latency_timetable = LatencyTimetable(grid, self._delayed, lambda: self._index + 1)
+        return self._latency_timetable
 
     def sample(self, tick: int) -> None:
         """The due tick: measures and publishes where somebody reads, else keeps the physics state."""
-        if self._flight is not None and not self._receive(self._flight, tick):
+        if self._delayed is not None and not self._receive(self._delayed, tick):
             return
         if self._is_choosy and not (self._is_on() and self.accepts(tick)):
             return
@@ -178,9 +178,9 @@ class Sampler(abc.ABC):
                 self._choose(sample)
         else:
             sample.held = sim.hold_state()
-        if self._flight is not None:
-            self._flight.samples.append((self._flight.arrival(tick, sample.index), sample))
-            self._deliver(self._flight, tick)
+        if self._delayed is not None:
+            self._delayed.samples.append((self._delayed.arrival(tick, sample.index), sample))
+            self._deliver(self._delayed, tick)
             return
         self._sample = sample
         if wanted:
@@ -207,15 +207,15 @@ class Sampler(abc.ABC):
     def get_state(self) -> Any:
         self._catch_up()
         # a sample is only ever completed, never changed, so it may be shared
-        flight = tuple(self._flight.samples) if self._flight is not None else ()
+        flight = tuple(self._delayed.samples) if self._delayed is not None else ()
         return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory()
 
     def set_state(self, state: Any) -> None:
         self._catch_up()
         self._index, self._time_ns, self._sample, flight, rate, memory = state
-        if self._flight is not None:
-            self._flight.samples.clear()
-            self._flight.samples.extend(flight)
+        if self._delayed is not None:
+            self._delayed.samples.clear()
+            self._delayed.samples.extend(flight)
         self._take_rate(rate)
         self.remember(memory)
 
@@ -267,10 +267,10 @@ class Sampler(abc.ABC):
         self._is_read = any(needs_reading for _, _, needs_reading in self._wanted)
         self._is_served = bool(self._wanted) and all(publisher.is_live for _, publisher, _ in self._wanted)
         patience = [publisher.patience for _, publisher, _ in self._wanted]
-        is_plain = self._flight is None and not (self._is_choosy or self._is_reticent)
+        is_plain = self._delayed is None and not (self._is_choosy or self._is_reticent)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
         changes = self._evolves or self._wandering or self._overrides("_begin")
-        self._is_unseen = not (self._wanted or changes or self._flight)
+        self._is_unseen = not (self._wanted or changes or self._delayed)
         self._patience = max(patience, default=0.0)
 
     def _catch_up(self) -> None:
@@ -300,20 +300,20 @@ class Sampler(abc.ABC):
         """Every sample that may still be looked at."""
         if self._sample is not None:
             yield self._sample
-        if self._flight is not None:
-            for _, sample in self._flight.samples:
+        if self._delayed is not None:
+            for _, sample in self._delayed.samples:
                 yield sample
 
     def _drop(self) -> None:
         """Forgets them all."""
         self._sample = None
-        if self._flight is not None:
-            self._flight.samples.clear()
+        if self._delayed is not None:
+            self._delayed.samples.clear()
 
     def _receive(self, flight: DelayedReadings, tick: int) -> bool:
         """Delivers what has arrived; whether a sample is due as well."""
         self._deliver(flight, tick)
-        return self._departures is None or self._departures.is_sample(tick)
+        return self._latency_timetable is None or self._latency_timetable.is_sample(tick)
 
     def _deliver(self, flight: DelayedReadings, tick: int) -> None:
         for sample in flight.arrived(tick):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,6 @@ from simkit.runtime.engine.clock import Clock, SampleTiming, exact_fraction, exa
 if TYPE_CHECKING:
     from simkit.runtime.engine.random_streams import RandomStreams
     from simkit.runtime.engine.scheduler import Timetable
-    from simkit.sensors.sampler import Sampler
 
 MAX_LATENCY = 3600.0  # [s]; all readings on their way are kept
 _MILLISECOND = Fraction(1, 1000)
@@ -135,11 +135,12 @@ class LatencyTimetable:
 
     Args:
         grid: of the samples; None for every step.
-        sensor: whose readings are on their way; what is measured next is its sample `_index` + 1.
+        delayed: the readings on their way.
+        next_index: gives the index of the sample that is measured next.
     """
 
-    def __init__(self, grid: Timetable, flight: DelayedReadings, sensor: Sampler) -> None:
-        self._grid, self._flight, self._sensor = grid, flight, sensor
+    def __init__(self, grid: Timetable, delayed: DelayedReadings, next_index: Callable[[], int]) -> None:
+        self._grid, self._delayed, self._next_index = grid, delayed, next_index
 
     def is_sample(self, tick: int) -> bool:
         """Whether a sample is due at a tick."""
@@ -148,13 +149,13 @@ class LatencyTimetable:
     def next(self, tick: int) -> int:
         """First due tick after a tick."""
         found = self._grid.next(tick)
-        for arrival, _ in self._flight.samples:
+        for arrival, _ in self._delayed.samples:
             if arrival > tick:
                 found = min(found, arrival)
                 break
         if tick > 0 and self.is_sample(tick):
             # about to be measured, so not on its way yet
-            arrival = self._flight.arrival(tick, self._sensor._index + 1)
+            arrival = self._delayed.arrival(tick, self._next_index())
             if arrival > tick:
                 found = min(found, arrival)
         return found

@@ -14,9 +14,9 @@ from sensor_worlds import box, sensor, world
 
 import simkit
 from simkit.compiler.geom_groups import COLLISION, COLLISION_RAY, DRAWN_COLLISION
-from simkit.sensors.rays import MANY_RAYS, RayFan, fan_directions
+from simkit.sensors.rays.embree_rays import has_embree
 from simkit.sensors.rays.numpy_rays import FanDirections
-from simkit.sensors.rays.ray_targets import has_embree
+from simkit.sensors.rays.ray_fan import MANY_RAYS, RayFan, fan_directions
 
 GROUPS = (COLLISION, COLLISION_RAY, DRAWN_COLLISION)
 FEW, MANY = (5, 120), (20, 240)  # rows and columns

@@ -25,9 +25,9 @@ from simkit.sensors.cameras.camera_model import CameraModel, read_camera_model
 from simkit.sensors.cameras.camera_options import CameraOptions, read_options
 from simkit.sensors.cameras.camera_reading import CameraReading, NoisyCameraReading
 from simkit.sensors.cameras.camera_trigger import Trigger
+from simkit.sensors.cameras.distorted_image import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import ImageNoise
-from simkit.sensors.cameras.lens_distortion import ImageDistorter
 from simkit.sensors.cameras.rendering import gl_context, render_thread
 from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
 from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
@@ -295,7 +295,7 @@ class RenderedCamera(Sensor):
     def _look_who_reads(self) -> None:
         super()._look_who_reads()
         # what has a latency is not waited for when it is taken
-        self._is_called = self._flight is None and any(end.is_live for _, end, needs in self._wanted if needs)
+        self._is_called = self._delayed is None and any(end.is_live for _, end, needs in self._wanted if needs)
 
     def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
         put_off = super()._publish(sample, wanted)

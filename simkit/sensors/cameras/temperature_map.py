@@ -16,7 +16,7 @@ from simkit.pose import Pose, Vector
 from simkit.runtime.handles.visual_properties import HeatSignature
 from simkit.scene import Geometry, Mesh, Plane
 from simkit.sensors.cameras.rendering.view import Ids
-from simkit.sensors.rays.ray_targets import has_embree
+from simkit.sensors.rays.embree_rays import TriangleScene, has_embree
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -65,8 +65,6 @@ class TexturedMesh:
     """
 
     def __init__(self, corners: Vector, faces: npt.NDArray[np.int32], uv: Vector) -> None:
-        from simkit.sensors.rays.embree_rays import TriangleScene
-
         self._scene = TriangleScene(corners, faces)
         # on each triangle both coordinates are linear: uv = slope · point + start
         a, first = corners[faces[:, 0]], uv[faces[:, 0]]

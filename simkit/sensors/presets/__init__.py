@@ -1,7 +1,7 @@
 """Presets: a sensor names a real device, `<simkit:preset>LDS-01</simkit:preset>`, and gets its published numbers.
 
-A `<sensor>` enters, the same sensor with the device's settings under its own leaves. The numbers are data: one TOML file
-in `data/` for each maker or family. No code here knows a device.
+A `<sensor>` enters, the same sensor with the device's settings under its own leaves. The numbers are data: one TOML
+file in `data/` for each maker or family. No code here knows a device.
 """
 
 from __future__ import annotations

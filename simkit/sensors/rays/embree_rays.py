@@ -1,4 +1,4 @@
-"""Rays on triangles by Embree, which finds the triangle in float32; the distance is then worked out in float64.
+"""RayBundle on triangles by Embree, which finds the triangle in float32; the distance is then worked out in float64.
 
 Embree's time hardly grows with the number of triangles. Its scenes are built with the robust intersector, so that no
 ray slips between two triangles that share an edge.
@@ -6,20 +6,20 @@ ray slips between two triangles that share an edge.
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
+from simkit.sensors.rays.geom_types import BOX, HFIELD, MESH, Ids
 from simkit.sensors.rays.numpy_rays import rotate_vectors
+from simkit.sensors.rays.ray_bundle import RayBundle
 from simkit.sensors.rays.ray_culling import reaches_between_cones
-from simkit.sensors.rays.ray_targets import BOX, HFIELD, MESH, Ids
-
-if TYPE_CHECKING:
-    from simkit.sensors.rays.mujoco_rays import Rays
 
 Faces = npt.NDArray[np.int32]
 
@@ -33,6 +33,17 @@ _CUBE_FACES = np.array(
     ],
     dtype=np.int32,
 )  # fmt: skip
+
+
+@functools.cache
+def has_embree() -> bool:
+    """Whether `embreex`, the binding of Intel's ray tracer, is installed and loads."""
+    try:
+        importlib.import_module("embreex.rtcore_scene")
+        importlib.import_module("embreex.mesh_construction")
+    except (ImportError, OSError):
+        return False
+    return True
 
 
 class TriangleScene:
@@ -158,7 +169,7 @@ class MovingBodies:
         self._centres = np.array([body.centre for body in bodies]).reshape(-1, 3)
         self._radii = np.array([body.radius for body in bodies])
 
-    def met(self, data: Any, rays: Rays) -> Iterator[tuple[TriangleBody, Ids]]:
+    def met(self, data: Any, rays: RayBundle) -> Iterator[tuple[TriangleBody, Ids]]:
         """Each body that rays may meet, with those rays."""
         if not self._bodies:
             return

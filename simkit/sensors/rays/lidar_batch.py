@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from simkit.pose import Vector
 from simkit.sensors.batch import MIN_MEMBERS, SensorBatch, form_batches
+from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.numpy_rays import Shapes, cast_on_shapes, in_frame
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
 from simkit.sensors.rays.ray_fan import RayFan
-from simkit.sensors.rays.ray_targets import Ids
 
 if TYPE_CHECKING:
     from simkit.sensors.rays.lidar import Lidar, LidarReading

@@ -1,22 +1,19 @@
-"""Rays by MuJoCo's own casting: through everything, or through planes and shapes alone."""
+"""RayBundle by MuJoCo's own casting: through everything, or through planes and shapes alone."""
 
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
+from simkit.sensors.rays.geom_types import Ids
+from simkit.sensors.rays.ray_bundle import RayBundle, RayHits, reaches_plane
 from simkit.sensors.rays.ray_culling import ENDLESS, can_meet, geom_half_sizes, reaches_between_cones
-
-if TYPE_CHECKING:
-    from simkit.sensors.rays.ray_targets import Ids, RayTargets
 
 _SEEN, _UNSEEN = 0, 1  # geom groups of the copy
 _INFINITE = np.array(np.inf)
@@ -30,35 +27,7 @@ _SOLIDS = np.array((1, 0, 0, 0, 0, 0), dtype=np.uint8)
 _SOLIDS_AND_PLANES = np.array((1, 1, 0, 0, 0, 0), dtype=np.uint8)
 
 
-@dataclass(slots=True)  # not frozen: that would cost a microsecond for each cast
-class Rays:
-    """Rays from one point.
-
-    Attributes:
-        origin: in the world, shape (3,) [m].
-        directions: in the world, unit vectors, shape (n, 3).
-        start: how far from the origin they begin [m].
-        reach: what is farther does not count [m].
-        limit: its bits (see `finite_limit_bits`).
-        axis: unit vector in the world, shape (3,).
-        lowest, highest: angles between which the rays leave the plane across the axis [rad].
-    """
-
-    origin: Vector
-    directions: Vector
-    start: float
-    reach: float
-    limit: Any
-    axis: Vector
-    lowest: float
-    highest: float
-
-
-RayHits = tuple[Vector, npt.NDArray[np.int32], npt.NDArray[np.bool_]]
-"""Distances [m], infinite where nothing is hit; geoms, -1 for nothing; and where the distances are infinite."""
-
-
-def _cast(model: Any, data: Any, rays: Rays, groups: npt.NDArray[np.uint8], exclude: int = -1) -> RayHits:
+def _cast(model: Any, data: Any, rays: RayBundle, groups: npt.NDArray[np.uint8], exclude: int = -1) -> RayHits:
     directions, start = rays.directions, rays.start
     count = len(directions)
     geoms, distances = np.empty(count, np.int32), np.empty(count)
@@ -80,21 +49,6 @@ def _cast(model: Any, data: Any, rays: Rays, groups: npt.NDArray[np.uint8], excl
     return distances, geoms, infinite
 
 
-def reaches_plane(rays: Rays, point: Sequence[float], normal: Sequence[float]) -> bool:
-    """Whether a ray may come down on a plane through a point within the reach; never wrongly False."""
-    (x, y, z), (ax, ay, az), (nx, ny, nz) = rays.origin.tolist(), rays.axis.tolist(), normal
-    height = nx * (x - point[0]) + ny * (y - point[1]) + nz * (z - point[2])
-    steepest = max(abs(rays.lowest), abs(rays.highest))
-    tilt = math.acos(min(1.0, abs(nx * ax + ny * ay + nz * az))) + steepest
-    fall = rays.reach * math.sin(tilt) if tilt < math.pi / 2 else rays.reach
-    return bool(0.0 <= height <= fall * (1 + 1e-9) + 1e-9)
-
-
-def finite_limit_bits(reach: float) -> Any:
-    """The bits of the longest finite distance that counts, for comparing many at once."""
-    return np.array(min(reach, float(np.finfo(np.float64).max))).view(np.uint64)
-
-
 class WholeModelCaster:
     """Everything that is seen, in a copy of the compiled model.
 
@@ -110,7 +64,7 @@ class WholeModelCaster:
         rows, bounds = _bounds_to_widen(own, seen)
         own.bvh_aabb[rows] = bounds
 
-    def cast(self, data: Any, rays: Rays, body: int, own: Sequence[int]) -> RayHits:
+    def cast(self, data: Any, rays: RayBundle, body: int, own: Sequence[int]) -> RayHits:
         """Casts through everything.
 
         Args:
@@ -132,15 +86,19 @@ class ReducedModelCaster:
 
     What no ray can meet is left out: moving bodies above or below the whole fan, and planes out of reach.
 
+    Args:
+        model: compiled.
+        geoms: planes and shapes of that model, shape (m,).
+        types, carriers: of each, shape (m,).
+        bodies: MuJoCo body of each carrier.
+
     Attributes:
         ids: geoms of the compiled model by those here; the last, -1, is for none.
     """
 
-    def __init__(self, targets: RayTargets, which: Ids) -> None:
-        model, carriers = targets.model, targets.carriers[which]
+    def __init__(self, model: mujoco.MjModel, geoms: Ids, types: Ids, carriers: Ids, bodies: Sequence[int]) -> None:
         order = np.argsort(carriers, kind="stable")
-        which, carriers = which[order], carriers[order]
-        full, types = targets.geoms[which], targets.types[which]
+        full, types, carriers = geoms[order], types[order], carriers[order]
         standing = carriers == 0
         first = int(np.count_nonzero(standing))
         self._alone = _compile_reduced_model(model, full[:first], carriers[:first])
@@ -151,7 +109,7 @@ class ReducedModelCaster:
         self._full, self._carriers = full[first:], carriers[first:]
         self._halves = geom_half_sizes(model, self._full)
         self._radii = np.linalg.norm(self._halves, axis=1)
-        self._bodies = np.array([targets.bodies[c] for c in kept], dtype=np.intp)
+        self._bodies = np.array([bodies[c] for c in kept], dtype=np.intp)
         self._firsts = np.searchsorted(self._carriers, kept)  # of each one's geoms
         data = self._all[1]
         self._geom_xpos, self._geom_xmat = data.geom_xpos[first:], data.geom_xmat[first:]
@@ -174,7 +132,7 @@ class ReducedModelCaster:
             met &= can_meet(self._model, body, offset, self._full, lowest, highest)
         return np.flatnonzero(met)
 
-    def cast(self, data: Any, rays: Rays, sight: Ids) -> RayHits:
+    def cast(self, data: Any, rays: RayBundle, sight: Ids) -> RayHits:
         """Casts through planes, what stands still, and the movers in `sight`.
 
         Geoms are positions in `ids`.
@@ -186,7 +144,7 @@ class ReducedModelCaster:
         self._move(data, met)
         return _cast(*self._all, rays, _SOLIDS_AND_PLANES)
 
-    def _met(self, data: Any, rays: Rays, sight: Ids) -> npt.NDArray[np.bool_] | None:
+    def _met(self, data: Any, rays: RayBundle, sight: Ids) -> npt.NDArray[np.bool_] | None:
         """Which of the movers in sight rays may meet where they are now; None for nothing at all."""
         geoms = self._full[sight]
         places = data.geom_xpos.take(geoms, 0)
@@ -217,7 +175,7 @@ class ReducedModelCaster:
         xpos[~np.logical_or.reduceat(met, self._firsts)] = ENDLESS
         xipos[:], ximat[:] = xpos, xmat
 
-    def _reaches_plane(self, rays: Rays) -> bool:
+    def _reaches_plane(self, rays: RayBundle) -> bool:
         """Whether a ray may come down on one of the planes that stand still; never wrongly False."""
         return any(reaches_plane(rays, point, normal) for point, normal in self._planes)
 

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
-from simkit.sensors.rays.ray_targets import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE, Ids
+from simkit.sensors.rays.geom_types import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE, Ids
 
 Interval = tuple[Vector, Vector]
 

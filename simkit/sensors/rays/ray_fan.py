@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
 from simkit.sensors.rays.embree_rays import MovingBodies, TriangleBody
-from simkit.sensors.rays.mujoco_rays import Rays, finite_limit_bits, reaches_plane
+from simkit.sensors.rays.geom_types import Ids
 from simkit.sensors.rays.numpy_rays import (
     FanDirections,
     Shapes,
@@ -31,8 +31,9 @@ from simkit.sensors.rays.numpy_rays import (
     in_frame,
     rotate_vectors,
 )
+from simkit.sensors.rays.ray_bundle import RayBundle, finite_limit_bits, reaches_plane
 from simkit.sensors.rays.ray_culling import NearbyGeoms, can_meet
-from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, Ids, RayTargets
+from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, RayTargets
 
 MANY_RAYS: Final = 2048
 """From so many rays on NumPy is faster on shapes than the engine."""
@@ -171,9 +172,9 @@ class RayFan:
             self._cast_on_shapes(targets, data, rays, rotation)
         self._end()
 
-    def _rays(self, origin: Vector, rotation: Vector, start: float) -> Rays:
+    def _rays(self, origin: Vector, rotation: Vector, start: float) -> RayBundle:
         rotate_vectors(self.directions, rotation.T, out=self._rotated)
-        return Rays(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self._bounds)
+        return RayBundle(origin, self._rotated, start, self.reach, self._limit, rotation[:, 2], *self._bounds)
 
     def _end(self) -> None:
         self.infinite = self.distances > min(self.reach, _LARGEST)
@@ -183,12 +184,12 @@ class RayFan:
         self.hits = np.full(self.count, -1, dtype=np.int32)
         self.distances = np.full(self.count, np.inf)
 
-    def _cast_on_others(self, targets: RayTargets, data: Any, rays: Rays) -> None:
+    def _cast_on_others(self, targets: RayTargets, data: Any, rays: RayBundle) -> None:
         """On all but shapes, in NumPy and by Embree."""
         self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
         self._cast_on_planes(targets, data, rays)
 
-    def _cast_on_planes(self, targets: RayTargets, data: Any, rays: Rays) -> None:
+    def _cast_on_planes(self, targets: RayTargets, data: Any, rays: RayBundle) -> None:
         best = self.distances
         for i in targets.planes.tolist():
             if self._carrier and targets.carriers[i] == self._carrier:
@@ -203,7 +204,7 @@ class RayFan:
                 np.copyto(best, found, where=nearer)
                 self.hits[nearer] = geom
 
-    def _cast_on_shapes(self, targets: RayTargets, data: Any, rays: Rays, rotation: Vector) -> None:
+    def _cast_on_shapes(self, targets: RayTargets, data: Any, rays: RayBundle, rotation: Vector) -> None:
         model, which = targets.model, targets.shapes
         if self._nearby is None:
             if self._carrier:
@@ -220,7 +221,7 @@ class RayFan:
         shapes = Shapes(kinds, sizes, *placed, radii, geoms.astype(np.int32))
         cast_on_shapes(self._fan, shapes, rays.reach, rays.start, self.distances, self.hits)
 
-    def _cast_on_triangles(self, bodies: list[TriangleBody], data: Any, rays: Rays) -> None:
+    def _cast_on_triangles(self, bodies: list[TriangleBody], data: Any, rays: RayBundle) -> None:
         """First what stands still, then each body by the rays that may meet it."""
         if self._standing is None:
             self._standing = [body for body in bodies if not body.carrier]

@@ -2,55 +2,21 @@
 
 from __future__ import annotations
 
-import functools
-import importlib
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
-if TYPE_CHECKING:
-    from simkit.sensors.rays.embree_rays import TriangleBody
-    from simkit.sensors.rays.mujoco_rays import ReducedModelCaster, WholeModelCaster
-
-Ids = npt.NDArray[np.intp]
-
-_TYPE = mujoco.mjtGeom
-PLANE, HFIELD, SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = (
-    int(t)
-    for t in (
-        _TYPE.mjGEOM_PLANE,
-        _TYPE.mjGEOM_HFIELD,
-        _TYPE.mjGEOM_SPHERE,
-        _TYPE.mjGEOM_CAPSULE,
-        _TYPE.mjGEOM_ELLIPSOID,
-        _TYPE.mjGEOM_CYLINDER,
-        _TYPE.mjGEOM_BOX,
-        _TYPE.mjGEOM_MESH,
-    )
-)
-_SHAPES = (SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX)
-_TRIANGLES = (HFIELD, MESH)
-_SUPPORTED = (PLANE, *_TRIANGLES, *_SHAPES)
+from simkit.sensors.rays.embree_rays import TriangleBody, has_embree
+from simkit.sensors.rays.geom_types import BOX, PLANE, SHAPES, SUPPORTED, TRIANGLES, Ids
+from simkit.sensors.rays.mujoco_rays import ReducedModelCaster, WholeModelCaster
 
 MAX_MOVING_BODIES: Final = 64
 """So many moving bodies at most are looked through one after the other for every ray."""
 _MANY_BOXES = 24
 """From so many boxes on that stand still a few rays too are faster on their triangles."""
-
-
-@functools.cache
-def has_embree() -> bool:
-    """Whether `embreex`, the binding of Intel's ray tracer, is installed and loads."""
-    try:
-        importlib.import_module("embreex.rtcore_scene")
-        importlib.import_module("embreex.mesh_construction")
-    except (ImportError, OSError):
-        return False
-    return True
 
 
 class RayTargets:
@@ -70,8 +36,8 @@ class RayTargets:
         self.geoms: Ids = np.flatnonzero(seen)
         self.types = model.geom_type[self.geoms].astype(np.intp)
         self._sort_carriers(names)
-        has_triangles = bool(np.isin(self.types, _TRIANGLES).any())
-        is_known = bool(np.isin(self.types, _SUPPORTED).all())
+        has_triangles = bool(np.isin(self.types, TRIANGLES).any())
+        is_known = bool(np.isin(self.types, SUPPORTED).all())
         self._use_embree = use_embree
         self.needs_engine = not is_known or (has_triangles and not self.has_embree)
 
@@ -118,24 +84,23 @@ class RayTargets:
     @cached_property
     def moving_shapes(self) -> int:
         """Carriers of shapes that move or have a sensor."""
-        return len(np.unique(self.carriers[np.isin(self.types, _SHAPES)]))
+        return len(np.unique(self.carriers[np.isin(self.types, SHAPES)]))
 
     @cached_property
     def whole(self) -> WholeModelCaster:
         """Everything, by the engine."""
-        from simkit.sensors.rays.mujoco_rays import WholeModelCaster
-
         return WholeModelCaster(self.model, self.seen)
 
     @cached_property
     def shapes_by_engine(self) -> ReducedModelCaster | None:
         """Planes and shapes, by the engine; None where there are none."""
-        from simkit.sensors.rays.mujoco_rays import ReducedModelCaster
-
-        which = self._select(lambda t: t in (PLANE, *_SHAPES))
+        which = self._select(lambda t: t in (PLANE, *SHAPES))
         if self._boxes_are_triangles:
             which = np.setdiff1d(which, self._static_boxes)
-        return ReducedModelCaster(self, which) if len(which) else None
+        if not len(which):
+            return None
+        carriers = self.carriers[which]
+        return ReducedModelCaster(self.model, self.geoms[which], self.types[which], carriers, self.bodies)
 
     @cached_property
     def planes(self) -> Ids:
@@ -146,7 +111,7 @@ class RayTargets:
     def shapes(self) -> Ids:
         """Positions in `geoms` of the shapes that no triangles stand for exactly."""
         boxes = self._static_boxes
-        found = self._select(lambda t: t in _SHAPES)
+        found = self._select(lambda t: t in SHAPES)
         return found[~np.isin(found, boxes)]
 
     @cached_property
@@ -158,7 +123,7 @@ class RayTargets:
     @cached_property
     def _boxes_are_triangles(self) -> bool:
         """Whether boxes that stand still are traced with the triangles even by few rays."""
-        stand = self.has_embree and bool((np.isin(self.types, _TRIANGLES) & (self.carriers == 0)).any())
+        stand = self.has_embree and bool((np.isin(self.types, TRIANGLES) & (self.carriers == 0)).any())
         return stand or len(self._static_boxes) >= _MANY_BOXES
 
     @cached_property
@@ -166,20 +131,18 @@ class RayTargets:
         """What `shapes_by_engine` leaves out, one entry a carrier."""
         if self._boxes_are_triangles:
             return self.triangles_and_boxes
-        return self._triangle_bodies(self._select(lambda t: t in _TRIANGLES))
+        return self._triangle_bodies(self._select(lambda t: t in TRIANGLES))
 
     @cached_property
     def triangles_and_boxes(self) -> list[TriangleBody]:
         """Meshes, heightmaps and the boxes that stand still, one entry a carrier."""
-        which = np.append(self._select(lambda t: t in _TRIANGLES), self._static_boxes)
+        which = np.append(self._select(lambda t: t in TRIANGLES), self._static_boxes)
         return self._triangle_bodies(np.sort(which))
 
     def _select(self, wanted: Callable[[int], bool]) -> Ids:
         return np.array([i for i, t in enumerate(self.types.tolist()) if wanted(t)], dtype=np.intp)
 
     def _triangle_bodies(self, which: Ids) -> list[TriangleBody]:
-        from simkit.sensors.rays.embree_rays import TriangleBody
-
         carriers = self.carriers[which]
         scenes: dict[Any, Any] = {}
         return [

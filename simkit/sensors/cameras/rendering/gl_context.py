@@ -11,12 +11,13 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Callable, Iterator
+import weakref
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Protocol
 
 from simkit.errors import RenderError
-from simkit.sensors.cameras.rendering.render_thread import defer_interrupts
+from simkit.sensors.cameras.rendering import render_thread
 
 _HINT = "on Debian and Ubuntu: apt install libegl1 libgl1-mesa-dri (or libosmesa6); `simkit doctor` says more"
 _OFF = {"disable", "disabled", "off", "false", "0"}
@@ -36,15 +37,88 @@ _FORKED = (
     "start it with multiprocessing's 'spawn' or 'forkserver', or fork before the first picture"
 )
 
-_context: Any = None
-_failure: RenderError | None = None
-_lock = threading.RLock()
-_description = ""
+
+class GpuMemoryHolder(Protocol):
+    """Something that holds memory of the graphics library, which is given back before the library goes."""
+
+    def uploaded(self) -> Sequence[Any]:
+        """Return the MuJoCo contexts that it holds."""
+
+    def free(self) -> None:
+        """Give the memory back."""
+
+
+class _ProcessContext:
+    """The OpenGL context of this process and what depends on it.
+
+    Attributes:
+        context: None before the first picture and after the end.
+        failure: raised at every use from now on.
+        lock: held by the thread whose context it is at the moment.
+        description: of the renderer; empty before the first picture.
+        holders: of memory of the graphics library.
+    """
+
+    def __init__(self) -> None:
+        self.context: Any = None
+        self.failure: RenderError | None = None
+        self.lock = threading.RLock()
+        self.description = ""
+        self.holders: weakref.WeakSet[GpuMemoryHolder] = weakref.WeakSet()
+
+    @contextmanager
+    def current(self) -> Iterator[None]:
+        with render_thread.defer_interrupts(), self.lock:
+            if self.failure is not None:
+                raise self.failure
+            if self.context is None:
+                try:
+                    self.context, self.description = _open()
+                except RenderError as error:
+                    self.failure = error
+                    raise
+                atexit.register(self.close)
+            with self.context.as_current():
+                yield
+
+    def close(self) -> None:
+        """Free everything at exit, before the libraries go: a context freed later writes to the terminal."""
+        from simkit.runtime.engine.step_loop import stop_other_loops  # loads MuJoCo
+
+        stop_other_loops()  # or their cameras would find the context gone
+        render_thread.end()
+        with self.lock:  # a thread that still runs draws to the end, and nothing more
+            if self.context is None:
+                return
+            for holder in list(self.holders):
+                holder.free()
+            context, self.context = self.context, None
+            self.failure = RenderError("the interpreter is shutting down")
+            context.free()
+
+    def reset_after_fork(self) -> None:
+        """Forbid drawing in a forked child: the threads of the software renderer have stayed behind."""
+        self.lock = threading.RLock()  # another thread may have held it
+        if self.context is None:
+            return
+        # nobody may free what is the parent's: not even the interpreter, which would when the child ends
+        for kept in (self.context, *(upload for holder in list(self.holders) for upload in holder.uploaded())):
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
+        terminate = getattr(sys.modules.get(type(self.context).__module__), "_terminate_display", None)
+        if terminate is not None:
+            atexit.unregister(terminate)
+        self.context = None
+        self.failure = RenderError(_FORKED, "SK-RENDER-011")
+
+
+_process = _ProcessContext()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_process.reset_after_fork)
 
 
 @contextmanager
 def current() -> Iterator[None]:
-    """The process's context, current in this thread while it lasts; opened at the first use.
+    """Make the context of the process current in this thread; it is opened at the first use.
 
     Threads take turns; whatever context of somebody else's was current comes back afterwards. An interrupt waits
     until then.
@@ -52,29 +126,23 @@ def current() -> Iterator[None]:
     Raises:
         RenderError: no library gives one; the same error at every call, without trying again.
     """
-    global _context, _failure
-    with defer_interrupts(), _lock:
-        if _failure is not None:
-            raise _failure
-        if _context is None:
-            try:
-                _context = _open()
-            except RenderError as error:
-                _failure = error
-                raise
-            atexit.register(_close)
-        with _context.as_current():
-            yield
+    with _process.current():
+        yield
 
 
 def is_open() -> bool:
     """Whether there is a context (none before the first picture and after the end)."""
-    return _context is not None
+    return _process.context is not None
 
 
 def describe_renderer() -> str:
     """`llvmpipe (LLVM 15.0.6, 256 bits) through EGL`; empty before the first picture."""
-    return _description
+    return _process.description
+
+
+def hold_memory(holder: GpuMemoryHolder) -> None:
+    """Have the memory of a holder given back before the context closes; the holder itself is not kept alive."""
+    _process.holders.add(holder)
 
 
 def find_library() -> str:
@@ -159,8 +227,8 @@ _PROBES: dict[str, Callable[[], str]] = {
 }
 
 
-def _open() -> Any:
-    global _description
+def _open() -> tuple[Any, str]:
+    """The context, and in words who draws with it."""
     library = find_library()
     try:
         logging.getLogger("OpenGL.acceleratesupport").setLevel(logging.WARNING)  # says nothing a user can use
@@ -171,8 +239,7 @@ def _open() -> Any:
     except Exception as error:
         # drivers fail in their own ways: ImportError, AttributeError, ctypes errors, GLError
         raise RenderError(f"no renderer for cameras ({library}: {type(error).__name__}: {error}); {_HINT}") from error
-    _description = f"{name} through {'EGL' if library == 'egl' else library}"
-    return context
+    return context, f"{name} through {'EGL' if library == 'egl' else library}"
 
 
 @contextmanager
@@ -195,42 +262,3 @@ def _renderer_name() -> str:
     if not name:
         raise RuntimeError("the context cannot be used")
     return str(name.decode())
-
-
-def _close() -> None:
-    """At exit, before the libraries go: a context freed later writes to the terminal."""
-    global _context, _failure
-    from simkit.runtime.engine.step_loop import stop_other_loops
-    from simkit.sensors.cameras.rendering import render_thread, renderer
-
-    stop_other_loops()  # or their cameras would find the context gone
-    render_thread.end()
-    with _lock:  # a thread that still runs draws to the end, and nothing more
-        if _context is None:
-            return
-        renderer.free_all()
-        context, _context = _context, None
-        _failure = RenderError("the interpreter is shutting down")
-        context.free()
-
-
-def _reset_after_fork() -> None:
-    """In a forked child: the threads of the software renderer have stayed behind, so that drawing would never end."""
-    global _context, _failure, _lock
-    _lock = threading.RLock()  # another thread may have held it
-    if _context is None:
-        return
-    from simkit.sensors.cameras.rendering import renderer
-
-    # nobody may free what is the parent's: not even the interpreter, which would when the child ends
-    for kept in (_context, *renderer.all_uploads()):
-        ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
-    terminate = getattr(sys.modules.get(type(_context).__module__), "_terminate_display", None)
-    if terminate is not None:
-        atexit.unregister(terminate)
-    _context = None
-    _failure = RenderError(_FORKED, "SK-RENDER-011")
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_reset_after_fork)

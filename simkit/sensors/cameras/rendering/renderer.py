@@ -33,7 +33,7 @@ from simkit.sensors.environment.illumination import LEAST_OPACITY
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
-__all__ = ["Composition", "Renderer", "free_all", "free_renderer", "renderer_of"]
+__all__ = ["Composition", "Renderer", "free_renderer", "renderer_of"]
 
 
 def draw_ids(scene: Any, context: Any, shot: Shot, rectangle: Any, colours: Colours, depths: Depths) -> Film:
@@ -82,7 +82,7 @@ class Renderer:
         self._buffers: dict[tuple[int, int], tuple[Colours, Depths]] = {}
         self._shade: Colours | None = None
         self._is_said = False
-        _living.add(self)
+        gl_context.hold_memory(self)
 
     def reserve(self, width: int, height: int) -> None:
         """Makes room for pictures of this size [px]."""
@@ -237,37 +237,38 @@ class Renderer:
 # ---------------------------------------------------------------------- one for each simulation
 
 
+class _SimulationRenderers:
+    """The renderers of the simulations of this process, one for all cameras of a simulation."""
+
+    def __init__(self) -> None:
+        self._by_simulation: weakref.WeakKeyDictionary[Simulation, Renderer] = weakref.WeakKeyDictionary()
+
+    def find(self, sim: Simulation) -> Renderer:
+        found = self._by_simulation.get(sim)
+        if found is None:
+            found = self._by_simulation[sim] = Renderer(Appearance.of(sim.world))
+            weakref.finalize(sim, _free_quietly, found).atexit = False
+        return found
+
+    def free(self, sim: Simulation) -> None:
+        found = self._by_simulation.pop(sim, None)
+        if found is not None:
+            _free_quietly(found)
+
+
+_renderers = _SimulationRenderers()
+
+
 def renderer_of(sim: Simulation) -> Renderer:
-    """The one renderer of a simulation, for all its cameras."""
-    found = _of_simulation.get(sim)
-    if found is None:
-        found = _of_simulation[sim] = Renderer(Appearance.of(sim.world))
-        weakref.finalize(sim, _free_quietly, found).atexit = False
-    return found
+    """Return the one renderer of a simulation, for all its cameras."""
+    return _renderers.find(sim)
+
+
+def free_renderer(sim: Simulation) -> None:
+    """Give back the graphics memory of a simulation that closes."""
+    _renderers.free(sim)
 
 
 def _free_quietly(renderer: Renderer) -> None:
     with contextlib.suppress(RenderError, RuntimeError):
         renderer.free()
-
-
-def free_renderer(sim: Simulation) -> None:
-    """When a simulation closes."""
-    found = _of_simulation.pop(sim, None)
-    if found is not None:
-        _free_quietly(found)
-
-
-def free_all() -> None:
-    """At exit, while the context is still there."""
-    for found in list(_living):
-        found.free()
-
-
-def all_uploads() -> list[Any]:
-    """All that this process holds in the memory of the graphics library."""
-    return [context for found in list(_living) for context in found.uploaded()]
-
-
-_living: weakref.WeakSet[Renderer] = weakref.WeakSet()
-_of_simulation: weakref.WeakKeyDictionary[Simulation, Renderer] = weakref.WeakKeyDictionary()
