@@ -22,6 +22,7 @@ from simkit.errors import (
     SimkitError,
     SimulationDiverged,
 )
+from simkit.version import __version__
 
 if TYPE_CHECKING:
     from simkit.build import check, describe, load
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from simkit.pose import Pose
     from simkit.runtime import Simulation
 
-__version__ = "0.1.0"
 
 __all__ = [
     "Diagnostic",

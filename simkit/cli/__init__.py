@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from simkit.cli.lazy_command import Commands, defer
+from simkit.version import __version__
 
 app = typer.Typer(
     name="simkit",
@@ -53,8 +54,6 @@ for _name, _line in COMMANDS.items():
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from simkit import __version__
-
         typer.echo(f"simkit {__version__}")
         raise typer.Exit
 

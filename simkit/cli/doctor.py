@@ -10,6 +10,7 @@ from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 
 from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.version import __version__
 
 _PACKAGES = (
     "numpy",
@@ -67,8 +68,6 @@ def _line(name: str, value: str) -> None:
 
 
 def _versions() -> list[str]:
-    from simkit import __version__
-
     _line("simkit", __version__)
     _line("python", f"{platform.python_version()} ({sys.executable})")
     _line("platform", f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores")

@@ -24,6 +24,7 @@ from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Resp
 from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import PluginError, SimkitError, SimulationDiverged
 from simkit.runtime.communication.command_queue import QUEUE_DEPTH
+from simkit.version import __version__
 
 if TYPE_CHECKING:
     from simkit.runtime.simulation import Simulation
@@ -291,8 +292,6 @@ class Server:
         self.peers[connection.fileno()] = peer
         self._selector.register(connection, selectors.EVENT_READ, peer)
         self._interest[connection.fileno()] = selectors.EVENT_READ
-        from simkit import __version__
-
         hello = {"name": self.name, "world": self.sim.world.name, "pid": os.getpid(), "version": __version__}
         peer.say(TELL, {"tell": "hello", "protocol": PROTOCOL, **hello})
         if len(self.peers) > MOST_CLIENTS:

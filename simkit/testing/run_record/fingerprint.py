@@ -10,6 +10,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final
 
+from simkit.version import __version__
+
 RENDERER: Final = "renderer"
 """What draws pictures; it counts only where there are some."""
 _INFORMATION_ONLY: Final = ("simkit code", "python")
@@ -53,8 +55,6 @@ def fingerprint_differences(
 def _machine_fingerprint() -> dict[str, str]:
     import mujoco
     import numpy
-
-    from simkit import __version__
 
     return {
         "simkit": __version__,
