@@ -22,6 +22,7 @@ _PACKAGES = (
     "typer",
     "rich",
     "PyYAML",
+    "Jinja2",
     "PyOpenGL",
 )
 _FOLDERS = (

@@ -12,7 +12,7 @@ from made_up import IMAGE, OTHER_MACHINE, hashed, record, stream, times
 
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
-from simkit.testing.golden.report.image_figure import picture_figure
+from simkit.testing.golden.report.image_figure import image_figure
 from simkit.testing.run_record.pictures import TILE, shrink, structural_similarity, tile_hashes
 from simkit.testing.run_record.record import Pictures, Stream
 from simkit.testing.scenarios import Tolerance
@@ -160,7 +160,7 @@ def test_pictures_of_runs_that_kept_others_are_met_by_their_messages() -> None:
     assert "from t = 2.40 s" in found.words and "in " not in found.words.partition("from")[2].partition(";")[0]
     assert found.words.endswith("; the first that is other came at t = 2.10 s and is not kept")
     assert found.index == 21 and found.time == pytest.approx(2.1)
-    assert picture_figure(Verdict("g", record(golden), record(run), compare(record(golden), record(run))), found)
+    assert image_figure(Verdict("g", record(golden), record(run), compare(record(golden), record(run))), found)
     machine = {**OTHER_MACHINE, "renderer": "another"}
     (found,) = compare(record(golden), record(run, machine=machine)).differences
     assert found.index == 24 and "not kept" not in found.words

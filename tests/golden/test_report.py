@@ -14,7 +14,6 @@ from report_samples import CAMERA, SCAN, difference, failing, passing, record
 from simkit.testing.golden.compare.difference import Cause, Comparison, Explanation, Verdict
 from simkit.testing.golden.report import junit_cases, text_report, write_html
 from simkit.testing.golden.report.html import page
-from simkit.testing.golden.report.svg_chart import Line, chart, thin_line
 from simkit.testing.run_record.record import Column
 
 NASTY = "</title><script>alert('\"&\x00\u202e')</script>"
@@ -214,53 +213,6 @@ def test_pictures_that_were_kept_now_and_then_are_found_by_their_message() -> No
         pictures.small, pictures.tiles, pictures.kept = pictures.small[::2], pictures.tiles[::2], np.arange(0, 20, 2)
     verdict.comparison.differences = [difference(CAMERA, "data", "picture", "it differs", index=9)]
     assert "picture 10 at 2 s" in words_of(tree(verdict))
-
-
-# ---------------------------------------------------------------------- charts
-
-
-def test_a_thinned_line_keeps_the_highest_and_the_lowest_of_each_pixel() -> None:
-    rng = np.random.default_rng(1)
-    x, y = np.sort(rng.uniform(0.0, 400.0, 100_000)), rng.normal(size=100_000)
-    y[12_345] = 50.0
-    xs, ys = thin_line(x, y)
-    assert len(xs) <= 2 * 401
-    assert np.all(np.diff(xs) >= 0.0)
-    for column in (0, 17, 399):
-        whole, kept = y[x.astype(int) == column], ys[xs.astype(int) == column]
-        assert (kept.min(), kept.max()) == (whole.min(), whole.max())
-    assert 50.0 in ys
-
-
-def labels(svg: str) -> list[str]:
-    return [words_of(text) for text in etree.fromstring(svg).iter(SVG + "text")]
-
-
-@pytest.mark.parametrize(
-    ("values", "expected"),
-    [
-        ([0.0, 1.0], "0.5"),
-        ([0.0, 1e-9], "5e-10"),
-        ([9.80665, 9.80665 + 1e-7], "value, less 9.8066500"),
-        ([3.0, 3.0], "3.00"),
-        ([-1e7, 1e7], "5e6"),
-        ([np.nan, np.inf], "0.5"),
-    ],
-)
-def test_labels_tell_values_apart_at_any_size(values: list[float], expected: str) -> None:
-    svg = chart([Line(np.arange(2.0), np.array(values), "run")], title="t", x_label="x", y_label="value")
-    found = labels(svg)
-    assert any(label.startswith(expected.rstrip("0")) for label in found), found
-    assert len(set(found)) >= len(found) - 4  # of two axes, labels may be alike; of one they are not
-
-
-def test_a_gap_is_a_gap_and_a_single_value_is_a_dot() -> None:
-    y = np.array([1.0, 2.0, np.nan, 3.0, np.inf, 4.0, 5.0])
-    svg = chart([Line(np.arange(7.0), y, "run")], title="t", x_label="x", y_label="y")
-    path = next(p for p in etree.fromstring(svg).iter(SVG + "path") if "run" in (p.get("class") or ""))
-    d = path.get("d") or ""
-    assert d.count("M") == 3
-    assert d.count("h.01") == 1
 
 
 # ---------------------------------------------------------------------- JUnit

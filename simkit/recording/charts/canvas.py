@@ -39,6 +39,16 @@ class Canvas(Protocol):
         """The file."""
 
 
+def printable(text: str) -> str:
+    """Replace what XML cannot hold by spaces."""
+    return text.translate(_UNPRINTABLE)
+
+
+def path_data(points: Points) -> str:
+    """Return the commands of an SVG path through points, shape (n, 2)."""
+    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.tolist())
+
+
 def text_width(text: str, size: float) -> float:
     """About how wide a text is [px]."""
     return len(text) * _LETTER * size
@@ -56,10 +66,10 @@ class SvgCanvas:
 
     def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
         """A line through points, shape (n, 2)."""
-        path = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.tolist())
         dashes = f' stroke-dasharray="{" ".join(f"{d:g}" for d in dash)}"' if dash else ""
         self._parts.append(
-            f'<path d="{path}" fill="none" stroke="{colour}" stroke-width="{width:g}" stroke-linejoin="round"{dashes}/>'
+            f'<path d="{path_data(points)}" fill="none" stroke="{colour}" stroke-width="{width:g}" '
+            f'stroke-linejoin="round"{dashes}/>'
         )
 
     def dots(self, points: Points, colour: str, radius: float) -> None:
@@ -72,7 +82,7 @@ class SvgCanvas:
     ) -> None:
         """A text whose letters stand on (x, y); `upright` reads from below to above."""
         turned = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if upright else ""
-        shown = escape(text.translate(_UNPRINTABLE), quote=False)
+        shown = escape(printable(text), quote=False)
         self._parts.append(
             f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size:g}" text-anchor="{anchor}" fill="{_INK}"{turned}>'
             f"{shown}</text>"

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from simkit.diagnostics import shorten
 from simkit.errors import InputError
-from simkit.recording.charts.canvas import Canvas, PngCanvas, Points, SvgCanvas, text_width
+from simkit.recording.charts.axis import Axis, axis_over, split_line, thin_line
+from simkit.recording.charts.canvas import Canvas, PngCanvas, SvgCanvas, text_width
 from simkit.recording.charts.series import Series
-
-Numbers = NDArray[np.float64]
 
 SUFFIXES: Final = (".svg", ".png")
 _WIDTH, _SINGLE_PANEL, _PANEL = 960, 420, 210  # [px] of the sheet, and the height of a panel
@@ -25,7 +22,6 @@ _COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#
 _DASHES: tuple[tuple[float, ...], ...] = ((), (7, 4), (2, 3), (9, 3, 2, 3))
 _DOTTED = 40  # numbers up to which each is a dot as well
 _MOST_PANELS = 12
-_LEAST = 1e-200  # below that, numbers are one
 
 
 @dataclass(frozen=True)
@@ -88,7 +84,7 @@ class _Layout:
 
     def __init__(self, chart: Chart, panels: list[list[tuple[Series, Style]]]) -> None:
         self._chart, self._panels = chart, panels
-        self._x = _axis([one.times for one in chart.series], _LEFT, _WIDTH - _RIGHT, margin=0.0)
+        self._x = axis_over([one.times for one in chart.series], _LEFT, _WIDTH - _RIGHT, margin=0.0)
         self._legends = [_legend([one.label for one, _ in panel]) for panel in panels]
         self._inner = _SINGLE_PANEL if len(panels) == 1 else _PANEL
         heading = 26 if chart.title else 0
@@ -105,27 +101,27 @@ class _Layout:
         for number, panel in enumerate(self._panels):
             self._panel(canvas, number, panel)
         bottom = self._tops[-1] + self._inner
-        for place, label in self._x.ticks():
+        for place, label in self._x.ticks(_tick_count(self._x)):
             canvas.text(place, bottom + 16, label, _SIZE, "middle")
-        label = self._chart.x_label + self._x.told
+        label = self._chart.x_label + self._x.base_text
         canvas.text((_LEFT + _WIDTH - _RIGHT) / 2, bottom + 36, label, _SIZE + 1, "middle")
         return canvas.result()
 
     def _panel(self, canvas: Canvas, number: int, panel: list[tuple[Series, Style]]) -> None:
         top, bottom = self._tops[number], self._tops[number] + self._inner
-        y = _axis([one.values for one, _ in panel], bottom, top, margin=0.06)
+        y = axis_over([one.values for one, _ in panel], bottom, top, margin=0.06)
         if self._chart.is_plane:
             self._x, y = _equal_scale(self._x, y)
         x = self._x
-        for place, label in y.ticks():
+        for place, label in y.ticks(_tick_count(y)):
             canvas.line(np.array([[_LEFT, place], [_WIDTH - _RIGHT, place]]), "#e4e4e4")
             canvas.text(_LEFT - 6, place + 4, label, _SIZE, "end")
-        for place, _ in x.ticks():
+        for place, _ in x.ticks(_tick_count(x)):
             canvas.line(np.array([[place, top], [place, bottom]]), "#e4e4e4")
         frame = [[_LEFT, top], [_LEFT, bottom], [_WIDTH - _RIGHT, bottom]]
         canvas.line(np.array(frame, dtype=np.float64), "#888888")
         unit = panel[0][0].unit
-        told = (f"[{unit}]" if unit else "") + y.told
+        told = (f"[{unit}]" if unit else "") + y.base_text
         canvas.text(16, (top + bottom) / 2, told.strip(", "), _SIZE, "middle", upright=True)
         for one, style in panel:
             colour, dash = _COLOURS[style.colour % len(_COLOURS)], _DASHES[style.dash % len(_DASHES)]
@@ -136,120 +132,30 @@ class _Layout:
             canvas.line(np.array([[left, at - 4], [left + 24, at - 4]]), colour, 2.0, dash)
             canvas.text(left + 30, at, _shorten(one.label, _WIDTH - _LEFT - 80, _SIZE), _SIZE)
 
-    def _line(self, canvas: Canvas, one: Series, x: _Axis, y: _Axis, colour: str, dash: tuple[float, ...]) -> None:
+    def _line(self, canvas: Canvas, one: Series, x: Axis, y: Axis, colour: str, dash: tuple[float, ...]) -> None:
         is_over_time = bool(np.all(np.diff(one.times) >= 0))
-        for times, values in _split_line(one):
+        for times, values in split_line(one):
             points = np.column_stack((x.at(times), y.at(values)))
             if is_over_time:
-                points = _decimate(points)
+                points = thin_line(points, 2.0)
             if len(points) > 1:
                 canvas.line(points, colour, 1.4, dash)
             if len(points) == 1 or one.count <= _DOTTED:
                 canvas.dots(points, colour, 2.2)
 
 
-# ---------------------------------------------------------------------- axes
+def _tick_count(axis: Axis) -> float:
+    return max(2.0, abs(axis.end - axis.start) / (90 if axis.start < axis.end else 45))
 
 
-@dataclass(frozen=True)
-class _Axis:
-    """Numbers to pixels: `low` at `start`, `high` at `end`; labels leave `base` out."""
-
-    low: float
-    high: float
-    start: float
-    end: float
-    base: float = 0.0
-
-    @property
-    def told(self) -> str:
-        """What labels leave out, in words."""
-        return f", less {self.base:.12g}" if self.base else ""
-
-    def at(self, values: Numbers) -> Numbers:
-        return self.start + (values - self.low) / (self.high - self.low) * (self.end - self.start)
-
-    def ticks(self) -> list[tuple[float, str]]:
-        low, high = self.low - self.base, self.high - self.base
-        step = _round_step((high - low) / max(2.0, abs(self.end - self.start) / (90 if self.start < self.end else 45)))
-        values = [k * step for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
-        places = self.at(np.array(values, dtype=np.float64) + self.base)
-        return [(float(place), _label(value, step)) for place, value in zip(places, values, strict=True)]
-
-
-def _axis(values: Sequence[Numbers], start: float, end: float, *, margin: float) -> _Axis:
-    finite = [v[np.isfinite(v)] for v in values]
-    finite = [v for v in finite if v.size]
-    low = max(min((float(v.min()) for v in finite), default=0.0), -1e300)
-    high = min(max((float(v.max()) for v in finite), default=1.0), 1e300)
-    size = max(abs(low), abs(high))
-    if high - low <= max(1e-12 * size, _LEAST):
-        half = 0.05 * size if size > _LEAST else 1.0
-        low, high = low - half, high + half
-    room = margin * (high - low)
-    low, high = low - room, high + room
-    base = 0.0
-    if high - low < 1e-4 * size:  # all labels would look the same
-        base = round((low + high) / 2, max(0, -math.floor(math.log10(high - low))))
-    return _Axis(low, high, start, end, base)
-
-
-def _equal_scale(x: _Axis, y: _Axis) -> tuple[_Axis, _Axis]:
+def _equal_scale(x: Axis, y: Axis) -> tuple[Axis, Axis]:
     """Both with as many pixels a metre."""
     scale = max((a.high - a.low) / abs(a.end - a.start) for a in (x, y))
     found = []
     for a in (x, y):
         middle, half = (a.low + a.high) / 2, scale * abs(a.end - a.start) / 2
-        found.append(_Axis(middle - half, middle + half, a.start, a.end, a.base))
+        found.append(Axis(middle - half, middle + half, a.start, a.end, a.base))
     return found[0], found[1]
-
-
-def _round_step(step: float) -> float:
-    """The next of 1, 2, 5, 10, … ."""
-    power = 10.0 ** math.floor(math.log10(step))
-    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= step * (1 - 1e-9))
-
-
-def _label(value: float, step: float) -> str:
-    value = 0.0 if abs(value) < step / 2 else value
-    if value and not 1e-5 < step < 1e5:
-        digits = max(0, math.floor(math.log10(abs(value))) - math.floor(math.log10(step) + 1e-9))
-        return f"{value:.{digits}e}".replace("e-0", "e-").replace("e+0", "e")
-    return f"{value:.{max(0, -math.floor(math.log10(step) + 1e-9))}f}"
-
-
-# ---------------------------------------------------------------------- lines
-
-
-def _split_line(one: Series) -> list[tuple[Numbers, Numbers]]:
-    """The line in pieces: broken where a number is missing, and where an angle comes back from a full turn."""
-    times, values = one.times, one.values
-    finite = np.isfinite(values) & np.isfinite(times)
-    breaks = np.flatnonzero(np.diff(finite.astype(np.int8))) + 1
-    if one.is_angle:
-        jumps = np.zeros(max(len(values) - 1, 0), dtype=bool)
-        with np.errstate(invalid="ignore"):
-            jumps[:] = np.abs(np.diff(values)) > math.pi
-        breaks = np.union1d(breaks, np.flatnonzero(jumps) + 1)
-    edges = np.concatenate(([0], breaks, [len(values)]))
-    return [
-        (times[a:b], values[a:b])
-        for a, b in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True)
-        if b > a and finite[a]
-    ]
-
-
-def _decimate(points: Points) -> Points:
-    """No more than four points a pixel column: the first, the lowest, the highest and the last."""
-    columns = np.floor(points[:, 0] * 2).astype(np.int64)
-    starts = np.flatnonzero(np.diff(columns, prepend=columns[:1] - 1))
-    if len(points) <= 4 * len(starts):
-        return points
-    kept: list[int] = []
-    for start, end in zip(starts.tolist(), [*starts[1:].tolist(), len(points)], strict=True):
-        part = points[start:end, 1]
-        kept += sorted({start, start + int(part.argmin()), start + int(part.argmax()), end - 1})
-    return points[kept]
 
 
 def _legend(labels: list[str]) -> list[tuple[float, int]]:

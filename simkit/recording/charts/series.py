@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from simkit.recording.charts.fields import Curve
 
 if TYPE_CHECKING:
-
     from simkit.recording.bags.reader import BagReader
     from simkit.runtime import Simulation
 

@@ -1,15 +1,17 @@
-"""Golden, run and difference of what differs, drawn."""
+"""Charts of what differs: golden run, run and their difference."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from simkit.recording.charts.page_chart import PageChart
+from simkit.recording.charts.series import Series
 from simkit.testing.golden.compare.difference import Difference, Verdict
-from simkit.testing.golden.report.html_markup import escape_html, table
-from simkit.testing.golden.report.svg_chart import Line, chart
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Column, States, Stream
 
@@ -18,8 +20,31 @@ _LOW: Final = 110  # [px]: height of a chart of differences
 _QUANTITIES: Final = 3  # of the state that are drawn
 
 
-def figure(verdict: Verdict, difference: Difference) -> str:
-    """What can be drawn of a difference, as markup; empty where that is nothing.
+@dataclass(frozen=True)
+class PlotFigure:
+    """What is drawn of one difference.
+
+    Attributes:
+        words: the difference.
+        caption: what the charts show.
+        charts: lines of the classes "golden", "run" and "difference".
+        heads, rows: a table above the charts; empty for none.
+    """
+
+    words: str
+    caption: str
+    charts: Sequence[PageChart]
+    heads: Sequence[str] = ()
+    rows: Sequence[Sequence[str]] = ()
+
+    @property
+    def roles(self) -> set[str]:
+        """Classes of the lines that have something to show."""
+        return {role for chart in self.charts for line, role in chart.lines if line.count}
+
+
+def plot_figure(verdict: Verdict, difference: Difference) -> PlotFigure | None:
+    """Return what can be drawn of a difference; None where that is nothing.
 
     Args:
         verdict: the difference's.
@@ -30,9 +55,11 @@ def figure(verdict: Verdict, difference: Difference) -> str:
     golden = verdict.golden.streams.get(difference.topic)
     run = verdict.run.streams.get(difference.topic)
     if golden is None or run is None:
-        return ""
+        return None
     if difference.kind in ("count", "time", "missing", "extra"):
-        return _frame_figure(difference, [_rates(golden, run)], "messages in each second") if difference.topic else ""
+        if not difference.topic:
+            return None
+        return PlotFigure(difference.words, "messages in each second", [_rates(golden, run)])
     statistics = _pair(golden.statistics, run.statistics, difference.field)
     if difference.kind == "statistics" and statistics is not None:
         return _statistics(difference, *statistics)
@@ -40,28 +67,30 @@ def figure(verdict: Verdict, difference: Difference) -> str:
         columns = _pair(golden.columns, run.columns, field)
         if columns is not None and (field == difference.field or _differ(*columns)):
             return _columns(difference, field, golden, run, columns)
-    return ""
+    return None
 
 
 def _differ(golden: Column, run: Column) -> bool:
     return golden.values.shape != run.values.shape or not np.array_equal(golden.values, run.values)
 
 
-def _columns(difference: Difference, field: str, golden: Stream, run: Stream, columns: tuple[Column, Column]) -> str:
+def _columns(
+    difference: Difference, field: str, golden: Stream, run: Stream, columns: tuple[Column, Column]
+) -> PlotFigure | None:
     a, b = columns
     count = min(_messages(a, golden), _messages(b, run))
     packed = field.endswith((".rgb", ".rgba")) and a.values.dtype.kind == "f"  # colours in the bits of a number
     if count == 0 or packed or a.values.dtype.kind not in "biuf" or b.values.dtype.kind not in "biuf":
-        return ""
+        return None
     title = f"{difference.topic}.{field}"
     if a.lengths is None and b.lengths is None and a.values[0].size == b.values[0].size == 1:
         ours, theirs = _flat(a.values[:count]), _flat(b.values[:count])
         shown = field if difference.columns else ""
-        return _frame_figure(difference, _over_time(golden.times_ns[:count], ours, theirs, title, difference), shown)
+        return PlotFigure(difference.words, shown, _over_time(golden.times_ns[:count], ours, theirs, title, difference))
     return _arrays(difference, golden, a, b, count, title)
 
 
-def _arrays(difference: Difference, golden: Stream, a: Column, b: Column, count: int, title: str) -> str:
+def _arrays(difference: Difference, golden: Stream, a: Column, b: Column, count: int, title: str) -> PlotFigure | None:
     """The first message that differs as a profile, and how far each message is off."""
     far = np.zeros(count)
     for index in range(count):
@@ -87,39 +116,35 @@ def _arrays(difference: Difference, golden: Stream, a: Column, b: Column, count:
         if a.lengths is None and b.lengths is None and worst < min(len(ours), len(theirs)):
             pair = [_flat(column.values[:count].reshape(count, -1)[:, worst]) for column in (a, b)]
             parts = _over_time(golden.times_ns[:count], pair[0], pair[1], f"{title}[{worst}]", difference)
-            return _frame_figure(difference, parts, f"component {worst}")
-    profile = [_profile(ours, "golden"), _profile(theirs, "run")]
+            return PlotFigure(difference.words, f"component {worst}", parts)
+    profile = [(_profile(ours), "golden"), (_profile(theirs), "run")]
     parts = [
-        chart(
-            profile, title=f"{title} at {seconds[first]:.6g} s", x_label="number of the value", y_label=f"value{unit}"
-        ),
+        PageChart(profile, f"{title} at {seconds[first]:.6g} s", "number of the value", f"value{unit}"),
         _difference_chart(_profile_of_difference(ours, theirs), f"{title}: difference", "number of the value", unit),
-        _difference_chart(
-            Line(seconds, far, "difference"), f"{title}: largest difference", "time [s]", unit, difference.time
-        ),
+        _difference_chart(_line(seconds, far), f"{title}: largest difference", "time [s]", unit, difference.time),
     ]
-    return _frame_figure(
-        difference, parts, f"message {first} at {seconds[first]:.6g} s; below: the largest of each message"
+    return PlotFigure(
+        difference.words,
+        f"message {first} at {seconds[first]:.6g} s; below: the largest of each message",
+        parts,
     )
 
 
-def _over_time(times_ns: Array, ours: Array, theirs: Array, title: str, difference: Difference) -> list[str]:
+def _over_time(times_ns: Array, ours: Array, theirs: Array, title: str, difference: Difference) -> list[PageChart]:
     seconds, unit = times_ns * 1e-9, _unit(difference)
-    lines = [Line(seconds, ours, "golden"), Line(seconds, theirs, "run")]
+    lines = [(_line(seconds, ours), "golden"), (_line(seconds, theirs), "run")]
     mark = difference.time
     return [
-        chart(lines, title=title, x_label="time [s]", y_label=f"value{unit}", mark=mark),
-        _difference_chart(
-            Line(seconds, _difference(theirs, ours), "difference"), f"{title}: difference", "time [s]", unit, mark
-        ),
+        PageChart(lines, title, "time [s]", f"value{unit}", mark=mark),
+        _difference_chart(_line(seconds, _difference(theirs, ours)), f"{title}: difference", "time [s]", unit, mark),
     ]
 
 
-def _difference_chart(line: Line, title: str, x_label: str, unit: str, mark: float | None = None) -> str:
-    return chart([line], title=title, x_label=x_label, y_label=f"Δ{unit}", height=_LOW, mark=mark)
+def _difference_chart(line: Series, title: str, x_label: str, unit: str, mark: float | None = None) -> PageChart:
+    return PageChart([(line, "difference")], title, x_label, f"Δ{unit}", _LOW, mark)
 
 
-def _rates(golden: Stream, run: Stream) -> str:
+def _rates(golden: Stream, run: Stream) -> PageChart:
     """Messages in each second of simulated time; the last second, which need not be whole, is left out."""
     lines = []
     ends = [int(stream.times_ns[-1]) // 10**9 for stream in (golden, run) if len(stream.times_ns)]
@@ -127,56 +152,55 @@ def _rates(golden: Stream, run: Stream) -> str:
     for stream, role in ((golden, "golden"), (run, "run")):
         counts = np.bincount((stream.times_ns // 10**9).astype(np.int64), minlength=seconds)[:seconds]
         x = np.repeat(np.arange(seconds + 1.0), 2)[1:-1]
-        lines.append(Line(x, np.repeat(counts.astype(float), 2), "golden" if role == "golden" else "run"))
-    return chart(lines, title=golden.topic, x_label="time [s]", y_label="messages a second")
+        lines.append((_line(x, np.repeat(counts.astype(float), 2)), role))
+    return PageChart(lines, golden.topic, "time [s]", "messages a second")
 
 
-def _state(golden: States, run: States, difference: Difference) -> str:
+def _state(golden: States, run: States, difference: Difference) -> PlotFigure | None:
     """The quantities that are furthest off at the first kept state that differs."""
     shared = sorted(set(golden.names) & set(run.names))
     ticks, ours_at, theirs_at = np.intersect1d(golden.ticks, run.ticks, return_indices=True)
     if not shared or len(ticks) == 0:
-        return ""
+        return None
     places, others = ({name: i for i, name in enumerate(states.names)} for states in (golden, run))
     ours = golden.values[ours_at][:, [places[name] for name in shared]]
     theirs = run.values[theirs_at][:, [others[name] for name in shared]]
     off = np.abs(_difference(theirs, ours))
     differing = np.flatnonzero((off > 0.0).any(axis=1))
     if len(differing) == 0:
-        return ""
+        return None
     order = np.argsort(-np.nan_to_num(off[differing[0]]), kind="stable")[:_QUANTITIES]
     seconds = ticks * golden.timestep
     parts = []
     for number in order:
         if not (off[:, number] > 0.0).any():
             continue
-        lines = [Line(seconds, ours[:, number], "golden"), Line(seconds, theirs[:, number], "run")]
-        parts.append(chart(lines, title=shared[number], x_label="time [s]", y_label="value", height=150))
-        line = Line(seconds, _difference(theirs[:, number], ours[:, number]), "difference")
-        parts.append(_difference_chart(line, f"{shared[number]}: difference", "time [s]", ""))
-        parts.append(f'<p class="small">{escape_html(shared[number])}</p>')
-    return _frame_figure(difference, parts, "the quantities that differ most where the first kept state does")
+        lines = [(_line(seconds, ours[:, number]), "golden"), (_line(seconds, theirs[:, number]), "run")]
+        parts.append(PageChart(lines, shared[number], "time [s]", "value", 150))
+        line = _line(seconds, _difference(theirs[:, number], ours[:, number]))
+        below = _difference_chart(line, f"{shared[number]}: difference", "time [s]", "")
+        parts.append(replace(below, caption=shared[number]))
+    return PlotFigure(difference.words, "the quantities that differ most where the first kept state does", parts)
 
 
-def _statistics(difference: Difference, golden: NoiseStatistics, run: NoiseStatistics) -> str:
+def _statistics(difference: Difference, golden: NoiseStatistics, run: NoiseStatistics) -> PlotFigure | None:
     rows = []
     for number in range(min(len(golden.mean), len(run.mean))):
         told = [(s.mean[number], s.deviation[number]) for s in (golden, run)]
         rows.append([str(number), *(f"{mean:.6g} ± {deviation:.6g}" for mean, deviation in told)])
     unit = _unit(difference)
     worst = _worst_component(golden, run)
-    parts = [table(["component", f"golden mean ± deviation{unit}", "run"], rows)]
+    parts = []
     if worst is not None and golden.quantiles.shape[1] > 1 and golden.quantiles.shape == run.quantiles.shape:
         share = np.linspace(0.0, 1.0, golden.quantiles.shape[1])
-        lines = [Line(share, golden.quantiles[worst], "golden"), Line(share, run.quantiles[worst], "run")]
-        parts.append(
-            chart(lines, title="quantiles", x_label=f"share of samples, component {worst}", y_label=f"noise{unit}")
-        )
+        lines = [(_line(share, golden.quantiles[worst]), "golden"), (_line(share, run.quantiles[worst]), "run")]
+        parts.append(PageChart(lines, "quantiles", f"share of samples, component {worst}", f"noise{unit}"))
     if worst is not None and len(golden.taus) > 1 and golden.allan.shape == run.allan.shape:
-        lines = [Line(golden.taus, golden.allan[worst], "golden"), Line(run.taus, run.allan[worst], "run")]
+        lines = [(_line(golden.taus, golden.allan[worst]), "golden"), (_line(run.taus, run.allan[worst]), "run")]
         label = f"Allan deviation{unit}"
-        parts.append(chart(lines, title=label, x_label="averaging time [s]", y_label=label, log=True))
-    return _frame_figure(difference, parts, f"{golden.count} and {run.count} samples of the noise")
+        parts.append(PageChart(lines, label, "averaging time [s]", label, is_log=True))
+    heads = ["component", f"golden mean ± deviation{unit}", "run"]
+    return PlotFigure(difference.words, f"{golden.count} and {run.count} samples of the noise", parts, heads, rows)
 
 
 def _worst_component(golden: NoiseStatistics, run: NoiseStatistics) -> int | None:
@@ -190,12 +214,8 @@ def _worst_component(golden: NoiseStatistics, run: NoiseStatistics) -> int | Non
     return int(np.nan_to_num(off).argmax())
 
 
-def _frame_figure(difference: Difference, parts: list[str], caption: str) -> str:
-    drawn = "".join(parts)
-    roles = (("golden", "golden"), ("run", "run"), ("difference", "run less golden"))
-    key = " ".join(f'<span class="key {role}">{name}</span>' for role, name in roles if f'line {role}"' in drawn)
-    said = f"{escape_html(difference.words)}" + (f"<br/>{escape_html(caption)}" if caption else "")
-    return f"<figure><figcaption>{said}<br/>{key}</figcaption>{drawn}</figure>"
+def _line(x: Array, y: Array) -> Series:
+    return Series("", times=np.asarray(x, np.float64), values=np.asarray(y, np.float64))
 
 
 def _pair(golden: dict[str, Any], run: dict[str, Any], field: str) -> tuple[Any, Any] | None:
@@ -227,13 +247,13 @@ def _any(ours: Array, theirs: Array) -> bool:
     return bool(np.isfinite(_difference(theirs, ours)).any())
 
 
-def _profile(values: Array, role: str) -> Line:
-    return Line(np.arange(float(len(values))), values, "golden" if role == "golden" else "run")
+def _profile(values: Array) -> Series:
+    return _line(np.arange(float(len(values))), values)
 
 
-def _profile_of_difference(ours: Array, theirs: Array) -> Line:
+def _profile_of_difference(ours: Array, theirs: Array) -> Series:
     shared = min(len(ours), len(theirs))
-    return Line(np.arange(float(shared)), _difference(theirs[:shared], ours[:shared]), "difference")
+    return _line(np.arange(float(shared)), _difference(theirs[:shared], ours[:shared]))
 
 
 def _unit(difference: Difference) -> str:

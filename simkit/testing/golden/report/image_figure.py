@@ -1,15 +1,16 @@
-"""Pictures of a topic side by side, inside the page."""
+"""Images of a topic side by side: golden run, run and their difference."""
 
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.testing.golden.compare.difference import Difference, Verdict
-from simkit.testing.golden.report.html_markup import escape_html
 from simkit.testing.run_record.record import Pictures
 
 Array = npt.NDArray[Any]
@@ -17,8 +18,24 @@ _LARGEST: Final = 256  # [px]: a kept picture that is larger is shown smaller
 _BLUE_FIRST: Final = ("bgr", "8UC3")
 
 
-def picture_figure(verdict: Verdict, difference: Difference) -> str:
-    """The first pictures that differ: golden, run, and the difference, brighter; empty where there are none.
+@dataclass(frozen=True)
+class ImageRow:
+    """Images of one message: name and `data:` address of each."""
+
+    images: Sequence[tuple[str, str]]
+    caption: str
+
+
+@dataclass(frozen=True)
+class ImageFigure:
+    """Images of one difference, which `words` describes."""
+
+    words: str
+    rows: Sequence[ImageRow]
+
+
+def image_figure(verdict: Verdict, difference: Difference) -> ImageFigure | None:
+    """Return the first images that differ: golden, run, and the difference, brighter; None where there are none.
 
     Args:
         verdict: the difference's.
@@ -26,12 +43,12 @@ def picture_figure(verdict: Verdict, difference: Difference) -> str:
     """
     streams = [record.streams.get(difference.topic) for record in (verdict.golden, verdict.run)]
     if streams[0] is None or streams[1] is None or streams[0].pictures is None or streams[1].pictures is None:
-        return ""
+        return None
     golden, run = streams[0].pictures, streams[1].pictures
     messages = np.intersect1d(golden.messages, run.messages)
     count = len(messages)
     if count == 0:
-        return ""
+        return None
     golden, run = golden.at(messages), run.at(messages)
     # the first that was kept at or after the first that differs
     index = int(np.searchsorted(messages, difference.index)) if difference.index >= 0 else -1
@@ -41,7 +58,7 @@ def picture_figure(verdict: Verdict, difference: Difference) -> str:
         message = int(messages[place])
         seconds = f" at {times[message] * 1e-9:.6g} s" if message < len(times) else ""
         rows.append(_row(golden, run, place, f"picture {message}{seconds}"))
-    return f"<figure><figcaption>{escape_html(difference.words)}</figcaption>{''.join(rows)}</figure>"
+    return ImageFigure(difference.words, rows)
 
 
 def _chosen(golden: Pictures, run: Pictures, count: int, index: int) -> list[int]:
@@ -54,7 +71,7 @@ def _chosen(golden: Pictures, run: Pictures, count: int, index: int) -> list[int
     return [first, worst] if far[worst] > 1.5 * far[first] and worst != first else [first]
 
 
-def _row(golden: Pictures, run: Pictures, index: int, caption: str) -> str:
+def _row(golden: Pictures, run: Pictures, index: int, caption: str) -> ImageRow:
     ours, theirs = _fitting(golden.small[index]), _fitting(run.small[index])
     low, high = _span(ours, theirs)
     shown = [("golden", _colours(ours, golden.encoding, low, high)), ("run", _colours(theirs, run.encoding, low, high))]
@@ -66,11 +83,7 @@ def _row(golden: Pictures, run: Pictures, index: int, caption: str) -> str:
         )
         shown.append((f"difference × {factor:.3g}", apart))
     tiles = _tiles(golden, run, index)
-    images = "".join(
-        f'<div><img alt="{escape_html(name)}" src="{_png(image)}"/><br/>{escape_html(name)}</div>'
-        for name, image in shown
-    )
-    return f'<div class="pictures">{images}</div><p class="small">{escape_html(caption + tiles)}</p>'
+    return ImageRow([(name, _png(image)) for name, image in shown], caption + tiles)
 
 
 def _tiles(golden: Pictures, run: Pictures, index: int) -> str:

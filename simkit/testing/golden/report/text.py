@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
 from simkit.testing.golden.compare.difference import Cause, Comparison, Difference, Explanation, Verdict
-from simkit.testing.golden.report.html_markup import clean_text
 
 if TYPE_CHECKING:
     from simkit.testing.junit import JunitCase
@@ -21,6 +20,10 @@ MAX_DIFFERENCES: Final = 12
 _SAME_BITS: Final = "the same bits"  # what a comparison says is allowed on one machine
 _LABEL: Final = 7  # letters that the words before a line's text take
 _OWN_LABEL: Final = re.compile(r"([a-z]{3,7}): ")
+# what XML cannot hold, and the marks that turn the order of letters round, which could make a name read as another
+_ILLEGAL: Final = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff\u202a-\u202e\u2066-\u2069\u200e\u200f]"
+)
 
 
 def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENCES, mark: str = "FAILED") -> list[str]:
@@ -227,3 +230,8 @@ def _cases_of_verdict(verdict: Verdict) -> list[JunitCase]:
         output = check.message if check.passed else ""
         cases.append(JunitCase(check.check.title, f"{classname}.checks", failure=failure, output=output, file=file))
     return cases
+
+
+def clean_text(text: str) -> str:
+    """A text without what a terminal or a reader would take for more than letters."""
+    return _ILLEGAL.sub("\ufffd", text)
