@@ -8,18 +8,16 @@ from typing import Annotated, Any
 import typer
 
 from simkit.cli.bag_record import record
-from simkit.cli.plot import (
+from simkit.cli.plot_sources import (
     Against,
     End,
     Output,
     PlotRequest,
     Start,
     Title,
+    draw_chart,
     is_bag,
     split_sources_and_fields,
-)
-from simkit.cli.plot import (
-    draw_chart as draw,
 )
 from simkit.cli.terminal.live_options import Sim
 from simkit.cli.terminal.options import Force, Json
@@ -61,7 +59,7 @@ def plot(
     for name in sources:
         if not is_bag(Path(name)):
             open_bag_to_read(name).close()  # says why not
-    return draw(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
+    return draw_chart(sources, fields, PlotRequest(output, against, start, end, title), json_=json_)
 
 
 @report_errors_quietly
@@ -91,7 +89,7 @@ def export(
     from dataclasses import asdict
 
     from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions
-    from simkit.recording.export import export_bag as write
+    from simkit.recording.export import export_bag
 
     for option, word, allowed in (
         ("--format", format_, FORMATS),
@@ -104,7 +102,7 @@ def export(
             raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
     target = output or Path(f"{recording.resolve().stem}_export")
     wish = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
-    found = write(recording, target, wish)
+    found = export_bag(recording, target, wish)
     if json_:
         print_json({"output": str(target), "topics": [asdict(one) for one in found]})
         return 0
@@ -254,10 +252,10 @@ def recover(
     force: Force = False,
 ) -> int:
     """Copies what is readable of a recording into a whole one; the broken one stays as it is."""
-    from simkit.recording.bags.recovery import recover_bag as mend
+    from simkit.recording.bags.recovery import recover_bag
 
     target = output or mended or broken.with_name(f"{broken.stem}_recovered{broken.suffix}")
-    found = mend(broken, target, overwrite=force)
+    found = recover_bag(broken, target, overwrite=force)
     span = (found.end - found.start) * 1e-9
     state = "it was whole" if found.complete else "it was cut off"
     stdout_console().print(f"{target}: {found.messages} messages on {found.topics} topics over {span:.3f} s ({state})")

@@ -1,0 +1,222 @@
+"""Draw fields of bags, and of worlds and scenarios that are run for it: `simkit plot` and `simkit bag plot`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+
+from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.terminal.output import print_json, print_line, print_note
+from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.recording.charts.chart import Chart, Style
+    from simkit.recording.charts.fields import Curve
+    from simkit.recording.charts.series import Series
+
+
+Output = Annotated[
+    Path, typer.Option("--output", "-o", help="The file: .svg or .png.", metavar="OUT", show_default=True)
+]
+Against = Annotated[
+    str | None, typer.Option(help="Draws over this field in place of time.", metavar="FIELD", show_default=False)
+]
+Start = Annotated[float | None, typer.Option("--start", help="Leaves out what was before.", metavar="S")]
+End = Annotated[float | None, typer.Option("--end", help="Leaves out what was after.", metavar="S")]
+Title = Annotated[str, typer.Option(help="Above the chart.", metavar="TEXT", show_default=False)]
+
+
+_BAGS: Final = (".mcap", ".db3")
+_SCENARIOS: Final = (".yaml", ".yml")
+_WORLDS: Final = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf", ".erb", ".config")
+_TOPICS_LISTED: Final = 20  # topics that are listed where no field is named
+
+
+@dataclass(frozen=True)
+class PlotRequest:
+    """What is to be drawn, and how.
+
+    Attributes:
+        output: the file.
+        against: the field that is drawn to the right, in place of time.
+        start, end: times between which numbers are drawn [s].
+        title: above all.
+        run: how a world is run.
+    """
+
+    output: Path
+    against: str | None = None
+    start: float | None = None
+    end: float | None = None
+    title: str = ""
+    run: ScenarioOptions = field(default_factory=lambda: ScenarioOptions(""))
+
+
+def is_bag(path: Path) -> bool:
+    """Whether that is a recording."""
+    if path.suffix.lower() in _BAGS:
+        return True
+    return path.is_dir() and ((path / "metadata.yaml").exists() or any(path.glob("*.mcap")))
+
+
+def split_sources_and_fields(words: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Sources and fields: the first word is a source, and so is each further one that is there or looks like one."""
+    sources: list[str] = list(words[:1])
+    fields: list[str] = []
+    for word in words[1:]:
+        path = Path(word)
+        known = path.suffix.lower() in (*_BAGS, *_SCENARIOS, *_WORLDS)
+        is_name = "/" not in word and "." not in word
+        (sources if known or is_name or path.exists() else fields).append(word)
+    return sources, fields
+
+
+def draw_chart(sources: Sequence[str], fields: Sequence[str], wish: PlotRequest, *, json_: bool) -> int:
+    """Draws fields of sources to a file.
+
+    Raises:
+        InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; what a world's loading raises.
+    """
+    from simkit.recording.atomic_output import check_writable, write_atomically
+    from simkit.recording.charts.chart import check_suffix, render_chart
+
+    check_suffix(wish.output.name)
+    check_writable(wish.output)
+    named = _source_labels(sources)
+    found: list[tuple[Series, Style]] = []
+    for number, source in enumerate(sources):
+        prefix = f"{named[number]}: " if len(sources) > 1 else ""
+        found += _with_styles(_series(source, fields, wish), number, prefix, alone=len(sources) == 1)
+    found = [(one, style) for one, style in found if _has_numbers(one)]
+    if not found:
+        raise InputError("SK-BAG-011 there is nothing to draw: no number came", "SK-BAG-011")
+    if len(sources) > 1:
+        found.sort(key=lambda pair: pair[1].colour)
+    write_atomically(wish.output, render_chart(_chart(found, wish), wish.output.suffix))
+    _summary(wish.output, [one for one, _ in found], json_=json_)
+    return 0
+
+
+def _source_labels(sources: Sequence[str]) -> list[str]:
+    """What sources are called in the chart: their stems, where those differ."""
+    stems = [Path(source).stem if "<" not in source else "world" for source in sources]
+    return stems if len(set(stems)) == len(stems) else list(sources)
+
+
+def _with_styles(series: list[Series], number: int, prefix: str, *, alone: bool) -> list[tuple[Series, Style]]:
+    """A colour for each field, a way of dashing for each source."""
+    from simkit.recording.charts.chart import Style
+
+    return [
+        (replace(one, label=prefix + one.label), Style(colour, number) if not alone else Style(colour))
+        for colour, one in enumerate(series)
+    ]
+
+
+def _has_numbers(one: Series) -> bool:
+    if not one.count:
+        print_note(f"note: {one.label}: no number came, it is left out")
+    return bool(one.count)
+
+
+def _chart(found: list[tuple[Series, Style]], wish: PlotRequest) -> Chart:
+    from simkit.recording.charts.chart import Chart
+
+    series = [one for one, _ in found]
+    # one source draws each curve in a colour of its own; with several, equal fields are equal in colour
+    label, is_plane = "time [s]", False
+    if wish.against is not None:
+        unit = series[0].base_unit
+        label = wish.against + (f" [{unit}]" if unit else "")
+        is_plane = unit == "m" and {one.unit for one in series} == {"m"}
+    return Chart(series, [style for _, style in found], wish.title, label, is_plane)
+
+
+def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
+    rows = [one.summary() for one in series]
+    if json_:
+        print_json({"output": str(output), "curves": rows})
+        return
+    width = max(len(row["label"]) for row in rows)
+    for row in rows:
+        unit = f" {row['unit']}" if row["unit"] else ""
+        numbers = "  ".join(f"{key} {row[key]:.6g}" for key in ("min", "max", "mean", "last"))
+        print_line(f"{row['label']:<{width}}  {row['count']:>7}  {numbers}{unit}")
+    print_line(f"{output}: {len(rows)} curve{'s' if len(rows) > 1 else ''}")
+
+
+# ---------------------------------------------------------------------- numbers of a source
+
+
+def _series(source: str, fields: Sequence[str], wish: PlotRequest) -> list[Series]:
+    from simkit.recording.charts.series import series_over
+
+    path = Path(source)
+    take = _bag_series if is_bag(path) else _world_series
+    wanted = list(fields) if wish.against is None else [*fields, wish.against]
+    found, counts = take(source, wanted, wish)
+    if wish.start is not None or wish.end is not None:
+        found = [one.between(wish.start, wish.end) for one in found]
+    if wish.against is None:
+        return found
+    base = found[-counts[-1] :]
+    if len(base) != 1:
+        raise InputError(f"SK-BAG-010 --against {wish.against}: stands for {len(base)} numbers", "SK-BAG-010")
+    return series_over(found[: -counts[-1]], base[0])
+
+
+def _curves(
+    fields: Sequence[str], topics: Mapping[str, str], store_of: Callable[[str], Any], where: str
+) -> tuple[list[Curve], list[int]]:
+    """The curves of fields, and how many each field stands for."""
+    from simkit.recording.charts.fields import curves_of
+    from simkit.testing.golden.compare.units import unit_of
+
+    if not fields:
+        names = list(topics)
+        listed = ", ".join(names[:_TOPICS_LISTED]) + (
+            f" and {len(names) - _TOPICS_LISTED} more" if len(names) > _TOPICS_LISTED else ""
+        )
+        text = f"name a field to draw, such as /odom.pose.pose.position.x; {where} has {listed or 'no topics'}"
+        raise InputError(f"SK-BAG-011 {text}", "SK-BAG-011")
+    found = [curves_of(text, topics, store_of, where, unit_of) for text in fields]
+    return [curve for curves in found for curve in curves], [len(curves) for curves in found]
+
+
+def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[list[Series], list[int]]:
+    from simkit.recording.bags.reader import open_bag_to_read
+    from simkit.recording.charts.series import bag_series
+
+    with open_bag_to_read(source) as bag:
+        if bag.broken:
+            print_note(f"note: {source}: {bag.broken}")
+        topics = {t.name: t.type_name for t in sorted(bag.topics, key=lambda t: t.count)}
+        for topic in bag.topics:
+            if topic.type_name != topics[topic.name]:
+                print_note(f"note: {topic.name} has messages of {topic.type_name} too, which are left out")
+        topics = dict(sorted(topics.items()))
+        curves, counts = _curves(fields, topics, bag.store_of, f"the bag {source}")
+        return bag_series(bag, curves), counts
+
+
+def _world_series(source: str, fields: Sequence[str], wish: PlotRequest) -> tuple[list[Series], list[int]]:
+    from simkit import msgs
+    from simkit.cli.terminal.output import print_diagnostics
+    from simkit.recording.charts.series import SeriesTap
+    from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+
+    asked = replace(wish.run, world=source)
+    scenario = asked.scenario()
+    with ExitStack() as stack:
+        sim = stack.enter_context(open_scenario(scenario))
+        print_diagnostics(sim.diagnostics, verbose=False)
+        topics = sim.topics()
+        curves, counts = _curves(fields, topics, lambda _: msgs.type_store(), scenario.title)
+        tap = stack.enter_context(SeriesTap(sim, curves))
+        run_scenario(asked.commanded(scenario, topics), sim)
+        return tap.series(), counts
