@@ -29,6 +29,10 @@ _FAMILIES: Final = {
 }
 """Module of Gazebo, without its version -> ours."""
 
+_PACKAGE: Final = __name__.rpartition(".")[0]
+_BESIDE: Final = {f"{_PACKAGE}.sim": "simkit.testing.gz_fixture"}
+"""Our module -> a module of a higher room whose names are offered with it: `TestFixture` loads worlds."""
+
 _UNSUPPORTED_MODULES: Final = (
     "gui",
     "rendering",
@@ -56,7 +60,7 @@ def module_behind(name: str) -> str | None:
     family = _FAMILIES.get(match["sdf"] or match["module"])
     if family is None:
         return None
-    target = f"simkit.plugins.gz_python.{family}"
+    target = f"{_PACKAGE}.{family}"
     if not match["rest"]:
         return target
     if family == "msgs":
@@ -112,14 +116,18 @@ class _ShimLoader(Loader):
     def _fill(self, own: dict[str, Any]) -> None:
         if not self._target:
             return
-        if self._target.startswith("simkit.plugins.gz_python.msgs."):
-            from simkit.plugins.gz_python import msgs
-
-            own.update(msgs.contents_of(self._target.removeprefix("simkit.plugins.gz_python.msgs.")))
+        messages = f"{_PACKAGE}.msgs"
+        if self._target.startswith(f"{messages}."):
+            contents = importlib.import_module(messages).contents_of(self._target.removeprefix(f"{messages}."))
+            own.update(contents)
             return
         real = importlib.import_module(self._target)
         own.update({name: value for name, value in vars(real).items() if not name.startswith("__")})
         own.update({name: vars(real)[name] for name in ("__doc__", "__all__", "__getattr__") if name in vars(real)})
+        if self._target in _BESIDE:
+            other = importlib.import_module(_BESIDE[self._target])
+            own.update({name: vars(other)[name] for name in other.__all__})
+            own["__all__"] = sorted([*own["__all__"], *other.__all__])
 
 
 _finder: Final = ShimFinder()

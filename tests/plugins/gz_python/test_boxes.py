@@ -7,7 +7,8 @@ import math
 import pytest
 
 from simkit.plugins.gz_python.math import AxisAlignedBox, Vector3d
-from simkit.plugins.gz_python.sim import Link, Model, TestFixture, World
+from simkit.plugins.gz_python.sim import Link, Model, World
+from simkit.testing.gz_fixture import TestFixture
 
 WORLD = f"""<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity>
   <model name="m"><pose>5 0 0 0 0 {math.pi / 4}</pose>

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from simkit.plugins.gz_python.math import Pose3d, Vector2d, Vector3d
-from simkit.plugins.gz_python.sim import EntityComponentManager, Joint, Link, Model, TestFixture, UpdateInfo, World
+from simkit.plugins.gz_python.sim import EntityComponentManager, Joint, Link, Model, UpdateInfo, World
+from simkit.testing.gz_fixture import TestFixture
 
 STEP = 0.001
 INERTIAL = (

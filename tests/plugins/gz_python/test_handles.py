@@ -19,11 +19,11 @@ from simkit.plugins.gz_python.sim import (
     Link,
     Model,
     Sensor,
-    TestFixture,
     World,
     world_entity,
     world_pose,
 )
+from simkit.testing.gz_fixture import TestFixture
 
 ROBOT = """
 <sdf version="1.9"><world name="yard">

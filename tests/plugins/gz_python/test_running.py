@@ -9,8 +9,9 @@ import pytest
 import simkit
 from simkit.plugins.gz.gz_system import GzSystem
 from simkit.plugins.gz_python.msgs import message_class
-from simkit.plugins.gz_python.sim import Joint, Model, TestFixture, World, world_entity
+from simkit.plugins.gz_python.sim import Joint, Model, World, world_entity
 from simkit.plugins.gz_python.transport import Node
+from simkit.testing.gz_fixture import TestFixture
 
 FILE = "gz-sim-joint-state-publisher-system"
 STATES = f'<plugin filename="{FILE}" name="gz::sim::systems::JointStatePublisher">{{}}</plugin>'

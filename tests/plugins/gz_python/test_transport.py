@@ -191,7 +191,7 @@ def test_a_node_without_a_simulation_says_so(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_a_node_made_before_the_simulation_is_opened_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
     from simkit.plugins.gz_python import simulation_context
-    from simkit.plugins.gz_python.sim import TestFixture
+    from simkit.testing.gz_fixture import TestFixture
 
     monkeypatch.setattr(simulation_context, "_latest", None)
     node, heard = Node(), []

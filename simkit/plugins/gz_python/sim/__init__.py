@@ -9,7 +9,6 @@ from simkit.plugins.gz_python.sim import components
 from simkit.plugins.gz_python.sim.components import ComponentState
 from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager
 from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY
-from simkit.plugins.gz_python.sim.fixture import Server, ServerConfig, TestFixture
 from simkit.plugins.gz_python.sim.joint import Joint
 from simkit.plugins.gz_python.sim.link import Link
 from simkit.plugins.gz_python.sim.model import Model
@@ -31,9 +30,6 @@ __all__ = [
     "Link",
     "Model",
     "Sensor",
-    "Server",
-    "ServerConfig",
-    "TestFixture",
     "UpdateInfo",
     "World",
     "components",
@@ -48,5 +44,9 @@ _INSTEAD: Final = {
 }
 
 
+_IN_FIXTURE: Final = ("Server", "ServerConfig", "TestFixture")
+"""Names that `gz.sim` has from `simkit.testing.gz_fixture`."""
+
+
 def __getattr__(name: str) -> Any:
-    raise missing_name_error("gz.sim", name, __all__, _INSTEAD)
+    raise missing_name_error("gz.sim", name, (*__all__, *_IN_FIXTURE), _INSTEAD)

@@ -1,4 +1,4 @@
-"""Running a world from a script, as gz-sim's Python does it: `TestFixture`, `Server`, `ServerConfig`."""
+"""Run a world from a script as gz-sim does; `gz.sim` offers `TestFixture`, `Server` and `ServerConfig` from here."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, ClassVar, Final
 
+import simkit
 from simkit.plugins.gz_python import transport
 from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager, manager_of
 from simkit.plugins.gz_python.sim.system_hub import update_paused
 from simkit.plugins.gz_python.sim.update_info import EventManager, UpdateInfo
+
+__all__ = ["Server", "ServerConfig", "TestFixture"]
 
 _EMPTY: Final = "<sdf version='1.9'><world name='default'/></sdf>"
 
@@ -78,8 +81,6 @@ class Server:
     """
 
     def __init__(self, config: ServerConfig | None = None, callbacks: _Callbacks | None = None) -> None:
-        import simkit
-
         chosen = config if config is not None else ServerConfig()
         self._callbacks = callbacks if callbacks is not None else _Callbacks()
         self.simulation = simkit.load(chosen._source, seed=chosen._seed, plugins=[self._callbacks])
