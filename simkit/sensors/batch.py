@@ -1,6 +1,6 @@
 """Sensors of one kind that sample together: what one call of NumPy gives for all of them is not computed one by one.
 
-A crew changes no bit, no order and no message. Each member samples in its own turn and takes its part of what was
+A batch changes no bit, no order and no message. Each member samples in its own turn and takes its part of what was
 computed at the turn of the first; where somebody has written to the physics in between, it is computed anew.
 """
 
@@ -34,27 +34,27 @@ class SensorBatch(abc.ABC, Generic[Member]):
         self.model = self.sim.mj_model
         self._tick = self._edition = -1
         for place, member in enumerate(self.members):
-            member.crew, member.place_in_crew = self, place
+            member.batch, member.batch_index = self, place
 
     @abc.abstractmethod
-    def look(self, data: Any) -> None:
-        """Takes what all members need from the data, which have everything computed."""
+    def capture_all(self, data: Any) -> None:
+        """Capture all members from the data, which have everything computed."""
 
     @abc.abstractmethod
-    def raw_of(self, place: int) -> Any:
-        """What `capture` would give of a member."""
+    def captured(self, place: int) -> Any:
+        """Return what `capture` would give of a member."""
 
-    def serve(self, member: Sampler, tick: int) -> bool:
-        """Does all that there is to a sample of which every message is waited for; False where the member has to."""
+    def publish_sample(self, member: Sampler, tick: int) -> bool:
+        """Make and publish a sample of which every message is waited for; False where the member has to do it."""
         return False
 
     def is_ready(self, member: Sampler, tick: int) -> bool:
-        """Sees to it that all is taken for a tick; False where the member has to do it by itself."""
+        """Capture all members for a tick, once; False where the member has to do it by itself."""
         physics = self.sim.physics
         if tick != self._tick or physics.edition != self._edition:
             if physics.model is not self.model:  # another structure, and no new schedule yet
                 return False
-            self.look(member._data_now())
+            self.capture_all(member._data_now())
             # what is looked at may have to be computed first, which changes nothing
             self._tick, self._edition = tick, physics.edition
         return True
@@ -62,16 +62,22 @@ class SensorBatch(abc.ABC, Generic[Member]):
 
 def form_batches(
     sensors: Sequence[Member],
-    crew: Callable[[Sequence[Member]], SensorBatch[Member]],
+    make_batch: Callable[[Sequence[Member]], SensorBatch[Member]],
     key: Callable[[Member], Hashable | None],
 ) -> None:
-    """Makes crews of those that have the same key; None is for who works alone."""
+    """Make a batch of the sensors that have the same key; one whose key is None samples by itself.
+
+    Args:
+        sensors: of one kind.
+        make_batch: makes the batch, which tells its members of itself.
+        key: what has to be the same for members of one batch.
+    """
     groups: dict[Hashable, list[Member]] = {}
     for sensor in sensors:
-        sensor.crew = None
-        of = key(sensor) if sensor.keeps_to_grid else None
-        if of is not None:
-            groups.setdefault((of, sensor.update_rate, sensor.timing.phase, sensor.count), []).append(sensor)
+        sensor.batch = None
+        own_key = key(sensor) if sensor.keeps_to_grid else None
+        if own_key is not None:
+            groups.setdefault((own_key, sensor.update_rate, sensor.timing.phase, sensor.count), []).append(sensor)
     for members in groups.values():
         if len(members) >= MIN_MEMBERS:
-            crew(members)
+            make_batch(members)

@@ -35,7 +35,7 @@ class Sampler(abc.ABC):
     update_rate: float
     timing: TimingOptions
     crew: Any = None
-    place_in_crew = 0
+    batch_index = 0
     _times: SampleTimes
 
     def __init__(self) -> None:
@@ -118,7 +118,7 @@ class Sampler(abc.ABC):
         return True
 
     @classmethod
-    def team_up(cls, sensors: Sequence[Any]) -> None:
+    def make_batches(cls, sensors: Sequence[Any]) -> None:
         """Has those of all sensors of this kind work together that can; see `simkit.sensors.batch`."""
 
     # ------------------------------------------------------------------ what the simulation calls
@@ -164,7 +164,7 @@ class Sampler(abc.ABC):
             self._skipped += 1
             self._held = tick, sim.physics.hold()
             return
-        if self._is_served and self.crew is not None and self.crew.serve(self, tick):
+        if self._is_served and self.batch is not None and self.batch.serve(self, tick):
             return
         if self._gathers:
             self._gathered.append((tick, self._capture_now(tick)))
@@ -246,11 +246,11 @@ class Sampler(abc.ABC):
 
     def _capture_now(self, tick: int) -> Any:
         """What is captured at this tick; a member of a crew has it from there."""
-        crew = self.crew
+        crew = self.batch
         if crew is not None:
             if crew.is_ready(self, tick):
-                return crew.raw_of(self.place_in_crew)
-            self.crew = None  # until the next schedule
+                return crew.raw_of(self.batch_index)
+            self.batch = None  # until the next schedule
         return self.capture(self.sim.mj_model, self._data_now())
 
     def _data_now(self) -> Any:

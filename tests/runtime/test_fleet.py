@@ -113,7 +113,7 @@ def by_numpy(monkeypatch):
 
 
 def crew_sizes(sim):
-    return [len(s.crew.members) if s.crew is not None else 0 for s in sim.sensors.values()]
+    return [len(s.batch.members) if s.batch is not None else 0 for s in sim.sensors.values()]
 
 
 # ---------------------------------------------------------------------- the same bits
@@ -154,7 +154,7 @@ def test_imus_whose_bias_wanders_work_alone(apart):
                           "<dynamic_bias_correlation_time>1</dynamic_bias_correlation_time></noise>")  # fmt: skip
     source = world(imu=f"<imu><angular_velocity><x>{drift}</x></angular_velocity></imu>")
     with simkit.load(source) as sim:
-        assert all(s.crew is None for s in sim.sensors.values() if s.kind == "imu")
+        assert all(s.batch is None for s in sim.sensors.values() if s.kind == "imu")
     assert run(source) == apart(run, source)
 
 

@@ -102,7 +102,7 @@ def _group_sensors(sim: Simulation) -> None:
     for sensor in sim.structure.all_sensors():
         kinds.setdefault(type(sensor), []).append(sensor)
     for kind, sensors in kinds.items():
-        kind.team_up(sensors)  # type: ignore[attr-defined]
+        kind.make_batches(sensors)  # type: ignore[attr-defined]
 
 
 def _report_shared_topics(sim: Simulation) -> None:

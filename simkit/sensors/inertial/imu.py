@@ -1,257 +1,38 @@
-"""Inertial measurement unit: everything in the sensor's own frame, at the sensor's own place."""
+"""Inertial measurement unit: `imu` sensors and their messages."""
 
 from __future__ import annotations
 
-import math
-import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
+from typing import Any
 
 from simkit import msgs
-from simkit.diagnostics import Diagnostics
-from simkit.params import Params
-from simkit.pose import Vector, quat_conjugate, quat_from_rpy, quat_multiply
-from simkit.sensors.base import Product, Sensor
-from simkit.sensors.inertial.orientation_reference import OrientationReference, read_reference, reference_orientation
-from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_noise
-
-if TYPE_CHECKING:
-    from simkit.scene import SceneSensor
-
-TYPE = "sensor_msgs/msg/Imu"
-TYPES = TYPE, "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion"
-QuaternionTuple = tuple[float, float, float, float]
-_unpack_numbers = struct.Struct("=31d").unpack  # of what is captured
-_NO_ROTATION: QuaternionTuple = (1.0, 0.0, 0.0, 0.0)
+from simkit.sensors.base import Product
+from simkit.sensors.inertial.imu_batch import TYPES, form_imu_batches
+from simkit.sensors.inertial.imu_measurement import ImuMeasurement, ImuReading
+from simkit.sensors.inertial.inertial_kinematics import NO_ROTATION
 
 
-@dataclass(frozen=True, slots=True)
-class ImuOptions:
-    """The `<imu>` block.
-
-    Attributes:
-        angular_velocity: noise per axis [rad/s].
-        linear_acceleration: noise per axis [m/s²].
-        orientation: noise per axis [rad]: a small turn of the measured attitude about the sensor's axes.
-        reference: what the orientation is measured against; None for the attitude at the start.
-        enable_orientation: False leaves the orientation out.
-    """
-
-    angular_velocity: ThreeAxes
-    linear_acceleration: ThreeAxes
-    orientation: ThreeAxes
-    reference: OrientationReference | None
-    enable_orientation: bool
-
-
-class ImuReading(NamedTuple):
-    """What the unit feels.
-
-    Attributes:
-        orientation: attitude (w, x, y, z) against the reference.
-        motion: rate [rad/s] and specific force [m/s²] in the sensor frame, six numbers.
-    """
-
-    orientation: Sequence[float]
-    motion: Sequence[float]
-
-    @property
-    def angular_velocity(self) -> Vector:
-        """[rad/s], shape (3,)."""
-        return np.array(self.motion[:3])
-
-    @property
-    def linear_acceleration(self) -> Vector:
-        """[m/s²], gravity's reaction included, shape (3,)."""
-        return np.array(self.motion[3:])
-
-
-def read_options(params: Params) -> ImuOptions:
-    block = params.block("imu")
-    return ImuOptions(
-        angular_velocity=_read_axis_noise(block.block("angular_velocity")),
-        linear_acceleration=_read_axis_noise(block.block("linear_acceleration")),
-        orientation=_read_axis_noise(block.block("orientation")),
-        reference=read_reference(block),
-        enable_orientation=block.boolean("enable_orientation", True),
-    )
-
-
-def _read_axis_noise(quantity: Params) -> ThreeAxes:
-    """`<x>`, `<y>`, `<z>` with a `<noise>` each; one `<noise>` beside them is for the axes that have none."""
-    return read_axes(quantity, read_noise(quantity))
-
-
-class Imu(Sensor):
-    """`imu`: specific force, angular rate, attitude.
-
-    Attributes:
-        reference: (w, x, y, z) of the frame that the orientation is measured against, in the world.
-    """
+class Imu(ImuMeasurement):
+    """`imu`: specific force, angular rate, attitude."""
 
     kinds = ("imu",)
     example = "<imu/>"
-    gathers = True
-    has_dynamic_bias = True
-    needs_acceleration = True
-    options: ImuOptions
-    noise: Noise
-
-    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
-        super().__init__(scene, diagnostics)
-        self.options = read_options(scene.params)
-        self._turn, self._is_turned = np.array(_NO_ROTATION), False
-
-    def describe(self) -> dict[str, Any]:
-        reference = self.options.reference
-        return {
-            "imu": {
-                "reference": reference.localization if reference else "start",
-                "parent_frame": reference.parent_frame if reference else "",
-                "orientation": self.options.enable_orientation,
-            }
-        }
-
-    def prepare(self) -> None:
-        options = self.options
-        self.noise = self._make_noise((*options.angular_velocity, *options.linear_acceleration), "imu")
-        self._attitude_noise = self._make_noise(options.orientation, "orientation")
-        self._more_noise: Noise | None = None
-        self._covariances_of: Any = None
-        self.measure_against(reference_orientation(options.reference, self.scene, self.sim))
-
-    def measure_against(self, reference: Vector | QuaternionTuple) -> None:
-        """Sets the frame, (w, x, y, z) in the world, that the orientation is measured against."""
-        self.crew = None  # until the next schedule
-        self.reference = np.array(reference, dtype=np.float64)
-        w, x, y, z = self.reference.tolist()
-        self._from_reference: QuaternionTuple = (w, -x, -y, -z)
-
-    def turn_orientation(self, rpy: tuple[float, float, float]) -> None:
-        """Turns every orientation by roll, pitch, yaw [rad] about the reference's axes."""
-        self.measure_against(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
-
-    def add_white_noise(self, stddev: float) -> None:
-        """Noise on top of the file's, the same number on every rate [rad/s], acceleration [m/s²] and angle [rad]."""
-        self.crew = None
-        self._more_noise = self._make_noise((NoiseModel(stddev=stddev),) * 9, "more")
-        self._covariances_of = None
 
     @classmethod
-    def team_up(cls, sensors: Sequence[Any]) -> None:
+    def make_batches(cls, sensors: Sequence[Any]) -> None:
         if cls is Imu:
-            from simkit.sensors.inertial.imu_batch import form_imu_batches
-
             form_imu_batches(sensors)
 
-    @property
-    def is_mounted_straight(self) -> bool:
-        """Whether its axes are those of the body that it is on."""
-        return self._mount == _NO_ROTATION
-
-    @property
-    def is_against_world(self) -> bool:
-        """Whether its orientation is measured against the world's axes."""
-        return self._from_reference == _NO_ROTATION
-
     def products(self) -> dict[str, Product]:
-        return {"imu": Product(TYPE, self._message_of)}
+        return {"imu": Product(TYPES[0], self._message_of)}
 
     def default_topics(self) -> dict[str, str]:
         return {"imu": self._default_topic("imu")}
 
-    def bind(self, compiled: Any) -> None:
-        super().bind(compiled)
-        # as numbers: so few are sooner multiplied one by one than by NumPy
-        self._arm: tuple[float, ...] = tuple(self._offset_position.tolist())
-        self._mount: QuaternionTuple = tuple(self._offset.quaternion.tolist())
-        self._rotation: tuple[float, ...] = tuple(self._offset_rotation.reshape(9).tolist())
-        self._viewed: Any = None
-
-    # ------------------------------------------------------------------ measuring
-
-    def measure(self, model: Any, data: Any) -> ImuReading:
-        return self.finish(self.capture(model, data))
-
-    def capture(self, model: Any, data: Any) -> bytes:
-        """How the body lies and moves, see `_look_at`; as bytes, which are the soonest taken."""
-        if data is not self._viewed:
-            self._look_at(model, data)
-        return b"".join(self._views)
-
-    def _look_at(self, model: Any, data: Any) -> None:
-        """Chooses what is captured: the body's quaternion, rotation matrix and place, and the point that its spatial
-        velocity and acceleration (rotation first, in world axes) are of."""
-        body, self._viewed = self._body, data
-        root = int(model.body_rootid[body])
-        self._views = (
-            data.xquat[body],
-            data.xmat[body],
-            data.xpos[body],
-            data.subtree_com[root],
-            data.cvel[body],
-            data.cacc[body],
-        )
-
-    def finish(self, raw: bytes) -> ImuReading:
-        qw, qx, qy, qz, a, b, c, d, e, f, g, h, i, px, py, pz, ox, oy, oz, *motion = _unpack_numbers(raw)
-        wx, wy, wz, vx, vy, vz, dx, dy, dz, fx, fy, fz = motion
-        attitude = (qw, qx, qy, qz)
-        # from there to the sensor, in world axes
-        ax, ay, az = self._arm
-        x = px - ox + a * ax + b * ay + c * az
-        y = py - oy + d * ax + e * ay + f * az
-        z = pz - oz + g * ax + h * ay + i * az
-        vx += wy * z - wz * y
-        vy += wz * x - wx * z
-        vz += wx * y - wy * x
-        # the acceleration of the sensor's own point: a spatial one lacks the turning of the velocity
-        fx += dy * z - dz * y + wy * vz - wz * vy
-        fy += dz * x - dx * z + wz * vx - wx * vz
-        fz += dx * y - dy * x + wx * vy - wy * vx
-        # from the world's axes to the body's, and to the sensor's
-        wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
-        fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
-        if self._mount != _NO_ROTATION:
-            attitude = hamilton_product(attitude, self._mount)
-            a, b, c, d, e, f, g, h, i = self._rotation
-            wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
-            fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
-        if self._from_reference != _NO_ROTATION:
-            attitude = hamilton_product(self._from_reference, attitude)
-        return ImuReading(attitude, (wx, wy, wz, fx, fy, fz))
-
-    def perturb(self, reading: ImuReading, index: int) -> ImuReading:
-        orientation, motion = reading.orientation, reading.motion
-        if not self.noise.is_silent:
-            motion = self.noise.apply_to_numbers(motion, index)
-        if not self._attitude_noise.is_silent:
-            turn = self._attitude_noise.apply_to_numbers((0.0, 0.0, 0.0), index)
-            orientation = hamilton_product(orientation, _quaternion_of_rotation_vector(turn))
-        if self._more_noise is not None:
-            numbers = self._more_noise.apply_to_numbers((*motion, 0.0, 0.0, 0.0), index)
-            motion, orientation = (
-                numbers[:6],
-                hamilton_product(orientation, _quaternion_of_rotation_vector(numbers[6:])),
-            )
-        return ImuReading(orientation, motion)
-
-    def memory(self) -> Any:
-        return super().memory(), self.reference
-
-    def remember(self, memory: Any) -> None:
-        super().remember(memory[0])
-        self.measure_against(memory[1])
-
     def _message_of(self, reading: ImuReading, time_ns: int) -> Any:
         imu, vector, quaternion = msgs.types_of(*TYPES)
-        if self._covariances_of is not self.noise.state.interval:
-            self._covary()
-        of_orientation, of_rate, of_force = self._covariances
-        w, x, y, z = reading.orientation if self.options.enable_orientation else _NO_ROTATION
+        of_orientation, of_rate, of_force = self.covariances()
+        w, x, y, z = reading.orientation if self.options.enable_orientation else NO_ROTATION
         rx, ry, rz, fx, fy, fz = reading.motion
         return imu(
             msgs.header(time_ns, self.frame_id),
@@ -262,36 +43,3 @@ class Imu(Sensor):
             vector(fx, fy, fz),
             of_force,
         )
-
-    def _covary(self) -> None:
-        """The covariances of a message, anew where white noise follows the time between samples."""
-        noise, self._covariances_of = self.noise, self.noise.state.interval
-        of_all = [self._attitude_noise.covariance(), noise.covariance(), noise.covariance(3)]
-        if self._more_noise is not None:
-            of_all = [of_file + self._more_noise.covariance() for of_file in of_all]
-        if not self.options.enable_orientation:
-            of_all[0] = np.zeros(9)
-            of_all[0][0] = -1.0  # as ROS says that there is none
-        for covariance in of_all:
-            covariance.flags.writeable = False
-        self._covariances = of_all
-
-
-def hamilton_product(a: Any, b: Any) -> Any:
-    """Hamilton product of two (w, x, y, z), each a number or a row of them."""
-    aw, ax, ay, az = a
-    bw, bx, by, bz = b
-    return (
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-    )
-
-
-def _quaternion_of_rotation_vector(vector: Sequence[float]) -> QuaternionTuple:
-    """The quaternion (w, x, y, z) of a rotation vector [rad]."""
-    x, y, z = vector
-    angle = math.sqrt(x * x + y * y + z * z)
-    factor = math.sin(angle / 2) / angle if angle else 0.5
-    return math.cos(angle / 2), x * factor, y * factor, z * factor

@@ -10,25 +10,26 @@ import numpy as np
 from simkit import msgs
 from simkit.pose import Vector
 from simkit.sensors.batch import SensorBatch, form_batches
-from simkit.sensors.inertial.imu import TYPES, hamilton_product
+from simkit.sensors.inertial.imu_measurement import ImuMeasurement
+from simkit.sensors.inertial.inertial_kinematics import sensor_motion
 from simkit.sensors.sample import Sample
 
 if TYPE_CHECKING:
-    from simkit.sensors.inertial.imu import Imu
     from simkit.sensors.sampler import Sampler
 
+TYPES = "sensor_msgs/msg/Imu", "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion"
 _TYPES = *TYPES, "std_msgs/msg/Header", "builtin_interfaces/msg/Time"
 _NUMBERS = 31  # captured of each
 _NOISE_BLOCK = 64  # samples whose noise is looked up at a time
 _NS = 1_000_000_000
 
 
-def form_imu_batches(imus: Sequence[Imu]) -> None:
+def form_imu_batches(imus: Sequence[ImuMeasurement]) -> None:
     """Has IMUs that are alike work together."""
     form_batches(imus, ImuBatch, _batch_key)
 
 
-def _batch_key(imu: Imu) -> Hashable | None:
+def _batch_key(imu: ImuMeasurement) -> Hashable | None:
     """What has to be the same for the same arithmetic; None where there is more to do than a crew does."""
     noise = imu.noise
     if noise.wanders or noise._is_quantised or not imu._attitude_noise.is_silent or imu._more_noise is not None:
@@ -36,10 +37,10 @@ def _batch_key(imu: Imu) -> Hashable | None:
     return imu.is_mounted_straight, imu.is_against_world, noise.is_silent, noise._white is None
 
 
-class ImuBatch(SensorBatch["Imu"]):
+class ImuBatch(SensorBatch[ImuMeasurement]):
     """IMUs that differ in place and noise alone."""
 
-    def __init__(self, members: Sequence[Imu]) -> None:
+    def __init__(self, members: Sequence[ImuMeasurement]) -> None:
         super().__init__(members)
         model, first = self.model, members[0]
         self._bodies = np.array([imu._body for imu in members], dtype=np.intp)
@@ -56,7 +57,7 @@ class ImuBatch(SensorBatch["Imu"]):
         self._states: list[Any] = []
         self._told: list[tuple[str, tuple[Vector, ...], bool]] = []
 
-    def look(self, data: Any) -> None:
+    def capture_all(self, data: Any) -> None:
         bodies, raw = self._bodies, np.empty((len(self.members), _NUMBERS))
         raw[:, :4] = data.xquat[bodies]
         raw[:, 4:13] = data.xmat[bodies]
@@ -68,18 +69,18 @@ class ImuBatch(SensorBatch["Imu"]):
         self._time_ns = self.sim.time_ns
         self._clock = divmod(self._time_ns, _NS)
 
-    def raw_of(self, place: int) -> bytes:
+    def captured(self, place: int) -> bytes:
         # a copy: whoever keeps one sample does not keep those of all
         captured: bytes = self._raw[place].tobytes()
         return captured
 
-    def serve(self, member: Sampler, tick: int) -> bool:
+    def publish_sample(self, member: Sampler, tick: int) -> bool:
         if not self.is_ready(member, tick):
             return False
         index = member._index + 1
         if self._index != index:
             self._finish(index)
-        place = member.place_in_crew
+        place = member.batch_index
         sample = Sample(index, self._time_ns)
         sample.raw = self._raw[place].tobytes()  # for `truth`
         sample.messages["imu"] = message = self._message(place)
@@ -108,7 +109,8 @@ class ImuBatch(SensorBatch["Imu"]):
 
     def _finish(self, index: int) -> None:
         """The numbers of everybody's message, noise included, shape (members, 10)."""
-        attitude, motion = self._felt(np.ascontiguousarray(self._raw.T))
+        rows = np.ascontiguousarray(self._raw.T)
+        attitude, motion = sensor_motion(rows, self._arms, self._mounts, self._turns, self._references)
         numbers = np.empty((len(self.members), 10))
         for i, column in enumerate((*attitude, *motion)):
             numbers[:, i] = column
@@ -122,8 +124,7 @@ class ImuBatch(SensorBatch["Imu"]):
         """What of everybody's message changes with the rate alone."""
         self._told_of, self._told = self.members[0].noise.state.interval, []
         for imu in self.members:
-            imu._covary()
-            self._told.append((imu.frame_id, tuple(imu._covariances), imu.options.enable_orientation))
+            self._told.append((imu.frame_id, tuple(imu.covariances()), imu.options.enable_orientation))
 
     def _with_noise(self, motion: Vector, index: int) -> Vector:
         states = [imu.noise.state for imu in self.members]
@@ -146,29 +147,3 @@ class ImuBatch(SensorBatch["Imu"]):
             self._seed = self.sim.seed
         values: Vector = self._normals[row]
         return values
-
-    def _felt(self, raw: Vector) -> tuple[tuple[Vector, ...], tuple[Vector, ...]]:
-        """What `Imu.finish` gives, of all members: each number a row."""
-        qw, qx, qy, qz, a, b, c, d, e, f, g, h, i, px, py, pz, ox, oy, oz, *motion = raw
-        wx, wy, wz, vx, vy, vz, dx, dy, dz, fx, fy, fz = motion
-        attitude: tuple[Vector, ...] = (qw, qx, qy, qz)
-        ax, ay, az = self._arms
-        x = px - ox + a * ax + b * ay + c * az
-        y = py - oy + d * ax + e * ay + f * az
-        z = pz - oz + g * ax + h * ay + i * az
-        vx = vx + (wy * z - wz * y)
-        vy = vy + (wz * x - wx * z)
-        vz = vz + (wx * y - wy * x)
-        fx = fx + (dy * z - dz * y + wy * vz - wz * vy)
-        fy = fy + (dz * x - dx * z + wz * vx - wx * vz)
-        fz = fz + (dx * y - dy * x + wx * vy - wy * vx)
-        wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
-        fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
-        if self._mounts is not None:
-            attitude = hamilton_product(attitude, self._mounts)
-            a, b, c, d, e, f, g, h, i = self._turns
-            wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
-            fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
-        if self._references is not None:
-            attitude = hamilton_product(self._references, attitude)
-        return attitude, (wx, wy, wz, fx, fy, fz)

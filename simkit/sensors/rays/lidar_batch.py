@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,13 +11,10 @@ import numpy.typing as npt
 from simkit.pose import Vector
 from simkit.sensors.batch import MIN_MEMBERS, SensorBatch, form_batches
 from simkit.sensors.rays.geom_types import Ids
+from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.numpy_rays import Shapes, cast_on_shapes, in_frame
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
 from simkit.sensors.rays.ray_fan import RayFan
-
-if TYPE_CHECKING:
-    from simkit.sensors.rays.lidar import Lidar, LidarReading
-
 
 _CHUNK = 1 << 16  # pairs of fan and shape that are looked at together
 _MARGIN = 1e-9
@@ -122,25 +119,25 @@ def fan_batch_key(fan: RayFan) -> tuple[object, ...] | None:
     return fan.directions.tobytes(), fan.reach, id(fan._targets), fan._bounds
 
 
-def form_lidar_batches(lidars: Sequence[Lidar]) -> None:
+def form_lidar_batches(lidars: Sequence[LidarMeasurement]) -> None:
     """Has lidars that are alike work together."""
     form_batches(lidars, LidarBatch, _batch_key)
 
 
-def _batch_key(lidar: Lidar) -> Hashable | None:
+def _batch_key(lidar: LidarMeasurement) -> Hashable | None:
     common = fan_batch_key(lidar._fan)
     return None if common is None else (*common, lidar._start, lidar.sees_visuals)
 
 
-class LidarBatch(SensorBatch["Lidar"]):
+class LidarBatch(SensorBatch[LidarMeasurement]):
     """Lidars that differ in place alone; those that somebody reads cast together."""
 
-    def __init__(self, members: Sequence[Lidar]) -> None:
+    def __init__(self, members: Sequence[LidarMeasurement]) -> None:
         super().__init__(members)
         self._fans, self._start = FanBatch([lidar._fan for lidar in members]), members[0]._start
         self._readings: dict[int, LidarReading] = {}
 
-    def look(self, data: Any) -> None:
+    def capture_all(self, data: Any) -> None:
         read = [place for place, lidar in enumerate(self.members) if lidar.is_read_now]
         self._readings.clear()
         if len(read) < MIN_MEMBERS:
@@ -153,7 +150,7 @@ class LidarBatch(SensorBatch["Lidar"]):
         for place in read:
             self._readings[place] = self.members[place].reading_of_cast()
 
-    def raw_of(self, place: int) -> LidarReading:
+    def captured(self, place: int) -> LidarReading:
         reading = self._readings.pop(place, None)
         # somebody has begun to read within this step
         return self.members[place].measure_now() if reading is None else reading

@@ -1,0 +1,76 @@
+"""Attitude, angular rate and specific force of a sensor from the motion of the body that carries it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+QuaternionTuple = tuple[float, float, float, float]
+"""(w, x, y, z)."""
+
+NO_ROTATION: QuaternionTuple = (1.0, 0.0, 0.0, 0.0)
+
+
+def sensor_motion(
+    numbers: Any, arm: Any, mount: Any | None, rotation: Any, reference: Any | None
+) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """Return the attitude (w, x, y, z), and rate [rad/s] and specific force [m/s²] in the sensor's frame, six numbers.
+
+    Each number is a float, or an array with one float for each of several sensors: the bits are the same.
+
+    Args:
+        numbers: of the body, 31 of them: quaternion (4) and rotation matrix (9) in the world, position, and the point
+            that its spatial velocity and acceleration (rotation first, in world axes) are of.
+        arm: position of the sensor in the body [m].
+        mount: quaternion of the sensor in the body; None where their axes are the same.
+        rotation: the same as a matrix, nine numbers.
+        reference: quaternion of the world in the frame that the attitude is measured against; None for the world.
+    """
+    qw, qx, qy, qz, a, b, c, d, e, f, g, h, i, px, py, pz, ox, oy, oz, *motion = numbers
+    wx, wy, wz, vx, vy, vz, dx, dy, dz, fx, fy, fz = motion
+    attitude: tuple[Any, ...] = (qw, qx, qy, qz)
+    # from there to the sensor, in world axes
+    ax, ay, az = arm
+    x = px - ox + a * ax + b * ay + c * az
+    y = py - oy + d * ax + e * ay + f * az
+    z = pz - oz + g * ax + h * ay + i * az
+    # not in place: the numbers may be rows of an array
+    vx = vx + (wy * z - wz * y)
+    vy = vy + (wz * x - wx * z)
+    vz = vz + (wx * y - wy * x)
+    # the acceleration of the sensor's own point: a spatial one lacks the turning of the velocity
+    fx = fx + (dy * z - dz * y + wy * vz - wz * vy)
+    fy = fy + (dz * x - dx * z + wz * vx - wx * vz)
+    fz = fz + (dx * y - dy * x + wx * vy - wy * vx)
+    # from the world's axes to the body's, and to the sensor's
+    wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
+    fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
+    if mount is not None:
+        attitude = hamilton_product(attitude, mount)
+        a, b, c, d, e, f, g, h, i = rotation
+        wx, wy, wz = wx * a + wy * d + wz * g, wx * b + wy * e + wz * h, wx * c + wy * f + wz * i
+        fx, fy, fz = fx * a + fy * d + fz * g, fx * b + fy * e + fz * h, fx * c + fy * f + fz * i
+    if reference is not None:
+        attitude = hamilton_product(reference, attitude)
+    return attitude, (wx, wy, wz, fx, fy, fz)
+
+
+def hamilton_product(a: Any, b: Any) -> Any:
+    """Hamilton product of two (w, x, y, z), each a number or a row of them."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def quaternion_of_rotation_vector(vector: Sequence[float]) -> QuaternionTuple:
+    """Return the quaternion (w, x, y, z) of a rotation vector [rad]."""
+    x, y, z = vector
+    angle = math.sqrt(x * x + y * y + z * z)
+    factor = math.sin(angle / 2) / angle if angle else 0.5
+    return math.cos(angle / 2), x * factor, y * factor, z * factor

@@ -1,0 +1,221 @@
+"""Measure like a lidar: cast the rays, tell ranges and intensities, add noise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from simkit.compiler.geom_groups import DRAWN_COLLISION, SEEN_AS_COLLISIONS, VISUAL
+from simkit.diagnostics import Diagnostics
+from simkit.pose import Vector
+from simkit.sensors.base import Sensor
+from simkit.sensors.noise import Noise, NoiseModel, UniformNoise
+from simkit.sensors.rays.lidar_options import LidarOptions, read_options
+from simkit.sensors.rays.ray_fan import RayFan, fan_directions
+from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms
+
+if TYPE_CHECKING:
+    from simkit.scene import SceneSensor
+
+_BRIGHTEST = 2000.0  # of Gazebo's rendered lidars
+
+
+@dataclass(slots=True)
+class LidarReading:
+    """What all rays found, layer by layer from the lowest, each array of shape (layers · samples,).
+
+    Attributes:
+        ranges: [m].
+        intensities: `laser_retro` of what was hit.
+        infinite: where the range is no number of metres.
+        hits: what was hit, as positions in `geoms`; -1 for nothing.
+        geoms: MuJoCo's; the last is -1.
+        names: scoped names by geom; the last is empty.
+        scatter: what is added to x, y, z [m] and intensity of each ray in a `block` cloud, shape (layers · samples, 4).
+    """
+
+    ranges: Vector
+    intensities: Vector
+    infinite: npt.NDArray[np.bool_]
+    hits: npt.NDArray[np.int32]
+    geoms: npt.NDArray[np.int32]
+    names: npt.NDArray[np.object_]
+    scatter: Vector | None = None
+
+
+class LidarMeasurement(Sensor):
+    """Base of the lidars: a fan of rays, all cast at one instant, with noise, without a message.
+
+    A reading beyond the maximum is +inf. Physics rays start at the minimum range, so that nearer surfaces do not
+    exist for them; rendered lidars say -inf for a nearer surface. The sensor's own link is never hit.
+
+    Attributes:
+        ray_noise: of each ray, besides its own noise.
+        range_noise: one draw [m] for all rays of a sample, so of their nearest, besides the noise of each.
+        point_noise: of x, y, z [m] and intensity of each ray in a `block` cloud.
+    """
+
+    options: LidarOptions
+    noise: UniformNoise
+    ray_noise: UniformNoise | None = None
+    range_noise: Noise | None = None
+    point_noise: UniformNoise | None = None
+
+    def __init__(self, scene: SceneSensor, diagnostics: Diagnostics) -> None:
+        super().__init__(scene, diagnostics)
+        self.options = options = read_options(scene.params)
+        self.sees_visuals = scene.kind.startswith("gpu_")
+        if not self.sees_visuals and options.visibility_mask != ALL_VISIBLE:
+            message = "<visibility_mask> hides nothing from this sensor: collisions have no <visibility_flags>"
+            diagnostics.warning("SK-SENSOR-004", message, scene.where, f"a gpu_{scene.kind} sees visuals")
+        groups = (DRAWN_COLLISION, VISUAL) if self.sees_visuals else SEEN_AS_COLLISIONS
+        grid = options.vertical.angles, options.horizontal.angles
+        self._directions = fan_directions(grid[1], grid[0])
+        self._fan = RayFan(self._directions, groups, options.range_max, grid=grid)
+        self._start = 0.0 if self.sees_visuals else options.range_min
+        self._retro: Vector | None = None
+        # shared by all readings and messages, which are never written to
+        self._dark, self._dark_layer = np.zeros(self._fan.count), np.zeros(options.horizontal.samples, np.float32)
+        self._dark.flags.writeable = self._dark_layer.flags.writeable = False
+        # as arrays: NumPy takes as long to look at a number as to go through a planar scan
+        self._limits = np.array(options.range_min), np.array(options.range_max)
+
+    def describe(self) -> dict[str, Any]:
+        o = self.options
+        return {
+            "lidar": {
+                "h_samples": o.horizontal.samples,
+                "h_min": o.horizontal.low,
+                "h_max": o.horizontal.high,
+                "v_samples": o.vertical.samples,
+                "v_min": o.vertical.low,
+                "v_max": o.vertical.high,
+                "range_min": o.range_min,
+                "range_max": o.range_max if math.isfinite(o.range_max) else "inf",
+            }
+        }
+
+    def prepare(self) -> None:
+        self.noise = self._make_uniform_noise(self.options.noise, self._fan.count, "ranges")
+
+    def bind(self, compiled: Any) -> None:
+        super().bind(compiled)
+        names = compiled.names
+        link = names.link(self.scene.parent)
+        own = link.visuals if self.sees_visuals else link.ray_geoms
+        self._is_moved = bool(self._offset_position.any())
+        self._is_turned = not np.array_equal(self._offset_rotation, np.eye(3))
+        hidden = hidden_geoms(self.options.visibility_mask, names) if self.sees_visuals else []
+        self._fan.bind(compiled.model, names, self._body, own, hidden=hidden, offset=self._offset)
+        kind = "visuals" if self.sees_visuals else "collisions"
+        self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
+        self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
+
+    def _reflectances(self, compiled: Any) -> Vector | None:
+        """`laser_retro` by geom id (the last entry, index -1, is for no hit), or None where all are 0."""
+        names, found = compiled.names, {}
+        for link in names.links.values():
+            parts = link.scene.visuals if self.sees_visuals else link.scene.collisions
+            values = {part.scoped: part.laser_retro for part in parts if part.laser_retro}
+            if values:
+                for geom in link.visuals if self.sees_visuals else link.ray_geoms:
+                    found[geom] = values.get(names.geom_owner(geom)[1], 0.0)
+        if not found:
+            return None
+        table = np.zeros(compiled.model.ngeom + 1)
+        table[list(found)] = list(found.values())
+        if self.sees_visuals and self.sim.world.gazebo_quirks:
+            np.clip(table, 0.0, _BRIGHTEST, out=table)
+        return table
+
+    # ------------------------------------------------------------------ measuring
+
+    @property
+    def hits(self) -> npt.NDArray[np.object_] | None:
+        """What each ray of the newest sample hit, without noise, or None before the first.
+
+        Scoped names of collisions (of visuals for a rendered lidar), layer by layer from the lowest, shape
+        (layers · samples,); empty where nothing is within the range.
+        """
+        reading: LidarReading | None = self._true_reading()
+        if reading is None:
+            return None
+        geoms = reading.geoms[reading.hits]
+        geoms[reading.ranges == np.inf] = -1
+        names: npt.NDArray[np.object_] = reading.names[geoms]
+        return names
+
+    def measure(self, model: Any, data: Any) -> LidarReading:
+        origin, rotation = self._place(data)
+        self._fan.cast(model, data, origin, rotation, self._start)
+        return self.reading_of_cast()
+
+    def measure_now(self) -> LidarReading:
+        """Of the state at this tick."""
+        return self.measure(self.sim.mj_model, self._data_now())
+
+    def reading_of_cast(self) -> LidarReading:
+        """What the rays found when they were last cast."""
+        fan = self._fan
+        ranges, infinite = fan.distances, fan.infinite
+        if self.sees_visuals and np.minimum.reduce(ranges) < self.options.range_min:
+            too_near = ranges < self.options.range_min
+            ranges[too_near] = -np.inf
+            infinite = infinite | too_near
+        return LidarReading(ranges, self._intensities(infinite), infinite, fan.hits, fan.ids, self._names)
+
+    def _place(self, data: Any) -> tuple[Vector, Vector]:
+        """The same as `_frame_in_world`, without the arithmetic of an offset that is none."""
+        place, turn = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
+        if self._is_moved:
+            place = place + turn @ self._offset_position
+        return place, turn @ self._offset_rotation if self._is_turned else turn
+
+    def _intensities(self, infinite: npt.NDArray[np.bool_]) -> Vector:
+        if self._retro is None:
+            return self._dark
+        values: Vector = self._retro[self._fan.geoms]
+        values[infinite] = 0.0
+        return values
+
+    def perturb(self, reading: LidarReading, index: int) -> LidarReading:
+        more, shift = self.ray_noise, self.range_noise
+        if self.noise.is_silent and more is None and shift is None and self.point_noise is None:
+            return reading
+        ranges, (low, high) = self.noise.apply(reading.ranges, index), self._limits
+        if more is not None:
+            ranges = more.apply(ranges, index)
+        if shift is not None:
+            ranges += shift.apply(np.zeros(1), index)
+        np.maximum(ranges, low, out=ranges)
+        np.minimum(ranges, high, out=ranges)
+        np.copyto(ranges, reading.ranges, where=reading.infinite)
+        scatter = None
+        if self.point_noise is not None:
+            scatter = self.point_noise.apply(np.zeros(4 * self._fan.count), index).reshape(-1, 4)
+        r = reading
+        return LidarReading(ranges, r.intensities, r.infinite, r.hits, r.geoms, r.names, scatter)
+
+    def add_ray_noise(self, stddev: float) -> None:
+        """Sets `ray_noise`, of a standard deviation [m]."""
+        self.ray_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), self._fan.count, "more on ranges")
+
+    def add_range_noise(self, stddev: float) -> None:
+        """Sets `range_noise`, of a standard deviation [m]."""
+        self.range_noise = self._make_noise((NoiseModel(stddev=stddev),), "nearest range")
+
+    def add_point_noise(self, stddev: float) -> None:
+        """Sets `point_noise`, of a standard deviation [m, and of intensity]."""
+        self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self._fan.count, "points")
+
+
+def _scoped_names(compiled: Any) -> npt.NDArray[np.object_]:
+    """Of the collision or visual that each geom is part of; the last, for no geom, is empty."""
+    count = compiled.model.ngeom
+    table = np.empty(count + 1, dtype=object)
+    table[:] = [*(compiled.names.geom_owner(geom)[1] for geom in range(count)), ""]
+    return table
