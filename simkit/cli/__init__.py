@@ -1,4 +1,8 @@
-"""The command line: one file a command, thin."""
+"""The command line `simkit`: one file for each command, `cli/<command>.py`, with what they share in `cli/terminal`.
+
+Words of the user enter; lines of text, files and exit codes leave. A command is thin: it parses its options, calls the
+library and prints. Nothing below imports this room, and a command's module is loaded only when the command is used.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -86,10 +87,7 @@ def export(
     json_: Json = False,
 ) -> int:
     """Writes a recording as tables, a file a topic, with pictures and point clouds beside them."""
-    from dataclasses import asdict
-
-    from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions
-    from simkit.recording.export import export_bag
+    from simkit.recording.export import CLOUDS, FORMATS, IMAGES, ExportOptions, export_bag
 
     for option, word, allowed in (
         ("--format", format_, FORMATS),

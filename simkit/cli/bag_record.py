@@ -16,6 +16,7 @@ from simkit.cli.terminal.message_arguments import compile_pattern
 from simkit.cli.terminal.options import Force, Json
 from simkit.cli.terminal.output import absolute_name, is_hidden, print_json, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import LiveSource, connect_to_simulation
+from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -131,8 +132,6 @@ class _Recording:
         there = source.topics()
         for name in wanted.named:
             if name not in there:
-                from simkit.diagnostics import did_you_mean
-
                 hint = did_you_mean(name, there)
                 print_note(f"note: {name} is not there yet{'; ' + hint if hint else ''}")
 

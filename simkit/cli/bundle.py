@@ -24,6 +24,8 @@ from simkit.cli.terminal.options import (
     source_arguments,
 )
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.errors import InputError, SimkitError
+from simkit.writers.atomic_output import check_file
 
 
 @report_errors
@@ -59,11 +61,9 @@ def bundle(
     In it are the world and everything it names, the code of plugins, the seed, the versions, every command that came in
     with its tick, the messages of the last seconds, and the hashes at the end. `simkit replay` repeats the run.
     """
-    from simkit.errors import InputError, SimkitError
     from simkit.testing.bundles import BundleRecorder, write_bundle
     from simkit.testing.bundles.bundle_recorder import failure_from_checks, failure_from_error
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
-    from simkit.writers.atomic_output import check_file
 
     check_file(output, overwrite=force)
     asked = ScenarioOptions(

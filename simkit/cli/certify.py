@@ -24,7 +24,8 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_status, report_errors, stdout_console
+from simkit.cli.terminal.output import print_json, print_status, report_errors, stdout_console
+from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
     pass
@@ -73,8 +74,6 @@ def certify(
     ] = None,
 ) -> int:
     """Runs a world in fresh processes with other surroundings, and shows that the bits are the same."""
-    from simkit.cli.terminal.output import print_json
-    from simkit.recording.atomic_output import check_writable, write_atomically
     from simkit.testing.certify import certificate
     from simkit.testing.certify import certify as certify_scenario
     from simkit.testing.scenarios.scenario_run import open_scenario

@@ -25,6 +25,7 @@ from simkit.cli.terminal.options import (
 from simkit.cli.terminal.output import print_diagnostics, report_errors, stdout_console
 from simkit.diagnostics import Diagnostic
 from simkit.errors import InputError
+from simkit.writers.atomic_output import check_file
 
 
 @report_errors
@@ -71,7 +72,6 @@ def _counts(found: Sequence[Diagnostic]) -> str:
 
 
 def _fix_inertia(file: str, output: Path | None, force: bool, resource_paths: list[Path], json_: bool) -> int:
-    from simkit.writers.atomic_output import check_file
     from simkit.writers.inertia_repair import find_inertia_fixes
 
     found = find_inertia_fixes(Path(file), resource_paths)

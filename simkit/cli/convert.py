@@ -22,6 +22,7 @@ from simkit.cli.terminal.options import (
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
+from simkit.writers.atomic_output import check_target
 
 
 @report_errors
@@ -62,13 +63,12 @@ def convert(
 
 def _to_mjcf(file: str, output: Path, options: SourceArguments, *, strict: bool, force: bool, verbose: bool) -> int:
     from simkit.build import load
-    from simkit.writers.atomic_output import check_target
     from simkit.writers.mjcf import write_mjcf
 
     check_target(output, f"{output.stem}_assets", overwrite=force)
     with load(file, strict=strict, **options) as sim:
         print_diagnostics(sim.diagnostics, verbose=verbose)
-        written = write_mjcf(sim, output, overwrite=force)
+        written = write_mjcf(sim.compiled.builder, output, overwrite=force)
     if written.balanced:
         print_status(
             f"MuJoCo's compiler refuses the inertia of {', '.join(written.balanced[:6])}"

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from simkit.cli.run_options import ScenarioOptions
 from simkit.cli.terminal.options import (
     Base,
     CmdVel,
@@ -32,6 +33,7 @@ from simkit.cli.terminal.options import (
 from simkit.cli.terminal.output import print_diagnostics, print_error, print_status, report_errors, stdout_console
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult
+from simkit.writers.atomic_output import check_writable
 
 if TYPE_CHECKING:
     from simkit.cli.run_options import ScenarioOptions
@@ -239,8 +241,6 @@ def record(
     force: Force = False,
 ) -> int:
     """Runs a scenario and keeps what it gives as a golden run."""
-    from simkit.cli.run_options import ScenarioOptions
-
     asked = ScenarioOptions(
         world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file),
         cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
@@ -285,7 +285,6 @@ def check(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Says nothing of what passes.")] = False,
 ) -> int:
     """Runs golden runs again and compares; says what differs first, and why. Exit code 5 where something does."""
-    from simkit.recording.atomic_output import check_writable
     from simkit.testing.golden.parallel_check import CheckOptions, check_goldens
 
     check_writable(html)

@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from simkit.cli.terminal.options import Json
-from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.output import print_json, report_errors, stdout_console
 from simkit.errors import InputError
+from simkit.writers.atomic_output import check_writable
 
 _FAILED = 5
 
@@ -31,8 +32,6 @@ def grade(
     json_: Json = False,
 ) -> int:
     """Runs an exercise with plugins that were handed in, and says what each got and why."""
-    from simkit.cli.terminal.output import print_json
-    from simkit.recording.atomic_output import check_writable
     from simkit.testing.scenarios.exercise import read_exercise
     from simkit.testing.scenarios.grading import grade_all
     from simkit.testing.scenarios.grading_report import grade_json, grade_text, junit_cases

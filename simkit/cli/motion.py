@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -22,7 +23,8 @@ from simkit.cli.terminal.options import (
     source_arguments,
 )
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
-from simkit.errors import InputError
+from simkit.diagnostics import Diagnostics
+from simkit.errors import InputError, RenderError
 
 if TYPE_CHECKING:
     from simkit.plugins.play_motion.motion import Motion
@@ -113,8 +115,6 @@ def play(
     params_file: ParamsFiles = [],
 ) -> int:
     """Plays motions: the way to the first point no faster than is safe, then as the file has it."""
-    from contextlib import ExitStack
-
     from simkit.plugins.play_motion.motion_session import choose_player, motion_players, play_motions
     from simkit.recording import run_picture as pictures
     from simkit.recording.bags import recorder
@@ -183,7 +183,6 @@ def _opened(
 
 def _read(paths: Sequence[Path]) -> list[Motion]:
     """The motions of files, without a robot."""
-    from simkit.diagnostics import Diagnostics
     from simkit.plugins.play_motion.motion_files import read_motions
 
     _check_files(paths)
@@ -198,7 +197,6 @@ def _read(paths: Sequence[Path]) -> list[Motion]:
 
 def _check_files(paths: Sequence[Path]) -> None:
     """Raises where a file of motions is not there, or broken: what it says is not to be missed."""
-    from simkit.diagnostics import Diagnostics
     from simkit.plugins.play_motion.motion_files import read_motions
 
     broken = Diagnostics()
@@ -242,7 +240,6 @@ def _joints(names: Sequence[str]) -> str:
 
 def _draw(sim: Any, path: Path) -> None:
     from simkit.build import render_view
-    from simkit.errors import RenderError
     from simkit.recording.run_picture import save_picture
 
     try:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 
 from simkit.cli.run_options import ScenarioOptions
-from simkit.cli.terminal.output import print_json, print_line, print_note
+from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
 from simkit.errors import InputError
+from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
     from simkit.recording.charts.chart import Chart, Style
@@ -82,7 +83,6 @@ def draw_chart(sources: Sequence[str], fields: Sequence[str], wish: PlotRequest,
     Raises:
         InputError: SK-BAG-010 to 012, SK-CLI-016, SK-CLI-030, SK-CLI-033, SK-CLI-035; what a world's loading raises.
     """
-    from simkit.recording.atomic_output import check_writable, write_atomically
     from simkit.recording.charts.chart import check_suffix, render_chart
 
     check_suffix(wish.output.name)
@@ -206,7 +206,6 @@ def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[lis
 
 def _world_series(source: str, fields: Sequence[str], wish: PlotRequest) -> tuple[list[Series], list[int]]:
     from simkit import msgs
-    from simkit.cli.terminal.output import print_diagnostics
     from simkit.recording.charts.series import SeriesTap
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 

@@ -19,6 +19,7 @@ from simkit.cli.terminal.options import (
     source_arguments,
 )
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -45,7 +46,6 @@ def list_plugins(
     json_: Json = False,
 ) -> int:
     """Lists every name that a world may give a plugin, with what it hangs on."""
-    from simkit.diagnostics import Diagnostics
     from simkit.plugins.authoring.catalogue import known_plugins
 
     wanted = [word.casefold() for word in words or ()]

@@ -11,6 +11,7 @@ import typer
 
 from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.errors import InputError
 
 if TYPE_CHECKING:
     from simkit.testing.bundles import Bundle, ReplayResult
@@ -101,8 +102,6 @@ def _words(found: ReplayResult) -> dict[str, Any]:
 
 def _extract(bundle: Bundle, folder: Path) -> None:
     """Writes everything, code too: to be read, for nothing runs it."""
-    from simkit.errors import InputError
-
     try:
         if folder.exists() and any(folder.iterdir()):
             raise InputError(f"SK-CLI-016 {folder} is not an empty folder", "SK-CLI-016")

@@ -43,7 +43,7 @@ class RunVerdict:
         self._wall = WallTimeLimit(request.wall_timeout, print_status, self._give_up)
 
     def __enter__(self) -> RunVerdict:
-        from simkit.recording.atomic_output import check_writable
+        from simkit.writers.atomic_output import check_writable
 
         check_writable(self._request.junit)
         self._wall.__enter__()

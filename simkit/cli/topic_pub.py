@@ -14,7 +14,7 @@ from simkit.cli.terminal.live_options import Sim, Topic
 from simkit.cli.terminal.message_arguments import make_message, parse_fields, split_type_and_values
 from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import absolute_name, print_json, print_line, print_note, report_errors_quietly
-from simkit.cli.terminal.topic_sources import LONGEST_WAIT, SimClock, connect_to_simulation
+from simkit.cli.terminal.topic_sources import LONGEST_WAIT, LiveSource, SimClock, connect_to_simulation, find_topic
 from simkit.errors import InputError, MessageError
 
 
@@ -110,7 +110,6 @@ def _full_type_name(client: Any, topic: str, type_name: str | None) -> str:
         InputError: SK-CLI-032 there is no such type; SK-CLI-030 none is said and the topic is not there.
     """
     from simkit import msgs
-    from simkit.cli.terminal.topic_sources import LiveSource, find_topic
 
     if type_name is None:
         entry = find_topic(LiveSource(client), topic)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -146,8 +147,6 @@ def script_items(path: Path) -> list[dict[str, Any]]:
     Raises:
         InputError: SK-CLI-011 with file and line.
     """
-    from simkit.yaml_reader import NotYaml, compose_nodes, node_value
-
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -250,8 +249,6 @@ def _command(item: Mapping[str, Any], where: str, topics: dict[str, str] | None)
 
 
 def _number(value: Any, key: str, where: str, minimum: float) -> float:
-    from simkit.yaml_reader import finite_number
-
     number = finite_number(value)
     if number is None or number < minimum:
         raise _script_error(where, f"{key}: found {value!r:.60}, allowed is a number of at least {minimum:g}")

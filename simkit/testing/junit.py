@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from simkit.diagnostics import shorten
+from simkit.writers.atomic_output import write_atomically
 
 LONGEST: Final = 100_000
 """Letters of one text that are kept: the beginning and the end, with a word on what is left out."""
@@ -58,8 +59,6 @@ def write_junit(path: str | os.PathLike[str], suite: str, cases: Sequence[JunitC
     Raises:
         InputError: SK-CLI-016 the file cannot be written.
     """
-    from simkit.recording.atomic_output import write_atomically
-
     write_atomically(path, junit_text(suite, cases).encode())
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +16,9 @@ from simkit.errors import InputError
 from simkit.writers.atomic_output import AtomicOutput
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    import mujoco
+
+    from simkit.compiler import SpecBuilder
 
 
 @dataclass(slots=True)
@@ -33,15 +35,20 @@ class WrittenMjcf:
     balanced: list[str] = field(default_factory=list)
 
 
-def write_mjcf(sim: Simulation, path: Path, *, overwrite: bool = False) -> WrittenMjcf:
-    """Writes `path` and the folder `<stem>_assets` beside it. Nothing is left behind when it fails.
+def write_mjcf(builder: SpecBuilder, path: Path, *, overwrite: bool = False) -> WrittenMjcf:
+    """Write `path` and the folder `<stem>_assets` beside it. Nothing is left behind when it fails.
+
+    Args:
+        builder: of the compiled world.
+        path: of the XML file.
+        overwrite: whether older files may be replaced.
 
     Raises:
         InputError: SK-CLI-016 something is there already, it cannot be written, or MuJoCo cannot read it back.
     """
     with AtomicOutput(path, f"{path.stem}_assets", overwrite=overwrite) as staging:
         # A copy: naming files in the spec of a running simulation would change what a later spawn compiles.
-        spec = sim.compiled.builder.spec.copy()
+        spec = builder.spec.copy()
         count = _Assets(spec, staging.folder).write()
         for body in spec.bodies:
             if body.explicitinertial and body.mass > 0 and not np.isfinite(body.ipos[0]):
@@ -54,7 +61,7 @@ def write_mjcf(sim: Simulation, path: Path, *, overwrite: bool = False) -> Writt
             _read_back(staging.file)
         except ValueError as error:
             raise InputError(f"SK-CLI-016 cannot write {path}: MuJoCo says: {error}", "SK-CLI-016") from None
-    balanced = [name for record in sim.compiled.builder.records.values() for name in record.exact]
+    balanced = [name for record in builder.records.values() for name in record.exact]
     return WrittenMjcf(path, count, balanced)
 
 
@@ -89,7 +96,7 @@ def _read_back(file: Path) -> None:
 class _Assets:
     """Gives every asset of a specification a file of its own."""
 
-    def __init__(self, spec: Any, folder: Path) -> None:
+    def __init__(self, spec: mujoco.MjSpec, folder: Path) -> None:
         self.spec, self.folder = spec, folder
         self._taken: set[str] = set()
         self._known: dict[bytes, str] = {}
@@ -112,7 +119,7 @@ class _Assets:
         spec.assets.update({name: content for content, name in self._known.items()})
         return len(self._taken)
 
-    def _textures(self, textures: Iterable[Any]) -> None:
+    def _textures(self, textures: Iterable[mujoco.MjsTexture]) -> None:
         for texture in textures:
             sides = list(texture.cubefiles) if any(texture.cubefiles) else []
             if texture.file:
@@ -161,7 +168,7 @@ def _file_stem(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_-]+", "_", name.rsplit("/", 1)[-1].partition(".")[0]).strip("_")[:80] or "asset"
 
 
-def _png(texture: Any) -> bytes:
+def _png(texture: mujoco.MjsTexture) -> bytes:
     import cv2
 
     pixels = np.frombuffer(bytes(texture.data), np.uint8).reshape(texture.height, texture.width, texture.nchannel)

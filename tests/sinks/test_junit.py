@@ -9,8 +9,8 @@ import pytest
 from lxml import etree
 
 from simkit.errors import InputError
-from simkit.recording.atomic_output import write_atomically
 from simkit.testing.junit import LONGEST, JunitCase, junit_text, write_junit
+from simkit.writers.atomic_output import write_atomically
 
 CASES = [
     JunitCase("straight", "drive", 1.25),

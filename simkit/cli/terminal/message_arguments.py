@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any, Final
 
 from simkit.errors import InputError, MessageError
+from simkit.yaml_reader import NotYaml, read_yaml
 
 _TYPE_FORM: Final = re.compile(r"[A-Za-z]\w*(/\w+){1,2}")
 _SHOWN: Final = 200  # letters of a text that are shown where it is wrong
@@ -18,8 +19,6 @@ def parse_fields(text: str, what: str) -> dict[str, Any]:
     Raises:
         InputError: SK-CLI-031 it is no YAML, or no mapping.
     """
-    from simkit.yaml_reader import NotYaml, read_yaml
-
     shown = repr(text) if len(text) <= _SHOWN else f"{text[:_SHOWN]!r}…"
     try:
         found = read_yaml(text)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
+from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, LoadError, PluginError, SimkitError
 
 if TYPE_CHECKING:
@@ -228,8 +229,6 @@ def not_found_error(
     what: str, name: str, there: Sequence[str] | Mapping[str, Any], code: str, where: str
 ) -> InputError:
     """That something is not there, with the closest name or all there are."""
-    from simkit.diagnostics import did_you_mean
-
     names = list(there)
     listed = ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")
     hint = did_you_mean(name, names) or ("there is " + listed if names else "there is none")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from simkit.errors import InputError
+from simkit.yaml_reader import NotYaml, read_yaml
 
 KINDS: Final = (
     "not set",
@@ -43,8 +44,6 @@ def plain_value(parameter: Any) -> Any:
 
 def parse_parameter_value(text: str) -> dict[str, Any]:
     """A text on the command line as a ParameterValue, of the type that YAML reads it as; else it is a text."""
-    from simkit.yaml_reader import NotYaml, read_yaml
-
     try:
         found = read_yaml(text)
     except NotYaml:
@@ -74,8 +73,6 @@ def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[
     Raises:
         InputError: SK-CLI-041 it cannot be read, or says nothing of this node.
     """
-    from simkit.yaml_reader import NotYaml, read_yaml
-
     try:
         root = read_yaml(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from simkit.cli.terminal.output import absolute_name, is_hidden, not_found_error, print_note
-from simkit.errors import InputError
+from simkit.errors import InputError, MessageError
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -130,7 +130,6 @@ class LiveSource:
     def prepare(self, entry: TopicEntry) -> None:
         """Reads the definitions of a topic's types, which takes a moment, before the first message waits for that."""
         from simkit import msgs
-        from simkit.errors import MessageError
 
         for type_name in entry.types:
             with suppress(MessageError):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+from simkit.msgs.message_text import plain
 from simkit.recording.bags.reader import BagMessage, BagReader, open_bag_to_read
 from simkit.runtime.communication.topic_bus import absolute_name
 
@@ -171,8 +172,6 @@ class Playback:
 
     def _made(self, message: BagMessage) -> Any:
         """The message as one of simkit's own types."""
-        from simkit.msgs.message_text import plain
-
         wanted = self._as[message.topic, message.type_name]
         found = self._bag.decode(message)
         own = _has_all_fields(message.type_name)

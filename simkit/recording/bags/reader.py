@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+from simkit.yaml_reader import NotYaml, read_yaml
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -211,8 +212,6 @@ def _files(path: Path) -> tuple[list[str], str, str]:
     storage = "sqlite3" if any(".db3" in f.name for f in found) else "mcap"
     distro = "unknown"
     if (path / "metadata.yaml").is_file():
-        from simkit.yaml_reader import NotYaml, read_yaml
-
         try:
             text = (path / "metadata.yaml").read_text(encoding="utf-8")
             written = read_yaml(text)["rosbag2_bagfile_information"]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit import msgs
 from simkit.errors import InputError, SimkitError
-from simkit.recording.bags.writer import McapBag
+from simkit.recording.bags.writer import McapBag, Rosbag2Folder
 from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.writers.atomic_output import write_obstacle
 
@@ -78,8 +78,6 @@ def open_bag(path: Path, *, overwrite: bool = False) -> McapBag:
     try:
         if is_single_file(path):
             return McapBag(path, overwrite=overwrite)
-        from simkit.recording.bags.writer import Rosbag2Folder
-
         return Rosbag2Folder(path, overwrite=overwrite)
     except FileExistsError as error:
         raise InputError(f"SK-BAG-001 {path} is not overwritten: {error}", "SK-BAG-001") from None

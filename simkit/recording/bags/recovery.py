@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.errors import InputError
 from simkit.recording.bags.recorder import open_bag
+from simkit.recording.bags.writer import Channel
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,8 +32,6 @@ def recover_bag(source: Path, target: Path, *, overwrite: bool = False) -> Recov
     Raises:
         InputError: SK-BAG-004 nothing readable is there; SK-BAG-001/002 the target cannot be written.
     """
-    from simkit.recording.bags.writer import Channel
-
     files = sorted(source.glob("*.mcap")) if source.is_dir() else [source]
     if not files or not files[0].is_file():
         raise InputError(f"SK-BAG-004 no MCAP file at {source}", "SK-BAG-004")

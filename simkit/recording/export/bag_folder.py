@@ -13,14 +13,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.recording.atomic_output import abandoned_folders, unfinished_folder
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
 from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.export.images import NpzFile, PngFiles, VideoFile
 from simkit.recording.export.point_clouds import CloudFiles
 from simkit.recording.export.tables import TEXT, WRITERS, Column, check_parquet, columns_of
-from simkit.writers.atomic_output import write_obstacle
+from simkit.writers.atomic_output import abandoned_folders, unfinished_folder, write_obstacle
 
 if TYPE_CHECKING:
     from simkit.recording.bags.reader import BagReader
@@ -204,8 +204,6 @@ def export_bag(path: Path, target: Path, wish: ExportOptions) -> list[ExportedTo
 
 
 def _selected_topics(bag: BagReader, wish: ExportOptions) -> list[BagTopic]:
-    from simkit.diagnostics import did_you_mean
-
     names = [topic.name for topic in bag.topics]
     for pattern in wish.topics:
         if not any(matches_topic(name, [pattern]) for name in names):

@@ -17,13 +17,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, SimkitError
-from simkit.recording.atomic_output import remove_abandoned, unfinished_folder
 from simkit.testing.bundles.archive import MAX_BYTES, name_fault
 from simkit.testing.bundles.manifest import BAG, COMMANDS, PAGE, Failure, Manifest, RunEnd, SpawnedModel
 from simkit.testing.bundles.message_window import topic_digests, write_bag
 from simkit.testing.bundles.packed_world import model_hash
 from simkit.testing.run_record.fingerprint import fingerprint
-from simkit.writers.atomic_output import check_file
+from simkit.writers.atomic_output import check_file, remove_abandoned, unfinished_folder
 
 if TYPE_CHECKING:
     from simkit.testing.bundles.bundle_recorder import BundleRecorder

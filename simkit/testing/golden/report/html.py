@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import shorten
-from simkit.recording.atomic_output import write_atomically
 from simkit.recording.charts.page_chart import PageChart, page_chart_svg
 from simkit.testing.golden.compare.difference import Cause, Comparison, Verdict
 from simkit.testing.golden.report.difference_plot import PlotFigure, plot_figure
@@ -26,6 +25,7 @@ from simkit.testing.golden.report.text import (
     passed_text,
     proof_text,
 )
+from simkit.writers.atomic_output import write_atomically
 
 if TYPE_CHECKING:
     from jinja2 import Template
