@@ -60,7 +60,7 @@ def test_the_hook_at_work_is_found_in_the_stack_with_its_line() -> None:
     }.items():
         text = looker.seen[hook]
         assert "plugin 'Looker'" in text and said in text, hook
-        assert "test_blocked.py:" in text and text.endswith("in look")
+        assert "test_blocked_plugins.py:" in text and text.endswith("in look")
 
 
 class Waiter(WorldPlugin):

@@ -17,7 +17,7 @@ import simkit
 from simkit.bridges.live import requests
 from simkit.live import connect
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "live.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).resolve().parents[3] / "docs" / "live.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
 
 
@@ -44,7 +44,7 @@ def test_a_run_of_another_process_is_talked_to_and_ends_as_it_would_without(cour
     world = tmp_path / "court.sdf"
     world.write_text(court_text, encoding="utf-8")
     command = [sys.executable, "-m", "simkit", "run", str(world), "--duration", "2", "--quiet"]
-    root = str(Path(__file__).resolve().parents[2])
+    root = str(Path(__file__).resolve().parents[3])
     environment = {**os.environ, "PYTHONPATH": root}
     plain = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     paused = subprocess.Popen([*command, "--paused"], stdout=subprocess.PIPE, text=True, env=environment)
