@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -34,6 +34,9 @@ from simkit.cli.terminal.output import (
 from simkit.cli.terminal.topic_sources import SimClock, connect_to_simulation
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.live import Client
 
 
 @report_errors_quietly
@@ -172,13 +175,13 @@ def _parse_remappings(pairs: list[str]) -> dict[str, str]:
     return found
 
 
-def _input_topics(client: Any, topics: list[str], names: dict[str, str]) -> list[str]:
+def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> list[str]:
     """Those that the world's plugins take; its own readings are not said to it again."""
     inputs = {row["name"] for row in client.topics() if any(s.get("kind") != "client" for s in row["subscribers"])}
     return [t for t in topics if names.get(t, t) in inputs]
 
 
-def _play_once(client: Any, reader: Any, publishers: dict[str, Any], rate: float, start: float) -> int:
+def _play_once(client: Client, reader: Any, publishers: dict[str, Any], rate: float, start: float) -> int:
     """Plays the bag once; how many messages that was."""
     clock = SimClock(client)
     first_ns = reader.start + round(start * 1e9)

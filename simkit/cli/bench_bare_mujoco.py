@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import copy
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -16,6 +16,9 @@ from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.scene_composition import visuals_only_options
 from simkit.sensors.cameras.rendering.view import aim
 from simkit.sensors.rays.lidar import Lidar
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 _ALL_GEOMS = int(mujoco.mjtCatBit.mjCAT_ALL)
 _SPARE_GEOMS = 16
@@ -33,7 +36,13 @@ class BarePass:
         model, data: to be drawn; the simulation's by default.
     """
 
-    def __init__(self, sim: Any, sensor: RenderedCamera, model: Any = None, data: Any = None) -> None:
+    def __init__(
+        self,
+        sim: Simulation,
+        sensor: RenderedCamera,
+        model: mujoco.MjModel | None = None,
+        data: mujoco.MjData | None = None,
+    ) -> None:
         render_thread.drain()
         self.model = sim.mj_model if model is None else model
         self.data = sim.fresh_data() if data is None else data
@@ -107,7 +116,7 @@ class BarePass:
             self._context.free()
 
 
-def _upload(model: Any, renderer: Any) -> Any:
+def _upload(model: mujoco.MjModel, renderer: Any) -> Any:
     """The engine's context with as many samples and as large a shadow map as the simulation's cameras have."""
     own, wanted = model.vis.quality, renderer._appearance.quality
     kept = own.offsamples, own.shadowsize
@@ -126,7 +135,7 @@ _EULER = (mujoco.mjtIntegrator.mjINT_EULER,)
 class BareEngine:
     """The same model and state in the engine alone."""
 
-    def __init__(self, sim: Any) -> None:
+    def __init__(self, sim: Simulation) -> None:
         self.model = copy.copy(sim.mj_model)
         self.data = copy.copy(sim.mj_data)
 
@@ -144,7 +153,7 @@ class HandWrittenLoop(BareEngine):
         periods: topic -> steps between its messages, for the topics that are read.
     """
 
-    def __init__(self, sim: Any, periods: dict[str, int]) -> None:
+    def __init__(self, sim: Simulation, periods: dict[str, int]) -> None:
         super().__init__(sim)
         self._integrate = mujoco.mj_Euler if self.model.opt.integrator in _EULER else mujoco.mj_implicit
         self._random = np.random.default_rng(0)
@@ -233,7 +242,7 @@ class HandWrittenLoop(BareEngine):
         return self.data.xpos[self._root].copy(), self.data.xquat[self._root].copy(), twist
 
 
-def cast_bare_scan(sensor: Lidar, model: Any, data: Any) -> Callable[[], Any]:
+def cast_bare_scan(sensor: Lidar, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Any]:
     """The same rays from the same place, groups and excluded body included; gives distances, shape (n,)."""
     fan = sensor._fan
     ids, distances, rotated = np.zeros(fan.count, np.int32), np.zeros(fan.count), np.zeros((fan.count, 3))

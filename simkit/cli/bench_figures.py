@@ -10,7 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from simkit import build
 from simkit.cli.bench_bare_mujoco import BareEngine, BarePass, HandWrittenLoop, cast_bare_scan
@@ -19,6 +19,9 @@ from simkit.runtime.engine.scheduler import Phase
 from simkit.runtime.engine.step_loop import guarded_hook
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.rays.lidar import Lidar
+
+if TYPE_CHECKING:
+    from simkit.runtime import Simulation
 
 _CHUNK = 500  # steps a round
 _CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
@@ -145,7 +148,7 @@ def import_time(rounds: int) -> float:
     return ours - empty
 
 
-def memory_growth(sim: Any, duration: float) -> float:
+def memory_growth(sim: Simulation, duration: float) -> float:
     """Bytes a simulated second adds to the process with all but images read; the first half is left to settle."""
     _count_messages(sim, _without_pictures(sim))
     sim.run(duration / 2)
@@ -154,13 +157,13 @@ def memory_growth(sim: Any, duration: float) -> float:
     return (_resident_memory() - before) / (duration / 2)
 
 
-def _without_pictures(sim: Any) -> set[str]:
+def _without_pictures(sim: Simulation) -> set[str]:
     """The topics for which nothing is drawn; boxes around what is seen are for example not among them."""
     drawn = {t for s in sim.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
     return {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS} - drawn
 
 
-def stepping(sim: Any, rounds: int) -> Figure:
+def stepping(sim: Simulation, rounds: int) -> Figure:
     """Steps with nothing due beside `mj_step` on a copy of the same model and state."""
     sim.step(100)
     sim.scheduler.clear()
@@ -168,21 +171,21 @@ def stepping(sim: Any, rounds: int) -> Figure:
     return _compare_step(sim, rounds, "step, nothing due", 1.05)
 
 
-def _schedule_only(sim: Any, rate: float | None, task: Callable[[int], None], phase: Phase) -> None:
+def _schedule_only(sim: Simulation, rate: float | None, task: Callable[[int], None], phase: Phase) -> None:
     """Nothing but `task` is due in this simulation from now on."""
     sim.scheduler.clear()
     sim.scheduler.every(rate, task, phase)
     sim.scheduler.rewind(sim.tick)
 
 
-def _compare_step(sim: Any, rounds: int, name: str, aim: float) -> Figure:
+def _compare_step(sim: Simulation, rounds: int, name: str, aim: float) -> Figure:
     sim.step(100)
     bare = BareEngine(sim)
     ours, theirs = time_interleaved([lambda: sim.step(_CHUNK), lambda: bare.step(_CHUNK)], rounds)
     return Figure(name, "step", ours / _CHUNK, theirs / _CHUNK, aim)
 
 
-def motion_and_scans(sim: Any, topics: set[str], rounds: int, how: str) -> Figure:
+def motion_and_scans(sim: Simulation, topics: set[str], rounds: int, how: str) -> Figure:
     """The world with its plugins, IMUs and lidars read, beside a hand-written loop that takes these readings alone.
 
     Args:
@@ -196,14 +199,14 @@ def motion_and_scans(sim: Any, topics: set[str], rounds: int, how: str) -> Figur
     return _compare_hand_written(sim, topics, rounds, name, 1 / 0.9, keeps_counting=how != "looked at later")
 
 
-def everything_read(sim: Any, rounds: int) -> Figure:
+def everything_read(sim: Simulation, rounds: int) -> Figure:
     """The world with its plugins and every topic but images read, beside a hand-written loop of the same readings."""
     topics = _without_pictures(sim)
     return _compare_hand_written(sim, topics, rounds, "step, all plugins, all sensors read but images", 1 / 0.85)
 
 
 def _compare_hand_written(
-    sim: Any, topics: set[str], rounds: int, name: str, aim: float, *, keeps_counting: bool = True
+    sim: Simulation, topics: set[str], rounds: int, name: str, aim: float, *, keeps_counting: bool = True
 ) -> Figure:
     """Each topic's messages are counted to learn its period; where asked for, that goes on while it is timed."""
     second = round(1.0 / sim.timestep)
@@ -219,7 +222,7 @@ def _compare_hand_written(
     return Figure(name, "step", ours / second, theirs / second, aim)
 
 
-def sensor_cost(sim: Any, sensor: Any, rounds: int) -> Figure:
+def sensor_cost(sim: Simulation, sensor: Any, rounds: int) -> Figure:
     """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
     bare pass. Pictures are without noise, and clouds are not made."""
     clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
@@ -254,7 +257,7 @@ def sensor_cost(sim: Any, sensor: Any, rounds: int) -> Figure:
     return Figure(name, "sample", times[0] / count, times[1] / count if bare is not None else None, aim, most)
 
 
-def _count_messages(sim: Any, topics: set[str]) -> tuple[dict[str, int], list[Any]]:
+def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], list[Any]]:
     """Reads these topics; gives how many messages came, by topic, and the subscriptions."""
     counts: dict[str, int] = {}
 

@@ -30,7 +30,14 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_diagnostics, print_error, print_status, report_errors, stdout_console
+from simkit.cli.terminal.output import (
+    JsonObject,
+    print_diagnostics,
+    print_error,
+    print_status,
+    report_errors,
+    stdout_console,
+)
 from simkit.errors import InputError, RegressionError
 from simkit.testing.golden.parallel_check import CheckResult
 from simkit.writers.atomic_output import check_writable
@@ -159,14 +166,14 @@ def _write_junit(path: Path, results: Sequence[CheckResult], verdicts: list[Verd
     write_junit(path, "simkit golden", [*cases, *junit_cases(verdicts)])
 
 
-def result_dict(result: CheckResult) -> dict[str, Any]:
+def result_dict(result: CheckResult) -> JsonObject:
     """A result for programs."""
     if result.verdict is None:
         code = getattr(result.error, "code", "")
         return {"folder": str(result.folder), "passed": False, "error": {"code": code, "message": str(result.error)}}
     verdict = result.verdict
     comparison, explanation = verdict.comparison, verdict.explanation
-    found: dict[str, Any] = {
+    found: JsonObject = {
         "folder": str(result.folder),
         "name": verdict.name,
         "passed": verdict.passed,

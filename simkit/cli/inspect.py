@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import Any
 
 from simkit.cli.terminal.options import Base, File, Json, PackagePaths, ResourcePaths, XacroArgs, source_arguments
-from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
 
 
 @report_errors
@@ -31,7 +30,7 @@ def inspect(
     return 2 if any(d["severity"] == "error" for d in found["diagnostics"]) else 0
 
 
-def _tree(found: dict[str, Any]) -> Iterator[str]:
+def _tree(found: JsonObject) -> Iterator[str]:
     for world in found["worlds"]:
         physics = world["physics"]
         yield f"world {world['name']}  step {physics['max_step_size']:g} s, gravity {_numbers(world['gravity'])} m/s²"
@@ -49,7 +48,7 @@ def _tree(found: dict[str, Any]) -> Iterator[str]:
         yield f"{counts}; simkit check shows them"
 
 
-def _model(model: dict[str, Any], indent: str) -> Iterator[str]:
+def _model(model: JsonObject, indent: str) -> Iterator[str]:
     static = "  static" if model["static"] else ""
     yield f"{indent}model {model['name']}{static}  at {_numbers(model['pose_world'][:3])}"
     inner = indent + "  "
@@ -65,13 +64,13 @@ def _model(model: dict[str, Any], indent: str) -> Iterator[str]:
         yield from _model(nested, inner)
 
 
-def _sensors(owner: dict[str, Any], indent: str) -> Iterator[str]:
+def _sensors(owner: JsonObject, indent: str) -> Iterator[str]:
     for sensor in owner["sensors"]:
         topic = sensor["topic"] or "default topic"
         yield f"{indent}sensor {sensor['name']}  {sensor['type']}, {sensor['update_rate']:g} Hz, {topic}"
 
 
-def _plugins(owner: dict[str, Any], indent: str) -> Iterator[str]:
+def _plugins(owner: JsonObject, indent: str) -> Iterator[str]:
     for plugin in owner["plugins"]:
         yield f"{indent}plugin {plugin['name']}  {plugin['filename']}"
 

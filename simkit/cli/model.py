@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Sim
 from simkit.cli.terminal.options import Json
-from simkit.cli.terminal.output import not_found_error, print_json, print_line, report_errors_quietly
+from simkit.cli.terminal.output import JsonObject, not_found_error, print_json, print_line, report_errors_quietly
 from simkit.cli.terminal.topic_sources import connect_to_simulation, connection_name
+
+if TYPE_CHECKING:
+    from simkit.live import Client
 
 model = typer.Typer(help="Models of a running simulation.", no_args_is_help=True)
 Model = Annotated[
@@ -136,7 +139,7 @@ def _numbers(value: Any) -> str:
     return f"{value + 0.0:.6f}"
 
 
-def _model(client: Any, name: str) -> dict[str, Any]:
+def _model(client: Client, name: str) -> JsonObject:
     """The state of a model.
 
     Raises:
@@ -145,7 +148,7 @@ def _model(client: Any, name: str) -> dict[str, Any]:
     from simkit.live import LiveClosed, LiveError
 
     try:
-        found: dict[str, Any] = client.model(name)
+        found: JsonObject = client.model(name)
     except LiveClosed:
         raise
     except LiveError:

@@ -28,6 +28,7 @@ from simkit.errors import InputError, RenderError
 
 if TYPE_CHECKING:
     from simkit.plugins.play_motion.motion import Motion
+    from simkit.runtime import Simulation
 
 motion = typer.Typer(help="Lists the motions that a robot knows by name, and plays them.", no_args_is_help=True)
 
@@ -207,7 +208,7 @@ def _check_files(paths: Sequence[Path]) -> None:
     broken.raise_if_errors()
 
 
-def _spawned(sim: Any, robot: str) -> Any:
+def _spawned(sim: Simulation, robot: str) -> Any:
     """The robot, put into a world that may have it already."""
     from simkit.plugins.play_motion.motion_session import motion_players
 
@@ -238,7 +239,7 @@ def _joints(names: Sequence[str]) -> str:
     )
 
 
-def _draw(sim: Any, path: Path) -> None:
+def _draw(sim: Simulation, path: Path) -> None:
     from simkit.build import render_view
     from simkit.recording.run_picture import save_picture
 

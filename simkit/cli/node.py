@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -10,6 +10,7 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Ros2Command, Sim
 from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
+    JsonObject,
     absolute_name,
     is_hidden,
     not_found_error,
@@ -57,7 +58,7 @@ def info(
 ) -> int:
     """Says what a node publishes, takes and offers."""
     with connect_to_simulation(sim) as client:
-        nodes: dict[str, dict[str, Any]] = client.ask("nodes")
+        nodes: dict[str, JsonObject] = client.ask("nodes")
     wanted = absolute_name(node)
     if wanted not in nodes:
         raise not_found_error(

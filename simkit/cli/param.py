@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,6 +12,7 @@ from simkit.cli.terminal.live_options import Ros2Command, Sim
 from simkit.cli.terminal.message_arguments import compile_pattern
 from simkit.cli.terminal.options import Json
 from simkit.cli.terminal.output import (
+    JsonObject,
     absolute_name,
     not_found_error,
     print_json,
@@ -22,6 +23,9 @@ from simkit.cli.terminal.output import (
 from simkit.cli.terminal.parameter_values import KINDS, parse_parameter_value, plain_value, read_parameter_file
 from simkit.cli.terminal.topic_sources import LIST_PARAMETERS, connect_to_simulation, connection_name, parameter_nodes
 from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.live import Client
 
 param = typer.Typer(help="Live parameters of a running simulation.", no_args_is_help=True)
 Node = Annotated[
@@ -139,7 +143,7 @@ def set_(
         return _set(client, _node(client, node), values, atomic, json_)
 
 
-def _set(client: Any, node: str, values: list[tuple[str, Any]], atomic: bool, json_: bool) -> int:
+def _set(client: Client, node: str, values: list[tuple[str, Any]], atomic: bool, json_: bool) -> int:
     request = {"parameters": [{"name": n, "value": v} for n, v in values]}
     if atomic:
         results = [client.call(f"{node}/set_parameters_atomically", request).result]
@@ -212,7 +216,7 @@ def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
         full = _node(client, node)
         names = sorted(client.call(full + LIST_PARAMETERS, {}).result.names)
         values = client.call(f"{full}/get_parameters", {"names": names}).values
-    tree: dict[str, Any] = {}
+    tree: JsonObject = {}
     for name, value in zip(names, values, strict=True):
         *above, last = name.split(".")
         place = tree
@@ -253,7 +257,7 @@ def load(
     return 0 if all(good for _, good, _ in rows) else 2
 
 
-def _node(client: Any, name: str) -> str:
+def _node(client: Client, name: str) -> str:
     nodes = parameter_nodes(client)
     wanted = absolute_name(name)
     if wanted not in nodes:
@@ -261,7 +265,7 @@ def _node(client: Any, name: str) -> str:
     return wanted
 
 
-def _known(client: Any, node: str, names: list[str]) -> list[Any]:
+def _known(client: Client, node: str, names: list[str]) -> list[Any]:
     """The values of parameters, which are there."""
     values = list(client.call(f"{node}/get_parameters", {"names": names}).values)
     for name, value in zip(names, values, strict=True):

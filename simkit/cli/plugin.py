@@ -18,7 +18,7 @@ from simkit.cli.terminal.options import (
     XacroArgs,
     source_arguments,
 )
-from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
+from simkit.cli.terminal.output import JsonObject, print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 
@@ -225,7 +225,7 @@ def _in_brackets(names: tuple[str, ...]) -> str:
 # ---------------------------------------------------------------------- as JSON
 
 
-def _as_dict(entry: Entry) -> dict[str, Any]:
+def _as_dict(entry: Entry) -> JsonObject:
     return {
         "class": entry.cls.__name__,
         "names": list(entry.names),
@@ -236,7 +236,7 @@ def _as_dict(entry: Entry) -> dict[str, Any]:
     }
 
 
-def _facts_as_dict(facts: Facts) -> dict[str, Any]:
+def _facts_as_dict(facts: Facts) -> JsonObject:
     return {
         "parameters": [
             {
@@ -271,7 +271,7 @@ def _facts_as_dict(facts: Facts) -> dict[str, Any]:
     }
 
 
-def _service_as_dict(service: Service) -> dict[str, Any]:
+def _service_as_dict(service: Service) -> JsonObject:
     return {"name": service.name, "type": service.type, "named_by": list(service.elements)}
 
 

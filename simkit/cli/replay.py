@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from simkit.cli.terminal.options import Json
-from simkit.cli.terminal.output import report_errors, stdout_console
+from simkit.cli.terminal.output import JsonObject, report_errors, stdout_console
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _tell(found: ReplayResult, seconds: float) -> None:
         print_(f"not the same: {len(found.differences)} differences", style="bold red")
 
 
-def _words(found: ReplayResult) -> dict[str, Any]:
+def _words(found: ReplayResult) -> JsonObject:
     return {
         "same": found.is_same,
         "differences": list(found.differences),

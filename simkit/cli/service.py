@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -28,6 +28,9 @@ from simkit.cli.terminal.output import (
     report_errors_quietly,
 )
 from simkit.cli.terminal.topic_sources import connect_to_simulation, interface_type
+
+if TYPE_CHECKING:
+    from simkit.live import Client
 
 service = typer.Typer(help="Services of a running simulation.", no_args_is_help=True)
 Name = Annotated[
@@ -156,7 +159,7 @@ def call(
             time.sleep(max(0.0, begun + 1.0 / rate - time.monotonic()))
 
 
-def _one_call(client: Any, name: str, request: Any, json_: bool) -> None:
+def _one_call(client: Client, name: str, request: Any, json_: bool) -> None:
     from simkit.msgs.message_text import plain, python_of
 
     if not json_:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -11,7 +11,7 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Bag, Ros2Command, Sim, Topic
 from simkit.cli.terminal.message_arguments import is_same_type
 from simkit.cli.terminal.options import Json
-from simkit.cli.terminal.output import is_hidden, print_json, print_line, print_names, report_errors_quietly
+from simkit.cli.terminal.output import JsonObject, is_hidden, print_json, print_line, print_names, report_errors_quietly
 from simkit.cli.terminal.topic_sources import TopicEndpoint, TopicEntry, find_topic, open_source
 from simkit.cli.topic_echo import echo
 from simkit.cli.topic_pub import pub
@@ -64,14 +64,14 @@ def list_(
     return 0
 
 
-def _row(entry: TopicEntry, *, show_ends: bool) -> dict[str, Any]:
-    row: dict[str, Any] = {"name": entry.name, "types": list(entry.types)}
+def _row(entry: TopicEntry, *, show_ends: bool) -> JsonObject:
+    row: JsonObject = {"name": entry.name, "types": list(entry.types)}
     if show_ends:
         row |= {"publishers": [_end(e) for e in entry.publishers], "subscribers": [_end(e) for e in entry.subscribers]}
     return row
 
 
-def _end(end: TopicEndpoint) -> dict[str, Any]:
+def _end(end: TopicEndpoint) -> JsonObject:
     return {"node": end.node, "types": list(end.types), "latched": end.latched}
 
 

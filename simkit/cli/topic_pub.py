@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -13,9 +13,19 @@ from simkit.cli.terminal import completion
 from simkit.cli.terminal.live_options import Sim, Topic
 from simkit.cli.terminal.message_arguments import make_message, parse_fields, split_type_and_values
 from simkit.cli.terminal.options import Json
-from simkit.cli.terminal.output import absolute_name, print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.output import (
+    JsonObject,
+    absolute_name,
+    print_json,
+    print_line,
+    print_note,
+    report_errors_quietly,
+)
 from simkit.cli.terminal.topic_sources import LONGEST_WAIT, LiveSource, SimClock, connect_to_simulation, find_topic
 from simkit.errors import InputError, MessageError
+
+if TYPE_CHECKING:
+    from simkit.live import Client
 
 
 @report_errors_quietly
@@ -103,7 +113,7 @@ def pub(
     return 0
 
 
-def _full_type_name(client: Any, topic: str, type_name: str | None) -> str:
+def _full_type_name(client: Client, topic: str, type_name: str | None) -> str:
     """The type's full name, a known one.
 
     Raises:
@@ -121,7 +131,7 @@ def _full_type_name(client: Any, topic: str, type_name: str | None) -> str:
         raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
 
 
-def _message_factory(type_name: str, fields: dict[str, Any]) -> Any:
+def _message_factory(type_name: str, fields: JsonObject) -> Any:
     """Makes the message of a time [ns]; where nothing in it depends on that, it is always the same."""
     is_stamped = fields.get("header") == "auto" or _uses_time(fields)
 
@@ -154,7 +164,7 @@ def _with_time(value: Any, now_ns: int) -> Any:
     return [_with_time(v, now_ns) for v in value] if isinstance(value, list) else value
 
 
-def _wait_matching(client: Any, topic: str, number: int, tell: Any) -> None:
+def _wait_matching(client: Client, topic: str, number: int, tell: Any) -> None:
     told = False
     while number and len(_subscribers(client, absolute_name(topic))) < number:
         if not told:
@@ -163,11 +173,11 @@ def _wait_matching(client: Any, topic: str, number: int, tell: Any) -> None:
         time.sleep(0.1)
 
 
-def _subscribers(client: Any, topic: str) -> list[Any]:
+def _subscribers(client: Client, topic: str) -> list[Any]:
     return next((list(row["subscribers"]) for row in client.topics() if row["name"] == topic), [])
 
 
-def _times(client: Any, rate: float, number: int, by_wall: bool) -> Iterator[int]:
+def _times(client: Client, rate: float, number: int, by_wall: bool) -> Iterator[int]:
     """Simulated times [ns], as often as messages are to be sent: at once, then every 1/rate seconds."""
     clock = SimClock(client, by_wall=by_wall)
     period = round(1e9 / rate)

@@ -10,13 +10,13 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable, Collection
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from simkit.cli.terminal.live_options import Bag, Sim, Topic
 from simkit.cli.terminal.options import Json
-from simkit.cli.terminal.output import print_json, print_line, print_note, report_errors_quietly
+from simkit.cli.terminal.output import JsonObject, print_json, print_line, print_note, report_errors_quietly
 from simkit.cli.terminal.topic_sources import Feed, ReceivedMessage, Source, find_topic, open_source
 from simkit.cli.topic_echo import compile_filter
 from simkit.errors import InputError
@@ -51,7 +51,7 @@ class Rates:
             self._gaps.append(seconds - self._last)
         self._last = seconds
 
-    def found(self) -> dict[str, Any] | None:
+    def found(self) -> JsonObject | None:
         """`rate` [Hz], `min`, `max`, `std_dev` of the gaps [s] and `window`; None before there is a gap."""
         if not self._gaps:
             return None
@@ -59,14 +59,14 @@ class Rates:
         return {"rate": 1.0 / mean if mean > 0.0 else 0.0, **spread}
 
 
-def _spread(seconds: Collection[float]) -> tuple[float, dict[str, Any]]:
+def _spread(seconds: Collection[float]) -> tuple[float, JsonObject]:
     """The mean of some times [s], and their `min`, `max`, `std_dev` [s] and how many they are: `window`."""
     mean = sum(seconds) / len(seconds)
     deviation = math.sqrt(sum((one - mean) ** 2 for one in seconds) / len(seconds))
     return mean, {"min": min(seconds), "max": max(seconds), "std_dev": deviation, "window": len(seconds)}
 
 
-def _spread_text(found: dict[str, Any]) -> str:
+def _spread_text(found: JsonObject) -> str:
     ends = f"min: {found['min']:.3f}s max: {found['max']:.3f}s std dev: {found['std_dev']:.5f}s"
     return f"{ends} window: {found['window']}"
 
@@ -83,7 +83,7 @@ class Amounts:
             self._sizes.clear()
         self._sizes.append((seconds, size))
 
-    def found(self) -> dict[str, Any] | None:
+    def found(self) -> JsonObject | None:
         """`bytes_per_second`, `messages`, `mean`, `min` and `max` size; None before there are two messages."""
         if len(self._sizes) < 2 or self._sizes[-1][0] <= self._sizes[0][0]:
             return None
@@ -99,7 +99,7 @@ class Amounts:
         }
 
 
-def _print_rates(found: dict[str, Any] | None, text: Callable[[dict[str, Any]], str], json_: bool) -> None:
+def _print_rates(found: JsonObject | None, text: Callable[[JsonObject], str], json_: bool) -> None:
     if found is not None:
         if json_:
             print_json(found)
@@ -180,7 +180,7 @@ def hz(
         return _listen(feed, take, lambda: _print_rates(rates.found(), rate_text, json_), wall_time, duration)
 
 
-def rate_text(found: dict[str, Any]) -> str:
+def rate_text(found: JsonObject) -> str:
     """As `ros2 topic hz` prints it."""
     return f"average rate: {found['rate']:.3f}\n\t{_spread_text(found)}"
 
@@ -210,7 +210,7 @@ def bw(
         return _listen(feed, take, lambda: _print_rates(amounts.found(), amount_text, json_), wall_time, duration)
 
 
-def amount_text(found: dict[str, Any]) -> str:
+def amount_text(found: JsonObject) -> str:
     """As `ros2 topic bw` prints it: all numbers in the unit that fits the rate."""
     per_second = found["bytes_per_second"]
     unit, size, digits = ("B", 1.0, 0) if per_second < 1e3 else ("KB", 1e3, 2) if per_second < 1e6 else ("MB", 1e6, 2)
@@ -243,7 +243,7 @@ def delay(
                 raise InputError(f"SK-CLI-033 {entry.types[0]} has no header, so no stamp", "SK-CLI-033")
             late.append(seconds - msgs.stamp_ns(header.stamp) * 1e-9)
 
-        def found() -> dict[str, Any] | None:
+        def found() -> JsonObject | None:
             if not late:
                 return None
             mean, spread = _spread(late)
@@ -253,6 +253,6 @@ def delay(
         return _listen(feed, take, lambda: _print_rates(found(), delay_text, json_), False, duration)
 
 
-def delay_text(found: dict[str, Any]) -> str:
+def delay_text(found: JsonObject) -> str:
     """As `ros2 topic delay` prints it."""
     return f"average delay: {found['delay']:.3f}\n\t{_spread_text(found)}"

@@ -9,13 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simkit.errors import InputError
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
+Points = NDArray[np.float64]
 Render = Callable[..., Any]
 
 _SIZE = (1280, 800)  # [px]
@@ -32,7 +36,7 @@ class DrivenPath:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
-        self.tracks: dict[str, list[np.ndarray[Any, np.dtype[np.float64]]]] = {}
+        self.tracks: dict[str, list[Points]] = {}
         self.sample()
 
     def sample(self) -> None:
@@ -46,7 +50,7 @@ class DrivenPath:
                 track.append(place)
 
 
-def scan_points(message: Any, pose: Pose) -> np.ndarray[Any, np.dtype[np.float64]]:
+def scan_points(message: Any, pose: Pose) -> Points:
     """The points [m] in the world that a `LaserScan` hit, shape (n, 3), for a scanner at `pose`."""
     ranges = np.asarray(message.ranges, dtype=np.float64)
     angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
@@ -54,7 +58,7 @@ def scan_points(message: Any, pose: Pose) -> np.ndarray[Any, np.dtype[np.float64
     flat = np.stack(
         (ranges[hit] * np.cos(angles[hit]), ranges[hit] * np.sin(angles[hit]), np.zeros(int(hit.sum()))), axis=1
     )
-    points: np.ndarray[Any, np.dtype[np.float64]] = flat @ pose.matrix.T + pose.position
+    points: Points = flat @ pose.matrix.T + pose.position
     return points
 
 
@@ -75,7 +79,7 @@ def save_picture(sim: Simulation, path: Path, render: Render, driven: DrivenPath
 
     points = [scan_points(*found) for found in _last_scans(sim)]
 
-    def decorate(scene: Any) -> None:
+    def decorate(scene: mujoco.MjvScene) -> None:
         size = min(max(float(sim.mj_model.stat.extent) / 5.0, 0.3), 3.0)
         for track in driven.tracks.values() if driven is not None else ():
             for a, b in itertools.pairwise(track):
@@ -124,7 +128,7 @@ def _last_scans(sim: Simulation) -> list[tuple[Any, Pose]]:
     return found
 
 
-def _moving_bodies(sim: Simulation) -> list[Any]:
+def _moving_bodies(sim: Simulation) -> list[Points]:
     """Corners [m] in the world of the boxes around what can move, shape (2 n, 3), so that none is cut off."""
     model, data = sim.mj_model, sim.mj_data
     moves = (np.asarray(model.geom_bodyid) > 0) & (np.asarray(model.geom_rbound) > 0.0)
@@ -134,7 +138,7 @@ def _moving_bodies(sim: Simulation) -> list[Any]:
     return [np.concatenate((places - reach, places + reach))]
 
 
-def _viewpoint(points: list[Any], driven: DrivenPath | None) -> tuple[Any, Any]:
+def _viewpoint(points: list[Points], driven: DrivenPath | None) -> tuple[Points, Points] | tuple[None, None]:
     """Eye and target [m]: obliquely from above, so that what moved and what was seen fills the picture."""
     seen = [cloud for cloud in points if len(cloud)]
     if driven is not None:
@@ -150,7 +154,7 @@ def _viewpoint(points: list[Any], driven: DrivenPath | None) -> tuple[Any, Any]:
     return eye, target
 
 
-def _add_capsule(scene: Any, start: Any, end: Any, radius: float, colour: tuple[float, ...]) -> None:
+def _add_capsule(scene: mujoco.MjvScene, start: Points, end: Points, radius: float, colour: tuple[float, ...]) -> None:
     import mujoco
 
     geom = _next_geom(scene, mujoco.mjtGeom.mjGEOM_CAPSULE, colour)
@@ -158,7 +162,7 @@ def _add_capsule(scene: Any, start: Any, end: Any, radius: float, colour: tuple[
         mujoco.mjv_connector(geom, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, np.asarray(start), np.asarray(end))
 
 
-def _add_sphere(scene: Any, place: Any, radius: float, colour: tuple[float, ...]) -> None:
+def _add_sphere(scene: mujoco.MjvScene, place: Points, radius: float, colour: tuple[float, ...]) -> None:
     import mujoco
 
     geom = _next_geom(scene, mujoco.mjtGeom.mjGEOM_SPHERE, colour)
@@ -167,13 +171,13 @@ def _add_sphere(scene: Any, place: Any, radius: float, colour: tuple[float, ...]
         geom.pos[:] = place
 
 
-def _next_geom(scene: Any, kind: Any, colour: tuple[float, ...]) -> Any:
+def _next_geom(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, colour: tuple[float, ...]) -> mujoco.MjvGeom | None:
     """A fresh drawn geom, or None when the scene is full (the picture then lacks its last decorations)."""
     import mujoco
 
     if scene.ngeom >= scene.maxgeom:
         return None
-    geom = scene.geoms[scene.ngeom]
+    geom: mujoco.MjvGeom = scene.geoms[scene.ngeom]
     mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).reshape(-1), np.array(colour, dtype=np.float32))
     geom.emission = 0.6
     scene.ngeom += 1

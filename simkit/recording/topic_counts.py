@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from simkit.runtime import Simulation
+    from simkit.runtime import Simulation, Subscription
 
 # What has to be rendered for; counting it would make every frame be drawn only to be thrown away.
 RENDERED = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
@@ -53,7 +53,7 @@ class TopicCounter:
     ) -> None:
         self._sim, self._skip, self._is_read = sim, frozenset(skip), is_read
         self._rows: dict[str, TopicCount] = {}
-        self._taps: list[Any] = []
+        self._taps: list[Subscription] = []
         sim.bus.on_topic(self._add)
 
     @property
@@ -81,7 +81,7 @@ class TopicCounter:
         if not row.counted:
             return
 
-        def count(_: Any) -> None:
+        def count(_: object) -> None:
             now = self._sim.time_ns
             if now < row.last:
                 # The simulation was reset.

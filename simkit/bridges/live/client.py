@@ -11,7 +11,7 @@ from typing import Any
 from simkit import msgs
 from simkit.bridges.live.client_handles import LiveGoal, LivePublisher, LiveSubscription
 from simkit.bridges.live.discovery import find_socket
-from simkit.bridges.live.protocol import LiveClosed, LiveError
+from simkit.bridges.live.protocol import JsonObject, LiveClosed, LiveError
 from simkit.bridges.live.server_link import CONNECT_PERIOD, ServerLink
 
 DEFAULT_DEPTH = 1000
@@ -69,7 +69,7 @@ class Client:
         self._link.timeout = seconds
 
     @property
-    def info(self) -> dict[str, Any]:
+    def info(self) -> JsonObject:
         return self._link.info
 
     # ------------------------------------------------------------------ asking
@@ -87,23 +87,23 @@ class Client:
         """Returns once everything that was sent has been taken."""
         self.ask("ping")
 
-    def state(self) -> dict[str, Any]:
+    def state(self) -> JsonObject:
         """`time_ns`, `tick`, `paused`, `rtf` (the highest allowed, None for none) and `measured_rtf`."""
-        found: dict[str, Any] = self.ask("state")
+        found: JsonObject = self.ask("state")
         return found
 
-    def control(self, action: str, value: float | None = None) -> dict[str, Any]:
+    def control(self, action: str, value: float | None = None) -> JsonObject:
         """Has the simulation `pause`, `resume`, `step` (`value` steps) or keep an `rtf` (`value`; None: none).
 
         Returns:
             The state from then on, as `state` gives it.
         """
-        found: dict[str, Any] = self.ask("control", action=action, value=value)
+        found: JsonObject = self.ask("control", action=action, value=value)
         return found
 
-    def topics(self) -> list[dict[str, Any]]:
+    def topics(self) -> list[JsonObject]:
         """Each topic: `name`, `types`, `publishers` (`node`, `type`, `latched`), `subscribers` (`node`, `types`)."""
-        found: list[dict[str, Any]] = self.ask("topics")
+        found: list[JsonObject] = self.ask("topics")
         return found
 
     def models(self) -> list[str]:
@@ -111,13 +111,13 @@ class Client:
         found: list[str] = self.ask("models")
         return found
 
-    def model(self, name: str) -> dict[str, Any]:
+    def model(self, name: str) -> JsonObject:
         """A model: `static`, `pose`, `links`, `joints` and `models`.
 
         A pose is `{"position": [x, y, z], "quaternion": [w, x, y, z], "rpy": [roll, pitch, yaw]}` in the world
         [m, rad]; a joint `{"type", "position", "velocity", "effort"}` [rad, rad/s, N m or m, m/s, N].
         """
-        found: dict[str, Any] = self.ask("model", name=name)
+        found: JsonObject = self.ask("model", name=name)
         return found
 
     # ------------------------------------------------------------------ topics

@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 import time
 from collections import OrderedDict, deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.bridges.live.protocol import (
     ASK,
@@ -17,6 +17,7 @@ from simkit.bridges.live.protocol import (
     TELL,
     BadFrame,
     FrameReader,
+    JsonObject,
     json_frame,
 )
 
@@ -102,7 +103,7 @@ class ClientConnection:
 
     # ------------------------------------------------------------------ to the client
 
-    def say(self, kind: int, content: dict[str, Any], data: bytes = b"") -> None:
+    def say(self, kind: int, content: JsonObject, data: bytes = b"") -> None:
         """An answer, or something that is told: nothing of it is ever dropped."""
         try:
             frame = json_frame(kind, content, data)

@@ -9,17 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.bridges.live.connection import ClientConnection
+from simkit.bridges.live.protocol import JsonObject
 
 if TYPE_CHECKING:
     from simkit.pose import Pose
     from simkit.runtime.simulation import Simulation
 
 
-def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[dict[str, Any]]:
+def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[JsonObject]:
     """Every topic with who publishes and who takes it, clients among them, sorted by name."""
     names = NodeNames(sim, clients)
     listed = sim.topics()
-    found: dict[str, dict[str, Any]] = {}
+    found: dict[str, JsonObject] = {}
     for topic in listed:
         found[topic] = {"name": topic, "types": [], "publishers": [], "subscribers": []}
     for topic, end, types, what in sim.bus.ends():
@@ -40,13 +41,13 @@ def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[d
     return list(found.values())
 
 
-def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[str, dict[str, Any]]:
+def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[str, JsonObject]:
     """Node -> its `publishers`, `subscribers`, `services`, `actions` (name -> types) and `parameters` (names)."""
     names = NodeNames(sim, clients)
-    found: dict[str, dict[str, Any]] = {}
+    found: dict[str, JsonObject] = {}
 
-    def entry(node: str) -> dict[str, Any]:
-        fresh: dict[str, Any] = {"publishers": {}, "subscribers": {}, "services": {}, "actions": {}, "parameters": []}
+    def entry(node: str) -> JsonObject:
+        fresh: JsonObject = {"publishers": {}, "subscribers": {}, "services": {}, "actions": {}, "parameters": []}
         return found.setdefault(node, fresh)
 
     for row in topic_list(sim, clients):
@@ -69,7 +70,7 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
     return dict(sorted(found.items()))
 
 
-def parameter_list(sim: Simulation) -> dict[str, dict[str, Any]]:
+def parameter_list(sim: Simulation) -> dict[str, JsonObject]:
     """Node -> name -> `value`, `type`, `minimum`, `maximum`, `choices`, `allowed` and `description`."""
     return {
         node: {
@@ -88,7 +89,7 @@ def parameter_list(sim: Simulation) -> dict[str, dict[str, Any]]:
     }
 
 
-def model_state(sim: Simulation, name: str) -> dict[str, Any]:
+def model_state(sim: Simulation, name: str) -> JsonObject:
     """Where a model is, and its links and joints.
 
     Raises:
@@ -120,7 +121,7 @@ def model_state(sim: Simulation, name: str) -> dict[str, Any]:
     }
 
 
-def _pose_dict(pose: Pose) -> dict[str, Any]:
+def _pose_dict(pose: Pose) -> JsonObject:
     rpy = np.asarray(pose.rpy)
     return {"position": pose.position, "quaternion": pose.quaternion, "rpy": rpy}
 

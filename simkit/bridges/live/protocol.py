@@ -31,6 +31,8 @@ class BadFrame(Exception):
     """What came from the other side is no frame of the protocol."""
 
 
+JsonObject = dict[str, Any]
+"""Object of JSON, as Python has it."""
 PROTOCOL: Final = 1
 ASK, ANSWER, TELL, MESSAGE = 1, 2, 3, 4
 HEAD: Final = struct.Struct("<IB")
@@ -52,7 +54,7 @@ def json_default(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} cannot be sent")
 
 
-def json_frame(kind: int, content: dict[str, Any], data: bytes = b"") -> bytes:
+def json_frame(kind: int, content: JsonObject, data: bytes = b"") -> bytes:
     """A frame of JSON, with or without CDR behind it."""
     text = json.dumps(content, default=json_default, separators=(",", ":")).encode()
     return b"".join((HEAD.pack(4 + len(text) + len(data), kind), NUMBER.pack(len(text)), text, data))
@@ -63,7 +65,7 @@ def message_frame(number: int, data: bytes) -> bytes:
     return b"".join((HEAD.pack(4 + len(data), MESSAGE), NUMBER.pack(number), data))
 
 
-def read_json_frame(body: bytes) -> tuple[dict[str, Any], bytes]:
+def read_json_frame(body: bytes) -> tuple[JsonObject, bytes]:
     """The JSON of a frame's body, and what stands behind it.
 
     Raises:

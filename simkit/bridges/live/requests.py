@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 from simkit import msgs
 from simkit.bridges.live.connection import MOST_OPEN, ClientConnection, ClientSubscription
 from simkit.bridges.live.introspection import model_state, node_list, parameter_list, topic_list
-from simkit.bridges.live.protocol import TELL
+from simkit.bridges.live.protocol import TELL, JsonObject
 from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import SimkitError
 
@@ -56,7 +56,7 @@ class Request:
 
     server: RequestHost
     peer: ClientConnection
-    args: dict[str, Any]
+    args: JsonObject
     data: bytes
 
     @property
@@ -113,14 +113,14 @@ class Response:
     message: Any
 
 
-RequestHandler = Callable[[Request], Any]
+RequestHandler = Callable[[Request], object]
 
 
-def ping(_: Request) -> Any:
+def ping(_: Request) -> object:
     return "pong"
 
 
-def node(request: Request) -> Any:
+def node(request: Request) -> object:
     """Gives the client its name, or the first of `name_2`, `name_3`, … that no other one has."""
     wanted = "/" + (re.sub(r"[^A-Za-z0-9_/]+", "_", request.arg("name", str))[:100].strip("/") or "client")
     taken = {p.node for p in request.server.peers.values() if p is not request.peer}
@@ -131,13 +131,13 @@ def node(request: Request) -> Any:
     return request.peer.node
 
 
-def state(request: Request) -> Any:
+def state(request: Request) -> object:
     sim = request.sim
     found = {"time_ns": sim.time_ns, "tick": sim.tick, "timestep": sim.timestep, "paused": sim.paused}
     return {**found, "rtf": sim.pausing.pace, "measured_rtf": request.server.measured_rtf()}
 
 
-def control(request: Request) -> Any:
+def control(request: Request) -> object:
     pausing, action, value = request.sim.pausing, request.arg("action", str), request.args.get("value")
     if action == "pause":
         if not pausing.is_paused:
@@ -165,11 +165,11 @@ def control(request: Request) -> Any:
 # ---------------------------------------------------------------------- topics
 
 
-def topics(request: Request) -> Any:
+def topics(request: Request) -> object:
     return topic_list(request.sim, request.server.peers.values())
 
 
-def subscribe(request: Request) -> Any:
+def subscribe(request: Request) -> object:
     number, topic = request.new_number(request.peer.subscriptions), request.topic()
     subscribed = request.peer.subscriptions[number] = ClientSubscription(
         request.peer, number, topic, request.arg("depth", int)
@@ -179,7 +179,7 @@ def subscribe(request: Request) -> Any:
     return {"topic": topic, "type": next(types, None)}
 
 
-def unsubscribe(request: Request) -> Any:
+def unsubscribe(request: Request) -> object:
     subscribed = request.peer.subscriptions.pop(request.arg("number", int), None)
     if subscribed is None:
         raise RequestRefused("there is no such subscription")
@@ -188,7 +188,7 @@ def unsubscribe(request: Request) -> Any:
     return {"lost": subscribed.lost}
 
 
-def advertise(request: Request) -> Any:
+def advertise(request: Request) -> object:
     number, topic, bus = request.new_number(request.peer.publishers), request.topic(), request.sim.bus
     taken = [t for _, end, types, _ in bus.ends(topic) if end.active for t in types]
     if request.args.get("type") is None and not taken:
@@ -214,7 +214,7 @@ def _count_new_topic(request: Request, topic: str) -> None:
     names.add(topic)
 
 
-def unadvertise(request: Request) -> Any:
+def unadvertise(request: Request) -> object:
     publisher = request.peer.publishers.pop(request.arg("number", int), None)
     if publisher is None:
         raise RequestRefused("there is no such publisher")
@@ -225,19 +225,19 @@ def unadvertise(request: Request) -> Any:
 # ---------------------------------------------------------------------- services, actions, parameters
 
 
-def services(request: Request) -> Any:
+def services(request: Request) -> object:
     return request.sim.services()
 
 
-def call(request: Request) -> Any:
+def call(request: Request) -> object:
     return Response(request.sim.call(request.arg("name", str), request.message()))
 
 
-def actions(request: Request) -> Any:
+def actions(request: Request) -> object:
     return request.sim.actions()
 
 
-def goal(request: Request) -> Any:
+def goal(request: Request) -> object:
     number = request.new_number(request.peer.goals)
 
     def on_feedback(feedback: Any) -> None:
@@ -250,36 +250,36 @@ def goal(request: Request) -> Any:
     return [sent._action.name, sent.id]
 
 
-def cancel(request: Request) -> Any:
+def cancel(request: Request) -> object:
     found = request.peer.goals.get(request.arg("number", int))
     if found is not None:  # else it has ended
         found[0].cancel()
     return found is not None
 
 
-def parameters(request: Request) -> Any:
+def parameters(request: Request) -> object:
     return parameter_list(request.sim)
 
 
-def set_parameter(request: Request) -> Any:
+def set_parameter(request: Request) -> object:
     value = request.args.get("value")
     found = tuple(value) if isinstance(value, list) else value
     request.sim.set_parameter(request.arg("node", str), request.arg("name", str), found)
     return None
 
 
-def nodes(request: Request) -> Any:
+def nodes(request: Request) -> object:
     return node_list(request.sim, request.server.peers.values())
 
 
 # ---------------------------------------------------------------------- models
 
 
-def models(request: Request) -> Any:
+def models(request: Request) -> object:
     return list(request.sim.models)
 
 
-def model(request: Request) -> Any:
+def model(request: Request) -> object:
     return model_state(request.sim, request.arg("name", str))
 
 

@@ -13,13 +13,13 @@ import time
 from collections import deque
 from contextlib import suppress
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit import msgs
 from simkit.bridges.live import socket_files
 from simkit.bridges.live.connection import ClientConnection
 from simkit.bridges.live.message_reader import reader_of
-from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, read_json_frame
+from simkit.bridges.live.protocol import ANSWER, ASK, NUMBER, PROTOCOL, TELL, BadFrame, JsonObject, read_json_frame
 from simkit.bridges.live.requests import REQUESTS, Request, RequestRefused, Response
 from simkit.bridges.live.topic_feed import TopicFeeds
 from simkit.errors import PluginError, SimkitError, SimulationDiverged
@@ -221,7 +221,7 @@ class Server:
         if type(number) is not int or not isinstance(question, str):
             raise BadFrame("a question has an id and a name")
         raised: Exception | None = None
-        answer: dict[str, Any] = {"id": number}
+        answer: JsonObject = {"id": number}
         found = b""
         try:
             if question not in REQUESTS:
@@ -259,7 +259,7 @@ class Server:
     def tell_goal(self, peer: ClientConnection, number: int) -> None:
         """Tells how far a goal is, and with its end what came of it."""
         goal, _ = peer.goals[number]
-        words: dict[str, Any] = {"tell": "goal", "number": number, "status": int(goal.status), "reason": goal.reason}
+        words: JsonObject = {"tell": "goal", "number": number, "status": int(goal.status), "reason": goal.reason}
         data = b""
         if goal.is_done:
             del peer.goals[number]

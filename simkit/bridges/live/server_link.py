@@ -24,6 +24,7 @@ from simkit.bridges.live.protocol import (
     TELL,
     BadFrame,
     FrameReader,
+    JsonObject,
     LiveClosed,
     LiveError,
     json_frame,
@@ -65,12 +66,12 @@ class ServerLink:
 
     def __init__(self, path: Path, timeout: float, node: str | None) -> None:
         self.path, self.timeout = path, timeout
-        self.info: dict[str, Any] = {}
+        self.info: JsonObject = {}
         self.subscriptions: dict[int, MessageReceiver] = {}
         self.goals: dict[int, GoalListener] = {}
         self._numbers = itertools.count(1)
         self._reader = FrameReader(LARGEST_OUT, (ANSWER, TELL, MESSAGE))
-        self._answers: dict[int, tuple[dict[str, Any], bytes]] = {}
+        self._answers: dict[int, tuple[JsonObject, bytes]] = {}
         self._types: dict[int, str] = {}
         self._closed: LiveClosed | None = None
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)

@@ -17,6 +17,7 @@ from simkit.cli.terminal.output import absolute_name
 
 if TYPE_CHECKING:
     from simkit.cli.terminal.topic_sources import Source
+    from simkit.live import Client
 
 _PATIENCE = 1.0  # [s] of wall time that a shell is kept waiting
 _BEGUN = __name__  # what was written of the word so far, in the meta of the context
@@ -61,7 +62,7 @@ def _named(ctx: typer.Context) -> str | None:
 
 
 @contextmanager
-def _client(ctx: typer.Context) -> Iterator[Any]:
+def _client(ctx: typer.Context) -> Iterator[Client]:
     from simkit.live import connect
 
     with connect(_named(ctx), timeout=_PATIENCE) as client:

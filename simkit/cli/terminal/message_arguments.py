@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, Final
 
+from simkit.cli.terminal.output import JsonObject
 from simkit.errors import InputError, MessageError
 from simkit.yaml_reader import NotYaml, read_yaml
 
@@ -13,7 +14,7 @@ _TYPE_FORM: Final = re.compile(r"[A-Za-z]\w*(/\w+){1,2}")
 _SHOWN: Final = 200  # letters of a text that are shown where it is wrong
 
 
-def parse_fields(text: str, what: str) -> dict[str, Any]:
+def parse_fields(text: str, what: str) -> JsonObject:
     """The mapping that a YAML text on the command line stands for; an empty text for none of its fields.
 
     Raises:
@@ -56,7 +57,7 @@ def check_type(said: str | None, types: Iterable[str], name: str) -> None:
         raise InputError(f"SK-CLI-032 {name} is of type {', '.join(types)}, found {said!r}", "SK-CLI-032")
 
 
-def make_message(type_name: str, fields: dict[str, Any]) -> Any:
+def make_message(type_name: str, fields: JsonObject) -> Any:
     """A message of the fields that were given.
 
     Raises:

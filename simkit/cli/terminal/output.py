@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from simkit.diagnostics import Diagnostic
 
 
+JsonObject = dict[str, Any]
+"""Object of JSON, as Python has it."""
 P = ParamSpec("P")
 INTERRUPTED = 130
 _MOST_LISTED, _MOST_ERRORS_LISTED = 12, 200  # entries of one code that are listed
@@ -168,9 +170,6 @@ def _hang_up_exit_code() -> int:
     return 0 if hang_up is None or signal.getsignal(hang_up) is signal.SIG_IGN else 128 + hang_up
 
 
-CommandParameters = ParamSpec("CommandParameters")
-
-
 def print_line(text: str = "") -> None:
     """One line on standard output, at once."""
     typer.echo(text)
@@ -194,11 +193,11 @@ def _json_value(value: Any) -> Any:
     return [_json_value(v) for v in value] if isinstance(value, (list, tuple)) else value
 
 
-def report_errors_quietly(command: Callable[CommandParameters, Any]) -> Callable[CommandParameters, None]:
+def report_errors_quietly(command: Callable[P, Any]) -> Callable[P, None]:
     """`report_errors`, and an interrupt is the way to end it: no word about that, exit code 130."""
 
     @functools.wraps(command)
-    def run(*args: CommandParameters.args, **kwargs: CommandParameters.kwargs) -> int:
+    def run(*args: P.args, **kwargs: P.kwargs) -> int:
         try:
             return int(command(*args, **kwargs) or 0)
         except KeyboardInterrupt:

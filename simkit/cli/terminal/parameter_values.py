@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
+from simkit.cli.terminal.output import JsonObject
 from simkit.errors import InputError
 from simkit.yaml_reader import NotYaml, read_yaml
 
@@ -42,7 +43,7 @@ def plain_value(parameter: Any) -> Any:
     return found.tolist() if hasattr(found, "tolist") else found
 
 
-def parse_parameter_value(text: str) -> dict[str, Any]:
+def parse_parameter_value(text: str) -> JsonObject:
     """A text on the command line as a ParameterValue, of the type that YAML reads it as; else it is a text."""
     try:
         found = read_yaml(text)
@@ -52,7 +53,7 @@ def parse_parameter_value(text: str) -> dict[str, Any]:
     return value if value is not None else {"type": 4, "string_value": text}
 
 
-def parameter_value(found: Any) -> dict[str, Any] | None:
+def parameter_value(found: Any) -> JsonObject | None:
     """Plain Python as a ParameterValue; None where no type of parameter is like it."""
     if isinstance(found, list):
         kinds = {type(item) for item in found}
@@ -67,7 +68,7 @@ def parameter_value(found: Any) -> dict[str, Any] | None:
     return None if code is None else {"type": code, _FIELDS[code]: found}
 
 
-def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[str, dict[str, Any]]]:
+def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[str, JsonObject]]:
     """What a parameter file says of a node: names and ParameterValues, those that stand for all nodes first.
 
     Raises:
@@ -81,7 +82,7 @@ def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[
         raise _file_error(path, f"is not YAML: {error}") from None
     if not isinstance(root, dict):
         raise _file_error(path, "holds no mapping of nodes to their ros__parameters")
-    found: dict[str, Any] = {}
+    found: JsonObject = {}
     for key in ("/**", node.rpartition("/")[2], node):
         block = root.get(key) if key != "/**" or wildcard else None
         if block is None:
@@ -98,8 +99,8 @@ def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[
     return [(name, value) for name, value in values.items() if value is not None]
 
 
-def _flatten(block: dict[Any, Any], above: str) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+def _flatten(block: dict[Any, Any], above: str) -> JsonObject:
+    found: JsonObject = {}
     for key, value in block.items():
         name = f"{above}{key}"
         found |= _flatten(value, f"{name}.") if isinstance(value, dict) else {name: value}

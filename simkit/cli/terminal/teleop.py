@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.cli.terminal.keyboard import DOWN, LEFT, RIGHT, UP
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
+
+if TYPE_CHECKING:
+    from simkit.runtime import Model, Simulation
 
 TWISTS: Final = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 Bounds = tuple[float, float]
@@ -46,7 +49,7 @@ class TeleopTarget:
     sideways: bool = False
 
 
-def find_target(sim: Any, wanted: str = "") -> TeleopTarget:
+def find_target(sim: Simulation, wanted: str = "") -> TeleopTarget:
     """Whom to drive.
 
     Args:
@@ -85,7 +88,7 @@ def _choose_topic(takers: dict[str, Any]) -> str:
     return next(iter(takers))  # one drive, whatever its topics
 
 
-def _describe_target(sim: Any, topic: str, owner: Any) -> TeleopTarget:
+def _describe_target(sim: Simulation, topic: str, owner: Any) -> TeleopTarget:
     scoped = getattr(owner, "scoped", "")
     try:
         model = sim.model(scoped) if scoped else None
@@ -104,7 +107,7 @@ def _describe_target(sim: Any, topic: str, owner: Any) -> TeleopTarget:
     )
 
 
-def _speed_limits(model: Any, topic: str, owner: Any) -> tuple[Bounds, Bounds]:
+def _speed_limits(model: Model | None, topic: str, owner: Any) -> tuple[Bounds, Bounds]:
     """Of the drive itself where it has them, else of the robot where it is known."""
     asked = getattr(owner, "speed_bounds", None)
     found: tuple[Bounds, Bounds] | None = None if asked is None else asked(topic)
@@ -114,7 +117,7 @@ def _speed_limits(model: Any, topic: str, owner: Any) -> tuple[Bounds, Bounds]:
     return (_UNLIMITED, _UNLIMITED) if most is None else ((-most[0], most[0]), (-most[1], most[1]))
 
 
-def _turtlebot3_limits(model: Any) -> tuple[float, float] | None:
+def _turtlebot3_limits(model: Model) -> tuple[float, float] | None:
     """Speed [m/s] and rate of turning [rad/s] of a TurtleBot3; None of another robot."""
     joints = model.joints
     if not _TURTLEBOT.search(model.scoped) or not all(name in joints for name in _WHEELS):
@@ -155,7 +158,7 @@ class Teleop:
         fault: why the last command did not go out; empty where it did.
     """
 
-    def __init__(self, sim: Any, target: TeleopTarget, key_timeout: float = KEY_TIMEOUT) -> None:
+    def __init__(self, sim: Simulation, target: TeleopTarget, key_timeout: float = KEY_TIMEOUT) -> None:
         self._sim, self.target = sim, target
         self.speeds = _EMPTY
         self.is_expired = False

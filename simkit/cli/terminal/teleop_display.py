@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.cli.terminal.teleop import Teleop
 from simkit.pose import Pose, quat_rotate
 
+if TYPE_CHECKING:
+    from simkit.runtime import Link, Model, Simulation
+
+Vector = npt.NDArray[np.float64]
 _DRIVE_HELP: Final = "w/x faster/slower   a/d left/right   s stop   q/z all speeds ±10 %"
 _HOLONOMIC_HELP: Final = "w/x faster/slower   a/d left/right   j/l sideways   s stop   q/z all ±10 %"
 _RUN_HELP: Final = "space pause   n step   Ctrl-C ends"
@@ -24,7 +29,7 @@ class DriverLine:
         teleop: the commands.
     """
 
-    def __init__(self, sim: Any, teleop: Teleop) -> None:
+    def __init__(self, sim: Simulation, teleop: Teleop) -> None:
         self._sim, self._teleop = sim, teleop
 
     def lines(self) -> list[str]:
@@ -53,7 +58,7 @@ class DriverLine:
         sideways = f", {left:.2f} m/s left" if self._teleop.target.sideways else ""
         return f"{ahead:.2f} m/s{sideways}, {turn:.2f} rad/s"
 
-    def _model(self) -> Any:
+    def _model(self) -> Model | None:
         """What is driven, while it is there."""
         name = self._teleop.target.model
         if not name:
@@ -63,7 +68,7 @@ class DriverLine:
         except KeyError:
             return None
 
-    def _obstacle(self, model: Any, base: Pose) -> str:
+    def _obstacle(self, model: Model, base: Pose) -> str:
         """The nearest of what the robot's lidars see, and in which direction from the robot; empty without a lidar."""
         found = [
             near
@@ -101,13 +106,13 @@ def nearest_reading(sensor: Any) -> tuple[float, float, Pose, float] | None:
     return float(ranges[index]), scan.angle_min + index % beams * step, sensor.pose, float(scan.range_min)
 
 
-def _motion(model: Any, pose: Pose) -> tuple[float, float, float]:
+def _motion(model: Model, pose: Pose) -> tuple[float, float, float]:
     """Speed ahead and to the left [m/s] and turning about the vertical [rad/s], in the model's heading."""
     link = next(iter(model.links.values()), None)
     canonical = model.scene.canonical_link
     for one in model.everything():
         if one.scoped == canonical:
-            link = one
+            link = cast("Link", one)
     if link is None:
         return 0.0, 0.0, 0.0
     yaw = float(pose.rpy[2])
@@ -118,7 +123,7 @@ def _motion(model: Any, pose: Pose) -> tuple[float, float, float]:
     return tuple(0.0 if abs(v) < 0.005 else v for v in values)  # type: ignore[return-value]  # no "-0.00"
 
 
-def _rotate(pose: Pose, vector: Any) -> Any:
+def _rotate(pose: Pose, vector: Vector) -> Vector:
     return quat_rotate(pose.quaternion, vector)
 
 

@@ -17,6 +17,7 @@ from simkit.errors import InputError, MessageError
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
+    from simkit.live import Client
     from simkit.recording.bags.reader import BagReader
 
 LIST_PARAMETERS = "/list_parameters"
@@ -34,7 +35,7 @@ class SimClock:
         by_wall: goes by the clock on the wall instead.
     """
 
-    def __init__(self, client: Any, *, by_wall: bool = False) -> None:
+    def __init__(self, client: Client, *, by_wall: bool = False) -> None:
         self._client, self._by_wall = client, by_wall
         self._seen: tuple[float, int] | None = None
         self._speed = 1.0
@@ -105,7 +106,7 @@ class LiveSource:
 
     is_live = True
 
-    def __init__(self, client: Any) -> None:
+    def __init__(self, client: Client) -> None:
         self.client = client
 
     @property
@@ -155,7 +156,7 @@ class LiveFeed:
 
     is_live = True
 
-    def __init__(self, client: Any, topics: Sequence[str], depth: int) -> None:
+    def __init__(self, client: Client, topics: Sequence[str], depth: int) -> None:
         self._client = client
         self._subscriptions = dict(zip(topics, client.subscribe_all(topics, depth=depth), strict=True))
         self._ready: deque[ReceivedMessage] = deque()
@@ -295,7 +296,7 @@ def open_source(sim: str | None, bag: Path | None) -> Iterator[Source]:
 
 
 @contextmanager
-def connect_to_simulation(sim: str | None) -> Iterator[Any]:
+def connect_to_simulation(sim: str | None) -> Iterator[Client]:
     """A connection to a running simulation.
 
     Raises:
@@ -307,12 +308,12 @@ def connect_to_simulation(sim: str | None) -> Iterator[Any]:
         yield client
 
 
-def connection_name(client: Any) -> str:
+def connection_name(client: Client) -> str:
     """What a client is connected to, in words."""
     return f"the simulation {client.info.get('name', '')!r}"
 
 
-def interface_type(client: Any, what: str, types: Mapping[str, str], name: str) -> str:
+def interface_type(client: Client, what: str, types: Mapping[str, str], name: str) -> str:
     """The type of a service or an action.
 
     Args:
@@ -367,11 +368,11 @@ def find_topic(source: Source, name: str) -> TopicEntry:
     return topics[wanted]
 
 
-def node_names(client: Any, *, hidden: bool = False) -> list[str]:
+def node_names(client: Client, *, hidden: bool = False) -> list[str]:
     """Names of the nodes, sorted."""
     return sorted(name for name in client.ask("nodes") if hidden or not is_hidden(name))
 
 
-def parameter_nodes(client: Any) -> list[str]:
+def parameter_nodes(client: Client) -> list[str]:
     """Nodes that have parameters, sorted."""
     return sorted(name.removesuffix(LIST_PARAMETERS) for name in client.services() if name.endswith(LIST_PARAMETERS))

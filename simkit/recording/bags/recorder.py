@@ -17,7 +17,7 @@ from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.writers.atomic_output import write_obstacle
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Simulation, Subscription
 
 
 def matches_topic(topic: str, patterns: Iterable[str]) -> bool:
@@ -117,7 +117,7 @@ class Recorder:
         self._choose = choose
         self._count = 0
         self._bag: McapBag | None = open_bag(self.path, overwrite=overwrite)
-        self._taps: dict[str, Any] = {}
+        self._taps: dict[str, Subscription] = {}
         # behind a picture that is still being drawn, other messages wait as bytes, so that all stay in order
         self._waiting: deque[tuple[str, int, LazyMessage | tuple[str, bytes]]] = deque()
         sim.bus.on_topic(self._add)

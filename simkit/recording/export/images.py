@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit.errors import InputError
 
+Pixels = np.ndarray[Any, Any]
 _ENCODINGS: Final = {
     "mono8": ("u1", 1),
     "mono16": ("u2", 1),
@@ -46,7 +47,7 @@ class ImageWriter(Protocol):
         """Behind the last."""
 
 
-def read_pixels(message: Any) -> tuple[np.ndarray[Any, Any], str]:
+def read_pixels(message: Any) -> tuple[Pixels, str]:
     """The values of an image, shape (height, width) or (height, width, channels), and their order: gray, rgb or bgr.
 
     Raises:
@@ -78,7 +79,7 @@ def _layout(encoding: str) -> tuple[str, int]:
     raise ValueError(f"the encoding {encoding!r} is not known")
 
 
-def png_pixels(message: Any) -> np.ndarray[Any, Any]:
+def png_pixels(message: Any) -> Pixels:
     """The picture as PNG holds it, blue first: numbers of 8 or 16 bits; a depth [m] becomes millimetres (REP 118).
 
     Raises:
@@ -166,10 +167,10 @@ class VideoFile:
     def __init__(self, path: Path) -> None:
         self._path = path
         self.notes: list[str] = []
-        self._early: list[tuple[int, np.ndarray[Any, Any]]] = []
+        self._early: list[tuple[int, Pixels]] = []
         self._writer: Any = None
         self._rate, self._start, self._frames = _RATE, 0, 0
-        self._last: np.ndarray[Any, Any] | None = None
+        self._last: Pixels | None = None
         self._size = (0, 0)
 
     def take(self, time_ns: int, message: Any) -> str:
@@ -217,7 +218,7 @@ class VideoFile:
         for time_ns, frame in early:
             self._add(time_ns, frame)
 
-    def _add(self, time_ns: int, frame: np.ndarray[Any, Any]) -> None:
+    def _add(self, time_ns: int, frame: Pixels) -> None:
         """Shows the last picture until this one's time."""
         at = math.floor((time_ns - self._start) * 1e-9 * self._rate + 0.5)
         if self._last is not None:
@@ -234,7 +235,7 @@ class VideoFile:
         self._last = frame
 
 
-def _decode_compressed(message: Any) -> np.ndarray[Any, Any]:
+def _decode_compressed(message: Any) -> Pixels:
     """The pixels of a compressed picture, blue first.
 
     Raises:
@@ -248,7 +249,7 @@ def _decode_compressed(message: Any) -> np.ndarray[Any, Any]:
     return np.asarray(found)
 
 
-def _video_pixels(message: Any) -> np.ndarray[Any, Any]:
+def _video_pixels(message: Any) -> Pixels:
     """Three channels of 8 bits, blue first; numbers of more bits and depths from black for 0 to white for the most."""
     if not hasattr(message, "encoding"):
         values = _decode_compressed(message)

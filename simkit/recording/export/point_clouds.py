@@ -7,6 +7,8 @@ from typing import Any, Final
 
 import numpy as np
 
+PointArray = np.ndarray[Any, Any]
+"""Structured array with the fields of a cloud."""
 _KINDS: Final = ("", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8")  # sensor_msgs/msg/PointField
 _PLY: Final = {
     "i1": "char",
@@ -20,7 +22,7 @@ _PLY: Final = {
 }
 
 
-def read_points(message: Any) -> np.ndarray[Any, Any]:
+def read_points(message: Any) -> PointArray:
     """The points of a cloud, those that are nowhere too, as a structured array with the cloud's fields.
 
     Raises:
@@ -86,7 +88,7 @@ class CloudFiles:
         """All are written."""
 
 
-def _ply_bytes(found: np.ndarray[Any, Any]) -> bytes:
+def _ply_bytes(found: PointArray) -> bytes:
     """The points that are somewhere, as binary PLY."""
     names = found.dtype.names or ()
     if {"x", "y", "z"} <= set(names):
