@@ -1,1 +1,6 @@
-"""For who writes plugins: what a plugin's code says of itself, skeletons of new ones, reloading in a run."""
+"""Help for authors of plugins: information about plugins, skeletons of new ones, reloading in a run.
+
+What enters: plugin classes, the name of a new plugin or the world that needs it, and files that change. What leaves:
+the parameters and topics of a plugin, `docs/catalogue.md`, files with a new plugin and its test, and plugins that go on
+with new code. No other room imports it but the command line.
+"""

@@ -1,6 +1,8 @@
 """Gazebo's Python over simkit: what systems and scripts written for `gz.sim`, `gz.math`, `sdformat`, … import.
 
-A world's `PythonSystemLoader` needs nothing. A script says first:
+What enters: an import of one of Gazebo's modules, in any version and spelling. What leaves: the module of simkit with
+the same names. It never goes before a real installation of Gazebo unless it is told to shadow it. A world's
+`PythonSystemLoader` needs nothing else. A script says first:
 
     import simkit.plugins.gz_python
 

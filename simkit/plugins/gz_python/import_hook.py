@@ -33,16 +33,8 @@ _PACKAGE: Final = __name__.rpartition(".")[0]
 _BESIDE: Final = {f"{_PACKAGE}.sim": "simkit.testing.gz_fixture"}
 """Our module -> a module of a higher room whose names are offered with it: `TestFixture` loads worlds."""
 
-_UNSUPPORTED_MODULES: Final = (
-    "gui",
-    "rendering",
-    "sensors",
-    "physics",
-    "launch",
-    "plugin",
-    "utils",
-    "fuel_tools",
-    "common_av",
+_UNSUPPORTED_MODULES: Final = frozenset(
+    ("gui", "rendering", "sensors", "physics", "launch", "plugin", "utils", "fuel_tools", "common_av")
 )
 _GAZEBO_NAME: Final = re.compile(
     r"^(?:(?P<root>gz|ignition)(?:\.(?P<module>[a-z_]+?)\d*)?|(?P<sdf>sdformat)\d*)(?:\.(?P<rest>.+))?$"
@@ -70,14 +62,25 @@ def module_behind(name: str) -> str | None:
 
 
 class ShimFinder(MetaPathFinder):
-    """Finds Gazebo's modules in this package."""
+    """Finds Gazebo's modules in this package.
+
+    Attributes:
+        modules: modules of simkit under Gazebo's names, whether they can be imported now or not.
+        imported_names: the names of those that Python knows now.
+        depth: how many times `enter` was called without its `leave`.
+    """
+
+    def __init__(self) -> None:
+        self.modules: dict[str, types.ModuleType] = {}
+        self.imported_names: list[str] = []
+        self.depth = 0
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: Any = None) -> ModuleSpec | None:
         found = module_behind(name)
         if found is None:
             self._refuse(name)
             return None
-        return ModuleSpec(name, _ShimLoader(found), is_package=True)
+        return ModuleSpec(name, _ShimLoader(found, self), is_package=True)
 
     @staticmethod
     def _refuse(name: str) -> None:
@@ -99,19 +102,19 @@ class ShimFinder(MetaPathFinder):
 class _ShimLoader(Loader):
     """Fills a module under Gazebo's name with what ours offers; once made it is the same for good."""
 
-    def __init__(self, target: str) -> None:
-        self._target = target
+    def __init__(self, target: str, finder: ShimFinder) -> None:
+        self._target, self._finder = target, finder
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType | None:
-        return _shim_modules.get(spec.name)
+        return self._finder.modules.get(spec.name)
 
     def exec_module(self, module: types.ModuleType) -> None:
         own = vars(module)
-        _imported_names.append(module.__name__)
+        self._finder.imported_names.append(module.__name__)
         if _OURS not in own:
             own[_OURS] = self._target
             self._fill(own)
-        _shim_modules[module.__name__] = module
+        self._finder.modules[module.__name__] = module
 
     def _fill(self, own: dict[str, Any]) -> None:
         if not self._target:
@@ -131,13 +134,6 @@ class _ShimLoader(Loader):
 
 
 _finder: Final = ShimFinder()
-_shim_modules: dict[str, types.ModuleType] = {}
-"""Modules of ours under Gazebo's names, whether they can be imported now or not."""
-
-_imported_names: list[str] = []
-"""Names of ours among the modules that Python knows now."""
-
-_depth = 0
 
 
 def is_shim(module: Any) -> bool:
@@ -151,9 +147,8 @@ def enter(shadow: bool = False) -> None:
     Args:
         shadow: ours go before installed ones.
     """
-    global _depth
-    _depth += 1
-    if _depth == 1:
+    _finder.depth += 1
+    if _finder.depth == 1:
         sys.meta_path.append(_finder)
     if shadow and sys.meta_path[0] is not _finder:
         sys.meta_path.remove(_finder)
@@ -162,21 +157,20 @@ def enter(shadow: bool = False) -> None:
 
 def leave() -> None:
     """Takes Gazebo's names away again, once as often as `enter`; what was imported stays with whoever has it."""
-    global _depth
-    _depth -= 1
-    if _depth:
+    _finder.depth -= 1
+    if _finder.depth:
         return
     sys.meta_path.remove(_finder)
-    if _imported_names:
-        for name in _imported_names:
+    if _finder.imported_names:
+        for name in _finder.imported_names:
             sys.modules.pop(name, None)
-        _imported_names.clear()
+        _finder.imported_names.clear()
 
 
 @contextmanager
 def importable(shadow: bool = False) -> Iterator[None]:
     """Gazebo's modules can be imported within; looks anew for what is really installed."""
-    if not _depth and not shadow:
+    if not _finder.depth and not shadow:
         _forget_shims_of_installed()
     enter(shadow)
     try:
@@ -187,24 +181,19 @@ def importable(shadow: bool = False) -> Iterator[None]:
 
 def _forget_shims_of_installed() -> None:
     """Lets go of our modules where the real ones have been installed, or found, since."""
-    for root in {name.partition(".")[0] for name in _shim_modules}:
+    modules = _finder.modules
+    for root in {name.partition(".")[0] for name in modules}:
         if _real_location(root):
-            for name in [n for n in _shim_modules if n.partition(".")[0] == root]:
-                del _shim_modules[name]
+            for name in [n for n in modules if n.partition(".")[0] == root]:
+                del modules[name]
 
 
 def installed() -> dict[str, str]:
     """What is really installed under Gazebo's names and would be imported: name -> where it lies."""
-    found = {}
-    for name in ("gz.sim", *(f"gz.sim{v}" for v in range(7, 12)), "gz.math", *(f"gz.math{v}" for v in range(6, 11))):
-        place = _real_location(name)
-        if place:
-            found[name] = place
-    for name in ("ignition.gazebo", "ignition.math", "sdformat", *(f"sdformat{v}" for v in range(12, 18))):
-        place = _real_location(name)
-        if place:
-            found[name] = place
-    return found
+    sims, maths = (f"gz.sim{v}" for v in range(7, 12)), (f"gz.math{v}" for v in range(6, 11))
+    older = "ignition.gazebo", "ignition.math", "sdformat", *(f"sdformat{v}" for v in range(12, 18))
+    names = "gz.sim", *sims, "gz.math", *maths, *older
+    return {name: location for name in names if (location := _real_location(name))}
 
 
 def _real_location(name: str) -> str:

@@ -15,7 +15,7 @@ from simkit.errors import MessageError
 from simkit.plugins.gz_python import simulation_context
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
-from simkit.plugins.gz_python.msgs.ros_conversion import from_ros, to_ros, twins_of
+from simkit.plugins.gz_python.msgs.ros_conversion import call_service, from_ros, to_ros, twins_of
 
 __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publisher", "SubscribeOptions"]
 
@@ -224,8 +224,6 @@ class Node:
 
         Known are those of a world that take a WorldControl, an EntityFactory, an Entity or a Pose and give a Boolean.
         """
-        from simkit.plugins.gz_python.msgs.ros_conversion import call_service
-
         return call_service(self._simulation(), _absolute_topic(service), request, response_kind)
 
     def topic_list(self) -> list[str]:

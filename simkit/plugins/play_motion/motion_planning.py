@@ -10,6 +10,7 @@ import numpy as np
 
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
+from simkit.plugins.play_motion.collision_check import CollisionCheck
 from simkit.plugins.play_motion.motion import Motion, limit_violations, speed_limits
 from simkit.plugins.play_motion.motion_timing import SHORTEST_INTERVAL, Course, approach_time, time_course
 from simkit.plugins.play_motion.trajectory_controllers import (
@@ -173,8 +174,6 @@ def check_collisions(
     free_joints: Collection[str],
 ) -> None:
     """Goes along a course in a copy of the state. Raises MotionRefused where two links come into each other."""
-    from simkit.plugins.play_motion.collision_check import CollisionCheck
-
     clearance = CollisionCheck(sim, robot, list(joints.values()), free_joints)
     steps = np.array([_STEPS.get(joint.type, _STEP) for joint in joints.values()])
     reached = found.times[1]

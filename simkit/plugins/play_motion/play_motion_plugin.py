@@ -237,7 +237,7 @@ class PlayMotion(ModelPlugin):
             run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_part_done)
 
     def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
-        """Raises MotionRefused while another motion is being played; in ROS 1 only one with the same controllers counts."""
+        """Raises MotionRefused while another motion is being played; ROS 1 plays several that share no controller."""
         for run in self._runs:
             common = [name for name in names if name in run.controllers]
             if not _is_ros_1(goal):

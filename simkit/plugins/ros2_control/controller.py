@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from simkit.params import Params
+from simkit.plugins.live_parameters import declare_at
 from simkit.plugins.ros2_control.interfaces import InterfaceSelection
 
 if TYPE_CHECKING:
@@ -197,8 +198,6 @@ class Controller(abc.ABC):
             description: what it is, with its unit.
             on_change: called with a new value, between two steps.
         """
-        from simkit.plugins.live_parameters import declare_at
-
         plugin, params = self.plugin, self.params
         *blocks, last = name.split(".")
         for block in blocks:

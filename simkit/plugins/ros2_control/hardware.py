@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from simkit.compiler.couplings import Couplings
 from simkit.plugins.ros2_control.actuator_modes import EFFORT_MODE, FREE, POSITION_MODE, SPRING_MODE, VELOCITY_MODE
 from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 from simkit.plugins.ros2_control.hardware_sensors import HardwareSensor, find_sensor
@@ -108,8 +109,6 @@ class Hardware:
 
     def _tie(self, builder: SpecBuilder) -> None:
         """Couples joints that mimic another by the hardware's words alone."""
-        from simkit.compiler.couplings import Couplings
-
         for joint in self.joints.values():
             leader = self.joints.get(joint.leader)
             binding = builder.names.joint(joint.scoped)

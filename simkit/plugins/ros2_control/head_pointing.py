@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit import msgs
+from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.pose import IDENTITY, Pose, Vector
 
@@ -145,8 +146,6 @@ def frame_link(sim: Simulation, model: str, name: str, others: Sequence[str] = (
         found = _sensor_frame(sim, scene, name, names)
         if found is not None:
             return found
-    from simkit.diagnostics import did_you_mean
-
     near = did_you_mean(name, dict.fromkeys([*names, *others]))
     raise InputError(f"there is no frame {name!r}{near and '; ' + near}")
 

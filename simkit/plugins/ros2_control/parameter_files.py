@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+import yaml
+
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.params import Params
 from simkit.plugins.ros2_control.parameter_block import Form, ParameterBlock
@@ -204,8 +206,6 @@ def _expand_dotted_keys(entry: Entry) -> Entry:
 
 
 def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
-    import yaml
-
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
@@ -233,8 +233,6 @@ def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
 
 def _compose_yaml(text: str) -> Any:
     """The tree of a document; by libyaml where it is there, which takes a tenth of the time."""
-    import yaml
-
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     depth = 0
     for event in yaml.parse(text, Loader=loader):  # libyaml's own composer has no end to its recursion
@@ -255,8 +253,6 @@ class _EntryReader:
         self._file, self._diagnostics, self._count = file, diagnostics, 0
 
     def entry(self, node: Any, depth: int) -> Entry:
-        import yaml
-
         self._count += 1
         if self._count > _MOST_NODES or depth > _DEEPEST:
             raise _FileTooLarge("it has too many values, or is nested too deeply")

@@ -82,7 +82,7 @@ def real_gz(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     yield tmp_path  # type: ignore[misc]
     for name in [n for n in sys.modules if n == "gz" or n.startswith("gz.")]:
         del sys.modules[name]
-    import_hook._shim_modules.clear()
+    import_hook._finder.modules.clear()
 
 
 def test_what_is_really_installed_goes_first_and_is_told(real_gz: Path) -> None:

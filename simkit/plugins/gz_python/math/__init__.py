@@ -1,6 +1,7 @@
 """gz-math's types in Python, for modules written for it: `gz.math7`, `gz.math`, `ignition.math6`, … are this package.
 
-Names, meanings and tolerances are those of gz-math's own binding. Numbers have double precision throughout.
+What enters and leaves: numbers, vectors, poses and masses with the names and tolerances of gz-math. Nothing here knows
+a simulation.
 """
 
 from __future__ import annotations

@@ -6,8 +6,12 @@ import enum
 import math
 from typing import Any, ClassVar, Final
 
+import numpy as np
+
 from simkit.plugins.gz_python.math.angle import Angle
 from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
+from simkit.scene import SphericalCoordinates as Place
+from simkit.sensors.environment.geodesy import WorldOnPlanet
 
 MEAN_EARTH_RADIUS: Final = 6371000.0  # [m], of distances between points
 
@@ -131,9 +135,6 @@ class SphericalCoordinates:
     # ------------------------------------------------------------------ conversions
 
     def _place(self) -> Any:
-        from simkit.scene import SphericalCoordinates as Place
-        from simkit.sensors.environment.geodesy import WorldOnPlanet
-
         return WorldOnPlanet(
             Place(
                 float(self._latitude),
@@ -167,8 +168,6 @@ class SphericalCoordinates:
 
     def position_transform(self, position: Any, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
         """Between spherical (rad, rad, m), the planet's axes, east-north-up and the world's own axes [m]."""
-        import numpy as np
-
         place, point = self._place(), np.array(components_of(position, 3))
         level, start, end = self._level(place), Coordinates(from_type), Coordinates(to_type)
         if start is Coordinates.SPHERICAL:
@@ -189,8 +188,6 @@ class SphericalCoordinates:
         Raises:
             ValueError: one of the two is spherical, which velocities have none in.
         """
-        import numpy as np
-
         if Coordinates.SPHERICAL in (from_type, to_type):
             raise ValueError("a velocity has no spherical coordinates; use ECEF, GLOBAL or LOCAL")
         place = self._place()
@@ -204,8 +201,6 @@ class SphericalCoordinates:
 
     def _level(self, place: Any) -> Any:
         """East, north and up at the origin as columns in the planet's axes, shape (3, 3)."""
-        import numpy as np
-
         sine, cosine = math.sin(float(self._heading)), math.cos(float(self._heading))
         return place.axes @ np.array(((cosine, sine, 0.0), (-sine, cosine, 0.0), (0.0, 0.0, 1.0)))
 

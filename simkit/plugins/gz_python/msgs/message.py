@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from types import MappingProxyType
 from typing import Any, ClassVar, Final, NamedTuple, TypeVar
 
 from simkit.diagnostics import did_you_mean
@@ -162,15 +164,19 @@ def _format_message(message: Message, indent: str) -> str:
     return "".join(lines)
 
 
-MESSAGE_CLASSES: dict[str, type[Message]] = {}
+def _read_classes(text: str) -> Iterator[type[Message]]:
+    """Make a message class of each line; `gz_messages.txt` says how a line is written."""
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            name, *rest = line.split()
+            fields = dict(one.split(":") for one in rest if ":" in one)
+            constants = {key: int(number) for key, number in (one.split("=") for one in rest if "=" in one)}
+            own = {"DESCRIPTOR": Descriptor(name, f"gz.msgs.{name}"), "FIELDS": fields, "__slots__": (), **constants}
+            yield type(name, (Message,), {**own, "__module__": __name__})
+
+
+_DEFINITIONS: Final = Path(__file__).with_name("gz_messages.txt").read_text(encoding="utf-8")
+MESSAGE_CLASSES: Final[Mapping[str, type[Message]]] = MappingProxyType(
+    {one.__name__: one for one in _read_classes(_DEFINITIONS)}
+)
 """Message classes by name."""
-
-
-def define_messages(text: str) -> dict[str, type[Message]]:
-    """Message classes of lines `Name field:kind …`."""
-    for line in text.strip().splitlines():
-        name, *fields = line.split()
-        kinds = dict(field.split(":") for field in fields)
-        own = {"DESCRIPTOR": Descriptor(name, f"gz.msgs.{name}"), "FIELDS": kinds, "__slots__": ()}
-        MESSAGE_CLASSES[name] = type(name, (Message,), {**own, "__module__": __name__})
-    return MESSAGE_CLASSES

@@ -1,4 +1,9 @@
-"""gz-sim's Python over a simulation of simkit: `gz.sim8`, `gz.sim`, `ignition.gazebo6`, … are this package."""
+"""gz-sim's Python over a simulation of simkit: `gz.sim8`, `gz.sim`, `ignition.gazebo6`, … are this package.
+
+What enters: calls of a user's system with entities and components. What leaves: readings of the simulation, and
+commands that take effect before the next step by the rules of gz-sim's physics system. It never steps the simulation;
+`TestFixture` and `Server`, which do, lie in `simkit.testing.gz_fixture`.
+"""
 
 from __future__ import annotations
 
