@@ -80,3 +80,16 @@ class NoiseProcess(Protocol):
 
     def remember(self, memory: Any) -> None:
         """Takes back what `memory` gave."""
+
+
+class Batch(Protocol):
+    """What a sampler needs of the batch that it is a member of; see `simkit.sensors.batch`."""
+
+    def is_ready(self, member: Any, tick: int) -> bool:
+        """Capture all members for a tick, once; False where the member has to do it by itself."""
+
+    def captured(self, place: int) -> Any:
+        """Return what `capture` would give of a member."""
+
+    def publish_sample(self, member: Any, tick: int) -> bool:
+        """Make and publish a sample; False where the member has to do it."""

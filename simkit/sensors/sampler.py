@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from simkit.sensors.sample import NoiseProcess, Product, Sample
+from simkit.sensors.sample import Batch, NoiseProcess, Product, Sample
 from simkit.sensors.timing import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Sampler(abc.ABC):
     sim: Simulation
     update_rate: float
     timing: TimingOptions
-    crew: Any = None
+    batch: Batch | None = None
     batch_index = 0
     _times: SampleTimes
 
@@ -119,7 +119,7 @@ class Sampler(abc.ABC):
 
     @classmethod
     def make_batches(cls, sensors: Sequence[Any]) -> None:
-        """Has those of all sensors of this kind work together that can; see `simkit.sensors.batch`."""
+        """Make batches of the sensors of this kind that can sample together; see `simkit.sensors.batch`."""
 
     # ------------------------------------------------------------------ what the simulation calls
 
@@ -164,7 +164,7 @@ class Sampler(abc.ABC):
             self._skipped += 1
             self._held = tick, sim.physics.hold()
             return
-        if self._is_served and self.batch is not None and self.batch.serve(self, tick):
+        if self._is_served and self.batch is not None and self.batch.publish_sample(self, tick):
             return
         if self._gathers:
             self._gathered.append((tick, self._capture_now(tick)))
@@ -245,11 +245,11 @@ class Sampler(abc.ABC):
         return sample
 
     def _capture_now(self, tick: int) -> Any:
-        """What is captured at this tick; a member of a crew has it from there."""
-        crew = self.batch
-        if crew is not None:
-            if crew.is_ready(self, tick):
-                return crew.raw_of(self.batch_index)
+        """Capture the state of this tick; a member of a batch has it from there."""
+        batch = self.batch
+        if batch is not None:
+            if batch.is_ready(self, tick):
+                return batch.captured(self.batch_index)
             self.batch = None  # until the next schedule
         return self.capture(self.sim.mj_model, self._data_now())
 

@@ -112,7 +112,7 @@ def by_numpy(monkeypatch):
     monkeypatch.setattr(ray_fan, "MAX_MOVING_BODIES", 0)
 
 
-def crew_sizes(sim):
+def batch_sizes(sim):
     return [len(s.batch.members) if s.batch is not None else 0 for s in sim.sensors.values()]
 
 
@@ -136,7 +136,7 @@ KINDS = {
 def test_together_and_alone_give_the_same_messages_in_the_same_order(kind, apart, by_numpy):
     source = world(**KINDS[kind])
     with simkit.load(source) as sim:
-        assert crew_sizes(sim) == [COUNT] * (2 * COUNT)
+        assert batch_sizes(sim) == [COUNT] * (2 * COUNT)
     assert run(source) == apart(run, source)
 
 

@@ -25,12 +25,12 @@ _NS = 1_000_000_000
 
 
 def form_imu_batches(imus: Sequence[ImuMeasurement]) -> None:
-    """Has IMUs that are alike work together."""
+    """Make batches of IMUs that are alike."""
     form_batches(imus, ImuBatch, _batch_key)
 
 
 def _batch_key(imu: ImuMeasurement) -> Hashable | None:
-    """What has to be the same for the same arithmetic; None where there is more to do than a crew does."""
+    """What has to be the same for the same arithmetic; None where there is more to do than a batch does."""
     noise = imu.noise
     if noise.wanders or noise._is_quantised or not imu._attitude_noise.is_silent or imu._more_noise is not None:
         return None

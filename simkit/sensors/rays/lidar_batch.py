@@ -120,7 +120,7 @@ def fan_batch_key(fan: RayFan) -> tuple[object, ...] | None:
 
 
 def form_lidar_batches(lidars: Sequence[LidarMeasurement]) -> None:
-    """Has lidars that are alike work together."""
+    """Make batches of lidars that are alike."""
     form_batches(lidars, LidarBatch, _batch_key)
 
 
