@@ -1,8 +1,7 @@
-"""What all rendered cameras share."""
+"""Base of all rendered cameras: their options, optics, trigger, noise and messages."""
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,12 +12,10 @@ import numpy.typing as npt
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics
-from simkit.errors import RenderError
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
-from simkit.runtime.communication.topic_bus import NO_MESSAGE
-from simkit.sensors.base import Product, Sample, Sensor
+from simkit.sensors.base import Product
 from simkit.sensors.cameras import camera_trigger, image_messages
 from simkit.sensors.cameras.array_pool import ArrayPool
 from simkit.sensors.cameras.camera_model import CameraModel, read_camera_model
@@ -28,30 +25,25 @@ from simkit.sensors.cameras.camera_trigger import Trigger
 from simkit.sensors.cameras.distorted_image import ImageDistorter
 from simkit.sensors.cameras.image_messages import CameraInfoMaker
 from simkit.sensors.cameras.image_noise import ImageNoise
-from simkit.sensors.cameras.rendering import gl_context, render_thread
-from simkit.sensors.cameras.rendering.lights_and_shadows import read_lights, use_lights
-from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, free_renderer, renderer_of
+from simkit.sensors.cameras.rendered_sampler import RenderedSampler
+from simkit.sensors.cameras.rendering import render_thread
+from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Film, Shot, View
 from simkit.sensors.cameras.saved_images import ImageSaver
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 from simkit.sensors.visibility_mask import hidden_geoms
 
 if TYPE_CHECKING:
-    from simkit.runtime import Publisher, Simulation
-    from simkit.runtime.communication.topic_bus import LazyMessage
+    from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
 
-class RenderedCamera(Sensor):
+class RenderedCamera(RenderedSampler):
     """A camera: looks along its x axis, y to its left, z up.
 
-    What is to be drawn is taken of the state when a sample is due; drawing, and all that is made of the pictures,
-    happens on the render thread where the simulation has one and nobody is called back with the messages.
-
-    Without a renderer it is switched off, which is said once; all else goes on.
+    Its options, optics, trigger, noise and messages; `RenderedSampler` draws.
     """
 
-    is_deferred = True
     has_depth: ClassVar[bool] = False
     options: CameraOptions
 
@@ -60,12 +52,8 @@ class RenderedCamera(Sensor):
         scene.params.child("camera")
         self.options = self._read(scene)
         self.optical_frame_id = self.options.optical_frame_id
-        self._failure: RenderError | None = None
-        self._lost: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
-        self._is_called = False
         self._trigger: Trigger | None = None
         self._baseline = 0.0
-        self.around: Any = None
 
     @staticmethod
     def read_model(params: Params, width: int, height: int) -> CameraModel:
@@ -166,78 +154,7 @@ class RenderedCamera(Sensor):
         self._unseen = hidden_geoms(self.options.visibility_mask, compiled.names)
         renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
 
-    def settle(self) -> None:
-        """Measures what waits to be looked at, before something that it is made of changes."""
-        try:
-            for sample in self._kept():
-                self._settle(sample)
-        except RenderError:
-            self._drop()
-
-    def leave(self) -> None:
-        self.settle()
-        self.around = None
-
-    def measure(self, model: Any, data: Any) -> Any:
-        self.around = self.look_around()
-        return render_thread.at_once(self._exposed(model, data)).result()
-
-    def capture(self, model: Any, data: Any) -> render_thread.RenderJob:
-        """Composes what is to be drawn, and has it drawn: on the render thread, unless somebody waits for it."""
-        expose = self._exposed(model, data)
-        # the first picture of all is drawn here, so that it is known at once whether there is a renderer
-        if self._is_called or not (self.sim.render_thread and gl_context.is_open()):
-            return render_thread.at_once(expose)
-        return render_thread.submit(expose)
-
-    def capture_held(self, model: Any, data: Any, sample: Sample) -> render_thread.RenderJob:
-        # labels, temperatures, lights and what is in the world may be others by now
-        self.around, lights = sample.around
-        with use_lights(model, data, lights):
-            expose = self._exposed(model, data)
-        return render_thread.at_once(expose)
-
-    def finish(self, raw: render_thread.RenderJob) -> Any:
-        return raw.result()
-
-    def _exposed(self, model: Any, data: Any) -> Callable[[], Any]:
-        """What draws and develops the pictures of a state; it needs the state no more."""
-        renderer = renderer_of(self.sim)
-        smooth = self.options.anti_aliasing > 0
-        composition = renderer.compose(model, data, *self._frame_in_world(data), unseen=self._unseen, smooth=smooth)
-        return functools.partial(self._expose, renderer, composition, self.shots(), self.note(model, data))
-
-    def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Any) -> Any:
-        films = renderer.films(composition, shots)
-        try:
-            return self.develop(films, notes)
-        except RenderError as error:
-            self._lost = error
-            raise
-        finally:
-            films.close()
-
-    def look_around(self) -> Any:
-        """What besides the physics a sample is made of, as it is now; `note` finds that of its sample in `around`."""
-        return None
-
-    def _begin(self, tick: int) -> Sample:
-        sample = super()._begin(tick)
-        self.around = self.look_around()
-        sample.around = self.around, read_lights(self.sim.mj_model)
-        return sample
-
-    def note(self, model: Any, data: Any) -> Any:
-        """What `develop` needs of the state besides pictures."""
-        return None
-
     def develop(self, films: Iterator[Film], notes: Any) -> Any:
-        """The reading without noise, of what was drawn.
-
-        Args:
-            films: one of each shot, in their order; to be taken in turn.
-            notes: what `note` gave.
-        """
         colours = next(films).colours
         assert colours is not None
         return CameraReading(self._coloured(colours), None)
@@ -268,95 +185,6 @@ class RenderedCamera(Sensor):
 
     def restart(self) -> None:
         self.remember(0)
-
-    def close(self) -> None:
-        render_thread.drain()
-        free_renderer(self.sim)
-
-    # ------------------------------------------------------------------ when there is no renderer
-
-    def sample(self, tick: int) -> None:
-        if self._failure is not None:
-            return
-        if self._lost is not None:
-            self._switch_off(self._lost)
-            return
-        try:
-            super().sample(tick)
-        except RenderError as error:
-            self._switch_off(error)
-
-    def take_held(self) -> None:
-        try:
-            super().take_held()
-        except RenderError as error:
-            self._switch_off(error)
-
-    def _look_who_reads(self) -> None:
-        super()._look_who_reads()
-        # what has a latency is not waited for when it is taken
-        self._is_called = self._delayed is None and any(end.is_live for _, end, needs in self._wanted if needs)
-
-    def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
-        put_off = super()._publish(sample, wanted)
-        drawing = self._work_on(sample)
-        # what somebody will look at is made as soon as the picture is there; what may never be seen is not
-        awaited = [later for later in put_off if later.is_awaited]
-        if drawing is not None and awaited:
-            sample.work = render_thread.submit(functools.partial(_make_messages_early, drawing, awaited))
-            for later in put_off:
-                later.work = sample.work
-        return put_off
-
-    def _work_on(self, sample: Sample) -> render_thread.RenderJob | None:
-        drawing: render_thread.RenderJob | None = sample.raw
-        return None if drawing is None or drawing.is_at_once else drawing
-
-    def _message(self, sample: Sample, product: str) -> Any:
-        if sample.work is not None and self._products[product].needs_reading:
-            sample.work.wait()
-        return super()._message(sample, product)
-
-    def _message_later(self, sample: Sample, product: str) -> Any:
-        try:
-            return super()._message_later(sample, product)
-        except RenderError:
-            return NO_MESSAGE  # it has been said why
-
-    @property
-    def latest(self) -> Any | None:
-        """The newest picture, or None before the first; raises RenderError where there is no renderer."""
-        if self._failure is not None:
-            raise self._failure
-        return super().latest
-
-    @property
-    def truth(self) -> Any | None:
-        """The newest picture without noise; raises RenderError where there is no renderer."""
-        if self._failure is not None:
-            raise self._failure
-        return super().truth
-
-    def _settle(self, sample: Sample) -> None:
-        if sample.work is not None:
-            sample.work.wait()
-        try:
-            super()._settle(sample)
-        except RenderError as error:
-            self._switch_off(error)
-            raise
-
-    def _switch_off(self, error: RenderError) -> None:
-        if self._failure is not None:
-            return
-        self._failure = error
-        self._drop()
-        why = str(error).removeprefix(error.code).strip()
-        is_known = any(d.code == error.code and d.message.endswith(why) for d in self.sim.reports)
-        message = f"camera {self.scoped!r} is switched off: {why}"
-        self.sim.reports.warning(error.code, message, self.scene.where)
-        if not is_known:  # what ails all cameras is said aloud once
-            self.sim.log.error("%s %s", error.code, message)
 
     # ------------------------------------------------------------------ saved pictures
 
@@ -406,10 +234,3 @@ class RenderedCamera(Sensor):
     def _info_topic(self, beside: str) -> str:
         given = self.options.info_topic
         return valid_topic(given) if given else sibling_topic(beside, "camera_info")
-
-
-def _make_messages_early(work: render_thread.RenderJob, messages: Sequence[LazyMessage]) -> None:
-    """Makes messages of a picture that was drawn before."""
-    work.result()
-    for message in messages:
-        message.get()
