@@ -1,4 +1,8 @@
-"""Conditions without code: expressions over a running simulation, and checks that must hold while it runs."""
+"""Conditions: expressions over a running simulation, and checks that must hold while it runs.
+
+The text of an expression and a simulation enter; values, and results of checks with the reason, leave. No part of
+Python reads or runs an expression, and whoever looks changes no bits.
+"""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from typing import Any
 from simkit.errors import InputError
 from simkit.pose import rpy_from_quat
 from simkit.testing.conditions.bound_expression import BoundNode, as_pose
-from simkit.testing.conditions.syntax_tree import REMOVED_HINT, UndecidedValue
+from simkit.testing.conditions.syntax_tree import REMOVED_CODE, UndecidedValue
 from simkit.testing.conditions.value_types import (
     JOINT,
     NUMBER,
@@ -25,7 +25,7 @@ from simkit.testing.conditions.value_types import (
     is_pose_like,
 )
 
-Attribute = tuple[ValueType, Callable[[], Any]]
+AttributeGetter = tuple[ValueType, Callable[[], Any]]
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _ANGLES = {"roll": 0, "pitch": 1, "yaw": 2}
@@ -48,7 +48,7 @@ def listed_attributes(kind: ValueType) -> list[str]:
     }.get(kind, [])
 
 
-def attribute_of(part: BoundNode, name: str) -> Attribute | None:
+def attribute_of(part: BoundNode, name: str) -> AttributeGetter | None:
     """A part of a value, and its kind; None where it has no such part."""
     kind = part.kind
     if kind.message:
@@ -69,7 +69,7 @@ def attribute_of(part: BoundNode, name: str) -> Attribute | None:
     return None
 
 
-def _pose_attribute(get: Callable[[], Any], name: str) -> Attribute | None:
+def _pose_attribute(get: Callable[[], Any], name: str) -> AttributeGetter | None:
     if name in _AXES:
         at = _AXES[name]
         return NUMBER, lambda: float(get().position[at])
@@ -83,7 +83,7 @@ def _pose_attribute(get: Callable[[], Any], name: str) -> Attribute | None:
     return None
 
 
-def _orientation_attribute(get: Callable[[], Any], name: str) -> Attribute | None:
+def _orientation_attribute(get: Callable[[], Any], name: str) -> AttributeGetter | None:
     """Of a quaternion w, x, y, z."""
     if name in _QUATERNION:
         at = _QUATERNION[name]
@@ -94,7 +94,7 @@ def _orientation_attribute(get: Callable[[], Any], name: str) -> Attribute | Non
     return None
 
 
-def _joint_attribute(joint: Any, name: str) -> Attribute | None:
+def _joint_attribute(joint: Any, name: str) -> AttributeGetter | None:
     """Of the handle of a joint: a number for each degree of freedom, which is one number for most."""
     if name not in _JOINT_ATTRIBUTES:
         return None
@@ -104,7 +104,7 @@ def _joint_attribute(joint: Any, name: str) -> Attribute | None:
         try:
             return read(joint)
         except InputError as error:
-            if error.code != REMOVED_HINT:
+            if error.code != REMOVED_CODE:
                 raise
             raise UndecidedValue(f"{joint.scoped} was removed") from None
 
@@ -113,7 +113,7 @@ def _joint_attribute(joint: Any, name: str) -> Attribute | None:
     return ValueType(NUMBERS.name, item=NUMBER), value
 
 
-def _message_attribute(part: BoundNode, name: str) -> Attribute | None:
+def _message_attribute(part: BoundNode, name: str) -> AttributeGetter | None:
     get, fields = part.get, fields_of(part.kind.message)
     if name in fields:
         attribute, kind = fields[name]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
@@ -19,14 +19,14 @@ from simkit.testing.conditions.syntax_tree import (
     Not,
     Number,
     Sign,
+    Span,
     Text,
     UndecidedValue,
 )
 from simkit.testing.conditions.value_types import NUMBER, POSE, SCAN, TEXT, TRUTH, ValueType, is_vector_like
 
 if TYPE_CHECKING:
-    from simkit.testing.conditions.binder import Binder
-    from simkit.testing.conditions.world_view import LatestMessage
+    from simkit.testing.conditions.world_view import LatestMessage, WorldView
 
 
 _MAX_SHOWN = 6  # items of a list
@@ -134,7 +134,34 @@ def is_scalar(kind: ValueType) -> bool:
     return kind in (NUMBER, TRUTH, TEXT)
 
 
-BindFunction = Callable[["Binder", Call], BoundNode]
+class ExpressionBinder(Protocol):
+    """What a function of the language asks of the binder of the expression that calls it.
+
+    Attributes:
+        source: text of the expression.
+        view: the world that the expression is bound to.
+    """
+
+    source: str
+    view: WorldView
+
+    def part(self, node: Node) -> BoundNode:
+        """Bind a node."""
+
+    def number(self, node: Node) -> BoundNode:
+        """Bind a node that has to be a number."""
+
+    def truth(self, node: Node) -> BoundNode:
+        """Bind a node that has to be true or false."""
+
+    def fault(self, code: str, message: str, span: Span, hint: str = "") -> Exception:
+        """Return an error that points at a part of the expression."""
+
+    def not_a_number(self, part: BoundNode) -> Exception:
+        """Return the error of a node that should be a number."""
+
+
+BindFunction = Callable[[ExpressionBinder, Call], BoundNode]
 UNLIMITED_ARGUMENTS: Final = 100
 """Arguments of a function that takes any number of them."""
 
@@ -155,7 +182,7 @@ class Function:
     make: BindFunction
 
 
-def quoted_argument(binder: Binder, call: Call, place: int, what: str) -> Text:
+def quoted_argument(binder: ExpressionBinder, call: Call, place: int, what: str) -> Text:
     """An argument that is a name in quotes.
 
     Raises:

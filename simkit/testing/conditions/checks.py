@@ -59,7 +59,7 @@ def time_text(time: float) -> str:
     return f"t = {time:.6g} s"
 
 
-_MAGNITUDE_STEPS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
+_ORDER_OPERATORS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 
 
 class Condition:
@@ -101,14 +101,14 @@ class Condition:
             Undecided: that is not known.
         """
         part = self._part
-        if part is None or not isinstance(part.node, Comparison) or part.node.signs[0] not in _MAGNITUDE_STEPS:
+        if part is None or not isinstance(part.node, Comparison) or part.node.signs[0] not in _ORDER_OPERATORS:
             return self.holds(), math.nan, ""
         if len(part.below) > 2:
             return self.holds(), math.nan, ""
         left, right = part.below
         a, b = left.get(), right.get()
         text = left.node.span.text(self.source)
-        return _MAGNITUDE_STEPS[part.node.signs[0]](a, b), abs(a - b), f"{text} was {value_text(a)}"
+        return _ORDER_OPERATORS[part.node.signs[0]](a, b), abs(a - b), f"{text} was {value_text(a)}"
 
     def findings(self, *, wanted: bool = True) -> str:
         """The values that make it hold or not."""

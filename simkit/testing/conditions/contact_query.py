@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _MAX_SLOPE: Final = math.cos(math.radians(45.0))
-_FEW_COLLISIONS: Final = 32  # contacts
+_MANY_CONTACTS: Final = 32  # contacts
 _HEIGHT_MAP: Final = int(mujoco.mjtGeom.mjGEOM_HFIELD)
 
 
@@ -107,10 +107,10 @@ class ContactQuery:
         # the usual few contacts cost less as Python's numbers than as arrays
         rows = (
             range(len(pairs))
-            if len(pairs) <= _FEW_COLLISIONS
+            if len(pairs) <= _MANY_CONTACTS
             else self._concerned[pairs].any(axis=1).nonzero()[0].tolist()
         )
-        geoms = pairs.tolist() if len(pairs) <= _FEW_COLLISIONS else None
+        geoms = pairs.tolist() if len(pairs) <= _MANY_CONTACTS else None
         for row in rows:
             one, two = geoms[row] if geoms is not None else pairs[row].tolist()
             if mine[one] and others[two]:

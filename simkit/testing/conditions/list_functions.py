@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
-from simkit.testing.conditions.bound_expression import UNLIMITED_ARGUMENTS, BoundNode, Function, as_numbers
+from simkit.testing.conditions.bound_expression import (
+    UNLIMITED_ARGUMENTS,
+    BoundNode,
+    ExpressionBinder,
+    Function,
+    as_numbers,
+)
 from simkit.testing.conditions.syntax_tree import Call, UndecidedValue
 from simkit.testing.conditions.value_types import NUMBER, TRUTH
-
-if TYPE_CHECKING:
-    from simkit.testing.conditions.binder import Binder
 
 Reduction = Callable[[Any], float]
 
@@ -45,7 +48,7 @@ def _bind_reduction(usage: str, function: Reduction, *, of_none: float | None) -
         of_none: its value where there are no numbers; None where it has none then.
     """
 
-    def make(binder: Binder, call: Call) -> BoundNode:
+    def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         parts = tuple(binder.part(node) for node in call.arguments)
         source = call.span.text(binder.source)
         if len(parts) > 1 or parts[0].kind is NUMBER:
@@ -75,13 +78,13 @@ def _norm(values: Any) -> float:
     return math.sqrt(float(values.dot(values)))
 
 
-def _abs(binder: Binder, call: Call) -> BoundNode:
+def _abs(binder: ExpressionBinder, call: Call) -> BoundNode:
     part = binder.number(call.arguments[0])
     get = part.get
     return BoundNode(call, NUMBER, lambda: abs(get()), (part,))
 
 
-def _len(binder: Binder, call: Call) -> BoundNode:
+def _len(binder: ExpressionBinder, call: Call) -> BoundNode:
     part = binder.part(call.arguments[0])
     get = part.get
     if part.kind.item is None:
@@ -90,7 +93,7 @@ def _len(binder: Binder, call: Call) -> BoundNode:
     return BoundNode(call, NUMBER, lambda: float(len(get())), (part,), part.feed)
 
 
-def _isfinite(binder: Binder, call: Call) -> BoundNode:
+def _isfinite(binder: ExpressionBinder, call: Call) -> BoundNode:
     part = binder.part(call.arguments[0])
     if part.kind is NUMBER:
         get = part.get
@@ -109,7 +112,7 @@ def _isfinite(binder: Binder, call: Call) -> BoundNode:
 def _bind_any_or_all(usage: str, decisive: bool) -> Function:
     """`any` (decided by a true one) and `all` (decided by a false one), of arguments or of a list."""
 
-    def make(binder: Binder, call: Call) -> BoundNode:
+    def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         first = binder.part(call.arguments[0])
         if len(call.arguments) == 1 and first.kind.item is TRUTH:
             get = first.get

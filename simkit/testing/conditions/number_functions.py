@@ -5,17 +5,13 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
-from simkit.testing.conditions.bound_expression import BoundNode, Function
+from simkit.testing.conditions.bound_expression import BoundNode, ExpressionBinder, Function
 from simkit.testing.conditions.syntax_tree import Call
 from simkit.testing.conditions.value_types import NUMBER
-
-if TYPE_CHECKING:
-    from simkit.testing.conditions.binder import Binder
-
 
 BinaryOperator = Callable[[float, float], float]
 
@@ -107,7 +103,7 @@ VECTOR_OPERATORS: Final = {
 def _numeric(usage: str, count: int, function: Callable[..., float]) -> Function:
     """A function of so many numbers."""
 
-    def make(binder: Binder, call: Call) -> BoundNode:
+    def make(binder: ExpressionBinder, call: Call) -> BoundNode:
         parts = tuple(binder.number(node) for node in call.arguments)
         gets = [part.get for part in parts]
         if count == 1:

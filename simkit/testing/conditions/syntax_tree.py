@@ -7,7 +7,7 @@ from typing import Final
 
 from simkit.errors import InputError
 
-REMOVED_HINT: Final = "SK-NAME-002"
+REMOVED_CODE: Final = "SK-NAME-002"
 """What handles of things that were removed raise."""
 
 _MAX_COLUMNS = 100  # characters of an expression that are shown around a place

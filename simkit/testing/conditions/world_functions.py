@@ -7,7 +7,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.pose import quat_conjugate, quat_rotate
-from simkit.testing.conditions.bound_expression import BoundNode, Function, as_pose, as_vector, quoted_argument
+from simkit.testing.conditions.bound_expression import (
+    BoundNode,
+    ExpressionBinder,
+    Function,
+    as_pose,
+    as_vector,
+    quoted_argument,
+)
 from simkit.testing.conditions.syntax_tree import Call, Node, Text, UndecidedValue
 from simkit.testing.conditions.value_types import (
     JOINT,
@@ -24,21 +31,20 @@ from simkit.testing.conditions.value_types import (
 
 if TYPE_CHECKING:
     from simkit.pose import Vector
-    from simkit.testing.conditions.binder import Binder
     from simkit.testing.conditions.contact_query import ContactQuery
     from simkit.testing.conditions.world_view import Entity
 
 
-_ENTITY_TYPES = "the name of a model or a link"
+_ENTITY_ARGUMENT = "the name of a model or a link"
 
 
-def entity_argument(binder: Binder, call: Call, place: int) -> Entity:
+def entity_argument(binder: ExpressionBinder, call: Call, place: int) -> Entity:
     """A model or a link that an argument names."""
-    node = quoted_argument(binder, call, place, _ENTITY_TYPES)
+    node = quoted_argument(binder, call, place, _ENTITY_ARGUMENT)
     return binder.view.thing(node.value, binder.source, node.span)
 
 
-def _pose(binder: Binder, call: Call) -> BoundNode:
+def _pose(binder: ExpressionBinder, call: Call) -> BoundNode:
     one = entity_argument(binder, call, 0)
     if len(call.arguments) == 1:
         return BoundNode(call, POSE, one.pose)
@@ -50,7 +56,7 @@ def _in_axes(frame: Entity, vector: Vector) -> Vector:
     return quat_rotate(quat_conjugate(frame.pose().quaternion), vector)
 
 
-def _twist(binder: Binder, call: Call) -> BoundNode:
+def _twist(binder: ExpressionBinder, call: Call) -> BoundNode:
     one = entity_argument(binder, call, 0)
     if len(call.arguments) == 1:
         return BoundNode(call, TWIST, one.twist)
@@ -63,7 +69,7 @@ def _twist(binder: Binder, call: Call) -> BoundNode:
     return BoundNode(call, TWIST, value)
 
 
-def _velocity(binder: Binder, call: Call) -> BoundNode:
+def _velocity(binder: ExpressionBinder, call: Call) -> BoundNode:
     one = entity_argument(binder, call, 0)
     if len(call.arguments) == 1:
         return BoundNode(call, VECTOR, lambda: one.twist()[0])
@@ -71,7 +77,7 @@ def _velocity(binder: Binder, call: Call) -> BoundNode:
     return BoundNode(call, VECTOR, lambda: _in_axes(frame, one.twist()[0]))
 
 
-def _joint(binder: Binder, call: Call) -> BoundNode:
+def _joint(binder: ExpressionBinder, call: Call) -> BoundNode:
     node = quoted_argument(binder, call, 0, "the name of a joint")
     joint = binder.view.joint(node.value, binder.source, node.span)
     entities, name = binder.view.sim.entities, joint.scoped
@@ -79,8 +85,8 @@ def _joint(binder: Binder, call: Call) -> BoundNode:
     return BoundNode(call, JOINT, lambda: entities.tables["joint"].get(name, joint))
 
 
-def _exists(binder: Binder, call: Call) -> BoundNode:
-    name = quoted_argument(binder, call, 0, _ENTITY_TYPES).value
+def _exists(binder: ExpressionBinder, call: Call) -> BoundNode:
+    name = quoted_argument(binder, call, 0, _ENTITY_ARGUMENT).value
     entities = binder.view.sim.entities
     return BoundNode(call, TRUTH, lambda: any(name in entities.tables[kind] for kind in ("model", "link")))
 
@@ -88,7 +94,7 @@ def _exists(binder: Binder, call: Call) -> BoundNode:
 # ------------------------------------------------------------------ distances
 
 
-def _distance(binder: Binder, call: Call) -> BoundNode:
+def _distance(binder: ExpressionBinder, call: Call) -> BoundNode:
     gets, parts = [], []
     for node in call.arguments:
         part = binder.part(node)
@@ -107,7 +113,7 @@ def _distance(binder: Binder, call: Call) -> BoundNode:
     return BoundNode(call, NUMBER, value, tuple(parts))
 
 
-def _point_argument(binder: Binder, node: Node, part: BoundNode) -> Callable[[], Any]:
+def _point_argument(binder: ExpressionBinder, node: Node, part: BoundNode) -> Callable[[], Any]:
     """What gives the point that an argument means."""
     if part.kind is TEXT and isinstance(node, Text):
         named = binder.view.thing(node.value, binder.source, node.span)
@@ -131,19 +137,19 @@ def _has_vector(part: BoundNode) -> bool:
 # ------------------------------------------------------------------ topics
 
 
-def _topic_argument(binder: Binder, call: Call) -> tuple[str, str, Text]:
+def _topic_argument(binder: ExpressionBinder, call: Call) -> tuple[str, str, Text]:
     node = quoted_argument(binder, call, 0, "a topic")
     topic, type_name = binder.view.topic(node.value, binder.source, node.span)
     return topic, type_name, node
 
 
-def _topic(binder: Binder, call: Call) -> BoundNode:
+def _topic(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic, type_name, _ = _topic_argument(binder, call)
     feed = binder.view.feed(topic)
     return BoundNode(call, message_type(type_name), feed.latest, feed=feed)
 
 
-def _scan(binder: Binder, call: Call) -> BoundNode:
+def _scan(binder: ExpressionBinder, call: Call) -> BoundNode:
     _, type_name, node = _topic_argument(binder, call)
     if type_name != SCAN:
         text = f"{node.value!r} carries {type_name}, and scan reads {SCAN}"
@@ -151,12 +157,12 @@ def _scan(binder: Binder, call: Call) -> BoundNode:
     return _topic(binder, call)
 
 
-def _count(binder: Binder, call: Call) -> BoundNode:
+def _count(binder: ExpressionBinder, call: Call) -> BoundNode:
     tally = binder.view.tally(_topic_argument(binder, call)[0])
     return BoundNode(call, NUMBER, lambda: float(tally.count))
 
 
-def _rate(binder: Binder, call: Call) -> BoundNode:
+def _rate(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic = _topic_argument(binder, call)[0]
     tally = binder.view.tally(topic)
 
@@ -169,7 +175,7 @@ def _rate(binder: Binder, call: Call) -> BoundNode:
     return BoundNode(call, NUMBER, value)
 
 
-def _age(binder: Binder, call: Call) -> BoundNode:
+def _age(binder: ExpressionBinder, call: Call) -> BoundNode:
     topic = _topic_argument(binder, call)[0]
     tally, sim = binder.view.tally(topic), binder.view.sim
 
@@ -196,7 +202,7 @@ WORLD_FUNCTIONS: Final[dict[str, Function]] = {
 }
 
 
-def _contact_query(binder: Binder, call: Call) -> ContactQuery:
+def _contact_query(binder: ExpressionBinder, call: Call) -> ContactQuery:
     from simkit.testing.conditions.contact_query import ContactQuery
 
     nodes = [
@@ -206,7 +212,7 @@ def _contact_query(binder: Binder, call: Call) -> ContactQuery:
     return ContactQuery(binder.view.sim, *names)
 
 
-def _contact(binder: Binder, call: Call) -> BoundNode:
+def _contact(binder: ExpressionBinder, call: Call) -> BoundNode:
     touching = _contact_query(binder, call)
 
     def tell() -> str:
@@ -216,12 +222,12 @@ def _contact(binder: Binder, call: Call) -> BoundNode:
     return BoundNode(call, TRUTH, lambda: bool(touching.now()), tell=tell)
 
 
-def _contacts(binder: Binder, call: Call) -> BoundNode:
+def _contacts(binder: ExpressionBinder, call: Call) -> BoundNode:
     touching = _contact_query(binder, call)
     return BoundNode(call, NUMBER, lambda: float(len(touching.now())))
 
 
-def _contact_force(binder: Binder, call: Call) -> BoundNode:
+def _contact_force(binder: ExpressionBinder, call: Call) -> BoundNode:
     return BoundNode(call, NUMBER, _contact_query(binder, call).force)
 
 

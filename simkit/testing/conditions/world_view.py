@@ -10,7 +10,7 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.runtime.communication.topic_bus import absolute_name
-from simkit.testing.conditions.syntax_tree import REMOVED_HINT, Span, UndecidedValue, expression_error
+from simkit.testing.conditions.syntax_tree import REMOVED_CODE, Span, UndecidedValue, expression_error
 
 if TYPE_CHECKING:
     from simkit.pose import Pose, Vector
@@ -156,7 +156,7 @@ class Entity:
         Raises:
             Undecided: nothing.
         """
-        if error.code != REMOVED_HINT:
+        if error.code != REMOVED_CODE:
             raise error
         found = self._sim.entities.tables[self._kind].get(self.name)
         if found is None:
