@@ -62,7 +62,7 @@ def bundle(
     with its tick, the messages of the last seconds, and the hashes at the end. `simkit replay` repeats the run.
     """
     from simkit.testing.bundles import BundleRecorder, write_bundle
-    from simkit.testing.bundles.bundle_recorder import failure_from_checks, failure_from_error
+    from simkit.testing.bundles.manifest import failure_from_checks, failure_from_error
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
     check_file(output, overwrite=force)

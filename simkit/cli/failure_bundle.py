@@ -61,7 +61,7 @@ class FailureBundle:
 
     def _failure(self, error: BaseException | None) -> Failure | None:
         from simkit.cli.wall_time_limit import WallTimeExceeded
-        from simkit.testing.bundles.bundle_recorder import failure_from_checks, failure_from_error
+        from simkit.testing.bundles.manifest import failure_from_checks, failure_from_error
 
         if isinstance(error, Exception) and not isinstance(error, InputError):
             code = error.exit_code if isinstance(error, SimkitError) else getattr(error, "exit_code", 1)
@@ -73,8 +73,7 @@ class FailureBundle:
 
     def _write(self, folder: Path, failure: Failure) -> None:
         """Says where the bundle is; that there is none changes nothing of what the run ends with."""
-        from simkit.testing.bundles.bundle_recorder import write_failed
-        from simkit.testing.bundles.bundle_writer import pack_load_failure
+        from simkit.testing.bundles.bundle_writer import pack_load_failure, write_failed
 
         try:
             if self._keeper is not None:

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.errors import InputError, PluginError, SimkitError
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.bundles.archive import Bundle, open_bundle
-from simkit.testing.bundles.bundle_recorder import failure_from_error
 from simkit.testing.bundles.journal_player import JournalPlayer
-from simkit.testing.bundles.manifest import BAG, Failure, Manifest
+from simkit.testing.bundles.manifest import BAG, Failure, Manifest, failure_from_error
 from simkit.testing.bundles.message_window import MessageWindow, StateHashes, WindowMessage, topic_digests
 from simkit.testing.bundles.packed_world import load_packed_world
 from simkit.testing.run_record.fingerprint import fingerprint, fingerprint_differences

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from simkit.errors import InputError
+from simkit.errors import InputError, SimkitError
+
+if TYPE_CHECKING:
+    from simkit.testing.conditions import CheckResult
 
 FORMAT: Final = 1
 PAGE: Final = "bundle.json"
@@ -16,6 +20,7 @@ COMMANDS: Final = "commands.jsonl"
 BAG: Final = "last_seconds.mcap"
 CHECK: Final = "check"
 """Kind of the failure of a run in which something did not hold."""
+_FOLDERS: Final = re.compile(r"(?<![\w:/.])(?:[A-Za-z]:)?(?:[/\\][^\s/\\:'\"()]+)*[/\\](?=[^\s/\\:'\"()]+\.\w)")
 BROKEN, NEWER = "SK-BUNDLE-001", "SK-BUNDLE-002"
 
 
@@ -32,6 +37,25 @@ class Failure:
     kind: str
     code: str
     text: str
+
+
+def failure_from_error(error: BaseException) -> Failure:
+    """An error as a bundle has it."""
+    code = str(getattr(error, "code", "") or "") if isinstance(error, SimkitError) else ""
+    return Failure(type(error).__name__, code, strip_folders(str(error))[:20_000])
+
+
+def failure_from_checks(results: Iterable[CheckResult], *, was_given_up: bool = False) -> Failure | None:
+    """What did not hold as a bundle has it; None where all did, and the run was not given up for its wall time."""
+    lines = [f"{result.check.title}: {result.message}" for result in results if not result.passed]
+    if was_given_up and not lines:
+        lines = ["the run was given up for its wall time"]
+    return Failure(CHECK, "", strip_folders("\n".join(lines))[:20_000]) if lines else None
+
+
+def strip_folders(text: str) -> str:
+    """A text in which files stand without the folders that they are in, which are elsewhere on another machine."""
+    return _FOLDERS.sub("", text)
 
 
 @dataclass(frozen=True)
@@ -54,7 +78,7 @@ class RunEnd:
 
 
 @dataclass(frozen=True)
-class SpawnedModel:
+class PackedModel:
     """A model that comes into the world as it is loaded."""
 
     file: str
@@ -94,7 +118,7 @@ class Manifest:
     overrides: tuple[str, ...]
     sleep: bool
     on_error: str | None
-    spawn: tuple[SpawnedModel, ...]
+    spawn: tuple[PackedModel, ...]
     params: tuple[tuple[str, str], ...]
     models: Mapping[str, str]
     code: tuple[str, ...]
@@ -253,13 +277,13 @@ def _parse_end(said: _ManifestReader) -> RunEnd:
     return RunEnd(said.count("steps"), said.count("tick"), said.count("time_ns"), said.text("state"), failure)
 
 
-def _parse_spawned(said: _ManifestReader) -> SpawnedModel:
+def _parse_spawned(said: _ManifestReader) -> PackedModel:
     place = said.either("place", said.listed)
     if place is not None:
         numbers = all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in place)
         if not numbers or len(place) not in (3, 4, 6):
             raise _InvalidValue(f"place: found {place!r:.60}, allowed are 3, 4 or 6 numbers")
-    return SpawnedModel(
+    return PackedModel(
         said.text("file"), None if place is None else tuple(map(float, place)), said.either("name", said.text)
     )
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 MAX_WINDOW_BYTES: Final = 256 << 20
-_MAX_MESSAGE_BYTES: Final = 3000  # bytes that a message is taken for which is not packed yet
+_ASSUMED_MESSAGE_BYTES: Final = 3000  # bytes that a message is taken for which is not packed yet
 _TIME: Final = struct.Struct("<q")
 
 
@@ -89,7 +89,7 @@ class MessageWindow:
     def _add(self, topic: str, type_name: str) -> None:
         if topic in self._taps or not self._is_kept(topic, type_name):
             return
-        sim, kept, length, most = self._sim, self._kept, self._length, self._most // _MAX_MESSAGE_BYTES
+        sim, kept, length, most = self._sim, self._kept, self._length, self._most // _ASSUMED_MESSAGE_BYTES
         last: Any = None
         is_packed = False
 

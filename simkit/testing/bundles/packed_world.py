@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from simkit.testing.bundles.manifest import SpawnedModel
+from simkit.testing.bundles.manifest import PackedModel
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -26,7 +26,7 @@ _SEARCH_VARIABLES: Final = (
 def load_packed_world(
     folder: Path,
     world: str,
-    spawn: Sequence[SpawnedModel],
+    spawn: Sequence[PackedModel],
     params: Sequence[tuple[str, str]],
     code: Sequence[Path],
     options: Mapping[str, Any],

@@ -1,0 +1,194 @@
+"""Copy the files that a run was made from into a folder, so that the world opens anywhere."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from simkit.diagnostics import Diagnostics
+from simkit.errors import InputError, SimkitError
+from simkit.testing.bundles.manifest import PackedModel
+from simkit.testing.bundles.packed_world import load_packed_world, model_hash
+
+if TYPE_CHECKING:
+    from simkit.testing.bundles.bundle_recorder import BundleRecorder
+
+UNPACKED: Final = "SK-BUNDLE-006"
+
+
+@dataclass
+class StagedWorld:
+    """What was put into the stage."""
+
+    file: str = ""
+    spawn: list[PackedModel] = field(default_factory=list)
+    params: list[tuple[str, str]] = field(default_factory=list)
+    models: dict[str, str] = field(default_factory=dict)
+    code: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+
+
+class WorldStager:
+    """Copies what a run was made from, so that it opens anywhere.
+
+    Args:
+        origin: how it was loaded.
+        stage: the folder that becomes the bundle.
+    """
+
+    def __init__(self, origin: Any, stage: Path) -> None:
+        self._origin, self._stage = origin, stage
+        paths = [Path(p) for p in origin["resource_paths"]]
+        self._paths = [p if p.is_absolute() else origin["folder"] / p for p in paths]
+        self._folders = 0
+
+    def world(self, keeper: BundleRecorder) -> StagedWorld:
+        """Everything that was loaded, and spawned later."""
+        origin, found = self._origin, StagedWorld()
+        found.file = self._vendored(origin["source"], "world", base=origin["base"])
+        self._spawned(found)
+        for given in keeper.sim._loaded.structure.builder.parameter_files:
+            found.params.append((given.model, self._copied(Path(given.file.path), f"params/{len(found.params)}")))
+        for source in dict.fromkeys(keeper.journal.sources):
+            if "<" not in source:
+                self._later(found, source)
+        if origin["plugins"]:
+            kinds = ", ".join(
+                sorted({type(one[1] if isinstance(one, tuple) else one).__name__ for one in origin["plugins"]})
+            )
+            found.missing.append(f"plugins made in Python are not in it: {kinds}")
+        if origin["is_changed"]:
+            found.missing.append(
+                "the world was changed in Python as it was loaded (change_world); it is packed without"
+            )
+        self._compare(found, keeper)
+        return found
+
+    def unloaded(self, params_files: Any) -> StagedWorld:
+        """Everything that was to be loaded."""
+        found = StagedWorld(self._vendored(self._origin["source"], "world", base=self._origin["base"]))
+        self._spawned(found)
+        for one in params_files:
+            model, file = one if isinstance(one, tuple) else _split_params_file(str(one))
+            found.params.append((model, self._copied(Path(file), f"params/{len(found.params)}")))
+        return found
+
+    def _spawned(self, found: StagedWorld) -> None:
+        from simkit.loaders.spawn_option import parse_spawn
+
+        for number, one in enumerate(self._origin["spawn"]):
+            spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
+            if spawn is not None:
+                file = self._vendored(spawn.source, f"spawn/{number}")
+                found.spawn.append(PackedModel(file, spawn.place, spawn.name))
+
+    def _later(self, found: StagedWorld, source: str) -> None:
+        try:
+            found.models[source] = self._vendored(source, f"models/{len(found.models)}")
+        except SimkitError as error:  # somebody may have asked for a model that there is not
+            found.missing.append(f"{source!r:.100}, which was to be spawned, could not be packed: {error!s:.200}")
+
+    def _vendored(self, source: Any, target: str, base: str = "auto") -> str:
+        """The place of a file in the stage, with all that it names."""
+        from simkit.build import describe
+        from simkit.writers.vendor import vendor
+
+        origin = self._origin
+        paths = self._paths
+        with tempfile.TemporaryDirectory() as folder:
+            if isinstance(source, str) and "<" in source:
+                file = Path(folder) / "world.sdf"
+                file.write_text(source, encoding="utf-8")
+                source, paths = file, [*paths, origin["folder"]]
+            elif "://" in str(source):
+                source = self._found(str(source))
+            elif not Path(source).is_absolute() and (origin["folder"] / source).exists():
+                source = origin["folder"] / source
+            (self._stage / target).parent.mkdir(parents=True, exist_ok=True)
+            options = {"package_paths": origin["package_paths"], "xacro_args": origin["xacro_args"], "base": base}
+            try:
+                main, _ = vendor(str(source), self._stage / target, describe, resource_paths=paths, **options)
+            except InputError as error:
+                raise InputError(f"{UNPACKED} {_source_text(source)} cannot be packed: {error}", UNPACKED) from None
+        return f"{target}/{main.as_posix()}"
+
+    def _found(self, uri: str) -> Path:
+        """The file or folder of a URI."""
+        from simkit.loaders import Resolver
+
+        path, _ = Resolver(self._paths, package_paths=self._origin["package_paths"]).search(uri, None)
+        if path is None:
+            raise InputError(f"{UNPACKED} {uri} is not found any more", UNPACKED)
+        return path
+
+    def _copied(self, path: Path, target: str) -> str:
+        place = self._stage / target / path.name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(path if path.is_absolute() else self._origin["folder"] / path, place)
+        return f"{target}/{path.name}"
+
+    def _compare(self, found: StagedWorld, keeper: BundleRecorder) -> None:
+        """Whether what was packed is what was run: files may have been edited since."""
+        try:
+            with load_packed_world(self._stage, found.file, found.spawn, found.params, (), self._origin) as sim:
+                same = model_hash(sim.mj_model, sim.originals) == loaded_model_hash(keeper)
+        except (SimkitError, OSError) as error:
+            found.missing.append(f"opening it again failed: {error!s:.300}")
+            return
+        if not same and not self._origin["plugin_paths"] and not self._origin["is_changed"]:
+            found.missing.append("its files have been changed since the run began; they are packed as they are now")
+
+
+def loaded_model_hash(keeper: BundleRecorder) -> str:
+    """Of the model that was loaded, whatever has been changed of it since."""
+    sim = keeper.sim
+    loaded = sim._loaded.structure.compiled.model
+    return model_hash(loaded, sim.originals if loaded is sim.mj_model else {})
+
+
+def _split_params_file(text: str) -> tuple[str, str]:
+    """`[MODEL=]FILE`."""
+    model, equals, file = text.partition("=")
+    return (model, file) if equals and "/" not in model and not Path(text).exists() else ("", text)
+
+
+def _source_text(source: Any) -> str:
+    return "the text" if "<" in str(source) else str(source)
+
+
+# ---------------------------------------------------------------------- code
+
+
+def copy_plugin_modules(world: StagedWorld, stage: Path, folders: Any) -> None:
+    """The modules that were imported from the user's plugin folders; they are copied, not run."""
+    roots = [Path(folder).resolve() for folder in folders]
+    for number, root in enumerate(roots):
+        files = {
+            file
+            for file in map(_file_of, tuple(sys.modules.values()))
+            if file is not None and file.is_relative_to(root)
+        }
+        for file in sorted(files | _package_files(files, root)):
+            name = f"code/{number}/{file.relative_to(root).as_posix()}"
+            target = stage / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, target)
+            world.code.append(name)
+
+
+def _file_of(module: Any) -> Path | None:
+    said = getattr(module, "__file__", None)
+    if not isinstance(said, str) or not said.endswith(".py"):
+        return None
+    path = Path(said).resolve()
+    return path if path.is_file() else None
+
+
+def _package_files(files: set[Path], root: Path) -> set[Path]:
+    """The `__init__.py` above files, up to a folder."""
+    above = {folder for file in files for folder in file.parents if folder.is_relative_to(root)}
+    return {init for folder in above if (init := folder / "__init__.py").is_file()}
