@@ -1,4 +1,8 @@
-"""Determinism that can be shown: one scenario in fresh processes whose surroundings differ, and hashes side by side."""
+"""Certificates of determinism: one run in several fresh processes whose surroundings differ, and hashes side by side.
+
+A run specification enters, a `Certificate` leaves: what differed first, and which plugin or sensor began it. Messages
+and states are kept as hashes only.
+"""
 
 from __future__ import annotations
 

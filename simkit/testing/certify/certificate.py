@@ -146,21 +146,22 @@ def streams_hash(outcome: RunOutcome) -> str:
     return whole.hexdigest()
 
 
-_MAX_DIFFERENCES_SHOWN: Final = 12  # letters of a hash
+_HASH_WIDTH: Final = 12  # letters of a hash
 
 
 def table_header() -> str:
     """Of the table."""
-    return f"{'run':<12}  {'state':<{_MAX_DIFFERENCES_SHOWN}}  {'streams':<{_MAX_DIFFERENCES_SHOWN}}  {'':<9}  what is other"
+    return f"{'run':<12}  {'state':<{_HASH_WIDTH}}  {'streams':<{_HASH_WIDTH}}  {'':<9}  what is other"
 
 
 def table_row(row: Row) -> str:
     """One run."""
     outcome = row.outcome
-    state = outcome.state[:_MAX_DIFFERENCES_SHOWN] if outcome.state else "-"
-    streams = ("second half" if outcome.heard_from else row.streams[:_MAX_DIFFERENCES_SHOWN]) or "-"
+    state = outcome.state[:_HASH_WIDTH] if outcome.state else "-"
+    streams = ("second half" if outcome.heard_from else row.streams[:_HASH_WIDTH]) or "-"
     verdict = "same" if row.same else "DIFFERENT"
-    return f"{row.variation.name:<12}  {state:<{_MAX_DIFFERENCES_SHOWN}}  {streams:<{_MAX_DIFFERENCES_SHOWN}}  {verdict:<9}  {row.variation.words}"
+    hashes = f"{state:<{_HASH_WIDTH}}  {streams:<{_HASH_WIDTH}}"
+    return f"{row.variation.name:<12}  {hashes}  {verdict:<9}  {row.variation.words}"
 
 
 def conclusion_text(made: Certificate) -> list[str]:

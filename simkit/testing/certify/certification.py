@@ -16,7 +16,7 @@ from simkit.testing.certify.process_runner import ProcessRunner
 from simkit.testing.certify.variations import Variation, choose_variations
 from simkit.testing.scenarios import Scenario
 
-_REPETITIONS: Final = 2  # looks at a difference that does not show when it is looked at
+_WATCH_ATTEMPTS: Final = 2  # looks at a difference that does not show when it is looked at
 _TICK_MARGIN: Final = 2  # ticks after the first that differs
 
 ProgressCallback = Callable[[Row], None]
@@ -115,7 +115,7 @@ def _explain_difference(row: Row, first: Row, runner: ProcessRunner, known: dict
         return replace(known[tick], variation=row.variation, words=found[0].words, more=more)
     ticks = _ticks_to_run(first.outcome)
     end, who = ticks if tick is None else min(ticks, tick + _TICK_MARGIN), None
-    for _ in range(_REPETITIONS):
+    for _ in range(_WATCH_ATTEMPTS):
         who = find_culprit(*(runner.watch(r.variation, end, ticks // 2) for r in (first, row)))
         if who is not None:
             break

@@ -20,7 +20,7 @@ from simkit.testing.run_record.record import Array
 _MAGIC: Final = b"SKGOLD\x01\n"
 _PRESET: Final = 6 | lzma.PRESET_EXTREME
 _FAST: Final = 3
-_LONG_BLOCK: Final = 2 << 20  # [bytes]
+_LONG_BLOCK_BYTES: Final = 2 << 20  # [bytes]
 _MAX_MEMORY: Final = 64 << 20  # [bytes] that unpacking may take beside what comes out
 MAX_BLOCK_BYTES: Final = 1 << 30
 """Of what a block unpacks to [bytes]; also of all its arrays together."""
@@ -78,7 +78,7 @@ class Packer:
         text = head.encode()
         whole = b"".join((_MAGIC, struct.pack("<I", len(text)), text, *self._parts))
         preset = (
-            _PRESET if len(whole) <= _LONG_BLOCK else _FAST
+            _PRESET if len(whole) <= _LONG_BLOCK_BYTES else _FAST
         )  # of large worlds most is alike, and the best takes minutes
         return lzma.compress(whole, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC64, preset=preset)
 

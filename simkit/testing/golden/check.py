@@ -23,7 +23,7 @@ from simkit.testing.scenarios import Scenario
 CAUSE_BUDGET_SECONDS: Final = 60.0
 """Wall time [s] that looking for causes may take."""
 _MAX_NAMED: Final = 5  # changes of a world in which a scenario cannot be run any more
-_MAX_CHANGES: Final = 12  # differences that a blessing lists
+_MAX_DIFFERENCES: Final = 12  # differences that a blessing lists
 
 
 def check_golden(
@@ -184,8 +184,8 @@ def make_golden(place: Path, verdict: Verdict, reason: str, *, other_renderer: b
                 "SK-GOLDEN-007",
             )
     words = [one.words for one in verdict.comparison.differences]
-    more = len(words) - _MAX_CHANGES
-    changed = [*words[:_MAX_CHANGES], *([f"and {more} more"] if more > 0 else [])]
+    more = len(words) - _MAX_DIFFERENCES
+    changed = [*words[:_MAX_DIFFERENCES], *([f"and {more} more"] if more > 0 else [])]
     history: list[Mapping[str, Any]] = read_history(place)
     write_golden(place, run, reason=reason, changed=changed, history=history)
 

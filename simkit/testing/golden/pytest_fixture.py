@@ -35,7 +35,7 @@ _WORDS: Final[Mapping[str, Mapping[str, bool]]] = {
     "statistics": {"statistics": True},
 }
 _NUMBERS: Final = ("absolute", "relative", "share", "image", "ssim")  # of a tolerance
-_TEST_ARGUMENTS: Final = ("overrides", "spawn", "plugins")  # of `simkit.load`, which a scenario has fields for
+_SCENARIO_ARGUMENTS: Final = ("overrides", "spawn", "plugins")  # of `simkit.load`, which a scenario has fields for
 
 
 @dataclass
@@ -103,8 +103,8 @@ class SensorRegression:
             topics: patterns of those that are looked at; all but clocks where nothing says it.
             skip: patterns of those that are left out.
             tolerances: by topic or field (`{"/scan": 0.01, "/imu": "statistics", "/odom": {"relative": 0.01}}`), or
-                `simkit.testing.scenarios.Tolerance`. They go before a scenario's. Numbers among them count on the same machine
-                too, and then nothing but topics is compared.
+                `simkit.run_spec.Tolerance`. They go before a scenario's. Numbers among them count on the same
+                machine too, and then nothing but topics is compared.
             seed: of the noise.
             options: further ones of `simkit.load`: `plugins`, `overrides`, `resource_paths`, …
 
@@ -308,14 +308,14 @@ def _refuse_failed_checks(record: RunRecord, place: Path) -> None:
 
 def _with_arguments(scenario: Scenario, given: dict[str, Any], is_open: bool) -> Scenario:
     """A scenario with arguments over its own."""
-    own = {key: given.pop(key) for key in ("duration", "seed", "topics", "skip", *_TEST_ARGUMENTS) if key in given}
-    if is_open and (given or {"seed", *_TEST_ARGUMENTS} & own.keys()):
-        wrong = ", ".join(sorted([*given, *({"seed", *_TEST_ARGUMENTS} & own.keys())]))
+    own = {key: given.pop(key) for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS) if key in given}
+    if is_open and (given or {"seed", *_SCENARIO_ARGUMENTS} & own.keys()):
+        wrong = ", ".join(sorted([*given, *({"seed", *_SCENARIO_ARGUMENTS} & own.keys())]))
         raise InputError(
             f"SK-GOLDEN-021 sensor_regression: {wrong}: of a simulation that is open already this cannot be chosen",
             "SK-GOLDEN-021",
         )
-    for key in _TEST_ARGUMENTS:
+    for key in _SCENARIO_ARGUMENTS:
         if key in own:
             own[key] = (own[key],) if isinstance(own[key], str) else tuple(own[key])
     return replace(scenario, **own, options={**scenario.options, **given})

@@ -17,7 +17,7 @@ from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES
 from simkit.testing.scenarios import Scenario
 
 _MAX_FIELDS: Final = 400_000  # numbers of the compiled model; of a larger one its fields are not kept
-_DEPTH_ENCODINGS: Final = 2.0**-10  # [m] that depths of small pictures are rounded to
+_DEPTH_STEP: Final = 2.0**-10  # [m] that depths of small pictures are rounded to
 _STATISTICS: Final = ("mean", "deviation", "quantiles", "taus", "allan", "independent", "kurtosis")
 
 
@@ -103,7 +103,7 @@ def _pack_stream(packer: Packer, stream: Stream, scenario: Scenario) -> dict[str
     if stream.pictures is not None:
         pictures = stream.pictures
         found["pictures"] = {
-            "small": packer.add(pictures.small, _DEPTH_ENCODINGS if pictures.small.dtype.kind == "f" else 0.0),
+            "small": packer.add(pictures.small, _DEPTH_STEP if pictures.small.dtype.kind == "f" else 0.0),
             "shape": list(pictures.shape),
             "encoding": pictures.encoding,
             "tiles": packer.add(pictures.tiles),

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _STATES_KEPT: Final = 64  # states of a run, where the world is small
 _MAX_VALUES: Final = 6000  # of all of them together
 _MIN_STATES: Final = 3
-_WATCHED_CALLS: Final = 200  # bodies; of more, forces on them are looked at only where something was written
+_MAX_WATCHED_BODIES: Final = 200  # bodies; of more, forces on them are looked at only where something was written
 
 
 class StateRecorder:
@@ -120,7 +120,7 @@ class StateRecorder:
         self._controls, self._activations = _sort_by_name(named.controls), _sort_by_name(named.activations)
         self._bodies, self._mocaps = _sort_by_name(named.bodies), _sort_by_name(named.mocaps)
         self._has_more = bool(model.na or model.nmocap)
-        self._listens = model.nbody <= _WATCHED_CALLS
+        self._listens = model.nbody <= _MAX_WATCHED_BODIES
         self._edition, self._given = -1, 0
         width = model.nq + model.nv + model.nu + 1
         kept = int(np.clip(_MAX_VALUES // width, _MIN_STATES, _STATES_KEPT))

@@ -231,9 +231,9 @@ def _cached_file_hash(path: str, _: int, size: int) -> tuple[str, int]:
 
 
 _SUFFIXES: Final = frozenset((".yaml", ".yml"))
-_MAX_FILE_BYTES: Final = 100_000  # values of one file
+_MAX_FILE_VALUES: Final = 100_000  # values of one file
 _MAX_YAML_DEPTH: Final = 60
-_MAX_TEXT: Final = 8 << 20  # bytes
+_MAX_FILE_BYTES: Final = 8 << 20  # bytes
 _PLAIN_YAML_VALUE: Final = re.compile(r"[\w/*:-]+")
 
 
@@ -277,7 +277,7 @@ def _parse_document(path: Path) -> Any:
     from simkit.yaml_reader import yaml_loader
 
     try:
-        if path.stat().st_size > _MAX_TEXT:
+        if path.stat().st_size > _MAX_FILE_BYTES:
             return None
         return yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml_loader())
     except (OSError, UnicodeDecodeError, yaml.YAMLError, RecursionError):
@@ -286,7 +286,7 @@ def _parse_document(path: Path) -> Any:
 
 def _flatten_document(node: Any, path: str, found: dict[str, tuple[Any, int]], depth: int) -> bool:
     """Goes through a document; False where it is too large, or holds itself."""
-    if depth > _MAX_YAML_DEPTH or len(found) > _MAX_FILE_BYTES:
+    if depth > _MAX_YAML_DEPTH or len(found) > _MAX_FILE_VALUES:
         return False
     line = node.start_mark.line + 1
     if node.id == "mapping":

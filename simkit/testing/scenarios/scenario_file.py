@@ -41,7 +41,7 @@ _CHECK_KEYS: Final[dict[CheckKind, tuple[str, ...]]] = {
     "rate": ("name", "topic", "rate", "tolerance", "points", "hint"),
 }
 _TOLERANCE_KEYS: Final = tuple(f.name for f in fields(Tolerance) if f.name not in ("pattern", "where"))
-_TEXT_KEYS: Final[dict[str, dict[str, Any]]] = {
+_TOLERANCE_WORDS: Final[dict[str, dict[str, Any]]] = {
     "exact": {"exact": True},
     "ignore": {"ignore": True},
     "statistics": {"statistics": True},
@@ -223,15 +223,15 @@ class ScenarioReader(ValueReader):
         for pattern, value in self._mapping("tolerances").items():
             keys = ("tolerances", pattern)
             where = str(self._document.where(*keys))
-            if isinstance(value, str) and value in _TEXT_KEYS:
-                found.append(Tolerance(_absolute_topic(pattern), **_TEXT_KEYS[value], where=where))
+            if isinstance(value, str) and value in _TOLERANCE_WORDS:
+                found.append(Tolerance(_absolute_topic(pattern), **_TOLERANCE_WORDS[value], where=where))
             elif isinstance(value, (int, float)) and not isinstance(value, bool):
                 limit = self._number_of(value, None, keys, least=0.0)
                 found.append(Tolerance(_absolute_topic(pattern), absolute=limit, where=where))
             elif isinstance(value, dict):
                 found.append(self._tolerance(pattern, value, where))
             else:
-                words = ", ".join(_TEXT_KEYS)
+                words = ", ".join(_TOLERANCE_WORDS)
                 self._wrong(value, f"a number, one of {words}, or a mapping of {', '.join(_TOLERANCE_KEYS)}", *keys)
         return found
 
@@ -249,7 +249,7 @@ class ScenarioReader(ValueReader):
                 found[key] = self._number_of(one, None, (*keys, key), least=-1.0 if key == "ssim" else 0.0)
                 if key in ("share", "ssim") and (found[key] or 0.0) > 1.0:
                     self._wrong(one, "a number of at most 1", *keys, key)
-        modes = [key for key in _TEXT_KEYS if found.get(key)]
+        modes = [key for key in _TOLERANCE_WORDS if found.get(key)]
         if len(modes) > 1:
             self._document.error("SK-SCEN-003", f"a tolerance is one of {', '.join(modes)}, not all of them", *keys)
         return Tolerance(_absolute_topic(pattern), where=where, **found)

@@ -8,10 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from simkit.testing.golden.cause.first_tick import distinct_digits
-from simkit.testing.golden.cause.world_patch import ABSENT
-from simkit.testing.golden.compare.world_edits import Edit, entity_kind, scoped_name, split_entity_path
+from simkit.testing.golden.compare.world_edits import ABSENT, Edit, entity_kind, scoped_name, split_entity_path
 
-_ENTITY_TITLES = re.compile(r"^(params\.|geometry\.|inertial\.|surface\.|surroundings\.)")
+_SHORTENED_PREFIXES = re.compile(r"^(params\.|geometry\.|inertial\.|surface\.|surroundings\.)")
 _NAMES_IN_FILES = {
     "rate": "update_rate",
     "xyz_joint": "axis xyz",
@@ -51,7 +50,7 @@ _COMPONENTS: Mapping[str, Sequence[str]] = {
 def attribute_name(attribute: str) -> str:
     """An attribute by the name that a file gives it."""
     text = re.sub(r"^axes\[(\d+)\]\.", lambda m: "" if m[1] == "0" else f"axis {int(m[1]) + 1} ", attribute)
-    text = _ENTITY_TITLES.sub("", text).replace("@", " ").strip()
+    text = _SHORTENED_PREFIXES.sub("", text).replace("@", " ").strip()
     return _NAMES_IN_FILES.get(text, text)
 
 

@@ -15,9 +15,9 @@ from simkit.testing.golden.cause.change_text import (
     single_value_text,
 )
 from simkit.testing.golden.cause.motion import Motion, find_motions, local_path
-from simkit.testing.golden.cause.world_patch import ABSENT
 from simkit.testing.golden.compare.difference import CauseKind
 from simkit.testing.golden.compare.world_edits import (
+    ABSENT,
     Edit,
     entity_kind,
     is_same_value,
@@ -28,9 +28,9 @@ from simkit.testing.golden.compare.world_edits import (
 )
 
 WorldValues = Mapping[str, Any]
-_LEAST_LIKENESS = frozenset(("", "params"))
+_UNGROUPED_ELEMENTS = frozenset(("", "params"))
 """Elements whose values have little to do with each other."""
-_ENOUGH_EDITS = 0.5  # of the leaves of a part that are alike: it is the same part under another name
+_LEAST_LIKENESS = 0.5  # of the leaves of a part that are alike: it is the same part under another name
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def _find_renames(edits: list[Edit], golden: WorldValues, run: WorldValues) -> t
         mine = _within(golden, old)
         scores = [(_likeness(mine, _within(run, n), scoped_name(old), scoped_name(n)), n) for n in candidates]
         score, best = max(scores, default=(0.0, ""))
-        if score < _ENOUGH_EDITS:
+        if score < _LEAST_LIKENESS:
             continue
         new.remove(best)
         change, edits = _rename_change(old, best, edits, golden, run)
@@ -332,7 +332,7 @@ def _group_by_element(edits: list[Edit]) -> list[list[Edit]]:
     for number, edit in enumerate(edits):
         owner, attribute = split_entity_path(edit.path)
         inner = _parent_element(attribute)
-        groups.setdefault((owner, inner) if inner not in _LEAST_LIKENESS else number, []).append(edit)
+        groups.setdefault((owner, inner) if inner not in _UNGROUPED_ELEMENTS else number, []).append(edit)
     return list(groups.values())
 
 

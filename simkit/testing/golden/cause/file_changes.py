@@ -10,8 +10,14 @@ import numpy as np
 
 from simkit.testing.golden.cause.change_text import list_names, single_value_text, values_text
 from simkit.testing.golden.cause.changes import Change
-from simkit.testing.golden.cause.world_patch import ABSENT
-from simkit.testing.golden.compare.world_edits import Edit, field_edits, other_edits, scoped_name, split_entity_path
+from simkit.testing.golden.compare.world_edits import (
+    ABSENT,
+    Edit,
+    field_edits,
+    other_edits,
+    scoped_name,
+    split_entity_path,
+)
 from simkit.testing.run_record.record import RunRecord
 
 _HEAD = 16  # letters of a hash that a leaf has

@@ -14,8 +14,9 @@ import numpy as np
 
 from simkit.scene import SceneWorld
 from simkit.testing.golden.cause.changes import Change
-from simkit.testing.golden.cause.world_patch import ABSENT, patch_world
+from simkit.testing.golden.cause.world_patch import patch_world
 from simkit.testing.golden.compare.difference import Comparison
+from simkit.testing.golden.compare.world_edits import ABSENT
 from simkit.testing.run_record.record import Column, RunRecord, Stream
 from simkit.testing.scenarios import Scenario
 

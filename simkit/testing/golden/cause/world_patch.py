@@ -14,22 +14,10 @@ from typing import Any
 from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import SceneWorld
+from simkit.testing.golden.compare.world_edits import ABSENT
 from simkit.testing.run_record.world_values import element_keys, file_content_text, item_keys, split_path
 
 _KEPT_FIELDS = frozenset(("mjcf", "moved_by"))
-
-
-class _Absent:
-    """Of a leaf that is not there."""
-
-    def __repr__(self) -> str:
-        return "nothing"
-
-    def __reduce__(self) -> str:
-        return "ABSENT"
-
-
-ABSENT = _Absent()
 
 
 class CannotPatch(Exception):

@@ -213,7 +213,8 @@ def _depths(met: _CommonPictures, notes: list[str]) -> Ranked:
             notes.append(f"{topic}: pictures differ within {terms.allowed}")
         return []
     first = int(np.argmax(changed.any(axis=1)))
-    words = f"{topic}: {_changed_part_text(changed[first], met.golden)}, too little to be seen when small, from {met.when(first)}"
+    part = _changed_part_text(changed[first], met.golden)
+    words = f"{topic}: {part}, too little to be seen when small, from {met.when(first)}"
     index = int(met.messages[first])
     return [(1.0, Difference(topic, "", "picture", met.seconds(first), math.nan, "m", words, "the same bits", index))]
 

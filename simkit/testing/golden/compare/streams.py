@@ -51,7 +51,7 @@ def rounding_text(stream: Stream) -> str:
 
 Ranked = list[tuple[float, Difference]]
 
-_MAX_SETTINGS = 0.1  # part of a tolerance from which a difference within it is worth a note
+_NOTED_SHARE = 0.1  # part of a tolerance from which a difference within it is worth a note
 
 
 @dataclass
@@ -178,7 +178,7 @@ def _is_setting(column: Column) -> bool:
 def _keep_first(result: FieldFinding, terms: FieldTerms, ranked: Ranked, found: StreamComparison) -> None:
     if result.difference is not None:
         ranked.append((result.excess, result.difference))
-    elif result.excess > _MAX_SETTINGS and result.off > 0.0 and not terms.is_exact:
+    elif result.excess > _NOTED_SHARE and result.off > 0.0 and not terms.is_exact:
         off = quantity_text(result.off, terms.unit, signed=False)
         found.notes.append(f"{terms.name}: up to {off} off, within {terms.allowed}")
 

@@ -16,7 +16,7 @@ from simkit.testing.golden.compare.units import is_colour, plain_path, quantity_
 from simkit.testing.run_record.record import Array, Column, Stream
 from simkit.testing.scenarios import Scenario, Tolerance
 
-_RELATIVE_PARTS = 8  # of a tolerance that a stored number is rounded to
+_STEPS_PER_TOLERANCE = 8  # of a tolerance that a stored number is rounded to
 
 # absolute in the field's unit, and part of the value. What they come from is in docs/tolerances.md
 _BY_UNIT: Final[dict[str, tuple[float, float]]] = {
@@ -124,7 +124,7 @@ def storage_step(type_name: str, field: str, scenario: Scenario | None = None, t
     found = tolerance_of(scenario, topic, type_name, field) if scenario else default_tolerance(type_name, field)
     if found.exact or not found.absolute or is_colour(field):
         return 0.0
-    return math.ldexp(1.0, math.floor(math.log2(found.absolute / _RELATIVE_PARTS)))
+    return math.ldexp(1.0, math.floor(math.log2(found.absolute / _STEPS_PER_TOLERANCE)))
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from simkit.testing.golden.cause.world_patch import ABSENT
 from simkit.testing.golden.compare.difference import CauseKind
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.world_values import split_path
@@ -18,6 +17,19 @@ from simkit.testing.scenarios import Scenario
 _ENTITY_FIELDS = frozenset(
     ("models", "links", "joints", "collisions", "visuals", "sensors", "lights", "frames", "plugins", "actors", "files")
 )
+
+
+class _Absent:
+    """Type of ABSENT: the value of a path that one of two worlds does not have."""
+
+    def __repr__(self) -> str:
+        return "nothing"
+
+    def __reduce__(self) -> str:
+        return "ABSENT"
+
+
+ABSENT = _Absent()
 
 
 @lru_cache(maxsize=65536)

@@ -1,4 +1,7 @@
-"""What a check of golden runs found: for the terminal, as a page, as JUnit XML."""
+"""Report verdicts of golden runs: as text for a terminal, as one HTML page, and as cases of JUnit XML.
+
+Verdicts enter, text and files leave. The page loads nothing and runs nothing; whatever a run said stays text in it.
+"""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from simkit.testing.junit import JunitCase
 
 
-ENDING_TEXTS: Final = frozenset({"duration", "until", "timeout", "wall_timeout", ""})
+REGULAR_ENDINGS: Final = frozenset({"duration", "until", "timeout", "wall_timeout", ""})
 """Of a run that ended as it was meant to, or by its scenario's clock; anything else is an error's text."""
 MAX_DIFFERENCES: Final = 12
 """Differences, checks and notes that a text lists; of more it says how many there are."""
@@ -129,7 +129,7 @@ def machine_text(comparison: Comparison) -> str:
 
 def run_failed(verdict: Verdict) -> bool:
     """Whether the run failed, other than the golden one."""
-    return verdict.run.end not in ENDING_TEXTS and verdict.run.end != verdict.golden.end
+    return verdict.run.end not in REGULAR_ENDINGS and verdict.run.end != verdict.golden.end
 
 
 def _body_lines(verdict: Verdict, most: int) -> Iterator[tuple[str, str]]:
@@ -153,7 +153,7 @@ def _body_lines(verdict: Verdict, most: int) -> Iterator[tuple[str, str]]:
     hints = {text: check.check.hint for text, check in zip(told, wrong, strict=True) if check.check.hint}
     for line in _limited_lines([text for text in told if text != head or text in hints], most, "checks"):
         yield "check", line + (f" – {hints[line]}" if line in hints else "")
-    if verdict.run.end not in ENDING_TEXTS:
+    if verdict.run.end not in REGULAR_ENDINGS:
         for line in _limited_lines(verdict.run.end.strip().splitlines(), most, "lines"):
             yield "run", line
     if exact:
