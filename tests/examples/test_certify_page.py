@@ -18,7 +18,7 @@ BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
 def test_a_block_runs(text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     in_this_process = functools.partial(
         simkit.testing.certify.certify, apart=False
-    )  # processes are shown in tests/certify
+    )  # processes are shown in tests/testing/certify
     monkeypatch.setattr(simkit.testing.certify, "certify", in_this_process)
     exec(compile(text, "certify.md", "exec"), {})
     assert len(capsys.readouterr().out.strip()) == 64  # the state hash, and no difference

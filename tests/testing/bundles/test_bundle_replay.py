@@ -47,7 +47,7 @@ def test_a_run_with_commands_comes_out_the_same(tmp_path: Path) -> None:
         sim.run(0.3)
         found = replay(packed(sim, tmp_path))
         assert found.is_same
-        assert found.state == simkit.testing.bundles.keeping.state_hash(sim)
+        assert found.state == simkit.testing.bundles.bundle_recorder.state_hash(sim)
         assert found.messages >= 100, "a second of a 100 Hz IMU is among them"
         assert not found.refused
 

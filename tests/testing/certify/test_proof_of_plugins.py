@@ -30,7 +30,7 @@ def _names() -> list[str]:
 
 def test_every_plugin_has_a_world_in_which_it_is_proven() -> None:
     named = [*proof_worlds.WORLDS, *proof_worlds.OPENED]
-    assert sorted(named) == _names(), "give tests/certify/proof_worlds.py a world for each plugin class"
+    assert sorted(named) == _names(), "give tests/testing/certify/proof_worlds.py a world for each plugin class"
 
 
 @pytest.mark.parametrize("cls", CLASSES, ids=_names())

@@ -12,7 +12,7 @@ import numpy as np
 
 from simkit.testing.certify.value_hash import short_value_text, value_hash
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 class Thing:

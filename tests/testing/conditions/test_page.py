@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from simkit.cli import app
 from simkit.testing.conditions.binder import FUNCTIONS
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "conditions.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).resolve().parents[3] / "docs" / "conditions.md").read_text(encoding="utf-8")
 
 
 def block(language: str) -> str:

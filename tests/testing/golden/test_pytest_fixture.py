@@ -19,7 +19,7 @@ from simkit.testing.golden.pytest_fixture import GoldenLocation, SensorRegressio
 from simkit.testing.golden.store import read_golden
 from simkit.testing.scenarios import Scenario, Tolerance
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PUCK = """<sdf version="1.9"><world name="slide">
   <model name="puck"><pose>0 0 5 0 0 0</pose><link name="body">
     <inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>

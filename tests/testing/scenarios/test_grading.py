@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 
 from simkit import LoadError
 from simkit.cli import app
-from simkit.testing.scenarios import grading
+
 from simkit.testing.scenarios.exercise import read_exercise
-from simkit.testing.scenarios.grading import grade_all, short_labels
+from simkit.testing.scenarios.grading import grade, grade_all, short_labels
 from simkit.testing.scenarios.grading_report import grade_json, grade_text, junit_cases
 
 CART = """<sdf version="1.9"><world name="track"><model name="cart"><pose>0 0 0.05 0 0 0</pose><link name="body">
@@ -63,7 +63,7 @@ def hand_in(folder: Path, body: str) -> Path:
 
 
 def test_each_run_and_check_gets_its_points_and_the_reason(folder):
-    graded = grading(read_exercise(folder / "push.yaml"), folder / "push.py")
+    graded = grade(read_exercise(folder / "push.yaml"), folder / "push.py")
     first, second = graded.outcomes
     assert [mark.points for mark in first.marks] == [2.0, 1.0]
     assert [mark.points for mark in second.marks] == [0.0, 1.0]
@@ -78,7 +78,7 @@ def test_each_run_and_check_gets_its_points_and_the_reason(folder):
 
 def test_a_plugin_that_raises_gets_the_line_that_did(folder):
     file = hand_in(folder, "self.cart.set_velocity((1 / 0, 0, 0))")
-    graded = grading(read_exercise(folder / "push.yaml"), file)
+    graded = grade(read_exercise(folder / "push.yaml"), file)
     assert not graded.passed and graded.points == 0.0
     assert "ZeroDivisionError" in graded.outcomes[0].error
     assert "push.py:10: self.cart.set_velocity((1 / 0, 0, 0))" in graded.outcomes[0].error
@@ -86,14 +86,14 @@ def test_a_plugin_that_raises_gets_the_line_that_did(folder):
 
 def test_a_plugin_that_ends_the_process_gets_nothing_and_harms_nobody(folder):
     file = hand_in(folder, "__import__('os')._exit(0)")
-    graded = grading(read_exercise(folder / "push.yaml"), file)
+    graded = grade(read_exercise(folder / "push.yaml"), file)
     assert graded.points == 0.0 and "its process ended with 0" in graded.outcomes[1].error
 
 
 def test_a_file_without_a_plugin_says_so(folder):
     file = folder / "push.py"
     file.write_text("x = 1\n")
-    graded = grading(read_exercise(folder / "push.yaml"), file)
+    graded = grade(read_exercise(folder / "push.yaml"), file)
     assert "SK-PLUGIN-008" in graded.outcomes[0].error and graded.points == 0.0
 
 

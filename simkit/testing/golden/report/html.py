@@ -16,7 +16,7 @@ from simkit.testing.golden.compare.difference import Cause, Comparison, Verdict
 from simkit.testing.golden.report.difference_plot import PlotFigure, plot_figure
 from simkit.testing.golden.report.image_figure import ImageFigure, image_figure
 from simkit.testing.golden.report.text import (
-    ENDING_TEXTS,
+    REGULAR_ENDINGS,
     allowed_text,
     cause_lines,
     clean_text,
@@ -135,7 +135,7 @@ def _verdict_view(verdict: Verdict, number: int, most_plots: int) -> _VerdictVie
         passed_text(verdict) if verdict.passed else headline(verdict),
         _difference_rows(verdict.comparison),
         [] if verdict.passed else list(_figures(verdict, most_plots)),
-        end if end not in ENDING_TEXTS or end != verdict.golden.end else "",
+        end if end not in REGULAR_ENDINGS or end != verdict.golden.end else "",
         [code for code in sorted({*golden, *run}) if golden.get(code, 0) != run.get(code, 0)],
         list(getattr(verdict.run.simulation, "diagnostics", ()) or ()),
         _tier(verdict.comparison),
