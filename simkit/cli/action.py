@@ -138,33 +138,35 @@ class _GoalRun:
         self._early: list[Any] | None = []  # feedback that came before it was said that the goal is accepted
 
     def send(self, name: str, goal: Any, timeout: float | None) -> None:
-        self._say("Waiting for an action server to become available...")
-        self._say(f"Sending goal:\n     {_yaml(goal)}")
+        self._print_line("Waiting for an action server to become available...")
+        self._print_line(f"Sending goal:\n     {_yaml_text(goal)}")
         handle = self._client.send_goal(name, goal, self._on_feedback if self._feedback else None)
         try:
             handle.wait_accepted()
             if handle.status.name == "REJECTED":
-                self._say(f"Goal was rejected{': ' + handle.reason if handle.reason else '.'}")
-                self._ended(handle)
+                self._print_line(f"Goal was rejected{': ' + handle.reason if handle.reason else '.'}")
+                self._print_end(handle)
                 return
-            self._say(f"Goal accepted with ID: {handle.id:032x}\n")
+            self._print_line(f"Goal accepted with ID: {handle.id:032x}\n")
             early, self._early = self._early or [], None
             for message in early:
                 self._on_feedback(message)
             if not handle.wait(timeout):
-                self._call_off(handle)
+                self._cancel(handle)
         except KeyboardInterrupt:
-            self._call_off(handle)
-            self._ended(handle)
+            self._cancel(handle)
+            self._print_end(handle)
             raise
-        self._ended(handle)
+        self._print_end(handle)
 
-    def _call_off(self, handle: LiveGoal) -> None:
-        self._say("Canceling goal...")
+    def _cancel(self, handle: LiveGoal) -> None:
+        self._print_line("Canceling goal...")
         handle.cancel()
-        self._say("Goal canceled." if handle.wait(_PATIENCE) else "The goal goes on: its action does not stop it.")
+        self._print_line(
+            "Goal canceled." if handle.wait(_PATIENCE) else "The goal goes on: its action does not stop it."
+        )
 
-    def _ended(self, handle: LiveGoal) -> None:
+    def _print_end(self, handle: LiveGoal) -> None:
         from simkit.msgs.message_text import plain
 
         result = handle.result
@@ -172,7 +174,7 @@ class _GoalRun:
             found = None if result is None else plain(result)
             print_json({"status": handle.status.name, "reason": handle.reason, "result": found})
         elif handle.is_done and handle.status.name != "REJECTED":
-            print_line(f"Result:\n    {_yaml(result)}")
+            print_line(f"Result:\n    {_yaml_text(result)}")
             print_line(f"Goal finished with status: {handle.status.name}")
 
     def _on_feedback(self, message: Any) -> None:
@@ -183,14 +185,14 @@ class _GoalRun:
         elif self._json:
             print_json({"feedback": plain(message)})
         else:
-            print_line(f"Feedback:\n    {_yaml(message)}")
+            print_line(f"Feedback:\n    {_yaml_text(message)}")
 
-    def _say(self, text: str) -> None:
+    def _print_line(self, text: str) -> None:
         if not self._json:
             print_line(text)
 
 
-def _yaml(message: Any) -> str:
+def _yaml_text(message: Any) -> str:
     from simkit.msgs.message_text import yaml_of
 
     return yaml_of(message)

@@ -148,7 +148,7 @@ class _Recording:
             started_ns = self._now_ns()
             while not stop.exit_code:
                 self._subscribe(bag)
-                came = self._source_pump()
+                came = self._take_messages()
                 if self._write(bag, came) or (not came and any(feed.is_over for feed in self._feeds)):
                     return
                 if self._duration is not None and not came:
@@ -160,7 +160,7 @@ class _Recording:
                 raise
             if not any(feed.is_over for feed in self._feeds):
                 print_note(f"note: {str(closed).removeprefix('SK-LIVE-005 ')}")
-        self._write(bag, self._source_pump(wait=0.0))
+        self._write(bag, self._take_messages(wait=0.0))
 
     def _now_ns(self) -> int:
         return int(self._source.client.state()["time_ns"])
@@ -176,7 +176,7 @@ class _Recording:
             bag.write_raw(channel, received.data, time_ns)
         return False
 
-    def _source_pump(self, wait: float = _LOOK) -> list[Any]:
+    def _take_messages(self, wait: float = _LOOK) -> list[Any]:
         """What has come, in the order of times; waited for where nothing has [s, wall time]."""
         if not self._feeds:
             time.sleep(wait)

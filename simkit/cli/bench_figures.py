@@ -100,7 +100,7 @@ def measure(
         return build.load(source, plugins=plugins, **(how or {}))
 
     if what != "sensors":
-        yield from _steps(load, rounds)
+        yield from _step_figures(load, rounds)
     if what != "steps":
         with load() as sim:
             sim.run(1.0)
@@ -109,7 +109,7 @@ def measure(
                     yield sensor_cost(sim, sensor, rounds)
 
 
-def _steps(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
+def _step_figures(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
     with load() as sim:
         yield stepping(sim, rounds)
     plugin = EveryStepPlugin()
@@ -123,7 +123,7 @@ def _steps(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
             latest = sim.bus.subscribe(imu.topic, keep=1)
             yield _compare_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, looked at later", 1.10)
             latest.close()
-            sim.bus.tap(imu.topic, _ignore)
+            sim.bus.tap(imu.topic, _ignore_message)
             yield _compare_step(sim, rounds, f"step, only an imu at {imu.update_rate:g} Hz, each message made", 1.10)
     for how in ("looked at later", "each message made"):
         with load() as sim:
@@ -226,7 +226,7 @@ def sensor_cost(sim: Simulation, sensor: Any, rounds: int) -> Figure:
     """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
     bare pass. Pictures are without noise, and clouds are not made."""
     clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
-    taps = [sim.bus.tap(t, _ignore) for p, t in sensor._topics.items() if p not in clouds]
+    taps = [sim.bus.tap(t, _ignore_message) for p, t in sensor._topics.items() if p not in clouds]
     sim.fresh_acceleration()
     name, aim = f"{sensor.kind} {sensor.scoped}", None
     bare: Callable[[], object] | None = None
@@ -270,7 +270,7 @@ def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], 
     return counts, [sim.bus.tap(topic, count(topic)) for topic in sorted(topics)]
 
 
-def _ignore(_: Any) -> None:
+def _ignore_message(_: Any) -> None:
     return None
 
 

@@ -51,12 +51,12 @@ def list_(
             print_line(name)
             continue
         one = found[name]
-        counts = f"{_counted(one['links'], 'link')}, {_counted(one['joints'], 'joint')}"
+        counts = f"{_count_text(one['links'], 'link')}, {_count_text(one['joints'], 'joint')}"
         print_line(f"{name}: {_pose_text(one['pose'])} ({'static, ' if one.get('static') else ''}{counts})")
     return 0
 
 
-def _counted(found: Any, what: str) -> str:
+def _count_text(found: Any, what: str) -> str:
     return f"{len(found)} {what}{'' if len(found) == 1 else 's'}"
 
 
@@ -74,7 +74,7 @@ def pose(
 ) -> int:
     """Prints a pose in the world: x y z [m], roll pitch yaw [rad]."""
     with connect_to_simulation(sim) as client:
-        found = _model(client, model)
+        found = _model_state(client, model)
     if link is not None:
         if link not in found["links"]:
             raise not_found_error("link", link, found["links"], "SK-CLI-038", f"model {model!r}")
@@ -116,7 +116,7 @@ def joint(
 ) -> int:
     """Prints the state of joints: position, velocity, effort [rad, rad/s, N·m or m, m/s, N]."""
     with connect_to_simulation(sim) as client:
-        found = _model(client, model)["joints"]
+        found = _model_state(client, model)["joints"]
     if joint is not None and joint not in found:
         raise not_found_error("joint", joint, found, "SK-CLI-038", f"model {model!r}")
     rows = found if joint is None else {joint: found[joint]}
@@ -139,7 +139,7 @@ def _numbers(value: Any) -> str:
     return f"{value + 0.0:.6f}"
 
 
-def _model(client: Client, name: str) -> JsonObject:
+def _model_state(client: Client, name: str) -> JsonObject:
     """The state of a model.
 
     Raises:

@@ -61,19 +61,24 @@ def list_motions(
 ) -> int:
     """Lists motions: joints, points, how long each takes, and what it is for."""
     if Path(file).suffix.lower() in (".yaml", ".yml"):
-        found = _read([Path(file), *motions])
+        found = _read_motions([Path(file), *motions])
     else:
         from simkit.plugins.play_motion.motion_session import choose_player, motion_players
 
         options: Any = source_arguments(resource_path, package_path, xacro_arg)
-        with _opened(file, None, motions, 0, plugin_path, options, verbose=False) as sim:
+        with _open_world(file, None, motions, 0, plugin_path, options, verbose=False) as sim:
             found = list(choose_player(motion_players(sim), model).motions.values())
     if json_:
         shown = [{**one.as_message(), "duration": one.duration, "file": one.where.file} for one in found]
         stdout_console().file.write(json.dumps(shown, indent=2) + "\n")
         return 0
     rows = [
-        (one.key, f"{one.duration:g} s", f"{len(one.times)} point{'s' * (len(one.times) > 1)}", _joints(one.joints))
+        (
+            one.key,
+            f"{one.duration:g} s",
+            f"{len(one.times)} point{'s' * (len(one.times) > 1)}",
+            _joint_ranges(one.joints),
+        )
         for one in found
     ]
     widths = [max((len(row[k]) for row in rows), default=0) for k in range(4)]
@@ -127,7 +132,7 @@ def play(
     options: Any = {**source_arguments(resource_path, package_path, xacro_arg), "params_files": params_file}
     shown = []
     with ExitStack() as stack:
-        sim = stack.enter_context(_opened(world, robot, motions, seed, plugin_path, options, verbose=verbose))
+        sim = stack.enter_context(_open_world(world, robot, motions, seed, plugin_path, options, verbose=verbose))
         if record is not None:
             stack.enter_context(recorder.Recorder(sim, record, overwrite=force))
         for played in play_motions(sim, choose_player(motion_players(sim), model), names, skip_planning=skip_planning):
@@ -143,7 +148,7 @@ def play(
     return 0
 
 
-def _opened(
+def _open_world(
     world: str | None,
     robot: str | None,
     motions: Sequence[Path],
@@ -164,7 +169,7 @@ def _opened(
         text, folders = empty_world_with(robot or ROBOT)
         options = {**options, "resource_paths": [*options["resource_paths"], *folders]}
     sim = load(text, seed=seed, plugin_paths=plugin_paths, **options)
-    spawned = _spawned(sim, robot) if world is not None and robot is not None else None
+    spawned = _spawn_robot(sim, robot) if world is not None and robot is not None else None
     there = motion_players(sim)
     for player in there.values():
         for path in motions:
@@ -182,7 +187,7 @@ def _opened(
     return sim
 
 
-def _read(paths: Sequence[Path]) -> list[Motion]:
+def _read_motions(paths: Sequence[Path]) -> list[Motion]:
     """The motions of files, without a robot."""
     from simkit.plugins.play_motion.motion_files import read_motions
 
@@ -208,7 +213,7 @@ def _check_files(paths: Sequence[Path]) -> None:
     broken.raise_if_errors()
 
 
-def _spawned(sim: Simulation, robot: str) -> Any:
+def _spawn_robot(sim: Simulation, robot: str) -> Any:
     """The robot, put into a world that may have it already."""
     from simkit.plugins.play_motion.motion_session import motion_players
 
@@ -219,7 +224,7 @@ def _spawned(sim: Simulation, robot: str) -> Any:
     return sim.spawn(robot)
 
 
-def _joints(names: Sequence[str]) -> str:
+def _joint_ranges(names: Sequence[str]) -> str:
     """Joints in short: `arm_1_joint` to `arm_7_joint` are `arm_1-7`."""
     short: list[tuple[str, int | None, int | None]] = []
     for name in names:

@@ -71,7 +71,7 @@ def list_(
     wanted = compile_pattern(filter_, "--filter")
     found: dict[str, dict[str, str]] = {}
     with connect_to_simulation(sim) as client:
-        for name in parameter_nodes(client) if node is None else [_node(client, node)]:
+        for name in parameter_nodes(client) if node is None else [_resolve_node(client, node)]:
             names = sorted(client.call(name + LIST_PARAMETERS, {"prefixes": prefix}).result.names)
             names = [n for n in names if wanted is None or wanted.search(n)]
             types = client.call(f"{name}/get_parameter_types", {"names": names}).types if names else []
@@ -98,8 +98,8 @@ def get(
 ) -> int:
     """Prints the value of a parameter."""
     with connect_to_simulation(sim) as client:
-        full = _node(client, node)
-        found = _known(client, full, [name])[0]
+        full = _resolve_node(client, node)
+        found = _existing_values(client, full, [name])[0]
     value = plain_value(found)
     if json_:
         print_json(value)
@@ -108,11 +108,11 @@ def get(
     else:
         kind = KINDS[int(found.type)]
         label = kind.removesuffix(" array").capitalize()
-        print_line(f"{label} {'values are' if kind.endswith('array') else 'value is'}: {_shown(value, kind)}")
+        print_line(f"{label} {'values are' if kind.endswith('array') else 'value is'}: {_value_text(value, kind)}")
     return 0
 
 
-def _shown(value: Any, kind: str) -> str:
+def _value_text(value: Any, kind: str) -> str:
     code = {"double array": "d", "integer array": "q"}.get(kind)
     return f"array('{code}', {value!r})" if code and value else f"array('{code}')" if code else str(value)
 
@@ -140,10 +140,10 @@ def set_(
         raise InputError(f"SK-CLI-031 the parameters: {text}", "SK-CLI-031")
     values = list(zip(pairs[::2], [parse_parameter_value(text) for text in pairs[1::2]], strict=True))
     with connect_to_simulation(sim) as client:
-        return _set(client, _node(client, node), values, atomic, json_)
+        return _set_values(client, _resolve_node(client, node), values, atomic, json_)
 
 
-def _set(client: Client, node: str, values: list[tuple[str, Any]], atomic: bool, json_: bool) -> int:
+def _set_values(client: Client, node: str, values: list[tuple[str, Any]], atomic: bool, json_: bool) -> int:
     request = {"parameters": [{"name": n, "value": v} for n, v in values]}
     if atomic:
         results = [client.call(f"{node}/set_parameters_atomically", request).result]
@@ -167,8 +167,8 @@ def _set(client: Client, node: str, values: list[tuple[str, Any]], atomic: bool,
 def delete(node: Node, name: Name, sim: Sim = None, json_: Json = False) -> int:
     """Deletes a parameter, which no node here allows."""
     with connect_to_simulation(sim) as client:
-        full = _node(client, node)
-        _known(client, full, [name])
+        full = _resolve_node(client, node)
+        _existing_values(client, full, [name])
     text = f"Deleting parameter failed: {name} is declared by {full}, which needs it"
     if json_:
         print_json({"successful": False, "reason": text.partition(": ")[2]})
@@ -184,8 +184,8 @@ def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> 
     from simkit.msgs.message_text import plain
 
     with connect_to_simulation(sim) as client:
-        full = _node(client, node)
-        _known(client, full, names)
+        full = _resolve_node(client, node)
+        _existing_values(client, full, names)
         found = client.call(f"{full}/describe_parameters", {"names": names}).descriptors
     if json_:
         print_json([plain(d) | {"type": KINDS[int(d.type)]} for d in found])
@@ -213,7 +213,7 @@ def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
     from simkit.msgs.message_text import dump as as_yaml
 
     with connect_to_simulation(sim) as client:
-        full = _node(client, node)
+        full = _resolve_node(client, node)
         names = sorted(client.call(full + LIST_PARAMETERS, {}).result.names)
         values = client.call(f"{full}/get_parameters", {"names": names}).values
     tree: JsonObject = {}
@@ -244,7 +244,7 @@ def load(
 ) -> int:
     """Takes the values of a parameter file for a node; exit code 2 where one is refused."""
     with connect_to_simulation(sim) as client:
-        full = _node(client, node)
+        full = _resolve_node(client, node)
         values = read_parameter_file(file, full, wildcard=not no_wildcard)
         request = {"parameters": [{"name": n, "value": v} for n, v in values]}
         results = client.call(f"{full}/set_parameters", request).results
@@ -257,7 +257,7 @@ def load(
     return 0 if all(good for _, good, _ in rows) else 2
 
 
-def _node(client: Client, name: str) -> str:
+def _resolve_node(client: Client, name: str) -> str:
     nodes = parameter_nodes(client)
     wanted = absolute_name(name)
     if wanted not in nodes:
@@ -265,7 +265,7 @@ def _node(client: Client, name: str) -> str:
     return wanted
 
 
-def _known(client: Client, node: str, names: list[str]) -> list[Any]:
+def _existing_values(client: Client, node: str, names: list[str]) -> list[Any]:
     """The values of parameters, which are there."""
     values = list(client.call(f"{node}/get_parameters", {"names": names}).values)
     for name, value in zip(names, values, strict=True):

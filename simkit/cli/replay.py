@@ -47,46 +47,46 @@ def replay(
             if extract is not None:
                 _extract(opened, extract)
             if list_:
-                _list(opened, as_json=as_json)
+                _print_contents(opened, as_json=as_json)
         return 0
     begun = time.perf_counter()
     found = play(bundle, allow_code=allow_code, record=record)
     if as_json:
-        typer.echo(json.dumps(_words(found)))
+        typer.echo(json.dumps(_result_dict(found)))
     else:
-        _tell(found, time.perf_counter() - begun)
+        _print_result(found, time.perf_counter() - begun)
     return 0 if found.is_same else _DIFFERENT
 
 
-def _tell(found: ReplayResult, seconds: float) -> None:
+def _print_result(found: ReplayResult, seconds: float) -> None:
     from simkit.testing.bundles.manifest import CHECK
 
     said = found.manifest
     print_ = stdout_console().print
-    print_(shown(f"{said.name}: replayed {found.time:g} s with {said.commands} commands in {seconds:.1f} s"))
+    print_(printable_text(f"{said.name}: replayed {found.time:g} s with {said.commands} commands in {seconds:.1f} s"))
     for text in said.missing:
-        print_(shown(f"note: {text}"), style="yellow")
+        print_(printable_text(f"note: {text}"), style="yellow")
     for name, (there, here) in found.machine.items():
         print_(
-            shown(f"note: {name} is {here or 'none'} here, was {there or 'none'}: the bits may be others"),
+            printable_text(f"note: {name} is {here or 'none'} here, was {there or 'none'}: the bits may be others"),
             style="yellow",
         )
     if found.failure is not None and found.is_same:
-        print_(shown(f"it failed as it did: {found.failure.text}"))
+        print_(printable_text(f"it failed as it did: {found.failure.text}"))
     elif said.end.failure is not None and said.end.failure.kind == CHECK:
-        print_(shown(f"what did not hold in the run: {said.end.failure.text}"))
+        print_(printable_text(f"what did not hold in the run: {said.end.failure.text}"))
     for text in found.differences:
-        print_(shown(text), style="red")
+        print_(printable_text(text), style="red")
     if found.is_same:
         print_(f"state {found.state}")
         print_(f"the same: state, and {found.messages} messages of the last seconds on {len(said.streams)} topics")
     else:
         for text in found.refused[:5]:
-            print_(shown(f"not done: {text}"), style="yellow")
+            print_(printable_text(f"not done: {text}"), style="yellow")
         print_(f"not the same: {len(found.differences)} differences", style="bold red")
 
 
-def _words(found: ReplayResult) -> JsonObject:
+def _result_dict(found: ReplayResult) -> JsonObject:
     return {
         "same": found.is_same,
         "differences": list(found.differences),
@@ -112,34 +112,34 @@ def _extract(bundle: Bundle, folder: Path) -> None:
     stdout_console().print(f"{folder / bundle.manifest.world} and {len(bundle.manifest.files) - 1} other files")
 
 
-def _list(bundle: Bundle, *, as_json: bool) -> None:
+def _print_contents(bundle: Bundle, *, as_json: bool) -> None:
     said = bundle.manifest
     if as_json:
         typer.echo(said.text())
         return
     print_ = stdout_console().print
     end = said.end
-    print_(shown(f"{said.name}: {end.time_ns / 1e9:g} s, seed {said.seed}, {said.commands} commands"))
-    print_(shown(f"world {said.world}" + "".join(f" --set {one}" for one in said.overrides)))
-    print_(shown("made by " + ", ".join(f"{k} {v}" for k, v in said.fingerprint.items() if v)))
-    print_(f"state {shown(end.state)}")
+    print_(printable_text(f"{said.name}: {end.time_ns / 1e9:g} s, seed {said.seed}, {said.commands} commands"))
+    print_(printable_text(f"world {said.world}" + "".join(f" --set {one}" for one in said.overrides)))
+    print_(printable_text("made by " + ", ".join(f"{k} {v}" for k, v in said.fingerprint.items() if v)))
+    print_(f"state {printable_text(end.state)}")
     if end.failure is not None:
-        print_(shown(f"failed: {end.failure.text}"), style="red")
+        print_(printable_text(f"failed: {end.failure.text}"), style="red")
     for text in said.missing:
-        print_(shown(f"note: {text}"), style="yellow")
+        print_(printable_text(f"note: {text}"), style="yellow")
     print_(f"{len(said.files)} files, {sum(f['size'] for f in said.files.values()) / 1000:.0f} kB")
     for name in said.code:
-        print_(shown(f"code  {name}  ({said.files[name]['size']} bytes)"), style="yellow")
+        print_(printable_text(f"code  {name}  ({said.files[name]['size']} bytes)"), style="yellow")
     for topic, one in said.streams.items():
-        print_(shown(f"last seconds  {topic}  {one['count']} × {one['type']}"))
+        print_(printable_text(f"last seconds  {topic}  {one['count']} × {one['type']}"))
     for number, entry in enumerate(bundle.commands()):
         if number == _MOST:
             print_(f"… {said.commands - _MOST} more commands")
             break
         words = {k: v for k, v in entry.items() if k not in ("steps", "tick", "do", "served")}
-        print_(shown(f"after {entry['steps']} steps  {entry['do']}  {json.dumps(words):.160}"))
+        print_(printable_text(f"after {entry['steps']} steps  {entry['do']}  {json.dumps(words):.160}"))
 
 
-def shown(text: str) -> str:
+def printable_text(text: str) -> str:
     """A text of a stranger as a terminal may have it: without what would move its cursor."""
     return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)

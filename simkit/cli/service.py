@@ -153,13 +153,13 @@ def call(
         request = make_message(f"{found}_Request", fields)
         while True:
             begun = time.monotonic()
-            _one_call(client, name, request, json_)
+            _call_once(client, name, request, json_)
             if rate is None:
                 return 0
             time.sleep(max(0.0, begun + 1.0 / rate - time.monotonic()))
 
 
-def _one_call(client: Client, name: str, request: Any, json_: bool) -> None:
+def _call_once(client: Client, name: str, request: Any, json_: bool) -> None:
     from simkit.msgs.message_text import plain, python_of
 
     if not json_:

@@ -46,7 +46,7 @@ def list_(
     with open_source(sim, bag) as source:
         found = [t for t in source.topics().values() if hidden or not is_hidden(t.name)]
     if json_:
-        print_json(len(found) if count else [_row(t, show_ends=verbose) for t in found])
+        print_json(len(found) if count else [_topic_dict(t, show_ends=verbose) for t in found])
     elif count:
         print_line(str(len(found)))
     elif verbose:
@@ -64,14 +64,17 @@ def list_(
     return 0
 
 
-def _row(entry: TopicEntry, *, show_ends: bool) -> JsonObject:
+def _topic_dict(entry: TopicEntry, *, show_ends: bool) -> JsonObject:
     row: JsonObject = {"name": entry.name, "types": list(entry.types)}
     if show_ends:
-        row |= {"publishers": [_end(e) for e in entry.publishers], "subscribers": [_end(e) for e in entry.subscribers]}
+        row |= {
+            "publishers": [_endpoint_dict(e) for e in entry.publishers],
+            "subscribers": [_endpoint_dict(e) for e in entry.subscribers],
+        }
     return row
 
 
-def _end(end: TopicEndpoint) -> JsonObject:
+def _endpoint_dict(end: TopicEndpoint) -> JsonObject:
     return {"node": end.node, "types": list(end.types), "latched": end.latched}
 
 
@@ -88,7 +91,7 @@ def info(
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic)
     if json_:
-        print_json(_row(entry, show_ends=True))
+        print_json(_topic_dict(entry, show_ends=True))
         return 0
     gap = "\n" if verbose else ""
     print_line(f"Type: {entry.types[0] if len(entry.types) == 1 else list(entry.types)}{gap}")
@@ -100,11 +103,11 @@ def info(
         if verbose:
             for number, end in enumerate(ends):
                 for type_name in end.types:
-                    print_line(_endpoint(entry.name, end, type_name, kind, number) + gap)
+                    print_line(_endpoint_text(entry.name, end, type_name, kind, number) + gap)
     return 0
 
 
-def _endpoint(topic_name: str, end: TopicEndpoint, type_name: str, kind: str, number: int) -> str:
+def _endpoint_text(topic_name: str, end: TopicEndpoint, type_name: str, kind: str, number: int) -> str:
     """Everything about one end, as rclpy writes it."""
     from simkit import msgs
 

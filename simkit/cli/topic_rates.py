@@ -55,18 +55,18 @@ class Rates:
         """`rate` [Hz], `min`, `max`, `std_dev` of the gaps [s] and `window`; None before there is a gap."""
         if not self._gaps:
             return None
-        mean, spread = _spread(self._gaps)
+        mean, spread = _statistics(self._gaps)
         return {"rate": 1.0 / mean if mean > 0.0 else 0.0, **spread}
 
 
-def _spread(seconds: Collection[float]) -> tuple[float, JsonObject]:
+def _statistics(seconds: Collection[float]) -> tuple[float, JsonObject]:
     """The mean of some times [s], and their `min`, `max`, `std_dev` [s] and how many they are: `window`."""
     mean = sum(seconds) / len(seconds)
     deviation = math.sqrt(sum((one - mean) ** 2 for one in seconds) / len(seconds))
     return mean, {"min": min(seconds), "max": max(seconds), "std_dev": deviation, "window": len(seconds)}
 
 
-def _spread_text(found: JsonObject) -> str:
+def _statistics_text(found: JsonObject) -> str:
     ends = f"min: {found['min']:.3f}s max: {found['max']:.3f}s std dev: {found['std_dev']:.5f}s"
     return f"{ends} window: {found['window']}"
 
@@ -182,7 +182,7 @@ def hz(
 
 def rate_text(found: JsonObject) -> str:
     """As `ros2 topic hz` prints it."""
-    return f"average rate: {found['rate']:.3f}\n\t{_spread_text(found)}"
+    return f"average rate: {found['rate']:.3f}\n\t{_statistics_text(found)}"
 
 
 @report_errors_quietly
@@ -246,7 +246,7 @@ def delay(
         def found() -> JsonObject | None:
             if not late:
                 return None
-            mean, spread = _spread(late)
+            mean, spread = _statistics(late)
             return {"delay": mean, **spread}
 
         feed = source.feed([entry.name], _DEPTH)
@@ -255,4 +255,4 @@ def delay(
 
 def delay_text(found: JsonObject) -> str:
     """As `ros2 topic delay` prints it."""
-    return f"average delay: {found['delay']:.3f}\n\t{_spread_text(found)}"
+    return f"average delay: {found['delay']:.3f}\n\t{_statistics_text(found)}"

@@ -103,7 +103,7 @@ class ClientConnection:
 
     # ------------------------------------------------------------------ to the client
 
-    def say(self, kind: int, content: JsonObject, data: bytes = b"") -> None:
+    def send_json(self, kind: int, content: JsonObject, data: bytes = b"") -> None:
         """An answer, or something that is told: nothing of it is ever dropped."""
         try:
             frame = json_frame(kind, content, data)
@@ -116,7 +116,7 @@ class ClientConnection:
         self._answers.append(frame)
         self._answer_bytes += len(frame)
 
-    def push(self, subscribed: ClientSubscription, time_ns: int, type_name: str, data: bytes) -> None:
+    def queue_message(self, subscribed: ClientSubscription, time_ns: int, type_name: str, data: bytes) -> None:
         """A message; the oldest of its subscription are dropped where there are too many."""
         size = len(data)
         if size > MOST_BYTES:
@@ -125,7 +125,7 @@ class ClientConnection:
         type_number = self._types.get(type_name)
         if type_number is None:
             type_number = self._types[type_name] = len(self._types)
-            self.say(TELL, {"tell": "type", "number": type_number, "type": type_name})
+            self.send_json(TELL, {"tell": "type", "number": type_number, "type": type_name})
         waiting, key = subscribed.waiting, self._next
         if not self._queue and not self._answers and self._rest is None:
             self._sent = time.monotonic()
@@ -145,7 +145,7 @@ class ClientConnection:
         subscribed.lost += 1
         self._queue_bytes -= len(data)
 
-    def forget(self, subscribed: ClientSubscription) -> None:
+    def drop_waiting(self, subscribed: ClientSubscription) -> None:
         """Drops what waits for a subscription that is closed."""
         for key in subscribed.waiting:
             self._queue_bytes -= len(self._queue.pop(key)[3])
@@ -168,7 +168,7 @@ class ClientConnection:
         try:
             while True:
                 if self._rest is None:
-                    piece = self._piece()
+                    piece = self._next_piece()
                     if not piece:
                         return
                     self._rest = memoryview(piece)
@@ -181,7 +181,7 @@ class ClientConnection:
         except OSError:
             self.is_gone = True
 
-    def _piece(self) -> bytes:
+    def _next_piece(self) -> bytes:
         """What is to be sent next: answers first, then messages in the order in which they were published."""
         found: list[bytes] = []
         size = 0

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from simkit.bridges.live.protocol import LARGEST_OUT, TELL, BadFrame, FrameReader, LiveError, read_json_frame
-from simkit.bridges.live.socket_files import file_name, is_living, is_possible, peer_of, sockets
+from simkit.bridges.live.socket_files import file_name, is_living, is_possible, peer_credentials, sockets
 from simkit.diagnostics import did_you_mean
 
 _PATIENCE = 0.5  # [s] for which a simulation is waited for to say what it is
@@ -51,7 +51,7 @@ def simulations() -> list[RunningSim]:
     for path, caller in callers.items():
         pid, world = said.get(path, (0, ""))
         with suppress(OSError):
-            pid = peer_of(caller)[0] or pid
+            pid = peer_credentials(caller)[0] or pid
         found.append(RunningSim(path.stem, path, pid, world))
         caller.close()
     return found

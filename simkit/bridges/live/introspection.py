@@ -26,7 +26,7 @@ def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[J
     for topic, end, types, what in sim.bus.ends():
         if topic not in found or not end.active:
             continue
-        row, who = found[topic], names.of_end(end)
+        row, who = found[topic], names.endpoint_node(end)
         row["types"] += [t for t in types[:1] if t not in row["types"]]
         if what == "publishes":
             latched = bool(getattr(end, "latched", False))
@@ -58,11 +58,11 @@ def node_list(sim: Simulation, clients: Collection[ClientConnection]) -> dict[st
     for name in sim.services():
         service = sim.service_table._find(name)
         if service is not None:
-            entry(names.of(service.owner))["services"][name] = [service.type_name]
+            entry(names.owner_node(service.owner))["services"][name] = [service.type_name]
     for name in sim.actions():
         action = sim.action_table._find(name)
         if action is not None:
-            entry(names.of(action.owner))["actions"][name] = [action.type_name]
+            entry(names.owner_node(action.owner))["actions"][name] = [action.type_name]
     for node, parameters in sim.parameters.items():
         entry(node)["parameters"] = list(parameters)
     for peer in clients:
@@ -136,11 +136,11 @@ class NodeNames:
         }
         self._clients = {id(end): peer.node for peer in clients for end in peer.publishers.values()}
 
-    def of_end(self, end: Any) -> str:
+    def endpoint_node(self, end: Any) -> str:
         """The node of an end of a topic."""
-        return self._clients.get(id(end)) or self.of(end.owner)
+        return self._clients.get(id(end)) or self.owner_node(end.owner)
 
-    def of(self, owner: Any) -> str:
+    def owner_node(self, owner: Any) -> str:
         """The node of a plugin or a sensor; that of the world where nobody owns something."""
         if owner is None:
             return self._world

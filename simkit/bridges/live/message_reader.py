@@ -36,7 +36,7 @@ def reader_of(type_name: str) -> Reader:
         return usual
     little, big = (struct.Struct(end + formats) for end in "<>")
     unpack, size = little.unpack_from, little.size
-    make = _maker(classes)
+    make = _message_builder(classes)
 
     def read(data: bytes, begin: int) -> Any:
         if not 4 <= len(data) - begin - size <= 7 or data[begin] or data[begin + 1] > 1:
@@ -80,7 +80,7 @@ def _layout(type_name: str) -> tuple[str, Classes]:
     return "".join(formats), classes
 
 
-def _maker(classes: Classes) -> Callable[[tuple[Any, ...]], Any]:
+def _message_builder(classes: Classes) -> Callable[[tuple[Any, ...]], Any]:
     """What makes a message of its numbers."""
     cls, parts = classes
     if all(part is None for part in parts):

@@ -37,13 +37,13 @@ class RequestHost(Protocol):
     Attributes:
         peers: connections of clients, by file number.
         feeds: the topics that clients subscribe to.
-        founded: topics that only clients had when they were opened.
+        client_topics: topics that only clients had when they were opened.
     """
 
     sim: Simulation
     peers: dict[int, ClientConnection]
     feeds: TopicFeeds
-    founded: set[str]
+    client_topics: set[str]
 
     def measured_rtf(self) -> float:
         """Return the real-time factor of the last moments."""
@@ -184,7 +184,7 @@ def unsubscribe(request: Request) -> object:
     if subscribed is None:
         raise RequestRefused("there is no such subscription")
     request.server.feeds.remove(subscribed)
-    request.peer.forget(subscribed)
+    request.peer.drop_waiting(subscribed)
     return {"lost": subscribed.lost}
 
 
@@ -207,7 +207,7 @@ def _count_new_topic(request: Request, topic: str) -> None:
     """Counts a topic that only a client has: who records or counts topics knows it for as long as the run goes on."""
     if not _NEW_TOPIC.fullmatch(topic):
         raise RequestRefused(f"{topic!r} is no name of a topic; allowed are letters, digits and _ between slashes")
-    names = request.server.founded
+    names = request.server.client_topics
     if topic not in names and len(names) >= MOST_OPEN:
         message = f"clients of this run have made {MOST_OPEN} topics that nobody else has, and no more are made"
         raise RequestRefused(message, "SK-LIVE-007")
@@ -243,7 +243,7 @@ def goal(request: Request) -> object:
     def on_feedback(feedback: Any) -> None:
         if not request.peer.is_gone and not request.peer.is_clogged:
             words = {"tell": "goal", "number": number, "type": msgs.type_name(feedback)}
-            request.peer.say(TELL, words, msgs.serialize(feedback))
+            request.peer.send_json(TELL, words, msgs.serialize(feedback))
 
     sent = request.sim.send_goal(request.arg("name", str), request.message(), on_feedback)
     request.peer.goals[number] = sent, int(sent.status)

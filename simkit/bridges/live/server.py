@@ -49,10 +49,10 @@ class Server:
         path: of the socket.
         feeds: the topics that clients subscribe to.
         peers: the clients.
-        founded: topics that only clients had when they were opened, over the whole run.
+        client_topics: topics that only clients had when they were opened, over the whole run.
 
     Raises:
-        NoPlace: there is no place for the socket; says why.
+        NoSocketFolder: there is no place for the socket; says why.
     """
 
     def __init__(self, sim: Simulation, name: str | None = None) -> None:
@@ -62,7 +62,7 @@ class Server:
         self._selector.register(self._listening, selectors.EVENT_READ)
         self.feeds = TopicFeeds(sim)
         self.peers: dict[int, ClientConnection] = {}
-        self.founded: set[str] = set()
+        self.client_topics: set[str] = set()
         self._busy: deque[ClientConnection] = deque()
         self._interest: dict[int, int] = {}
         self._numbers = 0
@@ -87,26 +87,26 @@ class Server:
         if self.is_closed:
             return False
         if not self.peers and wait <= 0:
-            return self._welcome()
-        self.feeds.settle()
-        self._tell_goals()
-        self._let_go()
+            return self._accept_callers()
+        self.feeds.deliver_ready()
+        self._send_goal_states()
+        self._release_held()
         for peer in [p for p in self.peers.values() if p.is_waiting]:
             self._write(peer)
         ready = self._selector.select(0.0 if self._busy else max(0.0, wait))
         for key, mask in ready:
             peer = key.data
             if peer is None:
-                self._welcome()
+                self._accept_callers()
                 continue
             if mask & selectors.EVENT_WRITE:
                 self._write(peer)
             if mask & selectors.EVENT_READ and peer.read() and peer not in self._busy:
                 self._busy.append(peer)
             if peer.is_gone:
-                self._hang_up(peer)
+                self._disconnect(peer)
         if self._busy:
-            self._work(time.perf_counter() + BUDGET)
+            self._serve_busy_clients(time.perf_counter() + BUDGET)
         return bool(ready)
 
     def fileno(self) -> int:
@@ -142,7 +142,7 @@ class Server:
         """Whether anybody is connected."""
         return bool(self.peers)
 
-    def _work(self, until: float) -> None:
+    def _serve_busy_clients(self, until: float) -> None:
         """Takes frames, a few of each client in turn, as long as there is time."""
         busy = self._busy
         try:
@@ -156,7 +156,7 @@ class Server:
                     return
         finally:
             for peer in [p for p in self.peers.values() if p.is_gone]:
-                self._hang_up(peer)
+                self._disconnect(peer)
 
     def _serve(self, peer: ClientConnection) -> bool:
         """Takes a few frames of one client; whether it may have more."""
@@ -189,9 +189,9 @@ class Server:
         except Exception as error:  # noqa: BLE001 - bytes from outside may lead a reader anywhere
             raise BadFrame(f"what was sent on {publisher.topic!r} is no {publisher.type_name}: {error!r}") from None
         publisher.publish(message)
-        self._count(peer, publisher.topic)
+        self._hold_back_if_full(peer, publisher.topic)
 
-    def _count(self, peer: ClientConnection, topic: str) -> None:
+    def _hold_back_if_full(self, peer: ClientConnection, topic: str) -> None:
         """Holds a client back once as many commands of a topic wait for the next step as are kept for it."""
         sim = self.sim
         if self._taken_at != sim.tick:
@@ -202,16 +202,16 @@ class Server:
             return
         if count >= sim.bus.inbox.depths.get(topic, QUEUE_DEPTH) and not sim.paused:
             peer.is_held = time.monotonic() - self._taken_since < _LONGEST_HOLD
-            self._watch(peer)
+            self._update_interest(peer)
 
-    def _let_go(self) -> None:
+    def _release_held(self) -> None:
         """Takes from those again that were held back."""
         sim = self.sim
         if sim.tick != self._taken_at or sim.paused or time.monotonic() - self._taken_since >= _LONGEST_HOLD:
             for peer in self.peers.values():
                 if peer.is_held:
                     peer.is_held = False
-                    self._watch(peer)
+                    self._update_interest(peer)
                     if peer not in self._busy:
                         self._busy.append(peer)
 
@@ -242,21 +242,21 @@ class Server:
         except Exception as error:  # noqa: BLE001 - a service that a script offers may raise anything
             answer |= {"error": f"{question} failed: {error!r}", "code": "SK-LIVE-008"}
             raised = error
-        peer.say(ANSWER, answer, found)
+        peer.send_json(ANSWER, answer, found)
         if raised is not None:
             peer.write()
             raise raised
 
     # ------------------------------------------------------------------ what is told
 
-    def _tell_goals(self) -> None:
+    def _send_goal_states(self) -> None:
         for peer in self.peers.values():
             if peer.goals:
                 for number, (goal, told) in list(peer.goals.items()):
                     if goal.status != told:
-                        self.tell_goal(peer, number)
+                        self.send_goal_state(peer, number)
 
-    def tell_goal(self, peer: ClientConnection, number: int) -> None:
+    def send_goal_state(self, peer: ClientConnection, number: int) -> None:
         """Tells how far a goal is, and with its end what came of it."""
         goal, _ = peer.goals[number]
         words: JsonObject = {"tell": "goal", "number": number, "status": int(goal.status), "reason": goal.reason}
@@ -267,25 +267,25 @@ class Server:
                 words["type"], data = msgs.type_name(goal.result), msgs.serialize(goal.result)
         else:
             peer.goals[number] = goal, int(goal.status)
-        peer.say(TELL, words, data)
+        peer.send_json(TELL, words, data)
 
     # ------------------------------------------------------------------ connections
 
-    def _welcome(self) -> bool:
+    def _accept_callers(self) -> bool:
         """Takes who calls."""
         for _ in range(_MOST_CALLERS):
             try:
                 connection, _ = self._listening.accept()
             except OSError:  # nobody calls, or there is no room for more files
                 return bool(self.peers)
-            self._take(connection)
+            self._accept(connection)
         return True
 
-    def _take(self, connection: socket.socket) -> None:
+    def _accept(self, connection: socket.socket) -> None:
         connection.setblocking(False)
         self._numbers += 1
         peer = ClientConnection(connection, self._numbers)
-        _, user = socket_files.peer_of(connection)
+        _, user = socket_files.peer_credentials(connection)
         if user is not None and user != os.getuid():
             connection.close()
             return
@@ -293,10 +293,10 @@ class Server:
         self._selector.register(connection, selectors.EVENT_READ, peer)
         self._interest[connection.fileno()] = selectors.EVENT_READ
         hello = {"name": self.name, "world": self.sim.world.name, "pid": os.getpid(), "version": __version__}
-        peer.say(TELL, {"tell": "hello", "protocol": PROTOCOL, **hello})
+        peer.send_json(TELL, {"tell": "hello", "protocol": PROTOCOL, **hello})
         if len(self.peers) > MOST_CLIENTS:
             self.refuse(peer, f"{MOST_CLIENTS} clients are connected to {self.name!r} already", "SK-LIVE-007")
-            self._hang_up(peer)
+            self._disconnect(peer)
         else:
             self._write(peer)
 
@@ -304,20 +304,20 @@ class Server:
         """Tells a client why, and hangs up on it."""
         if peer.why is None:
             peer.why = why
-            peer.say(TELL, {"tell": "bye", "why": why, "code": code})
+            peer.send_json(TELL, {"tell": "bye", "why": why, "code": code})
             peer.write()
             peer.is_gone = True
 
     def _write(self, peer: ClientConnection) -> None:
         peer.write()
         if peer.is_gone:
-            self._hang_up(peer)
+            self._disconnect(peer)
             return
         if not peer.is_clogged and peer.reader.is_in_frame and peer not in self._busy:
             self._busy.append(peer)  # questions of it may have waited for its answers to leave
-        self._watch(peer)
+        self._update_interest(peer)
 
-    def _watch(self, peer: ClientConnection) -> None:
+    def _update_interest(self, peer: ClientConnection) -> None:
         """Waits for what a client has to say, and for room to write to it, where either is of use."""
         handle = peer.socket.fileno()
         if handle < 0 or handle not in self._interest:
@@ -335,7 +335,7 @@ class Server:
         else:
             self._selector.unregister(peer.socket)
 
-    def _hang_up(self, peer: ClientConnection) -> None:
+    def _disconnect(self, peer: ClientConnection) -> None:
         handle = peer.socket.fileno()
         if self.peers.get(handle) is not peer:
             return
@@ -358,11 +358,11 @@ class Server:
         """Says good-bye to everybody; does nothing the second time."""
         if self.is_closed:
             return
-        self.feeds.settle()
-        self._tell_goals()
+        self.feeds.deliver_ready()
+        self._send_goal_states()
         for peer in list(self.peers.values()):
             self.refuse(peer, why or f"simulation {self.name!r} has ended", "SK-LIVE-005")
-            self._hang_up(peer)
+            self._disconnect(peer)
         self._selector.close()
         self._listening.close()
         with suppress(OSError):
@@ -381,5 +381,5 @@ def serve(sim: Simulation, name: str | None = None) -> tuple[Server | None, str]
     """A server, or why there is none, in one line."""
     try:
         return Server(sim, name), ""
-    except socket_files.NoPlace as fault:
+    except socket_files.NoSocketFolder as fault:
         return None, f"note SK-LIVE-009: no other terminal can talk to this run: {fault}"

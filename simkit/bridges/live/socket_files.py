@@ -25,7 +25,7 @@ _PATIENCE = 2.0  # [s] for which others that begin are waited for
 _LIVING = frozenset({errno.EAGAIN, errno.EINPROGRESS, errno.EACCES, errno.EPERM})
 
 
-class NoPlace(Exception):
+class NoSocketFolder(Exception):
     """There is no place for a socket; says why."""
 
 
@@ -34,7 +34,7 @@ def is_possible() -> bool:
     return hasattr(socket, "AF_UNIX") and hasattr(os, "getuid")
 
 
-def folders() -> list[Path]:
+def socket_folders() -> list[Path]:
     """Where sockets may be, the preferred one first."""
     if not is_possible():
         return []
@@ -45,7 +45,7 @@ def folders() -> list[Path]:
     return found
 
 
-def fault_of(folder: Path) -> str:
+def folder_fault(folder: Path) -> str:
     """Why sockets in a folder are not to be trusted; empty where they are."""
     try:
         found = os.lstat(folder)
@@ -60,26 +60,26 @@ def fault_of(folder: Path) -> str:
     return ""
 
 
-def open_folders() -> Iterator[Path]:
+def usable_folders() -> Iterator[Path]:
     """Folders for a socket, made where they are not there, the preferred one first.
 
     Raises:
-        NoPlace: none can be used, or none but those that were tried.
+        NoSocketFolder: none can be used, or none but those that were tried.
     """
     if not is_possible():
-        raise NoPlace("this system's Python has no local sockets")
+        raise NoSocketFolder("this system's Python has no local sockets")
     faults = []
-    for folder in folders():
+    for folder in socket_folders():
         with suppress(OSError):
             folder.mkdir(0o700)
-        fault = fault_of(folder)
+        fault = folder_fault(folder)
         if not fault and not os.access(folder, os.W_OK):
             fault = f"{folder} is not writable"
         if not fault:
             yield folder
         else:
             faults.append(fault)
-    raise NoPlace("; ".join(faults))
+    raise NoSocketFolder("; ".join(faults))
 
 
 def file_name(name: str) -> str:
@@ -91,27 +91,27 @@ def bind(name: str) -> tuple[socket.socket, str, Path]:
     """A socket that listens, under this name or, where a living simulation has it, the name with `_2`, `_3`, ….
 
     Raises:
-        NoPlace: there is no place for it.
+        NoSocketFolder: there is no place for it.
     """
     faults: list[str] = []
     try:
-        for folder in open_folders():
+        for folder in usable_folders():
             try:
-                return _bound(folder, file_name(name))
+                return _bind_in(folder, file_name(name))
             except OSError as error:
                 faults.append(f"{folder}: {error.strerror or error}")
-    except NoPlace as fault:
+    except NoSocketFolder as fault:
         faults += [str(fault)] if str(fault) else []
-    raise NoPlace("; ".join(faults))
+    raise NoSocketFolder("; ".join(faults))
 
 
-def _bound(folder: Path, wanted: str) -> tuple[socket.socket, str, Path]:
+def _bind_in(folder: Path, wanted: str) -> tuple[socket.socket, str, Path]:
     """The same in one folder.
 
     Raises:
         OSError: it has no place for it.
     """
-    with _locked(folder):
+    with _lock_folder(folder):
         for path in folder.glob("*" + SUFFIX):
             if not is_living(path):
                 with suppress(OSError):  # what cannot be taken away keeps its name
@@ -120,11 +120,11 @@ def _bound(folder: Path, wanted: str) -> tuple[socket.socket, str, Path]:
             free = wanted if number == 1 else f"{wanted}_{number}"
             path = folder / (free + SUFFIX)
             if not os.path.lexists(path):
-                return _listening(path), free, path
+                return _listen_at(path), free, path
     raise OSError(f"every name from {wanted} to {wanted}_999 is taken")
 
 
-def _listening(path: Path) -> socket.socket:
+def _listen_at(path: Path) -> socket.socket:
     made = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         before = os.umask(0o177)
@@ -141,7 +141,7 @@ def _listening(path: Path) -> socket.socket:
 
 
 @contextmanager
-def _locked(folder: Path) -> Iterator[None]:
+def _lock_folder(folder: Path) -> Iterator[None]:
     """Keeps two simulations that begin at the same time from taking the same name."""
     import fcntl
 
@@ -175,14 +175,14 @@ def is_living(path: Path) -> bool:
 def sockets() -> list[Path]:
     """The sockets in folders that can be trusted, of the living and of the dead."""
     found: dict[str, Path] = {}
-    for folder in folders():
-        if not fault_of(folder):
+    for folder in socket_folders():
+        if not folder_fault(folder):
             for path in sorted(folder.glob("*" + SUFFIX)):
                 found.setdefault(path.name, path)
     return [found[name] for name in sorted(found)]
 
 
-def peer_of(connection: socket.socket) -> tuple[int | None, int | None]:
+def peer_credentials(connection: socket.socket) -> tuple[int | None, int | None]:
     """Process and user at the other end of a connection; None for what the system does not tell."""
     option = getattr(socket, "SO_PEERCRED", None)
     if option is not None:

@@ -48,10 +48,10 @@ class TopicFeed:
             self._waiting.clear()
 
     @property
-    def is_heard(self) -> bool:
+    def has_readers(self) -> bool:
         return bool(self._readers)
 
-    def settle(self) -> bool:
+    def deliver_ready(self) -> bool:
         """Hands on what is made by now, in order; whether anything still waits."""
         waiting = self._waiting
         while waiting:
@@ -61,7 +61,7 @@ class TopicFeed:
                     return True
                 kept = _serialise(kept.get())
             waiting.popleft()
-            self._hand_on(time_ns, kept)
+            self._deliver(time_ns, kept)
         return False
 
     def _take(self, message: Any) -> None:
@@ -75,12 +75,12 @@ class TopicFeed:
                 for reader in self._readers:
                     reader.lost += 1
             return
-        self._hand_on(time_ns, _serialise(message.get() if type(message) is LazyMessage else message))
+        self._deliver(time_ns, _serialise(message.get() if type(message) is LazyMessage else message))
 
-    def _hand_on(self, time_ns: int, written: tuple[str, bytes] | None) -> None:
+    def _deliver(self, time_ns: int, written: tuple[str, bytes] | None) -> None:
         if written is not None:
             for reader in self._readers:
-                reader.peer.push(reader, time_ns, *written)
+                reader.peer.queue_message(reader, time_ns, *written)
 
 
 def _serialise(message: Any) -> tuple[str, bytes] | None:
@@ -112,11 +112,11 @@ class TopicFeeds:
         feed = self._feeds.get(reader.topic)
         if feed is not None:
             feed.remove(reader)
-            if not feed.is_heard:
+            if not feed.has_readers:
                 del self._feeds[reader.topic]
 
-    def settle(self) -> None:
+    def deliver_ready(self) -> None:
         """Hands on what had still to be made when it was published."""
         for feed in self._feeds.values():
             if feed._waiting:
-                feed.settle()
+                feed.deliver_ready()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from simkit.live import Client
 
 _PATIENCE = 1.0  # [s] of wall time that a shell is kept waiting
-_BEGUN = __name__  # what was written of the word so far, in the meta of the context
+_WORD_SO_FAR = __name__  # what was written of the word so far, in the meta of the context
 
 
 def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Callable[[typer.Context, str], list[str]]:
@@ -28,7 +28,7 @@ def _silent(complete: Callable[[typer.Context], Iterable[str]]) -> Callable[[typ
 
     def offered(ctx: typer.Context, incomplete: str) -> list[str]:
         try:
-            ctx.meta[_BEGUN] = incomplete
+            ctx.meta[_WORD_SO_FAR] = incomplete
             return [name for name in complete(ctx) if name.startswith(incomplete)]
         except Exception:  # noqa: BLE001
             return []
@@ -47,17 +47,17 @@ def _source(ctx: typer.Context) -> Iterator[Source]:
         with open_bag_to_read(Path(bag)) as reader:
             yield BagSource(reader)
         return
-    with connect(_named(ctx), timeout=_PATIENCE) as client:
+    with connect(_simulation_name(ctx), timeout=_PATIENCE) as client:
         yield LiveSource(client)
 
 
-def _topic(ctx: typer.Context) -> str:
+def _topic_before(ctx: typer.Context) -> str:
     """The topic that was written before; click leaves it aside while the value of an option is being written."""
     found = ctx.params.get("topic") or next((word for word in ctx.args if not word.startswith("-")), "")
     return absolute_name(found) if found else ""
 
 
-def _named(ctx: typer.Context) -> str | None:
+def _simulation_name(ctx: typer.Context) -> str | None:
     return ctx.params.get("sim") or os.environ.get("SIMKIT_SIM")
 
 
@@ -65,7 +65,7 @@ def _named(ctx: typer.Context) -> str | None:
 def _client(ctx: typer.Context) -> Iterator[Client]:
     from simkit.live import connect
 
-    with connect(_named(ctx), timeout=_PATIENCE) as client:
+    with connect(_simulation_name(ctx), timeout=_PATIENCE) as client:
         yield client
 
 
@@ -82,7 +82,7 @@ def topics(ctx: typer.Context) -> Iterable[str]:
     """Topics; a name may be begun without its slash."""
     with _source(ctx) as source:
         names = list(source.topics())
-    begun = ctx.meta[_BEGUN]
+    begun = ctx.meta[_WORD_SO_FAR]
     return names if begun.startswith("/") or not begun else [n.removeprefix("/") for n in names]
 
 
@@ -91,7 +91,7 @@ def topic_types(ctx: typer.Context) -> Iterable[str]:
     """Types of the topic named before; all message types where it has none yet."""
     from simkit.msgs.interfaces import interface_names
 
-    topic = _topic(ctx)
+    topic = _topic_before(ctx)
     if topic:
         with _source(ctx) as source:
             found = source.topics().get(topic)
@@ -123,20 +123,20 @@ def fields(ctx: typer.Context) -> Iterable[str]:
     from simkit.msgs.message_text import fields_of
 
     with _source(ctx) as source:
-        entry = source.topics()[_topic(ctx)]
+        entry = source.topics()[_topic_before(ctx)]
         type_name = entry.types[0]
         store = source.store(type_name)
-        before, _, _ = ctx.meta[_BEGUN].rpartition(".")
+        before, _, _ = ctx.meta[_WORD_SO_FAR].rpartition(".")
         for name in before.split(".") if before else ():
-            node = dict(fields_of(_full(type_name, store), store))[name.partition("[")[0]]
+            node = dict(fields_of(_full_type_name(type_name, store), store))[name.partition("[")[0]]
             while int(node[0]) in (3, 4):
                 node = node[1][0]
             type_name = node[1]
-        found = fields_of(_full(type_name, store), store)
+        found = fields_of(_full_type_name(type_name, store), store)
     return [f"{before}.{name}" if before else name for name, _ in found]
 
 
-def _full(type_name: str, store: Any) -> str:
+def _full_type_name(type_name: str, store: Any) -> str:
     from simkit.msgs import full_name
 
     return type_name if store is not None else full_name(type_name)
@@ -177,7 +177,7 @@ def services(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def service_types(ctx: typer.Context) -> Iterable[str]:
     """The type of the service named before; all service types where there is none."""
-    return _types_of(ctx, "service", "srv")
+    return _types_of_name(ctx, "service", "srv")
 
 
 @_silent
@@ -190,10 +190,10 @@ def actions(ctx: typer.Context) -> Iterable[str]:
 @_silent
 def action_types(ctx: typer.Context) -> Iterable[str]:
     """The type of the action named before; all action types where there is none."""
-    return _types_of(ctx, "action", "action")
+    return _types_of_name(ctx, "action", "action")
 
 
-def _types_of(ctx: typer.Context, what: str, kind: str) -> list[str]:
+def _types_of_name(ctx: typer.Context, what: str, kind: str) -> list[str]:
     """The type of the service or action that was written before; where there is none, all types of that kind."""
     from simkit.msgs.interfaces import interface_names
 

@@ -96,21 +96,21 @@ def _print_entry(equal: list[Diagnostic], target: Console) -> None:
     from rich.text import Text
 
     d = equal[0]
-    place = _place(d)
+    place = _location(d)
     line = Text(f"{place}: " if place else "")
     line.append(d.severity, style=_STYLES[d.severity])
     line.append(f" {d.code}: {d.message}")
     if d.hint:
         line.append(f"\n    help: {d.hint}", style="dim")
     if len(equal) > 1:
-        others = [f":{o.line}" if o.file == d.file and o.line else _place(o) for o in equal[1 : _PLACES + 1]]
+        others = [f":{o.line}" if o.file == d.file and o.line else _location(o) for o in equal[1 : _PLACES + 1]]
         rest = len(equal) - 1 - len(others)
         more = f" and {rest} more" if rest else ""
         line.append(f"\n    the same at {', '.join(others)}{more}", style="dim")
     target.print(line)
 
 
-def _place(d: Diagnostic) -> str:
+def _location(d: Diagnostic) -> str:
     return f"{d.file or '<text>'}:{d.line}" if d.line else (d.file or "")
 
 

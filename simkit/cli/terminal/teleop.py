@@ -176,14 +176,14 @@ class Teleop:
         """Takes a key; whether it is one of those that drive. Capital letters count as small ones."""
         key = key.lower()
         if key == "s":
-            self._touch()
+            self._note_key()
             self.stop()
             return True
         if key not in _AHEAD and key not in _TURN and key not in _SCALE and key not in _SIDEWAYS:
             return False
         if key in _SIDEWAYS and not self.target.sideways:
             return False
-        self._touch()
+        self._note_key()
         if key in _SCALE:
             self._multiply(_SCALE[key])
         else:
@@ -201,7 +201,7 @@ class Teleop:
             self.stop()
         self._is_active = False
 
-    def _touch(self) -> None:
+    def _note_key(self) -> None:
         if not self._is_active:
             self._is_active, self._sent = True, None
         self.is_expired = False

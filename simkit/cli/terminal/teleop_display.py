@@ -44,7 +44,7 @@ class DriverLine:
         pose = model.pose
         yaw = math.degrees(float(pose.rpy[2]))
         place = f"x {pose.position[0]:.2f}  y {pose.position[1]:.2f}  {yaw:.0f}°"
-        parts = [self._words(*_motion(model, pose)), place, self._obstacle(model, pose)]
+        parts = [self._speed_text(*_velocity(model, pose)), place, self._obstacle_text(model, pose)]
         return "   ".join(part for part in parts if part)
 
     def asked(self) -> str:
@@ -52,9 +52,11 @@ class DriverLine:
         teleop = self._teleop
         if teleop.fault:
             return teleop.fault
-        return f"asked {self._words(*teleop.speeds)}" + (", stopped since no key came" if teleop.is_expired else "")
+        return f"asked {self._speed_text(*teleop.speeds)}" + (
+            ", stopped since no key came" if teleop.is_expired else ""
+        )
 
-    def _words(self, ahead: float, left: float, turn: float) -> str:
+    def _speed_text(self, ahead: float, left: float, turn: float) -> str:
         sideways = f", {left:.2f} m/s left" if self._teleop.target.sideways else ""
         return f"{ahead:.2f} m/s{sideways}, {turn:.2f} rad/s"
 
@@ -68,7 +70,7 @@ class DriverLine:
         except KeyError:
             return None
 
-    def _obstacle(self, model: Model, base: Pose) -> str:
+    def _obstacle_text(self, model: Model, base: Pose) -> str:
         """The nearest of what the robot's lidars see, and in which direction from the robot; empty without a lidar."""
         found = [
             near
@@ -83,7 +85,7 @@ class DriverLine:
         reach = least if distance == -math.inf else distance
         point = pose.position + _rotate(pose, reach * np.array([math.cos(direction), math.sin(direction), 0.0]))
         off = _rotate(base.inverse(), point - base.position)
-        where = _side(math.degrees(math.atan2(off[1], off[0])))
+        where = _side_text(math.degrees(math.atan2(off[1], off[0])))
         if distance == -math.inf:
             return f"nearest below {least:.2f} m, {where}"
         return f"nearest {distance:.2f} m, {where}"
@@ -106,7 +108,7 @@ def nearest_reading(sensor: Any) -> tuple[float, float, Pose, float] | None:
     return float(ranges[index]), scan.angle_min + index % beams * step, sensor.pose, float(scan.range_min)
 
 
-def _motion(model: Model, pose: Pose) -> tuple[float, float, float]:
+def _velocity(model: Model, pose: Pose) -> tuple[float, float, float]:
     """Speed ahead and to the left [m/s] and turning about the vertical [rad/s], in the model's heading."""
     link = next(iter(model.links.values()), None)
     canonical = model.scene.canonical_link
@@ -127,7 +129,7 @@ def _rotate(pose: Pose, vector: Vector) -> Vector:
     return quat_rotate(pose.quaternion, vector)
 
 
-def _side(degrees: float) -> str:
+def _side_text(degrees: float) -> str:
     if abs(degrees) < 10:
         return "ahead"
     if abs(degrees) > 170:

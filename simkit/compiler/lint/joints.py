@@ -36,17 +36,17 @@ class JointGains:
 
 def check_joints(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> None:
     """Reports gains that ring, springs too stiff for the step, ranges of no width, and heavy loads on light links."""
-    felt = _JointInertia(compiled.model)
+    inertias = _JointInertia(compiled.model)
     step = world.physics.max_step_size
     for joint in compiled.names.joints.values():
         _check_range(joint, found)
-        _check_spring(joint, felt, step, found)
-    _check_servos(compiled, felt, step, found)
+        _check_spring(joint, inertias, step, found)
+    _check_servos(compiled, inertias, step, found)
     for model in world.models:
         for nested in model.all_models():
             for plugin in nested.plugins:
                 for gains in controller_gains(plugin.params, plugin.name or plugin.filename, plugin.where):
-                    _check_gains(gains, _find_joint(compiled, nested.scoped, gains.joint), felt, step, found)
+                    _check_gains(gains, _find_joint(compiled, nested.scoped, gains.joint), inertias, step, found)
     _check_loads(compiled, found)
 
 
@@ -83,26 +83,27 @@ def _check_range(joint: JointBinding, found: Diagnostics) -> None:
             )
 
 
-def _check_spring(joint: JointBinding, felt: _JointInertia, step: float, found: Diagnostics) -> None:
+def _check_spring(joint: JointBinding, inertias: _JointInertia, step: float, found: Diagnostics) -> None:
     for axis, dof in zip(joint.scene.axes, joint.dofs, strict=False):
-        if axis.stiffness > 0 and (number := axis.stiffness * step**2 / felt.at(dof)) > 1.0:
+        if axis.stiffness > 0 and (number := axis.stiffness * step**2 / inertias.at(dof)) > 1.0:
             found.warning(
                 "SK-LINT-004",
-                f"joint {joint.scoped!r}: its spring of {axis.stiffness:g} on an inertia of {felt.at(dof):.3g} swings "
-                f"faster than the step of {step * 1e3:g} ms can follow (k·dt²/I is {number:.3g}, up to 1 is good)",
+                f"joint {joint.scoped!r}: its spring of {axis.stiffness:g} on an inertia of "
+                f"{inertias.at(dof):.3g} swings faster than the step of {step * 1e3:g} ms can follow "
+                f"(k·dt²/I is {number:.3g}, up to 1 is good)",
                 joint.scene.where,
-                f"a spring of at most {felt.at(dof) / step**2:.3g}, or a smaller step",
+                f"a spring of at most {inertias.at(dof) / step**2:.3g}, or a smaller step",
             )
 
 
-def _check_servos(compiled: Compiled, felt: _JointInertia, step: float, found: Diagnostics) -> None:
+def _check_servos(compiled: Compiled, inertias: _JointInertia, step: float, found: Diagnostics) -> None:
     """Gains that a plugin asked for and that its servo does not get."""
     for record in compiled.builder.records.values():
         for ref in record.actuators:
             joint = compiled.names.joints.get(ref.joint)
             if joint is None or ref.axis >= len(joint.dofs) or ref.kv is None:
                 continue
-            inertia = felt.at(joint.dofs[ref.axis])
+            inertia = inertias.at(joint.dofs[ref.axis])
             most = _GAIN_LIMIT * inertia / step
             if ref.kv > most:
                 found.warning(
@@ -146,11 +147,11 @@ def _find_joint(compiled: Compiled, model: str, name: str) -> JointBinding | Non
 
 
 def _check_gains(
-    gains: JointGains, joint: JointBinding | None, felt: _JointInertia, step: float, found: Diagnostics
+    gains: JointGains, joint: JointBinding | None, inertias: _JointInertia, step: float, found: Diagnostics
 ) -> None:
     if joint is None or not joint.dofs:
         return
-    inertia = felt.at(joint.dofs[0])
+    inertia = inertias.at(joint.dofs[0])
     d_number, p_number = gains.d * step / inertia, gains.p * step**2 / inertia
     if d_number > _RINGING_DAMPING or p_number > _RINGING_STIFFNESS:
         which, value, most = (

@@ -49,13 +49,15 @@ class Playback:
         self._bag = open_bag_to_read(path)
         try:
             self.notes: list[str] = [f"{path}: {self._bag.broken}"] if self._bag.broken else []
-            self._taken = self._inputs()
-            self.names = self._asked(topics) if topics else self._all()
+            self._input_types = self._world_inputs()
+            self.names = self._requested_topics(topics) if topics else self._playable_topics()
             self.sent = 0
-            self._as: dict[tuple[str, str], str] = {}
+            self._sent_types: dict[tuple[str, str], str] = {}
             for topic in self._bag.topics:
                 if topic.name in self.names:
-                    self._as[topic.name, topic.type_name] = self._fitting(topic.name, topic.type_name)
+                    self._sent_types[topic.name, topic.type_name] = self._matching_input_type(
+                        topic.name, topic.type_name
+                    )
         except BaseException:
             self._bag.close()
             raise
@@ -105,7 +107,7 @@ class Playback:
             self._next = next(self._messages, None)
             topic = self.names[message.topic]
             try:
-                self._sim.publish(topic, self._made(message))
+                self._sim.publish(topic, self._message_to_send(message))
             except MessageError as error:
                 text = f"SK-BAG-015 {self._bag.path}: {message.topic} at {message.time_ns * _NS:.9g} s: {error}"
                 raise InputError(text, "SK-BAG-015") from None
@@ -113,7 +115,7 @@ class Playback:
 
     # ------------------------------------------------------------------ which topics
 
-    def _inputs(self) -> dict[str, tuple[str, ...]]:
+    def _world_inputs(self) -> dict[str, tuple[str, ...]]:
         """Topics that something in the world takes -> the types."""
         found: dict[str, tuple[str, ...]] = {}
         for topic, end, types, what in self._sim.bus.ends():
@@ -121,18 +123,18 @@ class Playback:
                 found[topic] = (*found.get(topic, ()), *types)
         return found
 
-    def _all(self) -> dict[str, str]:
+    def _playable_topics(self) -> dict[str, str]:
         own = {topic for topic, end, _, what in self._sim.bus.ends() if what == "publishes" and end.active}
         there = dict.fromkeys(topic.name for topic in self._bag.topics)
-        found = {topic: topic for topic in there if topic in self._taken and topic not in own}
+        found = {topic: topic for topic in there if topic in self._input_types and topic not in own}
         if not found:
-            takes = ", ".join(sorted(self._taken.keys() - own)) or "nothing"
+            takes = ", ".join(sorted(self._input_types.keys() - own)) or "nothing"
             text = f"the world takes nothing of {self._bag.path}: it takes {takes}"
             hint = "--play-topic OLD:=NEW (play_topics of a scenario) says what goes where"
             raise InputError(f"SK-BAG-016 {text}\n    help: {hint}", "SK-BAG-016")
         return found
 
-    def _asked(self, topics: Sequence[str]) -> dict[str, str]:
+    def _requested_topics(self, topics: Sequence[str]) -> dict[str, str]:
         there = {topic.name for topic in self._bag.topics}
         found = {}
         for text in topics:
@@ -145,7 +147,7 @@ class Playback:
             new = absolute_name(new) if sign else old
             for name, names, where in (
                 (old, there, str(self._bag.path)),
-                (new, set(self._taken), "the world's inputs"),
+                (new, set(self._input_types), "the world's inputs"),
             ):
                 if name not in names:
                     hint = did_you_mean(name, names) or "there is " + (", ".join(sorted(names)) or "none")
@@ -155,10 +157,10 @@ class Playback:
 
     # ------------------------------------------------------------------ as what
 
-    def _fitting(self, topic: str, type_name: str) -> str:
+    def _matching_input_type(self, topic: str, type_name: str) -> str:
         """The type as which messages are sent: their own; a velocity is given or loses its header where it has to."""
         new = self.names[topic]
-        types = self._taken[new]
+        types = self._input_types[new]
         name = _has_all_fields(type_name)
         if name in types:
             return name
@@ -170,9 +172,9 @@ class Playback:
         text = f"{self._bag.path}: {topic} is {type_name}, but {new} takes {allowed}"
         raise InputError(f"SK-BAG-015 {text}", "SK-BAG-015")
 
-    def _made(self, message: BagMessage) -> Any:
+    def _message_to_send(self, message: BagMessage) -> Any:
         """The message as one of simkit's own types."""
-        wanted = self._as[message.topic, message.type_name]
+        wanted = self._sent_types[message.topic, message.type_name]
         found = self._bag.decode(message)
         own = _has_all_fields(message.type_name)
         if type(found) is not msgs.type_of(own):  # of the bag's own definition

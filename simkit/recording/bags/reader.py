@@ -72,12 +72,12 @@ class BagReader:
         self.path = path
         self.broken = ""
         self._source = _open_storage(path)
-        self.files, self.storage, self.distro = _files(path)
+        self.files, self.storage, self.distro = _bag_files(path)
         self.topics = sorted(self._source.topics(), key=lambda t: (t.name, t.type_name))
         self.broken = self._source.broken
         self.start, self.end = self._source.span()
         self._store: Typestore | None = None
-        self._own: dict[str, bool] = {}
+        self._uses_bag_store: dict[str, bool] = {}
 
     def __enter__(self) -> BagReader:
         return self
@@ -144,13 +144,13 @@ class BagReader:
         Raises:
             InputError: SK-CLI-036 nobody knows the type.
         """
-        own = self._own.get(type_name)
+        own = self._uses_bag_store.get(type_name)
         if own is None:
-            own = self._own[type_name] = not self._is_ours(type_name)
-        return self._types() if own else msgs.type_store()
+            own = self._uses_bag_store[type_name] = not self._has_simkit_definition(type_name)
+        return self._bag_store() if own else msgs.type_store()
 
-    def _is_ours(self, type_name: str) -> bool:
-        bags = self._types().fielddefs
+    def _has_simkit_definition(self, type_name: str) -> bool:
+        bags = self._bag_store().fielddefs
         try:
             msgs.full_name(type_name)
         except MessageError:
@@ -170,7 +170,7 @@ class BagReader:
             left += fresh
         return True
 
-    def _types(self) -> Typestore:
+    def _bag_store(self) -> Typestore:
         """What the bag itself says of its types."""
         if self._store is None:
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -204,7 +204,7 @@ def _used_types(fields: Sequence[tuple[str, Any]]) -> Iterator[str]:
             yield inner[1]
 
 
-def _files(path: Path) -> tuple[list[str], str, str]:
+def _bag_files(path: Path) -> tuple[list[str], str, str]:
     """Files, storage and distribution, as far as they are written down."""
     if not path.is_dir():
         return [path.name], "sqlite3" if path.suffix == ".db3" else "mcap", "unknown"
@@ -304,7 +304,7 @@ class _TruncatedBag:
     """A recording whose end is missing; it is read record by record, once for what it holds and once for each use."""
 
     def __init__(self, path: Path, files: list[Path]) -> None:
-        self._files = files
+        self._bag_files = files
         self._definitions: dict[str, str] = {}
         self.broken = ""
         self.has_begun = False
@@ -340,7 +340,7 @@ class _TruncatedBag:
         from mcap.records import Channel, Message, Schema
         from mcap.stream_reader import StreamReader
 
-        for path in self._files:
+        for path in self._bag_files:
             schemas: dict[int, Schema] = {}
             channels: dict[int, Channel] = {}
             with path.open("rb") as file:

@@ -164,13 +164,13 @@ class Recorder:
     def _add(self, topic: str, _: str) -> None:
         if self._bag is None or topic in self._taps:
             return
-        if not (self._choose or self._is_asked_for)(topic):
+        if not (self._choose or self._is_selected)(topic):
             return
         if matches_topic(topic, self._skip):
             return
         self._taps[topic] = self._sim.bus.tap(topic, lambda message: self._take(topic, message), takes_later=True)
 
-    def _is_asked_for(self, topic: str) -> bool:
+    def _is_selected(self, topic: str) -> bool:
         if self._patterns:
             return matches_topic(topic, self._patterns)
         return topic not in self._sim.bus.aside

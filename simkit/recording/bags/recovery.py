@@ -37,7 +37,7 @@ def recover_bag(source: Path, target: Path, *, overwrite: bool = False) -> Recov
         raise InputError(f"SK-BAG-004 no MCAP file at {source}", "SK-BAG-004")
     if any(f.absolute() == target.absolute() for f in files) or source.absolute() == target.absolute():
         raise InputError(f"SK-BAG-001 {target} is the bag to mend; give another name", "SK-BAG-001")
-    progress = _Readable(files)
+    progress = _ReadableMessages(files)
     records = progress.messages()
     first = next(records, None)
     if first is None:
@@ -65,7 +65,7 @@ def _in_file_order(first: _Record, rest: Iterator[_Record]) -> Iterator[_Record]
     yield from rest
 
 
-class _Readable:
+class _ReadableMessages:
     """Reads files record by record up to where they break off; `reason` says why they do."""
 
     def __init__(self, files: list[Path]) -> None:
@@ -74,9 +74,9 @@ class _Readable:
     def messages(self) -> Iterator[_Record]:
         for path in self.files:
             with path.open("rb") as file:
-                yield from self._of(file)
+                yield from self._messages_of(file)
 
-    def _of(self, file: Any) -> Iterator[_Record]:
+    def _messages_of(self, file: Any) -> Iterator[_Record]:
         from mcap.exceptions import McapError
         from mcap.records import Channel, Message, Schema
         from mcap.stream_reader import StreamReader

@@ -139,13 +139,13 @@ class _FieldPath:
         while at < len(rest):
             found = _STEP.match(rest, at)
             if found is None:
-                raise self._wrong(f"{rest!r} is no path of fields, such as .pose.position.x or .ranges[0]")
+                raise self._field_error(f"{rest!r} is no path of fields, such as .pose.position.x or .ranges[0]")
             at = found.end()
             if found[1] is not None:
                 ends = [self._derived(place, found[1]) for place in places]
                 if all(end is not None for end in ends):
                     if at < len(rest):
-                        raise self._wrong(f"{found[1]!r} is a number and has no {rest[at:]!r}")
+                        raise self._field_error(f"{found[1]!r} is a number and has no {rest[at:]!r}")
                     return [end for end in ends if end is not None]
                 places = [self._field(place, found[1]) for place in places]
             else:
@@ -157,25 +157,25 @@ class _FieldPath:
 
     def _count(self, found: list[Any]) -> None:
         if len(found) > MOST_CURVES:
-            raise self._bad(f"stands for {len(found)} numbers, allowed are {MOST_CURVES}")
+            raise self._path_error(f"stands for {len(found)} numbers, allowed are {MOST_CURVES}")
 
     # ------------------------------------------------------------------ one step
 
     def _field(self, place: _PathStep, name: str) -> _PathStep:
         if int(place.node[0]) != _NAME:
             hint = self._hint(place)
-            raise self._wrong(f"{place.path or 'it'} is {_kind_in_words(place.node)} and has no {name!r}; {hint}")
+            raise self._field_error(f"{place.path or 'it'} is {_kind_in_words(place.node)} and has no {name!r}; {hint}")
         fields = dict(fields_of(place.node[1], self._store))
         if name not in fields:
-            told = did_you_mean(name, [*fields, *self._extra(place)])
+            told = did_you_mean(name, [*fields, *self._computed_names(place)])
             hint = told or "its fields are " + (", ".join(fields) or "none")
-            raise self._wrong(f"{place.node[1]} has no field {name!r}; {hint}")
+            raise self._field_error(f"{place.node[1]} has no field {name!r}; {hint}")
         path = f"{place.path}.{name}" if place.path else name
         return _PathStep(fields[name], _compose(place.read, partial(_attribute, name)), path, place.node[1], place.read)
 
     def _items(self, place: _PathStep, text: str) -> list[_PathStep]:
         if int(place.node[0]) not in (_ARRAY, _SEQUENCE):
-            raise self._wrong(
+            raise self._field_error(
                 f"{place.path or 'it'} is {_kind_in_words(place.node)}, no array: it has no item [{text}]"
             )
         inner, size = place.node[1]
@@ -187,12 +187,12 @@ class _FieldPath:
         else:
             start, stop = int(found[1] or 0), int(found[3]) if found[3] else size if int(place.node[0]) == 3 else None
             if stop is None or (start < 0) != (stop < 0):
-                raise self._bad(f"[{text}] does not say how many items are meant, as [{max(start, 0)}:10] does")
+                raise self._path_error(f"[{text}] does not say how many items are meant, as [{max(start, 0)}:10] does")
             numbers = list(range(start, min(stop, start + MOST_CURVES + 1)))
         if int(place.node[0]) == _ARRAY:
             for number in numbers:
                 if not -size <= number < size:
-                    raise self._wrong(f"{place.path} has {size} items, found [{number}]")
+                    raise self._field_error(f"{place.path} has {size} items, found [{number}]")
         return [self._item(place, inner, partial(_item, number), str(number)) for number in numbers]
 
     def _item(self, place: _PathStep, inner: Any, take: Callable[[Any], Any], said: str) -> _PathStep:
@@ -210,7 +210,7 @@ class _FieldPath:
         beside = dict(fields_of(place.owner, self._store)) if place.path else {}
         names = next((n for n in _NAMES if n in beside and int(beside[n][0]) == _SEQUENCE), None)
         if names is None or not name:
-            raise self._wrong(f"[{name}] is no number, and nothing names the items of {place.path}")
+            raise self._field_error(f"[{name}] is no number, and nothing names the items of {place.path}")
         read = partial(_item_at_name, place.before, names, name, place.read)
         return _PathStep(inner, read, f"{place.path}[{name}]", place.owner, place.before)
 
@@ -221,7 +221,7 @@ class _FieldPath:
         kind = int(place.node[0])
         if kind == _BASE:
             if _is_text(place.node):
-                raise self._bad(f"{place.path} is a text, no number")
+                raise self._path_error(f"{place.path} is a text, no number")
             return [self._curve(place, place.read, place.path)]
         if kind == _NAME:
             fields = fields_of(place.node[1], self._store)
@@ -230,19 +230,19 @@ class _FieldPath:
                 return [self._curve(place, _compose(place.read, _seconds), place.path or "time", "s")]
             if fields and all(int(node[0]) == _BASE and not _is_text(node) for _, node in fields):
                 return [c for name in names for c in self._numbers(self._field(place, name))]
-            raise self._bad(f"{place.path or 'a whole message'} is no number; {self._hint(place)}")
+            raise self._path_error(f"{place.path or 'a whole message'} is no number; {self._hint(place)}")
         if kind == _ARRAY and place.node[1][1] <= _SPREAD:
             return [c for i in self._items(place, f"0:{place.node[1][1]}") for c in self._numbers(i)]
-        raise self._bad(f"{place.path} is {_kind_in_words(place.node)}; {self._hint(place)}")
+        raise self._path_error(f"{place.path} is {_kind_in_words(place.node)}; {self._hint(place)}")
 
     def _derived(self, place: _PathStep, name: str) -> Curve | None:
         """A number that is made of what lies there; None where the type has a field of that name, or it cannot be."""
-        if name not in self._extra(place):
+        if name not in self._computed_names(place):
             return None
         path = f"{place.path}.{name}" if place.path else name
         read = place.read
         if name in _ANGLES:
-            inner = self._turned(place)
+            inner = self._orientation_field(place)
             if inner is not None:
                 read = _compose(read, partial(_attribute, inner))
             return self._curve(place, _compose(read, partial(_angle, name)), path, "rad", is_angle=name != "pitch")
@@ -253,7 +253,7 @@ class _FieldPath:
             place, _compose(read, partial(_array_statistic, name)), path, "" if name != "length" else "items"
         )
 
-    def _extra(self, place: _PathStep) -> tuple[str, ...]:
+    def _computed_names(self, place: _PathStep) -> tuple[str, ...]:
         """What is computed of a type, beside its fields."""
         kind = int(place.node[0])
         if kind in (_ARRAY, _SEQUENCE):
@@ -263,7 +263,7 @@ class _FieldPath:
             return ()
         fields = dict(fields_of(place.node[1], self._store))
         found: tuple[str, ...] = ()
-        if self._is_quaternion(place.node) or self._turned(place) is not None:
+        if self._is_quaternion(place.node) or self._orientation_field(place) is not None:
             found = _ANGLES
         elif fields and set(fields) <= {"x", "y", "z"} and len(fields) > 1:
             found = ("norm",)
@@ -272,7 +272,7 @@ class _FieldPath:
     def _is_quaternion(self, node: Any) -> bool:
         return int(node[0]) == _NAME and [n for n, _ in fields_of(node[1], self._store)] == ["x", "y", "z", "w"]
 
-    def _turned(self, place: _PathStep) -> str | None:
+    def _orientation_field(self, place: _PathStep) -> str | None:
         """The field that says how something is turned."""
         for name, node in fields_of(place.node[1], self._store):
             if name in ("orientation", "rotation") and self._is_quaternion(node):
@@ -288,17 +288,17 @@ class _FieldPath:
         kind = int(place.node[0])
         if kind == _NAME:
             fields = [n for n, _ in fields_of(place.node[1], self._store)]
-            return "its fields are " + (", ".join((*fields, *self._extra(place))) or "none")
+            return "its fields are " + (", ".join((*fields, *self._computed_names(place))) or "none")
         if kind in (_ARRAY, _SEQUENCE):
             name = place.path.rpartition(".")[2]
-            extra = "".join(f", .{n}" for n in self._extra(place))
+            extra = "".join(f", .{n}" for n in self._computed_names(place))
             return f"allowed is an item or some of them, as {name}[0] or {name}[0:10]{extra}"
         return "nothing lies below it"
 
-    def _wrong(self, text: str) -> InputError:
+    def _field_error(self, text: str) -> InputError:
         return InputError(f"SK-CLI-033 {self._text}: {text}", "SK-CLI-033")
 
-    def _bad(self, text: str) -> InputError:
+    def _path_error(self, text: str) -> InputError:
         return InputError(f"SK-BAG-010 {self._text}: {text}", "SK-BAG-010")
 
 

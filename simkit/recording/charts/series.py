@@ -82,7 +82,7 @@ class SeriesTap:
     """
 
     def __init__(self, sim: Simulation, curves: Sequence[Curve]) -> None:
-        self._sim, self._found = sim, _SeriesCollector(curves)
+        self._sim, self._collector = sim, _SeriesCollector(curves)
         topics = dict.fromkeys(curve.topic for curve in curves)
         self._taps = [sim.bus.tap(topic, partial(self._take, topic)) for topic in topics]
 
@@ -93,7 +93,7 @@ class SeriesTap:
         self.close()
 
     def _take(self, topic: str, message: Any) -> None:
-        self._found.take(topic, self._sim.time, message)
+        self._collector.take(topic, self._sim.time, message)
 
     def close(self) -> None:
         """Listens no more."""
@@ -103,7 +103,7 @@ class SeriesTap:
 
     def series(self) -> list[Series]:
         """What came until now."""
-        return self._found.series()
+        return self._collector.series()
 
 
 class _SeriesCollector:

@@ -258,15 +258,15 @@ class _TopicExport:
 
     def __init__(self, bag: BagReader, topic: BagTopic, name: str, folder: Path, wish: ExportOptions) -> None:
         self._name, self._folder, self._format = name, folder, wish.format
-        self._told = ExportedTopic(topic.name, topic.type_name)
+        self._result = ExportedTopic(topic.name, topic.type_name)
         self._times = array("q")
-        self._beside = self._maker(topic.type_name, wish)
+        self._writer = self._file_writer(topic.type_name, wish)
         without = frozenset({"data"}) if topic.type_name in (*_IMAGE_TYPES, _CLOUD_TYPE) else frozenset[str]()
         self._columns = columns_of(topic.type_name, bag.store_of(topic.type_name), without)
         self._files: list[str] = []
         self._is_bad = False
 
-    def _maker(self, type_name: str, wish: ExportOptions) -> Any:
+    def _file_writer(self, type_name: str, wish: ExportOptions) -> Any:
         """What writes pictures or clouds, made when the first comes."""
         target = self._folder / self._name
         makers: dict[str, Callable[[], Any]] = {}
@@ -283,29 +283,29 @@ class _TopicExport:
         self._times.append(time_ns)
         for column in self._columns:
             column.take(message)
-        if self._beside is None:
+        if self._writer is None:
             return
-        if callable(self._beside):
-            self._beside = self._beside()
+        if callable(self._writer):
+            self._writer = self._writer()
         try:
-            self._files.append(self._beside.take(time_ns, message))
+            self._files.append(self._writer.take(time_ns, message))
         except ValueError as error:
             self._files.append("")
             if not self._is_bad:
-                self._told.notes.append(f"not all could be written: {error}")
+                self._result.notes.append(f"not all could be written: {error}")
             self._is_bad = True
 
     def close(self) -> None:
         """No more comes."""
-        if self._beside is not None and not callable(self._beside):
-            self._beside.close()
+        if self._writer is not None and not callable(self._writer):
+            self._writer.close()
 
     def write(self) -> ExportedTopic:
         """Writes the table."""
-        told, columns = self._told, self._columns
+        told, columns = self._result, self._columns
         told.count = len(self._times)
-        if self._beside is not None and not callable(self._beside):
-            told.notes += self._beside.notes
+        if self._writer is not None and not callable(self._writer):
+            told.notes += self._writer.notes
             told.beside = next((f.partition("/")[0] for f in self._files if f), "")
             files = Column("file", TEXT, False, lambda message: message)
             files.values = self._files

@@ -308,7 +308,7 @@ def test_pictures_that_are_still_being_drawn_come_in_their_order(court: simkit.S
         peer = next(iter(server.peers.values()))
         assert not peer._queue, "the second waits for the first"
         drawing.is_done = True
-        server.feeds.settle()
+        server.feeds.deliver_ready()
         found = [
             (time_ns, msgs.deserialize(data, "std_msgs/msg/Int32").data) for _, time_ns, _, data in peer._queue.values()
         ]

@@ -35,9 +35,7 @@ def test_every_block_of_the_page_runs(run: Callable[..., Any], capsys: pytest.Ca
 
 def test_the_page_has_every_question() -> None:
     table = PAGE[PAGE.index("| question |") :]
-    assert set(requests.REQUESTS) == set(
-        re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M)))
-    )
+    assert set(requests.REQUESTS) == set(re.findall(r"`([a-z_]+)`", "".join(re.findall(r"^\| (`.*?) \|", table, re.M))))
 
 
 def test_a_run_of_another_process_is_talked_to_and_ends_as_it_would_without(court_text: str, tmp_path: Path) -> None:

@@ -40,8 +40,8 @@ def test_a_folder_that_others_may_enter_is_not_used(court: simkit.Simulation, so
 
 def test_a_link_instead_of_the_folder_is_not_followed(sockets: Path, tmp_path: Path) -> None:
     sockets.symlink_to(tmp_path)
-    assert socket_files.fault_of(sockets) == f"{sockets} is no folder"
-    assert sockets not in list(itertools.islice(socket_files.open_folders(), 1))
+    assert socket_files.folder_fault(sockets) == f"{sockets} is no folder"
+    assert sockets not in list(itertools.islice(socket_files.usable_folders(), 1))
 
 
 def test_the_socket_of_one_who_died_is_replaced(court: simkit.Simulation, sockets: Path) -> None:

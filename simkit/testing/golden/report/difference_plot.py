@@ -16,7 +16,7 @@ from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Column, States, Stream
 
 Array = npt.NDArray[Any]
-_LOW: Final = 110  # [px]: height of a chart of differences
+_DIFFERENCE_HEIGHT: Final = 110  # [px]: height of a chart of differences
 _QUANTITIES: Final = 3  # of the state that are drawn
 
 
@@ -51,7 +51,7 @@ def plot_figure(verdict: Verdict, difference: Difference) -> PlotFigure | None:
         difference: any but one of pictures.
     """
     if difference.kind == "state":
-        return _state(verdict.golden.states, verdict.run.states, difference)
+        return _state_figure(verdict.golden.states, verdict.run.states, difference)
     golden = verdict.golden.streams.get(difference.topic)
     run = verdict.run.streams.get(difference.topic)
     if golden is None or run is None:
@@ -59,42 +59,46 @@ def plot_figure(verdict: Verdict, difference: Difference) -> PlotFigure | None:
     if difference.kind in ("count", "time", "missing", "extra"):
         if not difference.topic:
             return None
-        return PlotFigure(difference.words, "messages in each second", [_rates(golden, run)])
-    statistics = _pair(golden.statistics, run.statistics, difference.field)
+        return PlotFigure(difference.words, "messages in each second", [_rate_chart(golden, run)])
+    statistics = _common_field(golden.statistics, run.statistics, difference.field)
     if difference.kind == "statistics" and statistics is not None:
-        return _statistics(difference, *statistics)
+        return _noise_figure(difference, *statistics)
     for field in difference.columns or (difference.field,):
-        columns = _pair(golden.columns, run.columns, field)
-        if columns is not None and (field == difference.field or _differ(*columns)):
-            return _columns(difference, field, golden, run, columns)
+        columns = _common_field(golden.columns, run.columns, field)
+        if columns is not None and (field == difference.field or _values_differ(*columns)):
+            return _column_figure(difference, field, golden, run, columns)
     return None
 
 
-def _differ(golden: Column, run: Column) -> bool:
+def _values_differ(golden: Column, run: Column) -> bool:
     return golden.values.shape != run.values.shape or not np.array_equal(golden.values, run.values)
 
 
-def _columns(
+def _column_figure(
     difference: Difference, field: str, golden: Stream, run: Stream, columns: tuple[Column, Column]
 ) -> PlotFigure | None:
     a, b = columns
-    count = min(_messages(a, golden), _messages(b, run))
+    count = min(_message_count(a, golden), _message_count(b, run))
     packed = field.endswith((".rgb", ".rgba")) and a.values.dtype.kind == "f"  # colours in the bits of a number
     if count == 0 or packed or a.values.dtype.kind not in "biuf" or b.values.dtype.kind not in "biuf":
         return None
     title = f"{difference.topic}.{field}"
     if a.lengths is None and b.lengths is None and a.values[0].size == b.values[0].size == 1:
-        ours, theirs = _flat(a.values[:count]), _flat(b.values[:count])
+        ours, theirs = _as_vector(a.values[:count]), _as_vector(b.values[:count])
         shown = field if difference.columns else ""
-        return PlotFigure(difference.words, shown, _over_time(golden.times_ns[:count], ours, theirs, title, difference))
-    return _arrays(difference, golden, a, b, count, title)
+        return PlotFigure(
+            difference.words, shown, _time_charts(golden.times_ns[:count], ours, theirs, title, difference)
+        )
+    return _array_figure(difference, golden, a, b, count, title)
 
 
-def _arrays(difference: Difference, golden: Stream, a: Column, b: Column, count: int, title: str) -> PlotFigure | None:
+def _array_figure(
+    difference: Difference, golden: Stream, a: Column, b: Column, count: int, title: str
+) -> PlotFigure | None:
     """The first message that differs as a profile, and how far each message is off."""
     far = np.zeros(count)
     for index in range(count):
-        ours, theirs = _flat(a.of(index)), _flat(b.of(index))
+        ours, theirs = _as_vector(a.of(index)), _as_vector(b.of(index))
         if len(ours) != len(theirs):
             far[index] = np.nan
             continue
@@ -104,18 +108,18 @@ def _arrays(difference: Difference, golden: Stream, a: Column, b: Column, count:
     if not 0 <= first < count:
         differing = np.flatnonzero((far > 0.0) | ~np.isfinite(far))
         first = int(differing[0]) if len(differing) else 0
-    ours, theirs = _flat(a.of(first)), _flat(b.of(first))
+    ours, theirs = _as_vector(a.of(first)), _as_vector(b.of(first))
     seconds = golden.times_ns[:count] * 1e-9
     unit = _unit(difference)
     if max(len(ours), len(theirs)) <= 4:
         worst = (
             int(np.nanargmax(np.abs(_difference(theirs, ours))))
-            if len(ours) == len(theirs) and _any(ours, theirs)
+            if len(ours) == len(theirs) and _has_finite_difference(ours, theirs)
             else 0
         )
         if a.lengths is None and b.lengths is None and worst < min(len(ours), len(theirs)):
-            pair = [_flat(column.values[:count].reshape(count, -1)[:, worst]) for column in (a, b)]
-            parts = _over_time(golden.times_ns[:count], pair[0], pair[1], f"{title}[{worst}]", difference)
+            pair = [_as_vector(column.values[:count].reshape(count, -1)[:, worst]) for column in (a, b)]
+            parts = _time_charts(golden.times_ns[:count], pair[0], pair[1], f"{title}[{worst}]", difference)
             return PlotFigure(difference.words, f"component {worst}", parts)
     profile = [(_profile(ours), "golden"), (_profile(theirs), "run")]
     parts = [
@@ -130,7 +134,7 @@ def _arrays(difference: Difference, golden: Stream, a: Column, b: Column, count:
     )
 
 
-def _over_time(times_ns: Array, ours: Array, theirs: Array, title: str, difference: Difference) -> list[PageChart]:
+def _time_charts(times_ns: Array, ours: Array, theirs: Array, title: str, difference: Difference) -> list[PageChart]:
     seconds, unit = times_ns * 1e-9, _unit(difference)
     lines = [(_line(seconds, ours), "golden"), (_line(seconds, theirs), "run")]
     mark = difference.time
@@ -141,10 +145,10 @@ def _over_time(times_ns: Array, ours: Array, theirs: Array, title: str, differen
 
 
 def _difference_chart(line: Series, title: str, x_label: str, unit: str, mark: float | None = None) -> PageChart:
-    return PageChart([(line, "difference")], title, x_label, f"Δ{unit}", _LOW, mark)
+    return PageChart([(line, "difference")], title, x_label, f"Δ{unit}", _DIFFERENCE_HEIGHT, mark)
 
 
-def _rates(golden: Stream, run: Stream) -> PageChart:
+def _rate_chart(golden: Stream, run: Stream) -> PageChart:
     """Messages in each second of simulated time; the last second, which need not be whole, is left out."""
     lines = []
     ends = [int(stream.times_ns[-1]) // 10**9 for stream in (golden, run) if len(stream.times_ns)]
@@ -156,7 +160,7 @@ def _rates(golden: Stream, run: Stream) -> PageChart:
     return PageChart(lines, golden.topic, "time [s]", "messages a second")
 
 
-def _state(golden: States, run: States, difference: Difference) -> PlotFigure | None:
+def _state_figure(golden: States, run: States, difference: Difference) -> PlotFigure | None:
     """The quantities that are furthest off at the first kept state that differs."""
     shared = sorted(set(golden.names) & set(run.names))
     ticks, ours_at, theirs_at = np.intersect1d(golden.ticks, run.ticks, return_indices=True)
@@ -183,7 +187,7 @@ def _state(golden: States, run: States, difference: Difference) -> PlotFigure | 
     return PlotFigure(difference.words, "the quantities that differ most where the first kept state does", parts)
 
 
-def _statistics(difference: Difference, golden: NoiseStatistics, run: NoiseStatistics) -> PlotFigure | None:
+def _noise_figure(difference: Difference, golden: NoiseStatistics, run: NoiseStatistics) -> PlotFigure | None:
     rows = []
     for number in range(min(len(golden.mean), len(run.mean))):
         told = [(s.mean[number], s.deviation[number]) for s in (golden, run)]
@@ -218,7 +222,7 @@ def _line(x: Array, y: Array) -> Series:
     return Series("", times=np.asarray(x, np.float64), values=np.asarray(y, np.float64))
 
 
-def _pair(golden: dict[str, Any], run: dict[str, Any], field: str) -> tuple[Any, Any] | None:
+def _common_field(golden: dict[str, Any], run: dict[str, Any], field: str) -> tuple[Any, Any] | None:
     """What both have of a field, of a part of it, or of what it is a part of."""
     both = sorted(golden.keys() & run.keys())
     near = [name for name in both if name == field]
@@ -227,11 +231,11 @@ def _pair(golden: dict[str, Any], run: dict[str, Any], field: str) -> tuple[Any,
     return (golden[near[0]], run[near[0]]) if near else None
 
 
-def _messages(column: Column, stream: Stream) -> int:
+def _message_count(column: Column, stream: Stream) -> int:
     return min(len(column.values) if column.lengths is None else len(column.lengths), len(stream.times_ns))
 
 
-def _flat(values: Any) -> Array:
+def _as_vector(values: Any) -> Array:
     return np.asarray(values, np.float64).reshape(-1)
 
 
@@ -243,7 +247,7 @@ def _difference(run: Array, golden: Array) -> Array:
     return np.where(same, 0.0, np.where(np.isfinite(off), off, np.nan))
 
 
-def _any(ours: Array, theirs: Array) -> bool:
+def _has_finite_difference(ours: Array, theirs: Array) -> bool:
     return bool(np.isfinite(_difference(theirs, ours)).any())
 
 

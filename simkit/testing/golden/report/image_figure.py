@@ -54,27 +54,30 @@ def image_figure(verdict: Verdict, difference: Difference) -> ImageFigure | None
     index = int(np.searchsorted(messages, difference.index)) if difference.index >= 0 else -1
     times = streams[0].times_ns
     rows = []
-    for place in _chosen(golden, run, count, index):
+    for place in _shown_messages(golden, run, count, index):
         message = int(messages[place])
         seconds = f" at {times[message] * 1e-9:.6g} s" if message < len(times) else ""
-        rows.append(_row(golden, run, place, f"picture {message}{seconds}"))
+        rows.append(_image_row(golden, run, place, f"picture {message}{seconds}"))
     return ImageFigure(difference.words, rows)
 
 
-def _chosen(golden: Pictures, run: Pictures, count: int, index: int) -> list[int]:
+def _shown_messages(golden: Pictures, run: Pictures, count: int, index: int) -> list[int]:
     """The first that differs, and the one that differs most."""
     if golden.small.shape[1:] != run.small.shape[1:]:
         return [index if 0 <= index < count else 0]
-    far = np.array([_mean(_absolute_difference(golden.small[i], run.small[i])) for i in range(count)])
+    far = np.array([_mean_difference(_absolute_difference(golden.small[i], run.small[i])) for i in range(count)])
     first = index if 0 <= index < count else int((far > 0.0).argmax())
     worst = int(np.nan_to_num(far).argmax())
     return [first, worst] if far[worst] > 1.5 * far[first] and worst != first else [first]
 
 
-def _row(golden: Pictures, run: Pictures, index: int, caption: str) -> ImageRow:
-    ours, theirs = _fitting(golden.small[index]), _fitting(run.small[index])
-    low, high = _span(ours, theirs)
-    shown = [("golden", _colours(ours, golden.encoding, low, high)), ("run", _colours(theirs, run.encoding, low, high))]
+def _image_row(golden: Pictures, run: Pictures, index: int, caption: str) -> ImageRow:
+    ours, theirs = _downsample(golden.small[index]), _downsample(run.small[index])
+    low, high = _value_range(ours, theirs)
+    shown = [
+        ("golden", _display_pixels(ours, golden.encoding, low, high)),
+        ("run", _display_pixels(theirs, run.encoding, low, high)),
+    ]
     if ours.dtype.kind == "f" or ours.dtype == np.uint16:
         caption += f", from {low:.4g} (dark) to {high:.4g} (bright)"
     if ours.shape == theirs.shape:
@@ -82,23 +85,23 @@ def _row(golden: Pictures, run: Pictures, index: int, caption: str) -> ImageRow:
             _absolute_difference(ours, theirs), high - low if ours.dtype != np.uint8 else 255.0
         )
         shown.append((f"difference × {factor:.3g}", apart))
-    tiles = _tiles(golden, run, index)
+    tiles = _tile_text(golden, run, index)
     return ImageRow([(name, _png(image)) for name, image in shown], caption + tiles)
 
 
-def _tiles(golden: Pictures, run: Pictures, index: int) -> str:
+def _tile_text(golden: Pictures, run: Pictures, index: int) -> str:
     if index >= min(len(golden.tiles), len(run.tiles)) or golden.tiles.shape[1:] != run.tiles.shape[1:]:
         return ""
     other = golden.tiles[index] != run.tiles[index]
     return f"; {int(other.sum())} of {other.size} tiles of the whole picture differ" if other.size else ""
 
 
-def _fitting(image: Array) -> Array:
+def _downsample(image: Array) -> Array:
     step = -(-max(image.shape[:2]) // _LARGEST)
     return image[::step, ::step]
 
 
-def _span(*images: Array) -> tuple[float, float]:
+def _value_range(*images: Array) -> tuple[float, float]:
     """Lowest and highest of all values that are finite, zero left out where it is the lowest of depths."""
     values = [image[np.isfinite(image)] if image.dtype.kind == "f" else image.reshape(-1) for image in images]
     values = [v for v in values if v.size]
@@ -116,7 +119,7 @@ def _absolute_difference(ours: Array, theirs: Array) -> Array:
     return np.where(same, 0.0, np.where(np.isfinite(off), off, np.nan))
 
 
-def _mean(apart: Array) -> float:
+def _mean_difference(apart: Array) -> float:
     """What is finite only in one of two counts as far."""
     return float(np.nan_to_num(apart, nan=255.0).mean()) if apart.size else 0.0
 
@@ -126,22 +129,22 @@ def _amplified_difference(apart: Array, full: float) -> tuple[float, Array]:
     most = float(apart[np.isfinite(apart)].max(initial=0.0))
     factor = max(1.0, full / most) if most > 0.0 else 1.0
     scaled = np.where(np.isfinite(apart), apart * factor * 255.0 / full, 255.0)
-    return factor, _three(np.clip(scaled, 0, 255).astype(np.uint8))
+    return factor, _three_channels(np.clip(scaled, 0, 255).astype(np.uint8))
 
 
-def _colours(image: Array, encoding: str, low: float, high: float) -> Array:
+def _display_pixels(image: Array, encoding: str, low: float, high: float) -> Array:
     """As OpenCV writes it: three channels, blue first."""
     if image.dtype != np.uint8:
         finite = np.isfinite(image)
         scaled = np.where(finite, (np.where(finite, image, low).astype(np.float64) - low) / (high - low), 0.0)
-        return _three(np.clip(scaled * 255.0, 0, 255).astype(np.uint8))
+        return _three_channels(np.clip(scaled * 255.0, 0, 255).astype(np.uint8))
     if image.ndim == 3 and image.shape[2] >= 3:
         three = image[:, :, :3]
         return three if encoding.lower().startswith(_BLUE_FIRST[0]) or encoding == _BLUE_FIRST[1] else three[:, :, ::-1]
-    return _three(image)
+    return _three_channels(image)
 
 
-def _three(image: Array) -> Array:
+def _three_channels(image: Array) -> Array:
     plane = image if image.ndim == 2 else image[:, :, 0]
     return np.repeat(plane[:, :, None], 3, axis=2)
 
