@@ -46,7 +46,7 @@ class RunKeys:
             self.press(self._left.popleft())
         if self._keyboard.is_lost and self._teleop is not None and not self._was_told:
             self._was_told = True
-            self._teleop.let_go()
+            self._teleop.release_keys()
             print_status("the terminal is gone: the robot is stopped, no key will come any more")
 
     def _is_stepping(self) -> bool:

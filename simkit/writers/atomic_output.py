@@ -217,7 +217,7 @@ def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-            Path(temporary).chmod(_MODE & ~_umask())
+            Path(temporary).chmod(_MODE & ~current_umask())
             os.replace(temporary, target)  # noqa: PTH105 - atomic on every platform
         except BaseException:
             Path(temporary).unlink(missing_ok=True)
@@ -227,8 +227,8 @@ def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
         raise InputError(f"SK-CLI-016 cannot write {path}: {said}", "SK-CLI-016") from None
 
 
-def _umask() -> int:
-    """What a new file is not given; there is no way to ask without setting it."""
+def current_umask() -> int:
+    """Return the permissions that a new file is not given; there is no way to ask without setting them."""
     mask = os.umask(0o022)
     os.umask(mask)
     return mask

@@ -111,17 +111,17 @@ class Keyboard:
     def __init__(self, file: int) -> None:
         self._file = file
         self._decoder = KeyDecoder()
-        self._before: list[Any] | None = None  # the terminal's modes, as they were found
-        self._is_taken = False
+        self._original_modes: list[Any] | None = None  # the terminal's modes, as they were found
+        self._is_key_mode = False
         self._handlers: dict[int, Any] = {}
         self.is_lost = False
 
     def __enter__(self) -> Keyboard:
         if threading.current_thread() is threading.main_thread():
-            for number, handler in ((signal.SIGTSTP, self._stop), (signal.SIGCONT, self._go_on)):
+            for number, handler in ((signal.SIGTSTP, self._suspend), (signal.SIGCONT, self._continue)):
                 if signal.getsignal(number) is signal.SIG_DFL:  # somebody ignores them, or has ideas of their own
                     self._handlers[number] = signal.signal(number, handler)
-        self._take()
+        self._enter_key_mode()
         return self
 
     def __exit__(
@@ -130,14 +130,14 @@ class Keyboard:
         for number, handler in self._handlers.items():
             signal.signal(number, handler)
         self._handlers.clear()
-        self._give_back(drop_keys=True)
+        self._restore_modes(drop_keys=True)
 
     def read(self) -> list[str]:
         """The keys pressed since it was last asked, the oldest first; at once, and of a flood only the first ones."""
-        if self.is_lost or not (self._is_taken or self._take()):
+        if self.is_lost or not (self._is_key_mode or self._enter_key_mode()):
             return []
         try:
-            if not self._is_in_front() or not select.select([self._file], [], [], 0)[0]:
+            if not self._is_foreground() or not select.select([self._file], [], [], 0)[0]:
                 return []
             data = os.read(self._file, _READ_BYTES)
         except BlockingIOError:
@@ -150,61 +150,61 @@ class Keyboard:
 
     # ------------------------------------------------------------------ the terminal's modes
 
-    def _is_in_front(self) -> bool:
+    def _is_foreground(self) -> bool:
         """Whether the terminal is ours to use; one that controls no processes always is."""
         try:
             return os.tcgetpgrp(self._file) == os.getpgrp()
         except OSError:
             return True
 
-    def _take(self) -> bool:
+    def _enter_key_mode(self) -> bool:
         """Has the terminal give keys; whether it does."""
         import termios
 
-        if not self._is_in_front():
+        if not self._is_foreground():
             return False
         try:
             modes = termios.tcgetattr(self._file)
-            if self._before is None or modes[3] & termios.ICANON:
-                self._before = modes
+            if self._original_modes is None or modes[3] & termios.ICANON:
+                self._original_modes = modes
             modes = [*modes[:3], modes[3] & ~(termios.ICANON | termios.ECHO), *modes[4:6], list(modes[6])]
             modes[6][termios.VMIN], modes[6][termios.VTIME] = 1, 0
             termios.tcsetattr(self._file, termios.TCSANOW, modes)
         except termios.error:
             self.is_lost = True
             return False
-        self._is_taken = True
+        self._is_key_mode = True
         return True
 
-    def _give_back(self, *, drop_keys: bool) -> None:
+    def _restore_modes(self, *, drop_keys: bool) -> None:
         import termios
 
-        if not self._is_taken or self._before is None:
+        if not self._is_key_mode or self._original_modes is None:
             return
-        self._is_taken = False
-        if not self._is_in_front():
+        self._is_key_mode = False
+        if not self._is_foreground():
             return
         try:
             if drop_keys:  # keys that nobody has taken are none of the shell's
                 termios.tcflush(self._file, termios.TCIFLUSH)
-            termios.tcsetattr(self._file, termios.TCSANOW, self._before)
+            termios.tcsetattr(self._file, termios.TCSANOW, self._original_modes)
         except termios.error:
             self.is_lost = True
 
     # ------------------------------------------------------------------ Ctrl-Z and fg
 
-    def _stop(self, number: int, _: FrameType | None) -> None:
+    def _suspend(self, number: int, _: FrameType | None) -> None:
         """Ctrl-Z: leaves the terminal to the shell, with its cursor, and stops as it would have without us."""
-        self._give_back(drop_keys=False)
+        self._restore_modes(drop_keys=False)
         if sys.stdout is not None and _is_terminal(sys.stdout.fileno):
             os.write(sys.stdout.fileno(), _SHOW_CURSOR)
         before = signal.signal(number, signal.SIG_DFL)
         signal.pthread_kill(threading.get_ident(), number)  # of this thread, so that it stops here and not later
         signal.signal(number, before)
 
-    def _go_on(self, _: int, __: FrameType | None) -> None:
+    def _continue(self, _: int, __: FrameType | None) -> None:
         """fg or bg: the terminal's modes are looked at anew."""
-        self._is_taken = False
+        self._is_key_mode = False
 
 
 def _is_terminal(fileno: Callable[[], int]) -> bool:

@@ -195,7 +195,7 @@ class Teleop:
         self.speeds, self.is_expired = _EMPTY, False
         self._send()
 
-    def let_go(self) -> None:
+    def release_keys(self) -> None:
         """Nobody will press a key any more: stops what is being driven, and is silent from then on."""
         if self._is_active:
             self.stop()
@@ -253,7 +253,7 @@ class Teleop:
         self._key_time = min(self._key_time, self._sim.time)
         if self._sim.time - self._key_time >= self._timeout - 1e-9:
             was_moving = any(self.speeds)
-            self.let_go()
+            self.release_keys()
             self.is_expired = was_moving
         else:
             self._send()

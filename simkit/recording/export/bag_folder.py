@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 from array import array
@@ -20,7 +19,7 @@ from simkit.recording.bags.recorder import matches_topic
 from simkit.recording.export.images import NpzFile, PngFiles, VideoFile
 from simkit.recording.export.point_clouds import CloudFiles
 from simkit.recording.export.tables import TEXT, WRITERS, Column, check_parquet, columns_of
-from simkit.writers.atomic_output import abandoned_folders, unfinished_folder, write_obstacle
+from simkit.writers.atomic_output import abandoned_folders, current_umask, unfinished_folder, write_obstacle
 
 if TYPE_CHECKING:
     from simkit.recording.bags.reader import BagReader
@@ -72,7 +71,7 @@ def export_folder(path: Path, *, overwrite: bool) -> Iterator[Path]:
     path.parent.mkdir(parents=True, exist_ok=True)
     draft = unfinished_folder(path.parent, path.name)
     try:
-        draft.chmod(0o777 & ~_umask())
+        draft.chmod(0o777 & ~current_umask())
         yield draft
         if path.exists():
             old = unfinished_folder(path.parent, path.name)
@@ -102,12 +101,6 @@ def write_index(folder: Path, rows: dict[str, object]) -> None:
     """The page that says what is where."""
     text = json.dumps({"made_by": _MARK, **rows}, indent=1, ensure_ascii=False)
     (folder / INDEX).write_text(text + "\n", encoding="utf-8", errors="replace")
-
-
-def _umask() -> int:
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask
 
 
 def _folder_error(text: str) -> InputError:
