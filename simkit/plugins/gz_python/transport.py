@@ -113,7 +113,7 @@ class Publisher:
     def __bool__(self) -> bool:
         return True
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Publisher:
+    def __deepcopy__(self, memo: dict[int, object]) -> Publisher:
         return self
 
 
@@ -241,7 +241,7 @@ class Node:
     def __getattr__(self, name: str) -> Any:
         raise missing_name_error("Node", name, dir(type(self)), _INSTEAD)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Node:
+    def __deepcopy__(self, memo: dict[int, object]) -> Node:
         return self
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -194,7 +194,7 @@ class CollisionCheck:
             floats = np.zeros(model.nbody, dtype=bool)
         self._is_loose = np.append(floats[roots] & ~self._is_robot[:-1], False)
 
-    def _find_held(self, now: Any) -> list[_HeldObject]:
+    def _find_held(self, now: mujoco.MjData) -> list[_HeldObject]:
         """What the moving links hold: a free body that touches two or more of them."""
         model = self._model
         touched: dict[int, set[int]] = {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from simkit.diagnostics import NOWHERE, Where
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
+    from simkit.msgs import Motion as MotionMessage
     from simkit.runtime import Joint
 
 
@@ -45,10 +46,10 @@ class Motion:
         """When its last point is reached as the file has it, the approach apart [s]."""
         return self.times[-1]
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Motion:
+    def __deepcopy__(self, memo: dict[int, object]) -> Motion:
         return self
 
-    def as_message(self) -> dict[str, Any]:
+    def as_message(self) -> dict[str, object]:
         """The fields of a `play_motion2_msgs/msg/Motion`."""
         return {
             "key": self.key,
@@ -60,13 +61,13 @@ class Motion:
             "times_from_start": list(self.times),
         }
 
-    def as_info(self) -> dict[str, Any]:
+    def as_info(self) -> dict[str, object]:
         """The fields of a `play_motion_msgs/msg/MotionInfo`."""
         duration = msgs.duration(round(self.duration * 1e9))
         return {"name": self.key, "joints": list(self.joints), "duration": duration}
 
 
-def motion_of_message(message: Any) -> Motion:
+def motion_of_message(message: MotionMessage) -> Motion:
     """The motion that a `play_motion2_msgs/msg/Motion` holds.
 
     Raises:

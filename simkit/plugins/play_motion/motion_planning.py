@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -185,7 +185,7 @@ def check_collisions(
             raise MotionRefused(NO_PLAN_FOUND, f"motion {motion.key!r} collides {where}: {meeting}")
 
 
-def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryController, robot: Model) -> dict[str, Any]:
+def trajectory_goal(found: Course, motion: Motion, controller: TrajectoryController, robot: Model) -> dict[str, object]:
     """The goal of one controller: its joints of a course; those that the motion leaves out stay where they are."""
     columns = [motion.joints.index(joint) if joint in motion.joints else None for joint in controller.joints]
     here = [float(robot.joints[joint].position) if joint in robot.joints else 0.0 for joint in controller.joints]

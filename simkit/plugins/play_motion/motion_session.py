@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, SimkitError
@@ -104,7 +104,7 @@ def play_motions(
 
 
 def _largest_error(player: PlayMotion, motion: Motion) -> tuple[str, float]:
-    joints: Any = player.robot.joints
+    joints = player.robot.joints
     off = {name: float(joints[name].position) - v for name, v in zip(motion.joints, motion.positions[-1], strict=True)}
     name = max(off, key=lambda one: abs(off[one]))
     return name, off[name]

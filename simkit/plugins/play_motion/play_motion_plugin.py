@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -284,7 +284,7 @@ class PlayMotion(ModelPlugin):
             text = f"Joint Trajectory failed: {name}: {why}"
         self._fail(run, _TRAJECTORY_RESULTS.get(code, OTHER_ERROR), text)
 
-    def _on_feedback(self, feedback: Any) -> None:
+    def _on_feedback(self, feedback: object) -> None:
         """A controller says how far it is; the first of those that are still at it is passed on."""
         now = self.sim.time_ns
         for run in tuple(self._runs):
@@ -315,7 +315,7 @@ def _is_ros_1(goal: GoalHandle) -> bool:
     return hasattr(goal.request, "priority")
 
 
-def _result_fields(goal: GoalHandle, code: int, text: str) -> dict[str, Any]:
+def _result_fields(goal: GoalHandle, code: int, text: str) -> dict[str, object]:
     """The fields of the result message that the goal's action has."""
     if _is_ros_1(goal):
         return {"error_code": code, "error_string": text}

@@ -11,6 +11,14 @@ from simkit.plugins.play_motion.motion_planning import MotionRefused, find_joint
 from simkit.plugins.play_motion.trajectory_controllers import active_controllers
 
 if TYPE_CHECKING:
+    from simkit.msgs import (
+        AddMotion_Request,
+        GetMotionInfo_Request,
+        IsAlreadyThere_Request,
+        IsJointListReady_Request,
+        IsMotionReady_Request,
+        RemoveMotion_Request,
+    )
     from simkit.runtime import Model, Simulation
 
 
@@ -57,23 +65,23 @@ class _ServiceHandlers:
     def __init__(self, player: MotionPlayer) -> None:
         self._player = player
 
-    def keys(self, _: Any) -> dict[str, Any]:
+    def keys(self, _: object) -> dict[str, object]:
         return {"motion_keys": list(self._player.known)}
 
-    def infos(self, _: Any) -> dict[str, Any]:
+    def infos(self, _: object) -> dict[str, object]:
         return {"motions": [motion.as_info() for motion in self._player.known.values()]}
 
-    def motion(self, request: Any) -> dict[str, Any]:
+    def motion(self, request: GetMotionInfo_Request) -> dict[str, object]:
         motion = self._player.known.get(request.motion_key)
         return {"motion": motion.as_message()} if motion is not None else {}
 
-    def is_ready(self, request: Any) -> dict[str, Any]:
+    def is_ready(self, request: IsMotionReady_Request) -> dict[str, object]:
         motion = self._player.known.get(request.motion_key)
         if motion is None or not self._are_ready(motion.joints):
             return {"is_ready": False}
         return {"is_ready": not limit_violations(motion, self._player.robot.joints)}
 
-    def are_joints_ready(self, request: Any) -> dict[str, Any]:
+    def are_joints_ready(self, request: IsJointListReady_Request) -> dict[str, object]:
         return {"is_ready": self._are_ready(request.joints)}
 
     def _are_ready(self, joints: Sequence[str]) -> bool:
@@ -84,7 +92,7 @@ class _ServiceHandlers:
             return False
         return player.is_idle
 
-    def add(self, request: Any) -> dict[str, Any]:
+    def add(self, request: AddMotion_Request) -> dict[str, object]:
         known = self._player.known
         try:
             motion = motion_of_message(request.motion)
@@ -96,10 +104,10 @@ class _ServiceHandlers:
         known[motion.key] = motion
         return {"success": True}
 
-    def remove(self, request: Any) -> dict[str, Any]:
+    def remove(self, request: RemoveMotion_Request) -> dict[str, object]:
         return {"success": self._player.known.pop(request.motion_key, None) is not None}
 
-    def is_there(self, request: Any) -> dict[str, Any]:
+    def is_there(self, request: IsAlreadyThere_Request) -> dict[str, object]:
         motion, joints = self._player.known.get(request.motion_name), self._player.robot.joints
         if motion is None or any(name not in joints for name in motion.joints):
             return {"already_there": False}

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.compiler.servos import drive_gains, felt_inertias
-from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
+from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY, Indices
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class ControlLoops:
     def choose(
         cls,
         model: mujoco.MjModel,
-        ids: Any,
+        ids: Indices,
         joints: Sequence[HardwareJoint],
         pids: Mapping[str, Mapping[str, PidGains]],
     ) -> ControlLoops:
@@ -115,7 +115,7 @@ class ActiveModes:
         period: that `least` and `most` are of, how far references may move in it [s].
     """
 
-    modes: Any
+    modes: Indices
     nothing: Vector
     kp: Vector
     kv: Vector
@@ -134,17 +134,22 @@ class ActiveModes:
     rolling: list[tuple[int, int, int, int, float, float]]
     slacks: list[float]
     catch_up: list[float]
-    claims: Any
+    claims: Indices
     groups: list[int]
     has_effort: bool
     has_integral: bool
     period: float = 0.0
-    least: Any = None
-    most: Any = None
+    least: Vector = field(default_factory=lambda: np.zeros(0))
+    most: Vector = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def of(
-        cls, modes: Any, groups: Any, loops: ControlLoops, addresses: tuple[Any, Any, Any], fastest: Vector
+        cls,
+        modes: Indices,
+        groups: Indices,
+        loops: ControlLoops,
+        addresses: tuple[Indices, Indices, Indices],
+        fastest: Vector,
     ) -> ActiveModes:
         """What these modes amount to.
 

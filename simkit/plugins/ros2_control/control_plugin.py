@@ -24,8 +24,10 @@ from simkit.plugins.ros_names import RosNames
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+    from simkit.plugins.base import Plugin
     from simkit.plugins.ros2_control.parameter_files import ParameterFile
     from simkit.plugins.ros2_control.run_parameter_files import RunParameterFile
+    from simkit.runtime import Model
     from simkit.scene import SceneModel, SceneWorld
 
 UPDATE_RATE: Final = 100.0
@@ -159,7 +161,7 @@ class ControlPlugin(ModelPlugin):
 
     # ------------------------------------------------------------------ at work
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self.hardware.load(self.sim)
         self.manager = ControllerManager(self, self.hardware, self.files, self._manager_name, params.diagnostics)
         self._stand_apart(parent.scoped.partition("::")[0], params)
@@ -248,7 +250,7 @@ class GazeboRosControl(ControlPlugin):
         self._take_namespace(scene.name, params)
         super().prepare(scene, params, builder)
 
-    def load(self, parent: Any, params: Params) -> None:
+    def load(self, parent: Model, params: Params) -> None:
         self._take_namespace(parent.name, params)
         super().load(parent, params)
 
@@ -282,7 +284,7 @@ class GazeboRosControl(ControlPlugin):
 
 
 def report_unused_parameter_files(
-    given: Iterable[RunParameterFile], plugins: Iterable[Any], world: SceneWorld, diagnostics: Diagnostics
+    given: Iterable[RunParameterFile], plugins: Iterable[Plugin], world: SceneWorld, diagnostics: Diagnostics
 ) -> None:
     """Warn about parameter files of a run that no control plugin reads.
 

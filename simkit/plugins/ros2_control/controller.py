@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
     from simkit.plugins.ros2_control.hardware import Hardware
     from simkit.runtime import Simulation
+    from simkit.runtime.communication.action_server import Action, GoalHandle
     from simkit.runtime.communication.parameter_server import Parameter
+    from simkit.runtime.communication.publisher import Listener, Publisher
+    from simkit.runtime.communication.service_server import Service
 
 
 Key = tuple[str, str]
@@ -25,10 +28,13 @@ Handle = TypeVar("Handle")
 
 
 class ControllerEndpoints:
-    """The ends of one controller name.
+    """Topics, services and actions that the controllers of one name have opened.
+
+    They stay open with the controller's name: one that is unloaded and loaded again, or configured again, finds them
+    open, and what comes in meanwhile is dropped.
 
     Attributes:
-        handlers: who answers now, by what kind of end it is and its name.
+        handlers: callbacks of the present controller, by the kind of endpoint and its name.
     """
 
     def __init__(self) -> None:
@@ -36,22 +42,22 @@ class ControllerEndpoints:
         self.handlers: dict[Key, Callable[..., Any]] = {}
 
     def open(self, key: Key, make: Callable[[], Handle]) -> Handle:
-        """The end of that name, made where there is none yet."""
+        """Return the endpoint of that name, and make it where there is none yet."""
         if key not in self._handles:
             self._handles[key] = make()
         found: Handle = self._handles[key]
         return found
 
     def relay(self, key: Key, handler: Callable[..., Any], absent: Callable[..., Any] = lambda *_: None) -> Relay:
-        """A call to whoever answers at that end when it comes: from now on `handler`; else `absent`."""
+        """Return a callback that calls the present handler of an endpoint: `handler` from now on, or else `absent`."""
         self.handlers[key] = handler
         return lambda *values: self.handlers.get(key, absent)(*values)
 
     def close(self) -> None:
-        """Leaves nobody to answer."""
+        """Remove all handlers."""
         self.handlers = {}
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> ControllerEndpoints:
+    def __deepcopy__(self, memo: dict[int, object]) -> ControllerEndpoints:
         return self
 
 
@@ -145,37 +151,41 @@ class Controller(abc.ABC):
         """A name as the controller's node has it: `~/state` is `<namespace>/<controller>/state`."""
         return f"{self.name}/{name[2:]}" if name.startswith("~/") else name
 
-    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Any:
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """As `Plugin.advertise`, with the controller's node."""
         name = self.topic(topic)
-        return self.ends.open(
+        publisher: Publisher = self.ends.open(
             ("advertise", f"{name} {type_name}"), lambda: self.plugin.advertise(name, type_name, latched=latched)
         )
+        return publisher
 
-    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Any:
+    def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Listener:
         """As `Plugin.listen`, with the controller's node."""
         name, key = self.topic(topic), ("listen", f"{self.topic(topic)} {types}")
         relay = self.ends.relay(key, callback)
-        return self.ends.open(key, lambda: self.plugin.listen(name, types, relay))
+        listener: Listener = self.ends.open(key, lambda: self.plugin.listen(name, types, relay))
+        return listener
 
-    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Any:
+    def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
         """As `Plugin.offer`, with the controller's node."""
         name, key = self.topic(service), ("offer", self.topic(service))
         relay = self.ends.relay(key, handler)
-        return self.ends.open(key, lambda: self.plugin.offer(name, type_name, relay))
+        opened: Service = self.ends.open(key, lambda: self.plugin.offer(name, type_name, relay))
+        return opened
 
     def act(
         self,
         action: str,
         type_name: str,
-        on_goal: Callable[[Any], None],
-        on_cancel: Callable[[Any], bool | None] | None = None,
-    ) -> Any:
+        on_goal: Callable[[GoalHandle], None],
+        on_cancel: Callable[[GoalHandle], bool | None] | None = None,
+    ) -> Action:
         """As `Plugin.act`, with the controller's node."""
         name, key = self.topic(action), ("act", self.topic(action))
         relay = self.ends.relay(key, on_goal, lambda goal: goal.reject("the controller is not loaded"))
         cancel = on_cancel and self.ends.relay(("cancel", name), on_cancel)
-        return self.ends.open(key, lambda: self.plugin.act(name, type_name, relay, cancel))
+        opened: Action = self.ends.open(key, lambda: self.plugin.act(name, type_name, relay, cancel))
+        return opened
 
     def declare(
         self,
@@ -249,7 +259,7 @@ class Controller(abc.ABC):
                     message = f"{message}, snapshots and reset leave it as it is: {error}"
                     self.sim.reports.warning("SK-PLUGIN-006", message, self.params.where)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Controller:
+    def __deepcopy__(self, memo: dict[int, object]) -> Controller:
         return self
 
 
@@ -273,5 +283,5 @@ class OneTimeWarnings:
             code, f"controller {controller.name!r}: {message}", controller.params.where, hint
         )
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> OneTimeWarnings:
+    def __deepcopy__(self, memo: dict[int, object]) -> OneTimeWarnings:
         return self

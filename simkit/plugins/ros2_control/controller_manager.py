@@ -361,5 +361,5 @@ class ControllerManager:
             self.controllers[name] = loaded
         self.hardware.set_state(hardware)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> ControllerManager:
+    def __deepcopy__(self, memo: dict[int, object]) -> ControllerManager:
         return self

@@ -9,6 +9,7 @@ from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.controller_manager import ControllerManager, LoadedController, controller_kinds
 
 if TYPE_CHECKING:
+    from simkit.msgs import SetHardwareComponentState_Request, SwitchController_Request
     from simkit.plugins.ros2_control.hardware_description import ComponentDescription
 
 _STRICT: Final = 2
@@ -47,7 +48,7 @@ def _report_problem(manager: ControllerManager, problem: str) -> bool:
     return not problem
 
 
-def _state(manager: ControllerManager, name: str, loaded: LoadedController) -> dict[str, Any]:
+def _state(manager: ControllerManager, name: str, loaded: LoadedController) -> dict[str, object]:
     controller = loaded.controller
     is_configured = loaded.state != "unconfigured"
     return {
@@ -60,7 +61,7 @@ def _state(manager: ControllerManager, name: str, loaded: LoadedController) -> d
     }
 
 
-def _types() -> dict[str, Any]:
+def _types() -> dict[str, object]:
     kinds = list(controller_kinds())
     return {"types": kinds, "base_classes": [f"{Controller.__module__}.{Controller.__name__}"] * len(kinds)}
 
@@ -71,7 +72,7 @@ def _load(manager: ControllerManager, name: str) -> bool:
     return _report_problem(manager, manager.configure(name)) if done and manager.is_ros_1 else done
 
 
-def _switch(manager: ControllerManager, request: Any) -> bool:
+def _switch(manager: ControllerManager, request: SwitchController_Request) -> bool:
     strictness = int(request.strictness)
     if strictness not in (0, _BEST_EFFORT, _STRICT):
         return _report_problem(
@@ -94,11 +95,11 @@ def _reload(manager: ControllerManager, force_kill: bool) -> bool:
     return True
 
 
-def _interface(manager: ControllerManager, name: str, *, is_command: bool) -> dict[str, Any]:
+def _interface(manager: ControllerManager, name: str, *, is_command: bool) -> dict[str, object]:
     return {"name": name, "is_available": True, "is_claimed": is_command and name in manager.hardware.owners}
 
 
-def _interfaces(manager: ControllerManager) -> dict[str, Any]:
+def _interfaces(manager: ControllerManager) -> dict[str, object]:
     hardware = manager.hardware
     return {
         "command_interfaces": [_interface(manager, n, is_command=True) for n in hardware.commands.names],
@@ -106,11 +107,11 @@ def _interfaces(manager: ControllerManager) -> dict[str, Any]:
     }
 
 
-def _component(manager: ControllerManager, component: ComponentDescription) -> dict[str, Any]:
+def _component(manager: ControllerManager, component: ComponentDescription) -> dict[str, object]:
     owners = {one.name for one in component.joints} | {one.name for one in component.sensors}
     hardware = manager.hardware
 
-    def own(names: tuple[str, ...], *, is_command: bool) -> list[dict[str, Any]]:
+    def own(names: tuple[str, ...], *, is_command: bool) -> list[dict[str, object]]:
         mine = (name for name in names if name.rpartition("/")[0] in owners)
         return [_interface(manager, name, is_command=is_command) for name in mine]
 
@@ -124,7 +125,7 @@ def _component(manager: ControllerManager, component: ComponentDescription) -> d
     }
 
 
-def _set_component(manager: ControllerManager, request: Any) -> dict[str, Any]:
+def _set_component(manager: ControllerManager, request: SetHardwareComponentState_Request) -> dict[str, object]:
     """Hardware of the simulation is always active: only that may be asked for."""
     active = {"id": 3, "label": "active"}
     names = [component.name for component in manager.hardware.components]

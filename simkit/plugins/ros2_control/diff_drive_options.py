@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -171,7 +170,7 @@ class DriveOptions:
     publish_limited: bool
     is_ros_1: bool
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> DriveOptions:
+    def __deepcopy__(self, memo: dict[int, object]) -> DriveOptions:
         return self
 
 

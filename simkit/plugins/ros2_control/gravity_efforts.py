@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -27,9 +27,9 @@ class GravityEfforts:
 
     def __init__(self, sim: Simulation, joints: Sequence[str]) -> None:
         self._sim, self._joints = sim, tuple(joints)
-        self._model: Any = None
+        self._model: mujoco.MjModel | None = None
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> GravityEfforts:
+    def __deepcopy__(self, memo: dict[int, object]) -> GravityEfforts:
         return self
 
     def now(self) -> Vector:

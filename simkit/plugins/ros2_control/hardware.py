@@ -13,12 +13,14 @@ from simkit.compiler.couplings import Couplings
 from simkit.plugins.ros2_control.actuator_modes import EFFORT_MODE, FREE, POSITION_MODE, SPRING_MODE, VELOCITY_MODE
 from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
 from simkit.plugins.ros2_control.hardware_sensors import HardwareSensor, find_sensor
-from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY, InterfaceTable
+from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY, Indices, InterfaceTable, Reading
 from simkit.plugins.ros2_control.joint_actuators import JointActuators
 from simkit.plugins.ros2_control.transmissions import TransmissionLaw, transmission_laws
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.compiler import SpecBuilder
     from simkit.diagnostics import Diagnostics
     from simkit.plugins.ros2_control.hardware_description import ComponentDescription, JointDescription
@@ -56,13 +58,13 @@ class Hardware:
     owners: dict[str, str] = field(default_factory=dict)
     springs: dict[str, dict[str, tuple[float, float]]] = field(default_factory=dict)
     holds: bool = True
-    _sim: Any = None
-    _sources: Any = field(default_factory=lambda: np.zeros(0, np.intp))
-    _unclaimed: Any = None  # where in `_sources` there is none
+    _sim: Simulation = field(init=False, repr=False)
+    _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
+    _unclaimed: Indices = field(default_factory=lambda: np.zeros(0, np.intp))  # where in `_sources` there is none
     _read: frozenset[str] = frozenset()  # state interfaces that somebody reads
-    _model: Any = None
-    _plan: list[tuple[Any, Any]] = field(default_factory=list)  # (where in `states`, what gives them)
-    _late: list[tuple[Any, Any]] = field(default_factory=list)  # read when somebody asks
+    _model: mujoco.MjModel | None = None
+    _plan: list[Reading | tuple[int, Callable[[], float]]] = field(default_factory=list)  # read at every update
+    _late: list[Reading] = field(default_factory=list)  # read when somebody asks
 
     @classmethod
     def of(
@@ -256,7 +258,7 @@ class Hardware:
         self.drives.modes, self.drives.targets, self.drives.integrals = (one.copy() for one in drives)
         self._group()
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Hardware:
+    def __deepcopy__(self, memo: dict[int, object]) -> Hardware:
         return self
 
 
@@ -287,5 +289,5 @@ def _actuator_reading(hardware: Hardware, actuator: str, interface: str) -> Call
     return lambda: float(law.actuate(interface, joints())[row])
 
 
-def _sensor_reading(sensor: HardwareSensor, sim: Any, interfaces: tuple[str, ...]) -> Any:
+def _sensor_reading(sensor: HardwareSensor, sim: Simulation, interfaces: tuple[str, ...]) -> Callable[[], Vector]:
     return lambda: sensor.read(sim, interfaces)

@@ -14,6 +14,7 @@ from simkit.plugins.ros2_control.hardware_description import SensorDescription
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
+    from simkit.runtime import Simulation
     from simkit.scene import SceneModel
 
 _IMU: Final = {
@@ -41,7 +42,7 @@ class HardwareSensor:
     scoped: str
     kind: str
 
-    def read(self, sim: Any, interfaces: tuple[str, ...]) -> Vector:
+    def read(self, sim: Simulation, interfaces: tuple[str, ...]) -> Vector:
         """What it measured last, by state interface; NaN before its first sample and for what it does not measure."""
         message = sim.sensor(self.scoped).latest
         fields = SENSOR_INTERFACES[self.kind]

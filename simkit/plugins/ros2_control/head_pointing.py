@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -14,7 +14,9 @@ from simkit.errors import InputError
 from simkit.pose import IDENTITY, Pose, Vector
 
 if TYPE_CHECKING:
+    from simkit.msgs import CameraInfo
     from simkit.runtime import Simulation
+    from simkit.scene import SceneModel
 
 _GRID: Final = 25  # directions tried for each joint before the best is refined
 _STEPS: Final = 60
@@ -159,7 +161,7 @@ def is_moved_by_joint(sim: Simulation, link: str, joint: str) -> bool:
     return body == turning
 
 
-def _sensor_frame(sim: Simulation, scene: Any, name: str, names: list[str]) -> tuple[str, Pose] | None:
+def _sensor_frame(sim: Simulation, scene: SceneModel, name: str, names: list[str]) -> tuple[str, Pose] | None:
     for described in scene.all_sensors():
         if described.on_joint or not sim.has_sensor(described.scoped):
             continue
@@ -171,7 +173,7 @@ def _sensor_frame(sim: Simulation, scene: Any, name: str, names: list[str]) -> t
     return None
 
 
-def pixel_ray(camera_info: Any, u: float, v: float) -> Vector:
+def pixel_ray(camera_info: CameraInfo, u: float, v: float) -> Vector:
     """The point at a distance of 1 m along the optical axis that a camera sees at a pixel; shape (3,) [m].
 
     Args:
@@ -196,13 +198,13 @@ def pixel_ray(camera_info: Any, u: float, v: float) -> Vector:
 
 
 def pixel_goal(
-    camera_info: Any,
+    camera_info: CameraInfo,
     pixel: Sequence[float],
     *,
     distance: float = 1.0,
     min_duration: float = 0.5,
     max_velocity: float = 1.0,
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """The goal of a `control_msgs/action/PointHead` that brings what is seen at a pixel to the optical axis.
 
         info = sim.subscribe("/head_front_camera/rgb/camera_info")

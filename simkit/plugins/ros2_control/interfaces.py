@@ -3,25 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.pose import Vector
+
+Indices = npt.NDArray[np.intp]
+"""Places in an array, shape (n,)."""
 
 POSITION: Final = "position"
 VELOCITY: Final = "velocity"
 EFFORT: Final = "effort"
 
 
-def array_index(places: Sequence[int]) -> Any:
-    """Places of an array as an index: a slice where they follow on each other, which is the quickest."""
+def array_index(places: Sequence[int]) -> slice | Indices:
+    """Return places of an array as an index: a slice where they are consecutive, which is the fastest."""
     first, count = (places[0], len(places)) if len(places) else (0, 0)
     if count and list(places) == list(range(first, first + count)):
         return slice(first, first + count)
     return np.array(places, dtype=np.intp)
+
+
+Reading = tuple[Indices, Callable[[], Vector]]
+"""Places of a table, and the function that reads their values."""
 
 
 class InterfaceTable:
@@ -38,13 +46,13 @@ class InterfaceTable:
         self.names: tuple[str, ...] = tuple(dict.fromkeys(names))
         self._index = {name: k for k, name in enumerate(self.names)}
         self.values: Vector = np.full(len(self.names), np.nan)
-        self.late: list[tuple[Any, Callable[[], Any]]] = []
+        self.late: list[Reading] = []
         self.late_places: frozenset[int] = frozenset()
 
     def catch_up(self, wanted: frozenset[int]) -> None:
         """Reads what is late and wanted."""
-        now: list[tuple[Any, Callable[[], Any]]] = []
-        later: list[tuple[Any, Callable[[], Any]]] = []
+        now: list[Reading] = []
+        later: list[Reading] = []
         for one in self.late:
             (later if wanted.isdisjoint(one[0].tolist()) else now).append(one)
         self.late[:] = later
@@ -81,7 +89,7 @@ class InterfaceSelection:
     def __len__(self) -> int:
         return len(self.names)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> InterfaceSelection:
+    def __deepcopy__(self, memo: dict[int, object]) -> InterfaceSelection:
         return self
 
     @property

@@ -17,24 +17,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
-from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops
+from simkit.plugins.ros2_control.actuator_modes import FREE, POSITION_MODE, SPRING_MODE, ActiveModes, ControlLoops, Mask
 from simkit.plugins.ros2_control.gravity_efforts import GravityEfforts
-from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY
+from simkit.plugins.ros2_control.interfaces import POSITION, VELOCITY, Indices
 from simkit.plugins.ros2_control.velocity_references import advance_references
 from simkit.pose import Vector
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.compiler import SpecBuilder
+    from simkit.compiler.name_map import ActuatorRef
     from simkit.plugins.ros2_control.hardware_joint import HardwareJoint, PidGains
     from simkit.runtime import Simulation
 
 _LARGEST_CONTROL: Final = 9e9  # controls of 1e10 or more are none for the engine
+
+
+def _no_indices() -> Indices:
+    return np.zeros(0, np.intp)
 
 
 @dataclass(slots=True)
@@ -52,26 +58,27 @@ class JointActuators:
     """
 
     joints: tuple[HardwareJoint, ...] = ()
-    actuators: tuple[Any, ...] = ()
+    actuators: tuple[ActuatorRef, ...] = ()
     pids: Mapping[str, Mapping[str, PidGains]] = field(default_factory=dict)
-    modes: Any = field(default_factory=lambda: np.zeros(0, np.intp))
+    modes: Indices = field(default_factory=_no_indices)
     targets: Vector = field(default_factory=lambda: np.zeros(0))
     integrals: Vector = field(default_factory=lambda: np.zeros(0))
-    groups: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
-    _sim: Any = None
-    _model: Any = None
-    _ids: Any = None
-    _states: Any = None  # addresses of the actuators' states
-    _qpos: Any = None
-    _dofs: Any = None
-    _loops: Any = None
-    _leaders: Any = None
-    _leads: Any = None
-    _law: Any = None  # multiplier and offset (2, joints)
-    _ends: Any = None  # lower and upper (2, joints)
-    _fastest: Any = None
+    groups: Indices = field(default_factory=_no_indices)
+    _sim: Simulation = field(init=False, repr=False)
+    _is_loaded: bool = False
+    _model: mujoco.MjModel | None = None
+    _ids: Indices = field(default_factory=_no_indices)
+    _states: Indices = field(default_factory=_no_indices)  # addresses of the actuators' states
+    _qpos: Indices = field(default_factory=_no_indices)
+    _dofs: Indices = field(default_factory=_no_indices)
+    _loops: ControlLoops = field(init=False, repr=False)
+    _leaders: Indices = field(default_factory=_no_indices)
+    _leads: Mask = field(default_factory=lambda: np.zeros(0, bool))
+    _law: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # multiplier and offset (2, joints)
+    _ends: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # lower and upper (2, joints)
+    _fastest: Vector = field(default_factory=lambda: np.zeros(0))
     _follows: bool = False
-    _weights: Any = None
+    _weights: GravityEfforts = field(init=False, repr=False)
     _cached: ActiveModes | None = None
 
     @classmethod
@@ -98,6 +105,7 @@ class JointActuators:
     def load(self, sim: Simulation) -> None:
         """Ties them to a simulation; everything with a position interface holds where it is."""
         self._sim, self._weights = sim, GravityEfforts(sim, [joint.scoped for joint in self.joints])
+        self._is_loaded = True
         count = len(self.joints)
         self.integrals, self.groups = np.zeros(count), np.zeros(count, np.intp)
         self._bind()
@@ -106,20 +114,21 @@ class JointActuators:
         self.modes = np.full(count, -1)
         self.switch(np.array(idle, np.intp))
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> JointActuators:
+    def __deepcopy__(self, memo: dict[int, object]) -> JointActuators:
         return self
 
     def _bind(self) -> None:
         """Finds itself in the engine's model, another one after every change of structure."""
         sim = self._sim
-        self._model = model = sim.mj_model
+        is_first, self._model = self._model is None, sim.mj_model
+        model = self._model
         self._cached = None
         bindings = [sim.names.joint(joint.scoped) for joint in self.joints]
         self._ids = np.array([sim.names.actuator(ref) for ref in self.actuators], np.intp)
         self._states = np.array(model.actuator_actadr[self._ids], np.intp)
         self._qpos = np.array([b.qpos[0] for b in bindings], np.intp)
         self._dofs = np.array([b.dofs[0] for b in bindings], np.intp)
-        if self._loops is None:
+        if is_first:
             self._take_limits()
             ids = np.array([b.joint_ids[0] for b in bindings], np.intp)
             self._loops = ControlLoops.choose(model, ids, self.joints, self.pids)
@@ -156,9 +165,9 @@ class JointActuators:
         kp, kd = self._loops.gains[[index[name] for name in joints], SPRING_MODE].T
         return kp.copy(), kd.copy()
 
-    def switch(self, modes: Any) -> None:
+    def switch(self, modes: Indices) -> None:
         """Drives each joint in a mode from now on; a servo begins where its joint is."""
-        if self._sim is None or not len(self.joints) or np.array_equal(modes, self.modes):
+        if not self._is_loaded or not len(self.joints) or np.array_equal(modes, self.modes):
             return
         self._rebind_if_needed()
         sim = self._sim
@@ -252,8 +261,8 @@ class JointActuators:
             return targets, move / period
         led, speeds = self._roll(now, wanted, period)
         rate, ahead, reference = move / period, targets + move, targets
-        for (k, *_), place, speed in zip(now.rolling, led, speeds, strict=True):
-            reference[k] = ahead[k] = place
+        for (k, *_), position, speed in zip(now.rolling, led, speeds, strict=True):
+            reference[k] = ahead[k] = position
             rate[k] = speed
         self.targets = ahead
         return reference, rate

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,6 +16,15 @@ from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.parameter_block import read_names
 from simkit.plugins.ros2_control.trajectory import Setpoint
 from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.msgs import (
+        FollowJointTrajectory_Feedback,
+        JointTrajectoryControllerState,
+        JointTrajectoryPoint,
+        MultiDOFJointTrajectoryPoint,
+    )
+    from simkit.plugins.ros2_control.interfaces import Indices
 
 ACCELERATION: Final = "acceleration"
 _INTERFACE_ORDER: Final = (POSITION, VELOCITY, ACCELERATION, EFFORT)
@@ -50,11 +59,11 @@ class JointGroup:
     commanded_joints: tuple[str, ...]
     commands: tuple[str, ...]
     states: tuple[str, ...]
-    places: Any
+    places: Indices
     turning: Vector
     is_closed_loop: bool
     compared: Vector
-    span: Any
+    span: slice | Indices
 
     @classmethod
     def read(
@@ -93,7 +102,7 @@ class JointGroup:
         compared = np.array([[1.0], [float(velocities)], [float(accelerations)]])
         return cls(joints, commanded, by, measured, places, turning, is_closed, compared, array_index(places.tolist()))
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> JointGroup:
+    def __deepcopy__(self, memo: dict[int, object]) -> JointGroup:
         return self
 
     @property
@@ -168,7 +177,7 @@ class JointGroup:
         return rest
 
 
-def _commanded_joints(params: Params, joints: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
+def _commanded_joints(params: Params, joints: tuple[str, ...]) -> tuple[tuple[str, ...], Indices]:
     """The commanded joints, and their places: all, under the same or other names, or some of them."""
     commanded = tuple(read_names(params, "command_joints", code=_BAD_INTERFACES)) or joints
     if len(commanded) == len(joints):
@@ -205,34 +214,40 @@ class TrajectoryMessages:
     def __init__(self, group: JointGroup) -> None:
         self._group, self._names = group, list(group.joints)
         self._none = np.zeros(0)
+        self._point_type: type[JointTrajectoryPoint] = msgs.type_of(_POINT)
+        self._multi_dof_point_type: type[MultiDOFJointTrajectoryPoint] = msgs.type_of(_MULTI_DOF_POINT)
+        self._feedback_type: type[FollowJointTrajectory_Feedback] = msgs.type_of(_FEEDBACK)
+        self._state_type: type[JointTrajectoryControllerState] = msgs.type_of(self.STATE)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> TrajectoryMessages:
+    def __deepcopy__(self, memo: dict[int, object]) -> TrajectoryMessages:
         return self
 
-    def feedback(self, now: int, desired: Vector, state: Vector, errors: Vector) -> Any:
+    def feedback(self, now: int, desired: Vector, state: Vector, errors: Vector) -> FollowJointTrajectory_Feedback:
         """How far a goal is; arrays (3, n)."""
         measured = len(self._group.states)
         points = self._point(desired, 3), self._point(state, measured), self._point(errors, measured)
         none = (self._no_point() for _ in range(3))
-        return msgs.type_of(_FEEDBACK)(msgs.header(now, ""), list(self._names), *points, [], *none)
+        return self._feedback_type(msgs.header(now, ""), list(self._names), *points, [], *none)
 
-    def state(self, now: int, desired: Vector, state: Vector, errors: Vector, commands: Vector) -> Any:
+    def state(
+        self, now: int, desired: Vector, state: Vector, errors: Vector, commands: Vector
+    ) -> JointTrajectoryControllerState:
         """What the controller is at; arrays (3, n), and the values of its command interfaces."""
         measured = len(self._group.states)
         wanted, actual = self._point(desired, 3), self._point(state, measured)
         points = wanted, actual, self._point(errors, measured), self._output(commands), wanted, actual
         none = (self._no_point() for _ in range(6))
-        return msgs.type_of(self.STATE)(msgs.header(now, ""), list(self._names), *points, [], *none)
+        return self._state_type(msgs.header(now, ""), list(self._names), *points, [], *none)
 
-    def _no_point(self) -> Any:
-        return msgs.type_of(_MULTI_DOF_POINT)([], [], [], msgs.duration(0))
+    def _no_point(self) -> MultiDOFJointTrajectoryPoint:
+        return self._multi_dof_point_type([], [], [], msgs.duration(0))
 
-    def _point(self, motion: Vector, rows: int) -> Any:
-        fields = [motion[k] if k < rows else self._none for k in range(3)]
-        return msgs.type_of(_POINT)(*fields, self._none, msgs.duration(0))
+    def _point(self, motion: Vector, rows: int) -> JointTrajectoryPoint:
+        position, velocity, acceleration = (motion[k] if k < rows else self._none for k in range(3))
+        return self._point_type(position, velocity, acceleration, self._none, msgs.duration(0))
 
-    def _output(self, values: Vector) -> Any:
+    def _output(self, values: Vector) -> JointTrajectoryPoint:
         count = len(self._group.commanded_joints)
         found = {kind: values[k * count : (k + 1) * count] for k, kind in enumerate(self._group.commands)}
-        fields = [found.get(kind, self._none) for kind in ("position", "velocity", "acceleration", "effort")]
-        return msgs.type_of(_POINT)(*fields, msgs.duration(0))
+        position, velocity, acceleration, effort = (found.get(kind, self._none) for kind in _INTERFACE_ORDER)
+        return self._point_type(position, velocity, acceleration, effort, msgs.duration(0))

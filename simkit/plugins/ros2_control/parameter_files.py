@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import yaml
 
@@ -108,7 +108,7 @@ class ParameterFiles:
     def __init__(self, files: Sequence[ParameterFile] = ()) -> None:
         self.files = list(files)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> ParameterFiles:
+    def __deepcopy__(self, memo: dict[int, object]) -> ParameterFiles:
         return self  # nothing in it changes
 
     def of_node(self, name: str) -> Entry | None:
@@ -231,9 +231,9 @@ def _parse_file(path: Path, diagnostics: Diagnostics) -> Entry | None:
         return None
 
 
-def _compose_yaml(text: str) -> Any:
+def _compose_yaml(text: str) -> yaml.Node | None:
     """The tree of a document; by libyaml where it is there, which takes a tenth of the time."""
-    loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    loader: type[yaml.SafeLoader] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     depth = 0
     for event in yaml.parse(text, Loader=loader):  # libyaml's own composer has no end to its recursion
         depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
@@ -252,7 +252,7 @@ class _EntryReader:
     def __init__(self, file: str, diagnostics: Diagnostics) -> None:
         self._file, self._diagnostics, self._count = file, diagnostics, 0
 
-    def entry(self, node: Any, depth: int) -> Entry:
+    def entry(self, node: yaml.Node, depth: int) -> Entry:
         self._count += 1
         if self._count > _MOST_NODES or depth > _DEEPEST:
             raise _FileTooLarge("it has too many values, or is nested too deeply")
@@ -263,7 +263,7 @@ class _EntryReader:
             return Entry(where, items=[self.entry(one, depth + 1) for one in node.value])
         return Entry(where, _value_text(node), is_text=node.tag == "tag:yaml.org,2002:str")
 
-    def _block(self, node: Any, depth: int) -> dict[str, Entry]:
+    def _block(self, node: yaml.MappingNode, depth: int) -> dict[str, Entry]:
         below: dict[str, Entry] = {}
         merged: dict[str, Entry] = {}
         for key, value in node.value:
@@ -285,7 +285,7 @@ class _EntryReader:
             below[name] = entry
         return {**merged, **below}
 
-    def _merged(self, entry: Entry, key: Any) -> dict[str, Entry]:
+    def _merged(self, entry: Entry, key: yaml.Node) -> dict[str, Entry]:
         """What `<<` brings in: the names of a block, or of several, the first of which counts."""
         found: dict[str, Entry] = {}
         for one in [entry] if entry.items is None else entry.items:
@@ -296,7 +296,7 @@ class _EntryReader:
         return found
 
 
-def _value_text(node: Any) -> str:
+def _value_text(node: yaml.Node) -> str:
     """A value as parameters have it."""
     kind, text = node.tag.rpartition(":")[2], str(node.value)
     if kind == "null":

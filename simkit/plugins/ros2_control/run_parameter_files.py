@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import Diagnostics, did_you_mean
 from simkit.plugins.ros2_control.parameter_files import Entry, ParameterFile, read_parameter_file
@@ -176,7 +176,7 @@ def _wrap_in_namespace(entry: Entry, parts: Sequence[str]) -> Entry:
 
 
 def _report_ros_1_gains(own: Entry, given: ParameterFile, diagnostics: Diagnostics) -> None:
-    below: Mapping[str, Any] = own.below or {}
+    below = own.below or {}
     if _ROS_1_LOOPS in below:
         message = f"{given.path.name}: {_ROS_1_LOOPS} has loops for the plugin of ROS 1; this robot's is of ROS 2"
         hint = "its own node has pid_gains: {position: {JOINT: {kp: ..., kd: ...}}}"

@@ -10,9 +10,10 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from simkit.pose import Vector
 
@@ -74,7 +75,7 @@ class Spline:
         self._efforts: tuple[tuple[Vector, Vector], ...] = ()
         self._setpoints: tuple[Vector, ...] = ()  # of a spline that does not interpolate
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Spline:
+    def __deepcopy__(self, memo: dict[int, object]) -> Spline:
         return self
 
     @property
@@ -102,7 +103,7 @@ class Spline:
         self._ahead = dict(zip(times.tolist(), self._motions(times), strict=True))
         return Setpoint(self._ahead[now])
 
-    def _motions(self, times: Any) -> Vector:
+    def _motions(self, times: npt.NDArray[np.int64]) -> Vector:
         """Shape (times, 3, n); number by number, so that the same time has the same bits among whatever others."""
         pieces = np.maximum(np.searchsorted(self._begins, times, "right") - 1, 0)
         t = (np.maximum(times - self._begins[pieces], 0) / SECOND)[:, None]

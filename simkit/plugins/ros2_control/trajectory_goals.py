@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from simkit.msgs import stamp_ns
 from simkit.params import LARGEST
 from simkit.plugins.ros2_control.trajectory import SECOND, TrajectoryPoint
 from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.msgs import FollowJointTrajectory_Goal, JointTolerance, JointTrajectory, JointTrajectoryPoint
 
 _FIELDS: Final = ("positions", "velocities", "accelerations")
 _REST_VELOCITY: Final = 1.1920929e-07  # the smallest step of a 32-bit float at 1, which ros2_controllers compares with
@@ -34,7 +37,7 @@ class TrajectoryRules:
     allow_integration: bool = False
     allow_velocity_at_end: bool = False
 
-    def fault(self, message: Any, now: int) -> str:
+    def fault(self, message: JointTrajectory, now: int) -> str:
         """Why a `trajectory_msgs/msg/JointTrajectory` cannot be followed, in ros2_control's words; empty if it can.
 
         Args:
@@ -44,7 +47,7 @@ class TrajectoryRules:
         names = [str(name) for name in message.joint_names]
         return self._names_fault(names, message) or self._end_fault(names, message, now) or self._points_fault(message)
 
-    def _names_fault(self, names: Sequence[str], message: Any) -> str:
+    def _names_fault(self, names: Sequence[str], message: JointTrajectory) -> str:
         if not self.allow_partial and len(names) != len(self.joints):
             return "Joints on incoming trajectory don't match the controller joints."
         if not names:
@@ -58,7 +61,7 @@ class TrajectoryRules:
             return f"Joint {next(n for n in names if names.count(n) > 1)} comes twice on incoming trajectory."
         return ""
 
-    def _end_fault(self, names: Sequence[str], message: Any, now: int) -> str:
+    def _end_fault(self, names: Sequence[str], message: JointTrajectory, now: int) -> str:
         last = message.points[-1]
         if not self.allow_velocity_at_end:
             for name, velocity in zip(names, last.velocities, strict=False):
@@ -73,7 +76,7 @@ class TrajectoryRules:
             )
         return ""
 
-    def _points_fault(self, message: Any) -> str:
+    def _points_fault(self, message: JointTrajectory) -> str:
         count, before = len(message.joint_names), 0
         for i, point in enumerate(message.points):
             time = stamp_ns(point.time_from_start)
@@ -90,7 +93,7 @@ class TrajectoryRules:
                 return fault
         return ""
 
-    def _fields_fault(self, point: Any, i: int, count: int) -> str:
+    def _fields_fault(self, point: JointTrajectoryPoint, i: int, count: int) -> str:
         if self.allow_integration and not any(len(getattr(point, field)) for field in _FIELDS):
             return "The given trajectory has no position, velocity, or acceleration points."
         for field in (*_FIELDS, "effort"):
@@ -103,7 +106,7 @@ class TrajectoryRules:
         return ""
 
 
-def read_points(message: Any, joints: Sequence[str], here: Vector) -> list[TrajectoryPoint]:
+def read_points(message: JointTrajectory, joints: Sequence[str], here: Vector) -> list[TrajectoryPoint]:
     """The points of a trajectory that has no fault, in the controller's order.
 
     Args:
@@ -115,7 +118,7 @@ def read_points(message: Any, joints: Sequence[str], here: Vector) -> list[Traje
     places = np.array([joints.index(name) for name in names], dtype=np.intp)
     rest = np.zeros(len(joints))
 
-    def field(values: Any, otherwise: Vector) -> Vector | None:
+    def field(values: Vector, otherwise: Vector) -> Vector | None:
         if not len(values):
             return None
         whole = otherwise.copy()
@@ -167,7 +170,7 @@ class Tolerances:
         ends = np.stack([_infinite_if_zero(goal), _infinite_if_zero([stopped] * len(path)), none])
         return cls(np.stack([_infinite_if_zero(path), none, none]), ends, goal_time)
 
-    def with_goal(self, goal: Any, joints: Sequence[str]) -> tuple[Tolerances, str]:
+    def with_goal(self, goal: FollowJointTrajectory_Goal, joints: Sequence[str]) -> tuple[Tolerances, str]:
         """With those of a `FollowJointTrajectory` goal: a positive one counts, -1 takes one away, 0 leaves it.
 
         Returns:
@@ -183,7 +186,9 @@ class Tolerances:
         return (self, what) if what else (replace(self, path=path, goal=ends, goal_time=goal_time), "")
 
     @staticmethod
-    def _changed(kind: str, table: Vector, wanted: Iterable[Any], joints: Sequence[str]) -> tuple[Vector, str]:
+    def _changed(
+        kind: str, table: Vector, wanted: Iterable[JointTolerance], joints: Sequence[str]
+    ) -> tuple[Vector, str]:
         changed = table.copy()
         for one in wanted:
             if one.name not in joints:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from simkit.pose import Vector
 
 if TYPE_CHECKING:
     from simkit.plugins.ros2_control.controller import Controller
+    from simkit.runtime.communication.parameter_server import Parameter
 
 _GAINS: Final = {"p": "p", "i": "i", "d": "d", "ff_velocity_scale": "feedforward"}
 
@@ -24,7 +25,7 @@ class LiveTolerances:
     """The `constraints` of a controller's joints, as they are at the moment; a handle on its parameters."""
 
     def __init__(self, controller: Controller, joints: tuple[str, ...]) -> None:
-        def live(name: str, default: float, description: str) -> Any:
+        def live(name: str, default: float, description: str) -> Parameter[float]:
             return controller.declare(f"constraints.{name}", default, minimum=0.0, description=description)
 
         self._stopped = live("stopped_velocity_tolerance", 0.01, "speed of a joint at the end [rad/s or m/s]")
@@ -32,7 +33,7 @@ class LiveTolerances:
         self._path = [live(f"{joint}.trajectory", 0.0, "off its way at most [rad or m]") for joint in joints]
         self._goal = [live(f"{joint}.goal", 0.0, "off its goal at most [rad or m]") for joint in joints]
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> LiveTolerances:
+    def __deepcopy__(self, memo: dict[int, object]) -> LiveTolerances:
         return self
 
     def tolerances(self) -> Tolerances:
@@ -53,7 +54,7 @@ class StopRule:
     decelerations: Vector
     duration: float
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> StopRule:
+    def __deepcopy__(self, memo: dict[int, object]) -> StopRule:
         return self
 
     @classmethod

@@ -82,7 +82,7 @@ class Color:
     def __copy__(self) -> Color:
         return Color(self)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Color:
+    def __deepcopy__(self, memo: dict[int, object]) -> Color:
         return Color(self)
 
     def __repr__(self) -> str:

@@ -198,7 +198,7 @@ class MassMatrix3d:
     def __copy__(self) -> MassMatrix3d:
         return MassMatrix3d(self)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> MassMatrix3d:
+    def __deepcopy__(self, memo: dict[int, object]) -> MassMatrix3d:
         return MassMatrix3d(self)
 
 
@@ -271,5 +271,5 @@ class Inertiald:
     def __copy__(self) -> Inertiald:
         return Inertiald(self)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Inertiald:
+    def __deepcopy__(self, memo: dict[int, object]) -> Inertiald:
         return Inertiald(self)

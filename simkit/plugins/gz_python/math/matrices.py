@@ -109,7 +109,7 @@ class Matrix3d:
     def __copy__(self) -> Matrix3d:
         return Matrix3d.of(self._m)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Matrix3d:
+    def __deepcopy__(self, memo: dict[int, object]) -> Matrix3d:
         return Matrix3d.of(self._m)
 
     def __repr__(self) -> str:

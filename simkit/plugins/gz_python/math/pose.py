@@ -159,7 +159,7 @@ class Pose3d:
     def __copy__(self) -> Pose3d:
         return Pose3d(self)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Pose3d:
+    def __deepcopy__(self, memo: dict[int, object]) -> Pose3d:
         return Pose3d(self)
 
     def __reduce__(self) -> tuple[type[Pose3d], tuple[Any, ...]]:

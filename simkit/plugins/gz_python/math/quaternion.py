@@ -330,7 +330,7 @@ class Quaterniond:
     def __copy__(self) -> Quaterniond:
         return Quaterniond(*self._q)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> Quaterniond:
+    def __deepcopy__(self, memo: dict[int, object]) -> Quaterniond:
         return Quaterniond(*self._q)
 
     def __reduce__(self) -> tuple[type[Quaterniond], Sequence[float]]:

@@ -219,7 +219,7 @@ class SphericalCoordinates:
     def __copy__(self) -> SphericalCoordinates:
         return SphericalCoordinates(self)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> SphericalCoordinates:
+    def __deepcopy__(self, memo: dict[int, object]) -> SphericalCoordinates:
         return SphericalCoordinates(self)
 
 

@@ -224,7 +224,7 @@ class Vector:
     def __copy__(self: V) -> V:
         return type(self)(*self._v)
 
-    def __deepcopy__(self: V, memo: dict[int, Any]) -> V:
+    def __deepcopy__(self: V, memo: dict[int, object]) -> V:
         return type(self)(*self._v)
 
     def __reduce__(self: V) -> tuple[type[V], tuple[Any, ...]]:
@@ -323,18 +323,18 @@ class Vector2i(Vector2d):
     """Two whole numbers."""
 
     NUMBER = int
-    NAN = Vector2d.NAN
+    NAN = Vector2d.NAN  # type: ignore[assignment]  # whole numbers have none
 
 
 class Vector3i(Vector3d):
     """Three whole numbers."""
 
     NUMBER = int
-    NAN = Vector3d.NAN
+    NAN = Vector3d.NAN  # type: ignore[assignment]  # whole numbers have none
 
 
 class Vector4i(Vector4d):
     """Four whole numbers."""
 
     NUMBER = int
-    NAN = Vector4d.NAN
+    NAN = Vector4d.NAN  # type: ignore[assignment]  # whole numbers have none

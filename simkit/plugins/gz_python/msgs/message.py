@@ -130,7 +130,7 @@ class Message:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def __deepcopy__(self: M, memo: dict[int, Any]) -> M:
+    def __deepcopy__(self: M, memo: dict[int, object]) -> M:
         made = type(self)()
         made._values.update({name: copy.deepcopy(value, memo) for name, value in self._values.items()})
         return made

@@ -46,7 +46,7 @@ class ComponentProxy:
     def __hash__(self) -> int:
         return hash(self.name)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> ComponentProxy:
+    def __deepcopy__(self, memo: dict[int, object]) -> ComponentProxy:
         return self
 
     def __repr__(self) -> str:

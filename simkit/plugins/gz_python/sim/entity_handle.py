@@ -66,7 +66,7 @@ class EntityHandle:
     def __copy__(self: E) -> E:
         return type(self)(self._entity)
 
-    def __deepcopy__(self: E, memo: dict[int, Any]) -> E:
+    def __deepcopy__(self: E, memo: dict[int, object]) -> E:
         return type(self)(self._entity)
 
     def __repr__(self) -> str:

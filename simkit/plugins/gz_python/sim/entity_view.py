@@ -130,5 +130,5 @@ class EntityView:
         self.values, self.custom = copy.deepcopy(state["values"]), copy.deepcopy(state["custom"])
         self._structure = None
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> EntityView:
+    def __deepcopy__(self, memo: dict[int, object]) -> EntityView:
         return self

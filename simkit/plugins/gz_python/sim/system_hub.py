@@ -63,7 +63,7 @@ class SystemHub:
         if not self.ecm.commands.is_empty:
             self.ecm.commands.carry_out(self._sim, self.ecm.handle)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> SystemHub:
+    def __deepcopy__(self, memo: dict[int, object]) -> SystemHub:
         return self
 
 

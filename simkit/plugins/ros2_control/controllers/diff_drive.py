@@ -28,6 +28,7 @@ from simkit.pose import Pose, Vector
 from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
+    from simkit.msgs import Odometry, Twist, TwistStamped
     from simkit.runtime.communication.parameter_server import Parameter
 
 
@@ -156,7 +157,7 @@ class DiffDriveController(Controller):
 
     # ------------------------------------------------------------------ commands
 
-    def _on_command(self, message: Any) -> None:
+    def _on_command(self, message: Twist | TwistStamped) -> None:
         if not self._takes:
             self._warn("inactive", "a command came while it is not active, and is left out")
             return
@@ -283,10 +284,14 @@ class DiffDriveController(Controller):
         return float(np.linalg.norm(apart)), float(max(radii)) if radii else None
 
 
-def _odometry_message(time_ns: int, frames: tuple[str, str], pose: Pose, twist: BodyTwist, *covariances: Vector) -> Any:
-    return odometry_message(time_ns, *frames, pose, twist, *covariances)
+def _odometry_message(
+    time_ns: int, frames: tuple[str, str], pose: Pose, twist: BodyTwist, *covariances: Vector
+) -> Odometry:
+    message: Odometry = odometry_message(time_ns, *frames, pose, twist, *covariances)
+    return message
 
 
-def _twist_stamped(time_ns: int, frame: str, ahead: float, turn: float) -> Any:
+def _twist_stamped(time_ns: int, frame: str, ahead: float, turn: float) -> TwistStamped:
     twist = {"linear": {"x": ahead}, "angular": {"z": turn}}
-    return msgs.make(_STAMPED, header=msgs.header(time_ns, frame), twist=twist)
+    message: TwistStamped = msgs.make(_STAMPED, header=msgs.header(time_ns, frame), twist=twist)
+    return message

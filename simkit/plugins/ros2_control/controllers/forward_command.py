@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.parameter_block import read_names
+from simkit.pose import Vector
 
 COMMANDS: Final = "std_msgs/msg/Float64MultiArray"
 COMMAND: Final = "std_msgs/msg/Float64"
@@ -39,7 +40,7 @@ class ForwardCommandController(Controller):
         self._listen()
 
     def _listen(self) -> None:
-        self._wanted: Any = None
+        self._wanted: Vector | None = None
         ros_1 = getattr(self.plugin, "is_ros_1", False)
         self.listen("~/command" if ros_1 else "~/commands", COMMANDS, lambda message: self.take(message.data))
 

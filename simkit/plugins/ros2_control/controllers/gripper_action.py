@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from simkit import msgs
 from simkit.plugins.ros2_control.controller import Controller, OneTimeWarnings
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.trajectory import SECOND
+
+if TYPE_CHECKING:
+    from simkit.runtime.communication.action_server import GoalHandle
 
 COMMAND: Final = "control_msgs/action/GripperCommand"
 PARALLEL: Final = "control_msgs/action/ParallelGripperCommand"
@@ -61,7 +64,7 @@ class GripperActionController(Controller):
         """Parameters of a kind of its own."""
 
     def _clear(self) -> None:
-        self._goal: Any = None
+        self._goal: GoalHandle | None = None
         self._wanted, self._effort, self._limits = math.nan, self._usual_effort, np.zeros(0)
         self._given = 0.0  # the effort that is told
         self._moved_ns = self._next_feedback = 0
@@ -90,11 +93,11 @@ class GripperActionController(Controller):
 
     # ------------------------------------------------------------------ goals
 
-    def _on_goal(self, goal: Any) -> None:
+    def _on_goal(self, goal: GoalHandle) -> None:
         if not self._is_active:
             goal.reject("Can't accept new action goals. Controller is not running.")
             return
-        position, effort, fault = self._asked(goal.request)
+        position, effort, fault = self._read_command(goal.request)
         if fault:
             goal.reject(fault)
             return
@@ -108,13 +111,13 @@ class GripperActionController(Controller):
         self._goal, self._wanted, self._effort = goal, position, effort
         self._moved_ns, self._next_feedback, self._is_new = self.sim.time_ns, 0, True
 
-    def _asked(self, request: Any) -> tuple[float, float, str]:
+    def _read_command(self, request: Any) -> tuple[float, float, str]:
         """Position and effort of a goal, and why it cannot be taken."""
         position, effort = float(request.command.position), float(request.command.max_effort)
         fault = "" if math.isfinite(position) and math.isfinite(effort) else "The command is not a finite number."
         return position, effort, fault
 
-    def _on_cancel(self, goal: Any) -> None:
+    def _on_cancel(self, goal: GoalHandle) -> None:
         if goal is not self._goal:
             return
         self._goal = None
@@ -135,11 +138,10 @@ class GripperActionController(Controller):
             command = self._given = max(-abs(self._effort), min(abs(self._effort), driven))
         self.commands.values = np.array([command, *self._limits])
         if self._goal is not None:
-            self._look(now_ns, error, float(velocity))
+            self._report_progress(self._goal, now_ns, error, float(velocity))
 
-    def _look(self, now: int, error: float, velocity: float) -> None:
-        """Tells the goal how far it is."""
-        goal = self._goal
+    def _report_progress(self, goal: GoalHandle, now: int, error: float, velocity: float) -> None:
+        """End the goal where it is reached or stalled, else publish its feedback."""
         if abs(error) < self._tolerance:
             self._goal = None
             goal.succeed(self._result(reached_goal=True), "Successfully moved to goal.")
@@ -155,10 +157,10 @@ class GripperActionController(Controller):
             self._next_feedback = now + self._feedback_ns
             goal.publish_feedback(self._feedback())
 
-    def _result(self, *, stalled: bool = False, reached_goal: bool = False) -> dict[str, Any]:
+    def _result(self, *, stalled: bool = False, reached_goal: bool = False) -> dict[str, object]:
         return {**self._feedback(), "stalled": stalled, "reached_goal": reached_goal}
 
-    def _feedback(self) -> dict[str, Any]:
+    def _feedback(self) -> dict[str, object]:
         return {"position": float(self.states.values[0]), "effort": self._given}
 
 
@@ -186,7 +188,7 @@ class ParallelGripperActionController(GripperActionController):
         super().activate()
         self._limits = np.array([v for name, v in zip(self._names, self._usual, strict=True) if name])
 
-    def _asked(self, request: Any) -> tuple[float, float, str]:
+    def _read_command(self, request: Any) -> tuple[float, float, str]:
         command = request.command
         if not len(command.position):
             return 0.0, 0.0, "The command has no position."
@@ -197,7 +199,7 @@ class ParallelGripperActionController(GripperActionController):
         self._limits = np.array([v for name, v in zip(self._names, (velocity, effort), strict=True) if name])
         return float(command.position[0]), effort, ""
 
-    def _feedback(self) -> dict[str, Any]:
+    def _feedback(self) -> dict[str, object]:
         position, velocity = self.states.values.tolist()
         state = msgs.make(
             "sensor_msgs/msg/JointState",

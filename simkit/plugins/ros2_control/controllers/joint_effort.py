@@ -7,7 +7,7 @@ Those of ROS 1 for one joint (`effort_controllers/JointPositionController` and t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -18,6 +18,10 @@ from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.joint_pids import JointPids
 from simkit.plugins.ros2_control.parameter_block import read_names
 from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    from simkit.msgs import JointControllerState
+    from simkit.runtime.communication.publisher import Publisher
 
 COMMAND: Final = "std_msgs/msg/Float64"
 COMMANDS: Final = "std_msgs/msg/Float64MultiArray"
@@ -34,7 +38,7 @@ class _LoopController(Controller):
 
     measured: ClassVar[str] = POSITION
     output: ClassVar[str] = EFFORT
-    _out: Any
+    _out: Publisher | None
 
     def configure(self) -> None:
         params = self.params
@@ -104,10 +108,10 @@ class _LoopController(Controller):
             process = position if self.measured == POSITION else velocity
             self._out.publish(self._state(now_ns, period, wanted, process, velocity, error, command))
 
-    def _state(self, now_ns: int, period: float, *values: Vector) -> Any:
+    def _state(self, now_ns: int, period: float, *values: Vector) -> JointControllerState:
         wanted, process, velocity, error, command = (float(v[0]) for v in values)
         pids = self._pids
-        return msgs.make(
+        state: JointControllerState = msgs.make(
             STATE,
             header=msgs.header(now_ns, ""),
             set_point=wanted,
@@ -121,6 +125,7 @@ class _LoopController(Controller):
             d=float(pids.d[0]),
             i_clamp=float(pids.i_high[0]),
         )
+        return state
 
 
 class EffortPositionController(_LoopController):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -11,6 +11,10 @@ from simkit import msgs
 from simkit.plugins.ros2_control.controller import Controller
 from simkit.plugins.ros2_control.interfaces import EFFORT, POSITION, VELOCITY
 from simkit.plugins.ros2_control.parameter_block import read_names
+
+if TYPE_CHECKING:
+    from simkit.msgs import DynamicJointState
+    from simkit.pose import Vector
 
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 DYNAMIC: Final = "control_msgs/msg/DynamicJointState"
@@ -79,13 +83,14 @@ class JointStateBroadcaster(Controller):
         if self._dynamic.wanted:
             self._dynamic.publish(self._everything(now_ns, self.states.values))
 
-    def _everything(self, now_ns: int, values: Any) -> Any:
+    def _everything(self, now_ns: int, values: Vector) -> DynamicJointState:
         of_joint = msgs.type_of("control_msgs/msg/InterfaceValue")
         parts = [
             of_joint([interface for _, interface in found], np.array([values[k] for k, _ in found]))
             for found in self._by_owner.values()
         ]
-        return msgs.type_of(DYNAMIC)(msgs.header(now_ns, self._frame), list(self._by_owner), parts)
+        dynamic: type[DynamicJointState] = msgs.type_of(DYNAMIC)
+        return dynamic(msgs.header(now_ns, self._frame), list(self._by_owner), parts)
 
 
 class JointStateController(JointStateBroadcaster):

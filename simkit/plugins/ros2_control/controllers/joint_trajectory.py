@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -27,6 +27,8 @@ from simkit.plugins.ros2_control.trajectory_options import LiveTolerances, StopR
 from simkit.pose import Vector
 
 if TYPE_CHECKING:
+    from simkit.msgs import JointTrajectory, QueryTrajectoryState_Request, SpeedScalingFactor
+    from simkit.runtime.communication.action_server import GoalHandle
     from simkit.runtime.communication.publisher import Publisher
 
 FOLLOW: Final = "control_msgs/action/FollowJointTrajectory"
@@ -116,8 +118,8 @@ class JointTrajectoryController(Controller):
 
     def _clear(self) -> None:
         """As before the first trajectory."""
-        self._goal: Any = None
-        self._waiting: Any = None  # a trajectory message, or _HOLD
+        self._goal: GoalHandle | None = None
+        self._waiting: JointTrajectory | Spline | str | None = None  # the last is _HOLD
         self._spline: Spline | None = None
         self._active = self._constraints.tolerances()
         self._is_holding = self._is_first = self._is_idle = False
@@ -157,7 +159,7 @@ class JointTrajectoryController(Controller):
 
     # ------------------------------------------------------------------ what comes in
 
-    def _on_trajectory(self, message: Any) -> None:
+    def _on_trajectory(self, message: JointTrajectory) -> None:
         """From the topic."""
         fault = self._rules.fault(message, self.sim.time_ns)
         if fault:
@@ -172,7 +174,7 @@ class JointTrajectoryController(Controller):
         self._look_at(message)
         self._waiting = message
 
-    def _on_goal(self, goal: Any) -> None:
+    def _on_goal(self, goal: GoalHandle) -> None:
         trajectory = goal.request.trajectory
         if not self._is_active:
             goal.reject("Can't accept new action goals. Controller is not running.")
@@ -192,21 +194,21 @@ class JointTrajectoryController(Controller):
         self._waiting = trajectory
         self._next_feedback = 0
 
-    def _on_cancel(self, goal: Any) -> None:
+    def _on_cancel(self, goal: GoalHandle) -> None:
         if goal is not self._goal:
             return
         self._goal = None
         goal.canceled()
         self._waiting = _HOLD
 
-    def _on_scaling(self, message: Any) -> None:
+    def _on_scaling(self, message: SpeedScalingFactor) -> None:
         if 0.0 <= message.factor <= _FASTEST:
             self._scaling = float(message.factor)
         else:
             what = f"a speed scaling of {message.factor:g} is left out; allowed is a number from 0 to {_FASTEST:g}"
             self._said.warn("SK-CONTROL-020", what, what)
 
-    def _look_at(self, message: Any) -> None:
+    def _look_at(self, message: JointTrajectory) -> None:
         """Says what of a trajectory will not be as it is written."""
         if not self._group.has_effort and any(len(point.effort) for point in message.points):
             self._said.warn("SK-CONTROL-025", "effort", "efforts of a trajectory are not used: it commands none")
@@ -270,13 +272,13 @@ class JointTrajectoryController(Controller):
             self._spline = waiting
         elif isinstance(waiting, str):
             self._spline = self._stopping.spline(state, has_velocity=self._group.has_velocity_state)
-        else:
+        elif waiting is not None:
             self._is_holding = False
             self._start = msgs.stamp_ns(waiting.header.stamp) or now
             self._elapsed = now - self._start
             self._spline = self._through(waiting, state)
 
-    def _through(self, message: Any, state: Vector) -> Spline:
+    def _through(self, message: JointTrajectory, state: Vector) -> Spline:
         """A trajectory's way from here."""
         group = self._group
         start = TrajectoryPoint(self._elapsed, state[0], state[1] if group.has_velocity_state else None)
@@ -380,7 +382,7 @@ class JointTrajectoryController(Controller):
             if publisher.wanted:
                 publisher.publish(message)
 
-    def _on_query(self, request: Any) -> dict[str, Any]:
+    def _on_query(self, request: QueryTrajectoryState_Request) -> dict[str, object]:
         """Where the joints are to be at a time."""
         if not self._is_active:
             return {"success": False, "message": "Can't sample trajectory. Controller is not active."}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -15,6 +15,10 @@ from simkit.plugins.ros2_control.parameter_block import read_names
 from simkit.plugins.ros2_control.trajectory import SECOND
 from simkit.pose import Pose, Vector
 from simkit.runtime.communication.action_server import GoalStatus
+
+if TYPE_CHECKING:
+    from simkit.msgs import PointHead_Goal, PointStamped
+    from simkit.runtime.communication.action_server import GoalHandle
 
 POINT_HEAD: Final = "control_msgs/action/PointHead"
 _FEEDBACK_NS: Final = SECOND // 20
@@ -60,8 +64,8 @@ class PointHeadAction(Controller):
         self._clear()
 
     def _clear(self) -> None:
-        self._goal: Any = None
-        self._move: Any = None
+        self._goal: GoalHandle | None = None
+        self._move: GoalHandle | None = None
         self._look: tuple[str, Vector] = "", np.zeros(3)
         self._target, self._next_feedback = np.zeros(3), 0
         self._patience_ns = 0  # until then the head may still be on its last way
@@ -78,7 +82,7 @@ class PointHeadAction(Controller):
 
     # ------------------------------------------------------------------ goals
 
-    def _on_goal(self, goal: Any) -> None:
+    def _on_goal(self, goal: GoalHandle) -> None:
         if not self._is_active:
             goal.reject("Can't accept new action goals. Controller is not running.")
             return
@@ -103,13 +107,13 @@ class PointHeadAction(Controller):
         self._goal, self._target, self._look, self._next_feedback = goal, target, look, 0
         self._go(neck, shortest, speed)
 
-    def _target_of(self, target: Any) -> Vector:
+    def _target_of(self, target: PointStamped) -> Vector:
         point = np.array([target.point.x, target.point.y, target.point.z])
         if not (np.abs(point) <= _FARTHEST).all():
             raise InputError("the target is not a finite point")
         return self._frame(target.header.frame_id or "world").transform(point)
 
-    def _look_of(self, request: Any) -> tuple[str, Vector]:
+    def _look_of(self, request: PointHead_Goal) -> tuple[str, Vector]:
         """The frame that is to point, and its axis."""
         axis = np.array([request.pointing_axis.x, request.pointing_axis.y, request.pointing_axis.z])
         if not axis.any():
@@ -175,7 +179,7 @@ class PointHeadAction(Controller):
             reason = str(error)
             self._end(lambda goal: goal.abort(reason=reason))
 
-    def _on_cancel(self, goal: Any) -> None:
+    def _on_cancel(self, goal: GoalHandle) -> None:
         if goal is self._goal:
             self._end(lambda one: one.canceled())
             self._stop()
@@ -185,9 +189,10 @@ class PointHeadAction(Controller):
         if move is not None and not move.is_done:
             move.cancel()
 
-    def _end(self, how: Callable[[Any], None]) -> None:
+    def _end(self, how: Callable[[GoalHandle], None]) -> None:
         goal, self._goal = self._goal, None
-        how(goal)
+        if goal is not None:
+            how(goal)
 
     # ------------------------------------------------------------------ each period
 
