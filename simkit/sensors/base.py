@@ -18,7 +18,10 @@ from simkit.sensors.timing import DelayedReadings, SampleTimes, read_timing
 from simkit.sensors.topics_and_frames import check_topic, entity_topic, read_frame_id
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    import mujoco
+
+    from simkit.compiler import Compiled, SpecBuilder
+    from simkit.compiler.name_map import NameMap
     from simkit.diagnostics import Severity
     from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
@@ -82,7 +85,7 @@ class Sensor(Sampler):
 
     # ------------------------------------------------------------------ what a kind says
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """The kind's block in `inspect --json`."""
         return {}
 
@@ -117,9 +120,9 @@ class Sensor(Sampler):
         sample = self._sample
         if sample is None:
             return None
-        self._settle(sample)
+        self._finish_sample(sample)
         if sample.truth_message is None:
-            sample.truth_message = self._make(sample, next(iter(self._topics)), sample.truth)
+            sample.truth_message = self._make_message(sample, next(iter(self._topics)), sample.truth)
         return sample.truth_message
 
     def _true_reading(self) -> Any | None:
@@ -127,7 +130,7 @@ class Sensor(Sampler):
         sample = self._sample
         if sample is None:
             return None
-        self._settle(sample)
+        self._finish_sample(sample)
         return sample.truth
 
     @property
@@ -147,7 +150,7 @@ class Sensor(Sampler):
         self.sim.bus.settle()
         if self._noises and self._sample is not None:
             self.latest  # noqa: B018 - its message may tell the rate that it was measured at
-        self._take_rate(float(rate))
+        self._apply_rate(float(rate))
         self.sim.reschedule()
 
     def optical_frames(self) -> dict[str, Pose]:
@@ -162,11 +165,11 @@ class Sensor(Sampler):
         Args:
             topics: product -> absolute topic; the first is what `latest` shows.
         """
-        if not self._is_told_where:
-            for _, publisher, _ in self._ends:
+        if not self._has_plugin_topics:
+            for _, publisher, _ in self._publishers:
                 self.sim.bus.close(publisher)
-            self._topics, self._ends = {}, []
-            self._is_told_where = True
+            self._topics, self._publishers = {}, []
+            self._has_plugin_topics = True
         self._open(topics)
 
     def _open(self, topics: Mapping[str, str]) -> None:
@@ -175,8 +178,8 @@ class Sensor(Sampler):
             self._topics.setdefault(product, topic)
             of = self._products[product]
             publisher = self.sim.bus.advertise(topic, of.type_name)
-            publisher.pending = self._catch_up
-            self._ends.append((product, publisher, of.needs_reading))
+            publisher.pending = self._process_pending
+            self._publishers.append((product, publisher, of.needs_reading))
 
     # ------------------------------------------------------------------ what the simulation calls
 
@@ -195,7 +198,7 @@ class Sensor(Sampler):
             sim.bus.listen(valid_topic(options.set_rate_topic), (_RATE_TYPE,), self._on_rate)
         self.prepare()
         if self.noise is not None:
-            self._add_noise(self.noise)  # of a kind that made its own
+            self._register_noise(self.noise)  # of a kind that made its own
         self._products = self.products()
         self._open(self.default_topics())
         self.restart()
@@ -210,12 +213,12 @@ class Sensor(Sampler):
             message = f"sensor {self.scoped!r}: <jitter>{jitter:g}</jitter> is less than half a step of {step:g} s"
             sim.reports.warning("SK-SENSOR-023", f"{message} and has no effect", self.scene.where)
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         """Finds itself in a compiled model, also after every change of structure."""
-        self._catch_up()
-        for sample in self._kept():
-            self._settle(sample)  # what is held belongs to the model before
-        for _, publisher, _ in self._ends:
+        self._process_pending()
+        for sample in self._kept_samples():
+            self._finish_sample(sample)  # what is held belongs to the model before
+        for _, publisher, _ in self._publishers:
             self.sim.bus.settle_topic(publisher.topic)  # and so does what waits to be looked at
         self._link_name = self._find_link(compiled.names)
         link = compiled.names.link(self._link_name)
@@ -237,25 +240,29 @@ class Sensor(Sampler):
 
     def _make_noise(self, models: Sequence[NoiseModel], group: str) -> Noise:
         """The noise of a few channels, one model each; for `self.noise`."""
-        return self._add_noise(Noise([self._noise_of(m) for m in models], *self._named(group), **self._noise_terms()))
+        return self._register_noise(
+            Noise([self._effective_noise(m) for m in models], *self._noise_stream_names(group), **self._noise_terms())
+        )
 
     def _make_uniform_noise(self, model: NoiseModel, width: int, group: str) -> UniformNoise:
         """The same noise on every one of many channels; for `self.noise`."""
         quirks = self.sim.world.gazebo_quirks
-        model = NO_NOISE if quirks and model.is_quantized else self._noise_of(model)  # Gazebo has none of it on rays
-        return self._add_noise(UniformNoise(model, width, *self._named(group), **self._noise_terms()))
+        model = (
+            NO_NOISE if quirks and model.is_quantized else self._effective_noise(model)
+        )  # Gazebo has none of it on rays
+        return self._register_noise(UniformNoise(model, width, *self._noise_stream_names(group), **self._noise_terms()))
 
-    def _named(self, group: str) -> tuple[Any, str, str]:
+    def _noise_stream_names(self, group: str) -> tuple[Any, str, str]:
         return self.sim.streams, self.scoped, group
 
     def _noise_terms(self) -> dict[str, Any]:
         interval = self._times.nominal_interval(self.update_rate)
         return {"interval": interval, "random_sign": self.sim.world.gazebo_quirks}
 
-    def _noise_of(self, model: NoiseModel) -> NoiseModel:
+    def _effective_noise(self, model: NoiseModel) -> NoiseModel:
         return model.as_gazebo(self.has_dynamic_bias) if self.sim.world.gazebo_quirks else model
 
-    def _add_noise(self, noise: AnyNoiseProcess) -> AnyNoiseProcess:
+    def _register_noise(self, noise: AnyNoiseProcess) -> AnyNoiseProcess:
         if noise not in self._noises:
             self._noises.append(noise)
         if noise.wanders:
@@ -285,12 +292,12 @@ class Sensor(Sampler):
     def _entity_topic(self, suffix: str) -> str:
         return entity_topic(self.sim.world.name, self.scene, suffix)
 
-    def _frame_in_world(self, data: Any) -> tuple[Vector, Vector]:
+    def _frame_in_world(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """Position (3,) [m] and rotation matrix (3, 3) of the sensor."""
         rotation = data.xmat[self._body].reshape(3, 3)
         return data.xpos[self._body] + rotation @ self._offset_position, rotation @ self._offset_rotation
 
-    def _find_link(self, names: Any) -> str:
+    def _find_link(self, names: NameMap) -> str:
         """The link that the sensor is on; for a joint's sensor the joint's child link."""
         parent = self.scene.parent
         return str(names.joint(parent).scene.child_link) if self.scene.on_joint else parent

@@ -11,6 +11,8 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.sensors.sampler import Sampler
 
 MIN_MEMBERS = 4
@@ -37,7 +39,7 @@ class SensorBatch(abc.ABC, Generic[Member]):
             member.batch, member.batch_index = self, place
 
     @abc.abstractmethod
-    def capture_all(self, data: Any) -> None:
+    def capture_all(self, data: mujoco.MjData) -> None:
         """Capture all members from the data, which have everything computed."""
 
     @abc.abstractmethod
@@ -54,7 +56,7 @@ class SensorBatch(abc.ABC, Generic[Member]):
         if tick != self._tick or physics.edition != self._edition:
             if physics.model is not self.model:  # another structure, and no new schedule yet
                 return False
-            self.capture_all(member._data_now())
+            self.capture_all(member._computed_data())
             # what is looked at may have to be computed first, which changes nothing
             self._tick, self._edition = tick, physics.edition
         return True

@@ -195,7 +195,7 @@ class Noise:
         self._mean, self._precision = column("mean"), column("precision")
         self._bias_mean, self._bias_stddev = column("bias_mean"), column("bias_stddev")
         self._is_quantised = bool(self._precision.any())
-        self._white = self._open_white(streams, scoped, group)
+        self._white = self._open_white_noise(streams, scoped, group)
         self._drawn_bias = streams.stream(scoped, group + "/bias", self.width) if self._bias_stddev.any() else None
         has_bias = self._bias_mean.any() or self._bias_stddev.any()
         self._sign = streams.stream(scoped, group + "/sign", self.width) if random_sign and has_bias else None
@@ -221,7 +221,7 @@ class Noise:
             self._white or self._wanderer.wanders or self._is_quantised or bool(self.state.constant.any())
         )
 
-    def _open_white(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
+    def _open_white_noise(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
         is_white = any(m.stddev > 0 or m.noise_density > 0 for m in self.models)
         return streams.stream(scoped, group, self.width) if is_white else None
 
@@ -336,7 +336,7 @@ class UniformNoise(Noise):
         super().__init__([model], streams, scoped, group + "/shared", interval=interval, random_sign=random_sign)
         self.width = width
 
-    def _open_white(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
+    def _open_white_noise(self, streams: RandomStreams, scoped: str, group: str) -> RandomStream | None:
         is_white = self.model.stddev > 0 or self.model.noise_density > 0
         return streams.stream(scoped, self._rays_group, self._rays) if is_white else None
 

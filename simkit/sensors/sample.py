@@ -32,8 +32,8 @@ class Sample:
         truth: the reading without noise; `noisy` with it.
         messages: made so far, by product.
         drifts: states of the noise at this sample where they change from sample to sample.
-        untold: products that are not published of it.
-        around: what holds for it besides the physics, where a kind reads more than that.
+        unpublished: products that are not published of it.
+        surroundings: what holds for it besides the physics, where a kind reads more than that.
         work: what another thread does with it; whoever looks at the sample waits for that first.
     """
 
@@ -44,8 +44,8 @@ class Sample:
     noisy: Any = None
     truth_message: Any = None
     drifts: tuple[Any, ...] = ()
-    untold: tuple[str, ...] = ()
-    around: Any = None
+    unpublished: tuple[str, ...] = ()
+    surroundings: Any = None
     work: Any = None
 
     def __init__(self, index: int, time_ns: int) -> None:

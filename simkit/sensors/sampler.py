@@ -11,6 +11,8 @@ from simkit.sensors.sample import Batch, NoiseProcess, Product, Sample
 from simkit.sensors.timing import DelayedReadings, LatencyTimetable, SampleTimes, TimingOptions
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Publisher, Simulation
     from simkit.runtime.communication.topic_bus import LazyMessage
     from simkit.runtime.engine.held_state import HeldState
@@ -43,26 +45,26 @@ class Sampler(abc.ABC):
         self._wandering: tuple[NoiseProcess, ...] = ()
         self._topics: dict[str, str] = {}
         self._products: Mapping[str, Product] = {}
-        self._is_told_where = False
-        self._ends: list[tuple[str, Publisher, bool]] = []
+        self._has_plugin_topics = False
+        self._publishers: list[tuple[str, Publisher, bool]] = []
         self._newest: Sample | None = None
         self._gathered: list[tuple[int, Any]] = []
         self._revision, self._patience = -1, 0.0
         self._wanted: list[tuple[str, Publisher, bool]] = []
-        self._is_read = self._gathers = self._is_served = self._is_unseen = False
+        self._is_read = self._gathers = self._is_served = self._is_unread = False
         self._skipped = 0  # samples of which nobody has looked at one; only the last can be looked at
         self._held: tuple[int, HeldState] | None = None  # the tick of that one, and its state
         self._index, self._time_ns = 0, -1
         self._delayed: DelayedReadings | None = None
         self._latency_timetable: LatencyTimetable | None = None
         # what a kind does not override is not called at every sample
-        self._is_choosy, self._is_reticent = self._overrides("accepts"), self._overrides("tells")
+        self._selects_ticks, self._selects_products_of_sample = self._overrides("accepts"), self._overrides("publishes")
         self._evolves = self._overrides("evolve")
         self._is_on: Callable[[], bool] = _is_always_on
 
-    def only_while(self, is_on: Callable[[], bool]) -> None:
+    def sample_only_while(self, is_on: Callable[[], bool]) -> None:
         """Has due times give samples only while `is_on()`: there is none of a sensor without power."""
-        self._is_on, self._is_choosy = is_on, True
+        self._is_on, self._selects_ticks = is_on, True
 
     def _overrides(self, method: str) -> bool:
         return getattr(type(self), method) is not getattr(Sampler, method)
@@ -70,14 +72,14 @@ class Sampler(abc.ABC):
     # ------------------------------------------------------------------ what a kind says
 
     @abc.abstractmethod
-    def measure(self, model: Any, data: Any) -> Any:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
         """The reading without noise, of data with everything computed; arrays in it are never written to again."""
 
-    def capture(self, model: Any, data: Any) -> Any:
+    def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
         """What must be taken from the data at once; `finish` makes the reading of it. As a rule that is the reading."""
         return self.measure(model, data)
 
-    def capture_held(self, model: Any, data: Any, sample: Sample) -> Any:
+    def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> Any:
         """`capture` of the physics that was held for a sample; for kinds that read more than the physics."""
         return self.capture(model, data)
 
@@ -113,7 +115,7 @@ class Sampler(abc.ABC):
         """Whether a due time gives a sample."""
         return True
 
-    def tells(self, product: str, raw: Any) -> bool:
+    def publishes(self, product: str, raw: Any) -> bool:
         """Whether what was captured is published as `product`; `latest` and `truth` show it either way."""
         return True
 
@@ -127,19 +129,19 @@ class Sampler(abc.ABC):
     def keeps_to_grid(self) -> bool:
         """Whether it samples and publishes at every tick of its rate and phase, with noise that does not wander."""
         is_plain = self._delayed is None and self.timing.jitter == 0 and not self._evolves
-        return is_plain and not (self._is_choosy or self._is_reticent)
+        return is_plain and not (self._selects_ticks or self._selects_products_of_sample)
 
     @property
     def is_read_now(self) -> bool:
         """Whether somebody reads what is measured."""
         if self._revision != self.sim.bus.revision:
-            self._look_who_reads()
+            self._update_readers()
         return self._is_read
 
     @property
     def count(self) -> int:
         """How many samples it has taken."""
-        self._catch_up()
+        self._process_pending()
         return self._index
 
     def timetable(self) -> Timetable | None:
@@ -153,14 +155,14 @@ class Sampler(abc.ABC):
 
     def sample(self, tick: int) -> None:
         """The due tick: measures and publishes where somebody reads, else keeps the physics state."""
-        if self._delayed is not None and not self._receive(self._delayed, tick):
+        if self._delayed is not None and not self._deliver_and_check_due(self._delayed, tick):
             return
-        if self._is_choosy and not (self._is_on() and self.accepts(tick)):
+        if self._selects_ticks and not (self._is_on() and self.accepts(tick)):
             return
         sim = self.sim
         if self._revision != sim.bus.revision:
-            self._look_who_reads()
-        if self._is_unseen:
+            self._update_readers()
+        if self._is_unread:
             self._skipped += 1
             self._held = tick, sim.physics.hold()
             return
@@ -169,13 +171,13 @@ class Sampler(abc.ABC):
         if self._gathers:
             self._gathered.append((tick, self._capture_now(tick)))
             if len(self._gathered) >= _MAX_GATHERED:
-                self._catch_up()
+                self._process_pending()
             return
-        sample, wanted = self._begin(tick), self._wanted
+        sample, wanted = self._begin_sample(tick), self._wanted
         if self._is_read:
             sample.raw = self._capture_now(tick)
-            if self._is_reticent:
-                self._choose(sample)
+            if self._selects_products_of_sample:
+                self._select_products(sample)
         else:
             sample.held = sim.hold_state()
         if self._delayed is not None:
@@ -188,35 +190,35 @@ class Sampler(abc.ABC):
 
     def take_held(self) -> None:
         """Captures what waits to be looked at, before the model that it belongs to is written to."""
-        for sample in self._kept():
-            self._take(sample)
+        for sample in self._kept_samples():
+            self._capture_sample(sample)
 
     def leave(self) -> None:
         """Its model is taken away: measures what may still be looked at, and lets go of the world that it was in."""
-        self._catch_up()
-        for sample in self._kept():
-            self._settle(sample)
+        self._process_pending()
+        for sample in self._kept_samples():
+            self._finish_sample(sample)
 
     def reset(self) -> None:
         """Back at t = 0."""
-        self._catch_up()
-        self._drop()
+        self._process_pending()
+        self._drop_samples()
         self._index, self._time_ns = 0, -1
         self.restart()
 
     def get_state(self) -> Any:
-        self._catch_up()
+        self._process_pending()
         # a sample is only ever completed, never changed, so it may be shared
         flight = tuple(self._delayed.samples) if self._delayed is not None else ()
         return self._index, self._time_ns, self._sample, flight, self.update_rate, self.memory()
 
     def set_state(self, state: Any) -> None:
-        self._catch_up()
+        self._process_pending()
         self._index, self._time_ns, self._sample, flight, rate, memory = state
         if self._delayed is not None:
             self._delayed.samples.clear()
             self._delayed.samples.extend(flight)
-        self._take_rate(rate)
+        self._apply_rate(rate)
         self.remember(memory)
 
     # ------------------------------------------------------------------ within
@@ -225,14 +227,14 @@ class Sampler(abc.ABC):
     def _sample(self) -> Sample | None:
         """The newest sample that has arrived."""
         if self._gathered or self._skipped:
-            self._catch_up()
+            self._process_pending()
         return self._newest
 
     @_sample.setter
     def _sample(self, sample: Sample | None) -> None:
         self._newest = sample
 
-    def _begin(self, tick: int) -> Sample:
+    def _begin_sample(self, tick: int) -> Sample:
         """The next sample; noise that wanders moves on to it."""
         time_ns = self.sim.clock.time_ns(tick)
         self._index = index = self._index + 1
@@ -251,52 +253,52 @@ class Sampler(abc.ABC):
             if batch.is_ready(self, tick):
                 return batch.captured(self.batch_index)
             self.batch = None  # until the next schedule
-        return self.capture(self.sim.mj_model, self._data_now())
+        return self.capture(self.sim.mj_model, self._computed_data())
 
-    def _data_now(self) -> Any:
+    def _computed_data(self) -> Any:
         """The engine's data with what `measure` reads computed."""
         if self.needs_acceleration or self.reads_contacts:
             return self.sim.fresh_acceleration()
         return self.sim.fresh_data()
 
-    def _look_who_reads(self) -> None:
+    def _update_readers(self) -> None:
         """After a change of that: what is wanted, and whether captures may be gathered."""
-        self._catch_up()
+        self._process_pending()
         self._revision = self.sim.bus.revision
-        self._wanted = [end for end in self._ends if end[1].wanted]
+        self._wanted = [end for end in self._publishers if end[1].wanted]
         self._is_read = any(needs_reading for _, _, needs_reading in self._wanted)
         self._is_served = bool(self._wanted) and all(publisher.is_live for _, publisher, _ in self._wanted)
         patience = [publisher.patience for _, publisher, _ in self._wanted]
-        is_plain = self._delayed is None and not (self._is_choosy or self._is_reticent)
+        is_plain = self._delayed is None and not (self._selects_ticks or self._selects_products_of_sample)
         self._gathers = self.gathers and self.is_deferred and is_plain and self._is_read and all(patience)
-        changes = self._evolves or self._wandering or self._overrides("_begin")
-        self._is_unseen = not (self._wanted or changes or self._delayed)
+        changes = self._evolves or self._wandering or self._overrides("_begin_sample")
+        self._is_unread = not (self._wanted or changes or self._delayed)
         self._patience = max(patience, default=0.0)
 
-    def _catch_up(self) -> None:
+    def _process_pending(self) -> None:
         """Makes samples of what was gathered; what nobody will look at is not published."""
         if self._held is not None and self._skipped:
             (tick, held), count = self._held, self._skipped
             self._skipped, self._held = 0, None
             self._index += count - 1
-            self._newest = self._begin(tick)
+            self._newest = self._begin_sample(tick)
             self._newest.held = held
         if not self._gathered:
             return
         rows, self._gathered = self._gathered, []
         unseen = len(rows) - self._patience
         for number, (tick, raw) in enumerate(rows):
-            sample = self._newest = self._begin(tick)
+            sample = self._newest = self._begin_sample(tick)
             sample.raw = raw
             if number >= unseen:
                 self._publish(sample, self._wanted)
 
-    def _take_rate(self, rate: float) -> None:
+    def _apply_rate(self, rate: float) -> None:
         self.update_rate = rate
         for noise in self._noises:
             noise.set_interval(self._times.nominal_interval(rate))
 
-    def _kept(self) -> Iterator[Sample]:
+    def _kept_samples(self) -> Iterator[Sample]:
         """Every sample that may still be looked at."""
         if self._sample is not None:
             yield self._sample
@@ -304,13 +306,13 @@ class Sampler(abc.ABC):
             for _, sample in self._delayed.samples:
                 yield sample
 
-    def _drop(self) -> None:
+    def _drop_samples(self) -> None:
         """Forgets them all."""
         self._sample = None
         if self._delayed is not None:
             self._delayed.samples.clear()
 
-    def _receive(self, flight: DelayedReadings, tick: int) -> bool:
+    def _deliver_and_check_due(self, flight: DelayedReadings, tick: int) -> bool:
         """Delivers what has arrived; whether a sample is due as well."""
         self._deliver(flight, tick)
         return self._latency_timetable is None or self._latency_timetable.is_sample(tick)
@@ -318,71 +320,75 @@ class Sampler(abc.ABC):
     def _deliver(self, flight: DelayedReadings, tick: int) -> None:
         for sample in flight.arrived(tick):
             self._sample = sample
-            wanted = [end for end in self._ends if end[1].wanted]
+            wanted = [end for end in self._publishers if end[1].wanted]
             if any(needs_reading for _, _, needs_reading in wanted):
-                self._take(sample)
+                self._capture_sample(sample)
             self._publish(sample, wanted)
 
     def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
         """Hands the wanted messages out; gives those that are still to be made of the reading."""
         put_off = []
         for product, publisher, needs_reading in wanted:
-            if product in sample.untold:
+            if product in sample.unpublished:
                 continue
             if self.is_deferred and not publisher.is_live:
-                work = self._work_on(sample) if needs_reading else None
-                later = publisher.publish_later(partial(self._message_later, sample, product), work)
+                work = self._pending_job(sample) if needs_reading else None
+                later = publisher.publish_later(partial(self._message_on_demand, sample, product), work)
                 if needs_reading and later is not None:
                     put_off.append(later)
             else:
                 publisher.publish(self._message(sample, product))
         return put_off
 
-    def _work_on(self, sample: Sample) -> Any:
+    def _pending_job(self, sample: Sample) -> Any:
         """What another thread still does with a sample; None as a rule."""
         return None
 
-    def _message_later(self, sample: Sample, product: str) -> Any:
+    def _message_on_demand(self, sample: Sample, product: str) -> Any:
         """The message for somebody who looks after the sample; NOTHING where it cannot be made any more."""
         return self._message(sample, product)
 
-    def _choose(self, sample: Sample) -> None:
+    def _select_products(self, sample: Sample) -> None:
         """What of a captured sample is published."""
-        sample.untold = tuple(product for product in self._topics if not self.tells(product, sample.raw))
+        sample.unpublished = tuple(product for product in self._topics if not self.publishes(product, sample.raw))
 
-    def _take(self, sample: Sample) -> None:
+    def _capture_sample(self, sample: Sample) -> None:
         """Captures what was held, once."""
         if sample.held is not None:
             sample.raw = self.capture_held(sample.held.model, self.sim.data_of(sample.held), sample)
             sample.held = None
-            if self._is_reticent:
-                self._choose(sample)
+            if self._selects_products_of_sample:
+                self._select_products(sample)
 
-    def _settle(self, sample: Sample) -> None:
+    def _finish_sample(self, sample: Sample) -> None:
         """Measures what was kept, once."""
         if sample.held is not None:
-            self._take(sample)
+            self._capture_sample(sample)
         if sample.raw is not None:
             sample.truth = truth = self.finish(sample.raw)
             if sample.drifts:
-                sample.noisy = self._at(sample, self.perturb, truth, sample.index)
+                sample.noisy = self._with_noise_of(sample, self.perturb, truth, sample.index)
             else:
                 sample.noisy = self.perturb(truth, sample.index)
-            sample.raw = sample.around = None
+            sample.raw = sample.surroundings = None
 
     def _message(self, sample: Sample, product: str) -> Any:
         message = sample.messages.get(product)
         if message is None:
             if self._products[product].needs_reading:
-                self._settle(sample)
-            message = sample.messages[product] = self._make(sample, product, sample.noisy)
+                self._finish_sample(sample)
+            message = sample.messages[product] = self._make_message(sample, product, sample.noisy)
         return message
 
-    def _make(self, sample: Sample, product: str, reading: Any) -> Any:
+    def _make_message(self, sample: Sample, product: str, reading: Any) -> Any:
         make = self._products[product].make
-        return self._at(sample, make, reading, sample.time_ns) if sample.drifts else make(reading, sample.time_ns)
+        return (
+            self._with_noise_of(sample, make, reading, sample.time_ns)
+            if sample.drifts
+            else make(reading, sample.time_ns)
+        )
 
-    def _at(self, sample: Sample, make: Callable[[Any, int], Any], *what: Any) -> Any:
+    def _with_noise_of(self, sample: Sample, make: Callable[[Any, int], Any], *what: Any) -> Any:
         """`make(*what)` with the noise as it was at a sample."""
         now = [noise.state for noise in self._wandering]
         for noise, state in zip(self._wandering, sample.drifts, strict=True):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.params import Params
+
+if TYPE_CHECKING:
+    from simkit.compiler.name_map import NameMap
 
 ALL_VISIBLE: Final = 0xFFFFFFFF
 """The mask that hides nothing."""
@@ -25,7 +28,7 @@ def read_visibility_mask(block: Params) -> int:
     return mask & ALL_VISIBLE
 
 
-def hidden_geoms(mask: int, names: Any) -> list[int]:
+def hidden_geoms(mask: int, names: NameMap) -> list[int]:
     """Ids of the geoms of visuals that have no bit in common with a mask.
 
     Args:

@@ -274,10 +274,10 @@ def test_what_a_strong_lens_crowds_is_averaged() -> None:
     view = lens.view()
     stripes = np.zeros((view.height, view.width, 3), np.uint8)
     stripes[:, ::2] = 255
-    corner = lens.bend(stripes)[:12, :12, 0].astype(float)
+    corner = lens.distort(stripes)[:12, :12, 0].astype(float)
     assert corner.mean() == pytest.approx(127.5, abs=4)
     assert corner.std() < 25
-    assert lens.bend(stripes)[55:65, 75:85, 0].std() > 100
+    assert lens.distort(stripes)[55:65, 75:85, 0].std() > 100
 
 
 @draws

@@ -21,10 +21,10 @@ class GazeboRosBumper(SensorPlugin):
         topic = self.ros.topic(params.text("bumperTopicName", "") or "bumper_states")
         frame = params.text("frame_name", "") or params.text("frameName", "") or "world"
         params.child("alwaysOn")
-        if not hasattr(parent, "tell_states"):
+        if not hasattr(parent, "publish_states"):
             self.refuse(parent, "contact")
             return
-        if not parent.tell_states(topic, frame):
+        if not parent.publish_states(topic, frame):
             links = [scoped.rsplit("::", 1)[-1] for scoped in self.sim.names.links]
             message = f"plugin {self.name!r}: there is no link {frame!r}; contacts are told in the world until there is"
             params.diagnostics.warning("SK-SENSOR-042", message, self.where, did_you_mean(frame, links))

@@ -33,7 +33,7 @@ class GazeboRosCamera(SensorPlugin):
             topics = image_topics(names)
             if parent.has_depth:
                 near, far = camera_settings.read_depths(params, "min_depth", "max_depth", _NEAREST)
-                parent.bound_depths(near, far if math.isfinite(far) else None)
+                parent.set_depth_range(near, far if math.isfinite(far) else None)
                 topics["depth_image"] = names.topic("depth/image_raw")
                 topics["depth_camera_info"] = names.topic("depth/camera_info")
                 topics["points"] = names.topic("points")
@@ -84,7 +84,7 @@ def connect_camera(plugin: SensorPlugin, sensor: Any, names: CameraNames, topics
     if baseline:
         sensor.set_baseline(baseline)
     if "points" in topics:
-        sensor.turn_clouds()
+        sensor.use_optical_cloud_axes()
     sensor.publish_on(topics)
 
 

@@ -73,7 +73,7 @@ def name_frame(plugin: SensorPlugin, sensor: Any) -> None:
     frame = read_frame(sensor, plugin.params).lstrip("/")
     is_named = any(plugin.params.has(name) for name in ("frame_name", "frameName"))
     if is_named or not sensor.optical_frame_id:
-        sensor.name_frame(frame)
+        sensor.set_frame_id(frame)
     else:
         sensor.frame_id = frame
 
@@ -114,7 +114,7 @@ def override_intrinsics(plugin: SensorPlugin, sensor: Any, *, is_ros_1: bool) ->
     drawn = sensor.options.model
     told = change(drawn)
     if told != (drawn.told or drawn):
-        sensor.tell(change)
+        sensor.override_camera_info(change)
     _report_difference(params, drawn, told, names)
 
 

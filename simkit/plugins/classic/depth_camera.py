@@ -53,8 +53,8 @@ def connect_depth_camera(plugin: SensorPlugin, sensor: Any, near: float, far: fl
     if not camera_settings.is_camera(plugin, sensor, "depth", "points"):
         return
     names = CameraNames(plugin, sensor, is_ros_1=True)
-    sensor.cut_depths(near, far, in_millimetres=in_millimetres)
-    sensor.cut_clouds(near, far)
+    sensor.crop_depth_images(near, far, in_millimetres=in_millimetres)
+    sensor.crop_clouds(near, far)
     topics = {
         "depth_image": params.text("depthImageTopicName", "depth/image_raw"),
         "depth_camera_info": params.text("depthImageCameraInfoTopicName", "depth/camera_info"),

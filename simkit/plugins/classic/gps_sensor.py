@@ -26,7 +26,7 @@ class GazeboRosGpsSensor(SensorPlugin):
             self.refuse(parent, "gps")
             return
         parent.frame_id = read_frame(parent, params)
-        parent.err_as_classic()
+        parent.use_classic_noise()
         self._check_heading(params)
         parent.publish_on({"fix": self.ros.topic("~/out"), "velocity": self.ros.topic("~/vel")})
 

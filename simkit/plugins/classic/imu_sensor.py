@@ -26,13 +26,13 @@ class GazeboRosImuSensor(SensorPlugin):
         old = params.boolean("initialOrientationAsReference", False)
         from_start = params.boolean("initial_orientation_as_reference", old)
         body = params.text("bodyName", "")
-        if not hasattr(parent, "measure_against"):
+        if not hasattr(parent, "set_orientation_reference"):
             self.refuse(parent, "imu")
             return
         is_named = any(params.has(name) for name in ("frame_name", "frameName"))
         frame = read_frame(parent, params)
         parent.frame_id = body if body and not is_named else frame
-        parent.measure_against(parent.scene.pose_world.quaternion if from_start else _WORLD)
+        parent.set_orientation_reference(parent.scene.pose_world.quaternion if from_start else _WORLD)
         parent.publish_on({"imu": topic})
         self._read_ros_1(parent, params)
 
@@ -42,7 +42,7 @@ class GazeboRosImuSensor(SensorPlugin):
             imu.add_white_noise(stddev)
         turn = params.vector3("rpyOffset", (0.0, 0.0, 0.0))
         if any(turn):
-            imu.turn_orientation(turn)
+            imu.rotate_orientation(turn)
         if any(params.vector3("xyzOffset", (0.0, 0.0, 0.0))):
             where = params.block("xyzOffset").where
             message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"

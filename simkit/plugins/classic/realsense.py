@@ -44,12 +44,12 @@ class RealSense(ModelPlugin):
             if sensor is None:
                 continue
             if frame:
-                sensor.name_frame(frame.lstrip("/"))
+                sensor.set_frame_id(frame.lstrip("/"))
             if stream == "depth":
-                sensor.cut_depths(near, far, in_millimetres=True)
+                sensor.crop_depth_images(near, far, in_millimetres=True)
                 self._publish_depth(sensor, prefix, topics, cloud)
             else:
-                sensor.rework("image", _as_driver)
+                sensor.transform_messages("image", _as_driver)
                 sensor.publish_on({"image": topics[0], "camera_info": topics[1]})
         rates = ("depthUpdateRate", "colorUpdateRate", "infraredUpdateRate")
         camera_settings.report_without_effect(self, dict.fromkeys(rates, _SENSORS_OWN))
@@ -67,8 +67,8 @@ class RealSense(ModelPlugin):
         topic, near, far = cloud
         wanted = {"depth_image": topics[0], "depth_camera_info": topics[1]}
         if topic:
-            sensor.turn_clouds()
-            sensor.cut_clouds(near, far)
+            sensor.use_optical_cloud_axes()
+            sensor.crop_clouds(near, far)
             wanted["points"] = self._below(prefix, topic)
         sensor.publish_on(wanted)
 
@@ -78,7 +78,8 @@ class RealSense(ModelPlugin):
     def _find(self, model: Any, name: str, product: str) -> Any | None:
         """The model's camera of that name, or None after a warning."""
         inside = model.scoped + "::"
-        sensors = [s for scoped, s in self.sim.sensors.items() if scoped.startswith(inside) and hasattr(s, "rework")]
+        within = [s for scoped, s in self.sim.sensors.items() if scoped.startswith(inside)]
+        sensors = [sensor for sensor in within if hasattr(sensor, "transform_messages")]
         fitting = {s.name: s for s in sensors if product in s.products()}
         if name in fitting:
             return fitting[name]

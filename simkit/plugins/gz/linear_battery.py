@@ -96,7 +96,7 @@ class LinearBattery(Battery):
         for sensor in scene.all_sensors():
             is_rendered = any(word in sensor.kind for word in _RENDERED) and "logical" not in sensor.kind
             if is_rendered and self.sim.has_sensor(sensor.scoped):
-                self.sim.sensor(sensor.scoped).only_while(lambda: not self.is_empty)
+                self.sim.sensor(sensor.scoped).sample_only_while(lambda: not self.is_empty)
 
     def _offer_recharge(self, base: str, *, by_topic: bool) -> None:
         # what comes with the request does not count, as in gz: the name says what is to be

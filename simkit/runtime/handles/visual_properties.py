@@ -124,7 +124,7 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
         """Samples that wait to be looked at are measured with the values of their time."""
         for sensor in self._sim.structure.all_sensors():
             if getattr(sensor, self.read_by, False):
-                sensor.settle()
+                sensor.finish_samples()
         self.state = MappingProxyType(values)
 
 

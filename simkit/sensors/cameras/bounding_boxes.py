@@ -18,6 +18,9 @@ from simkit.sensors.cameras.rendering.view import Ids, View
 from simkit.sensors.cameras.shape_corners import CUBE, Corners, geom_corners
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.runtime.engine.world_structure import WorldStructure
 
 
@@ -84,7 +87,7 @@ class LabelledShapes:
     """
 
     def __init__(self, items: LabelledObjects, structure: WorldStructure) -> None:
-        compiled: Any = structure.compiled
+        compiled: Compiled = structure.compiled
         names, model = compiled.names, compiled.model
         self.items = items
         self._geoms = [g for item in items.items for visual in item.visuals for g in visual.geoms]
@@ -100,7 +103,7 @@ class LabelledShapes:
             if len(item.visuals) == 1
         }
 
-    def stand(self, data: Any, position: Vector, rotation: Vector) -> ShapePoses:
+    def stand(self, data: mujoco.MjData, position: Vector, rotation: Vector) -> ShapePoses:
         """Where the things are, seen from a sensor at a position (3,) with a rotation (3, 3) in the world."""
         geoms = self._geoms
         positions = (data.geom_xpos[geoms] - position) @ rotation
@@ -142,7 +145,9 @@ class LabelledShapes:
         centre = stand.positions[place] + turn @ pose.position + rotation @ ((low + high) / 2)
         return Box3D(item, centre, rotation, high - low)
 
-    def _own_box(self, visual: DrawnVisual, model: Any, link: Any, scenes: Any) -> tuple[int, Pose, Vector, Vector]:
+    def _own_box(
+        self, visual: DrawnVisual, model: mujoco.MjModel, link: Any, scenes: Any
+    ) -> tuple[int, Pose, Vector, Vector]:
         """Of a visual: the number of a geom, the visual's frame in that geom's, its lowest and highest corner there."""
         in_body = link.offset @ scenes[visual.scoped].pose_link
         low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -239,7 +244,7 @@ def _box_around(item: LabelledObject, points: Vector, axes: Vector) -> Box3D:
     return Box3D(item, axes @ ((low + high) / 2), axes, high - low)
 
 
-def _cached(made: dict[int, Corners], model: Any, geom: int) -> Corners:
+def _cached(made: dict[int, Corners], model: mujoco.MjModel, geom: int) -> Corners:
     if geom not in made:
         made[geom] = geom_corners(model, geom)
     return made[geom]

@@ -28,6 +28,8 @@ from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
@@ -91,7 +93,7 @@ class BoundingBoxCamera(LabelCamera):
         self._is_gazebos = bool(sim.world.gazebo_quirks)
         super().attach(sim)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         return {**super().describe(), "box_type": self.options.type}
 
     def products(self) -> dict[str, Product]:
@@ -111,14 +113,16 @@ class BoundingBoxCamera(LabelCamera):
         super().leave()
         self._shapes = None
 
-    def saved(self) -> dict[str, str]:
+    def saved_products(self) -> dict[str, str]:
         return {"picture": label_camera.IMAGE, "boundingbox": label_camera.BOXES}
 
     def shots(self) -> Sequence[Shot]:
-        view = self._aimed()
+        view = self._drawn_view()
         return Shot(view), Shot(view, ids=True)
 
-    def note(self, model: Any, data: Any) -> tuple[LabelledObjects, LabelledShapes | None, ShapePoses | None]:
+    def take_notes(
+        self, model: mujoco.MjModel, data: mujoco.MjData
+    ) -> tuple[LabelledObjects, LabelledShapes | None, ShapePoses | None]:
         items = self.items
         if self.options.type == _VISIBLE:
             return items, None, None
@@ -134,7 +138,9 @@ class BoundingBoxCamera(LabelCamera):
         items, shapes, stand = notes
         if self._is_gazebos:
             model = self.options.model
-            return Boxes(gazebo_boxes(self.options.type, geoms, items, shapes, stand, model, self._aimed()), colours)
+            return Boxes(
+                gazebo_boxes(self.options.type, geoms, items, shapes, stand, model, self._drawn_view()), colours
+            )
         if shapes is None or stand is None:
             return Boxes(visible_boxes(items.item_of.take(geoms, mode="wrap"), items.items), colours)
         return Boxes(self._projected(geoms, shapes, stand), colours)
@@ -148,7 +154,7 @@ class BoundingBoxCamera(LabelCamera):
         found = []
         for position in positions:
             item = items.items[position]
-            box = full_box(item, project_shape(*shapes.points(item.visuals, stand), model, self._aimed()), model)
+            box = full_box(item, project_shape(*shapes.points(item.visuals, stand), model, self._drawn_view()), model)
             if box is not None:
                 found.append(box)
         return found
@@ -164,5 +170,5 @@ class BoundingBoxCamera(LabelCamera):
         return bounding_box_messages.detections_2d(self._image_header(time_ns), flat)
 
     def _image_message(self, reading: Boxes, time_ns: int) -> Any:
-        drawn = bounding_box_messages.draw_boxes(reading.colours, reading.boxes, self.options.model, self._aimed())
+        drawn = bounding_box_messages.draw_boxes(reading.colours, reading.boxes, self.options.model, self._drawn_view())
         return image_messages.image_message(self._image_header(time_ns), drawn, "rgb8")

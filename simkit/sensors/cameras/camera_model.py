@@ -53,7 +53,7 @@ class CameraModel:
     told: CameraModel | None = None
 
     @property
-    def is_bent(self) -> bool:
+    def is_distorted(self) -> bool:
         """Whether a picture needs more than a rasteriser draws: lens distortion, or skewed pixels."""
         return bool(self.distortion) or self.skew != 0
 
@@ -92,7 +92,7 @@ class CameraModel:
             Of each column, shape (width,), and of each row, shape (height,); both of each pixel, shape (height, width),
             where `is_bent`. NaN where the lens shows nothing.
         """
-        if self.is_bent:
+        if self.is_distorted:
             x, y = _directions(self)
             return -x.astype(np.float32), -y.astype(np.float32)
         left = -(np.arange(self.width) + 0.5 - self.cx) / self.fx

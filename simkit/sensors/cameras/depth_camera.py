@@ -41,7 +41,7 @@ class DepthCamera(RgbdCamera):
     def shots(self) -> Sequence[Shot]:
         if self._is_classic or "image" in self._topics:
             return super().shots()
-        return (Shot(self._aimed(), depth=True, sharp=True),)  # nobody asks for colours
+        return (Shot(self._drawn_view(), depth=True, sharp=True),)  # nobody asks for colours
 
     def default_topics(self) -> dict[str, str]:
         topic = self._default_topic("depth_image")

@@ -62,7 +62,9 @@ class ImageDistorter:
         """What is to be drawn; it sees what the lens sees."""
         return View(*self._size, *self._frustum, self._near, self._far)
 
-    def bend(self, picture: npt.NDArray[np.uint8], out: npt.NDArray[np.uint8] | None = None) -> npt.NDArray[np.uint8]:
+    def distort(
+        self, picture: npt.NDArray[np.uint8], out: npt.NDArray[np.uint8] | None = None
+    ) -> npt.NDArray[np.uint8]:
         """Colours (h, w, 3) through the lens, black where it shows nothing.
 
         Where a strong lens crowds what is drawn, it is averaged, so that fine patterns do not flicker.
@@ -73,14 +75,14 @@ class ImageDistorter:
         """
         import cv2
 
-        bent = self._remapped(picture, self._maps, out)
+        bent = self._remap(picture, self._maps, out)
         if self._coarse is not None:
             maps, share, coarse_share = self._coarse
-            coarse = self._remapped(cv2.pyrDown(np.ascontiguousarray(picture)), maps)
+            coarse = self._remap(cv2.pyrDown(np.ascontiguousarray(picture)), maps)
             bent = cv2.blendLinear(bent, coarse, share, coarse_share, dst=out)
         return np.asarray(bent, dtype=np.uint8)
 
-    def bend_depths(self, raw: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    def distort_depths(self, raw: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
         """Raw depths through the lens, 0 (nothing) where it shows nothing.
 
         They change as 1/z does, linearly on planes, so between neighbours of one surface they are interpolated, which
@@ -89,7 +91,7 @@ class ImageDistorter:
         import cv2
 
         raw = np.ascontiguousarray(raw)
-        bent: npt.NDArray[np.float32] = self._remapped(raw, self._maps)
+        bent: npt.NDArray[np.float32] = self._remap(raw, self._maps)
         uneven = cv2.Laplacian(raw, cv2.CV_32F, ksize=1, borderType=cv2.BORDER_REPLICATE)
         edges = cv2.compare(np.abs(uneven), raw * np.float32(_EDGE), cv2.CMP_GT)
         edges[[0, -1]] = edges[:, [0, -1]] = 0  # of what is drawn; a slope shows there as an edge
@@ -101,7 +103,7 @@ class ImageDistorter:
             bent[self._empty] = 0
         return bent
 
-    def bend_ids(self, ids: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+    def distort_ids(self, ids: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
         """The geom at each pixel through the lens, -1 where it shows nothing; names are not blended."""
         bent: npt.NDArray[np.int32] = self._taken(ids)
         if self._empty is not None:
@@ -111,7 +113,7 @@ class ImageDistorter:
     def _taken(self, what: npt.NDArray[Any]) -> npt.NDArray[Any]:
         return np.ascontiguousarray(what).ravel().take(self._nearest)
 
-    def _remapped(self, what: npt.NDArray[Any], maps: Any, out: npt.NDArray[Any] | None = None) -> Any:
+    def _remap(self, what: npt.NDArray[Any], maps: Any, out: npt.NDArray[Any] | None = None) -> Any:
         import cv2
 
         border = cv2.BORDER_REPLICATE if self._is_full else cv2.BORDER_CONSTANT

@@ -98,14 +98,14 @@ class ImageNoise:
             self._spares[key] = ArrayPool(like.shape, like.dtype)
         return self._spares[key].take()
 
-    def _drawn(self) -> npt.NDArray[np.float64]:
+    def _draw_noise(self) -> npt.NDArray[np.float64]:
         """The noise of each random word."""
         return _normal_table() * self._model.stddev + self._model.mean
 
     @functools.cached_property
     def _steps(self) -> tuple[npt.NDArray[np.uint8], ...]:
         """What is added to a byte, for each random word: around 128 where that will do, else as it goes up and down."""
-        noise = self._drawn()
+        noise = self._draw_noise()
         if self._as_ogre:
             noise = np.sign(noise) * np.abs(noise) ** _OGRE_EXPONENT
         # rounding first is exact, since what it is added to is whole
@@ -117,7 +117,7 @@ class ImageNoise:
     @functools.cached_property
     def _lengths(self) -> npt.NDArray[np.float32]:
         """What is added to a depth [m], for each random word."""
-        return np.clip(self._drawn(), -_LONGEST, _LONGEST).astype(np.float32)
+        return np.clip(self._draw_noise(), -_LONGEST, _LONGEST).astype(np.float32)
 
     def on_colours(self, picture: npt.NDArray[np.uint8], index: int) -> npt.NDArray[np.uint8]:
         """A picture, shape (h, w) or (h, w, 3), with one draw per pixel for all its channels, clipped to 0..255."""

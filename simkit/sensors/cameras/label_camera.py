@@ -91,12 +91,12 @@ class LabelCamera(RenderedCamera):
         return structure
 
     def _around(self) -> tuple[Any, Any]:
-        if self.around is None:
-            self.around = self.look_around()
-        found: tuple[Any, Any] = self.around
+        if self.surroundings is None:
+            self.surroundings = self.capture_surroundings()
+        found: tuple[Any, Any] = self.surroundings
         return found
 
-    def look_around(self) -> tuple[LabelledObjects, WorldStructure]:
+    def capture_surroundings(self) -> tuple[LabelledObjects, WorldStructure]:
         """What wears which label now, and what is in the world."""
         sim = self.sim
         now = sim.labels.state, sim.structure
@@ -112,14 +112,14 @@ class LabelCamera(RenderedCamera):
         """The geom at each pixel of the camera's picture, -1 where there is none."""
         assert film.ids is not None
         if self._distorter:
-            return self._distorter.bend_ids(film.ids)
+            return self._distorter.distort_ids(film.ids)
         return film.ids
 
     def attach(self, sim: Simulation) -> None:
         super().attach(sim)
         self._report_unlabelled(sim)
 
-    def _writer(self, folder: Path, name: str) -> ImageSaver:
+    def _make_image_saver(self, folder: Path, name: str) -> ImageSaver:
         return DatasetSaver(self.sim, self.scene, folder, name)
 
     def _picture_product(self) -> Product:
@@ -131,7 +131,7 @@ class LabelCamera(RenderedCamera):
         assert film.colours is not None
         kept = self._spare_colours.take()
         if self._distorter:
-            return self._distorter.bend(film.colours, kept)
+            return self._distorter.distort(film.colours, kept)
         np.copyto(kept, film.colours)
         return kept
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
+    from simkit.compiler.name_map import NameMap
     from simkit.runtime import Simulation
     from simkit.runtime.engine.world_structure import WorldStructure
 
@@ -99,7 +100,7 @@ def find_labelled_objects(sim: Simulation, boxed: bool = False) -> LabelledObjec
 
 def _drawn_visuals(structure: WorldStructure, worn: dict[str, int]) -> Iterator[DrawnVisual]:
     """Every visual that is drawn, in document order."""
-    names: Any = structure.compiled.names
+    names: NameMap = structure.compiled.names
     for model in structure.models.values():
         for link in model.all_links():
             drawn = names.drawn(link.scoped)

@@ -16,6 +16,10 @@ from simkit.pose import Pose, Vector, quat_multiply
 from simkit.sensors.base import Product, Sensor
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
+    from simkit.compiler.name_map import NameMap
     from simkit.scene import SceneModel, SceneSensor
 
 IMAGE = "ros_gz_interfaces/msg/LogicalCameraImage"
@@ -112,7 +116,7 @@ class LogicalCamera(Sensor):
         scene.params.child("logical_camera")
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Lengths in m, angle in rad."""
         o = self.options
         frustum = {"near": o.near, "far": o.far, "hfov": o.horizontal_fov, "aspect_ratio": o.aspect_ratio}
@@ -127,7 +131,7 @@ class LogicalCamera(Sensor):
             msgs.type_of(f"geometry_msgs/msg/{name}") for name in ("Point", "Quaternion")
         )
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         found: dict[str, tuple[int, Pose]] = {}
         quirks = self.sim.world.gazebo_quirks
@@ -145,7 +149,7 @@ class LogicalCamera(Sensor):
         self._frames = [found[name][1] for name in self._names]
         self._origins = np.array([frame.position for frame in self._frames]).reshape(-1, 3)
 
-    def _place_of(self, model: SceneModel, names: Any) -> tuple[int, Pose]:
+    def _place_of(self, model: SceneModel, names: NameMap) -> tuple[int, Pose]:
         """The engine's body that carries a model, and the model's frame in it."""
         if model.canonical_link not in names.links:  # a model without links stays where it is put
             return 0, self.sim.model(model.scoped).pose
@@ -162,7 +166,7 @@ class LogicalCamera(Sensor):
         topic = self._default_topic("logical_camera")
         return {"image": topic, "frustum": topic + "/frustum"}
 
-    def measure(self, model: Any, data: Any) -> LogicalImage:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LogicalImage:
         position, rotation = self._frame_in_world(data)
         turn = data.xquat[self._body]
         pose = Pose(position, quat_multiply(turn, self._offset.quaternion))

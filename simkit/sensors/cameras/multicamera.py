@@ -30,6 +30,7 @@ from simkit.sensors.cameras.rendering.view import Film, Shot
 from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 
 if TYPE_CHECKING:
+    from simkit.compiler import Compiled
     from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
@@ -58,9 +59,9 @@ class CameraUnit:
             self.options.noise, sim.streams, f"{scoped}::{self.name}", as_ogre=sim.world.gazebo_quirks
         )
         self._spares = ArrayPool((model.height, model.width, 3), np.uint8)
-        self.tell()
+        self.update_camera_info()
 
-    def tell(self) -> None:
+    def update_camera_info(self) -> None:
         """After a change of what `CameraInfo` says."""
         told = self.options.model.told or self.options.model
         if (told.tx, told.ty) == (0.0, 0.0):
@@ -73,7 +74,7 @@ class CameraUnit:
         """What is drawn; found out at the first picture, since a lens takes a while."""
         if self._shot is None:
             model, pose = self.options.model, self.options.pose
-            self._distorter = ImageDistorter(model) if model.is_bent else None
+            self._distorter = ImageDistorter(model) if model.is_distorted else None
             view = self._distorter.view() if self._distorter else model.view()
             self._shot = Shot(view, position=np.asarray(pose.position), rotation=pose.matrix)
         return self._shot
@@ -83,7 +84,7 @@ class CameraUnit:
         colours = film.colours
         assert colours is not None
         if self._distorter:
-            colours = self._distorter.bend(colours)
+            colours = self._distorter.distort(colours)
         if image_messages.is_grey(self.options.encoding):
             return CameraReading(image_messages.grey(colours), None)
         if not self._distorter:
@@ -166,16 +167,16 @@ class MultiCamera(RenderedCamera):
         for eye in self.eyes:
             if eye is not self.reference:
                 eye.beside = -baseline, 0.0
-                eye.tell()
+                eye.update_camera_info()
 
-    def tell(self, change: Callable[[CameraModel], CameraModel]) -> None:
+    def override_camera_info(self, change: Callable[[CameraModel], CameraModel]) -> None:
         for eye in self.eyes:
             model = eye.options.model
             eye.options = replace(eye.options, model=replace(model, told=change(model)))
-            eye.tell()
+            eye.update_camera_info()
 
-    def name_frame(self, frame: str) -> None:
-        super().name_frame(frame)
+    def set_frame_id(self, frame: str) -> None:
+        super().set_frame_id(frame)
         for eye in self.eyes:
             eye.options = replace(eye.options, optical_frame_id="")
 
@@ -183,7 +184,7 @@ class MultiCamera(RenderedCamera):
         options = [eye.options for eye in self.eyes]
         return {o.optical_frame_id: o.pose @ OPTICAL_POSE for o in options if o.optical_frame_id}
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         found = super().describe()
         found["cameras"] = [
             {
@@ -202,7 +203,7 @@ class MultiCamera(RenderedCamera):
             eye.open(sim, self.scoped)
         super().attach(sim)
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         for eye in self.eyes:
             view = eye.options.model
@@ -243,7 +244,7 @@ class MultiCamera(RenderedCamera):
         given = self.options.trigger_topic
         return valid_topic(given) if given else self._default_topic("") + "/trigger"
 
-    def saved(self) -> dict[str, str]:
+    def saved_products(self) -> dict[str, str]:
         return {f"{eye.name}/image": f"{self.scoped}::{eye.name}" for eye in self.eyes if eye.options.save}
 
     def _image_of(self, number: int, reading: Any, time_ns: int) -> Any:

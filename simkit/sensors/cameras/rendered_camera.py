@@ -34,6 +34,7 @@ from simkit.sensors.topics_and_frames import OPTICAL_POSE, sibling_topic
 from simkit.sensors.visibility_mask import hidden_geoms
 
 if TYPE_CHECKING:
+    from simkit.compiler import Compiled
     from simkit.runtime import Simulation
     from simkit.scene import SceneSensor
 
@@ -67,10 +68,12 @@ class RenderedCamera(RenderedSampler):
             self.scene = replace(scene, pose_link=scene.pose_link @ options.pose)
         return options
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
+        return {"camera": self._describe_image()}
+
+    def _describe_image(self) -> dict[str, object]:
         model = self.options.model
-        block = {"width": model.width, "height": model.height, "hfov": model.hfov, "near": model.near, "far": model.far}
-        return {"camera": block}
+        return {"width": model.width, "height": model.height, "hfov": model.hfov, "near": model.near, "far": model.far}
 
     def attach(self, sim: Simulation) -> None:
         if sim.world.gazebo_quirks:
@@ -86,19 +89,19 @@ class RenderedCamera(RenderedSampler):
         if options.triggered:
             self.trigger_on(self._trigger_topic())
 
-    def _aimed(self) -> View:
+    def _drawn_view(self) -> View:
         """The frustum; found out at the first picture, since a lens takes a while."""
         if self._view is None:
             model = self.options.model
-            self._distorter = ImageDistorter(model) if model.is_bent else None
+            self._distorter = ImageDistorter(model) if model.is_distorted else None
             self._view = self._distorter.view() if self._distorter else model.view()
         return self._view
 
     def shots(self) -> Sequence[Shot]:
         """What is drawn for one sample."""
-        return (Shot(self._aimed()),)
+        return (Shot(self._drawn_view()),)
 
-    def tell(self, change: Callable[[CameraModel], CameraModel]) -> None:
+    def override_camera_info(self, change: Callable[[CameraModel], CameraModel]) -> None:
         """Says in `CameraInfo` what another camera would see; the pictures stay as they are.
 
         Args:
@@ -108,14 +111,14 @@ class RenderedCamera(RenderedSampler):
         self.options = replace(self.options, model=replace(model, told=change(model)))
         self._info = CameraInfoMaker(self.options.model, self._baseline)
 
-    def rework(self, product: str, change: Callable[[Any], Any]) -> None:
+    def transform_messages(self, product: str, change: Callable[[Any], Any]) -> None:
         """Publishes what `change` makes of each message of a product, instead of it; before the first."""
         of = self._products[product]
         made = of.make
         changed = replace(of, make=lambda reading, time_ns: change(made(reading, time_ns)))
         self._products = {**self._products, product: changed}
 
-    def name_frame(self, frame: str) -> None:
+    def set_frame_id(self, frame: str) -> None:
         """Names the frame of all its messages."""
         self.frame_id, self.optical_frame_id = frame, ""
 
@@ -147,9 +150,9 @@ class RenderedCamera(RenderedSampler):
     def accepts(self, tick: int) -> bool:
         return self._trigger is None or self._trigger.take()
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         render_thread.drain()
-        self.settle()
+        self.finish_samples()
         super().bind(compiled)
         self._unseen = hidden_geoms(self.options.visibility_mask, compiled.names)
         renderer_of(self.sim).reserve(self.options.model.width, self.options.model.height)
@@ -157,12 +160,12 @@ class RenderedCamera(RenderedSampler):
     def develop(self, films: Iterator[Film], notes: Any) -> Any:
         colours = next(films).colours
         assert colours is not None
-        return CameraReading(self._coloured(colours), None)
+        return CameraReading(self._develop_colours(colours), None)
 
-    def _coloured(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    def _develop_colours(self, colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
         """Colours (h, w, 3) that were drawn, through the lens, in memory of their own; brightness (h, w) for grey."""
         if self._distorter:
-            colours = self._distorter.bend(colours)
+            colours = self._distorter.distort(colours)
         if image_messages.is_grey(self.options.encoding):
             return image_messages.grey(colours)
         if self._distorter:
@@ -188,7 +191,7 @@ class RenderedCamera(RenderedSampler):
 
     # ------------------------------------------------------------------ saved pictures
 
-    def saved(self) -> dict[str, str]:
+    def saved_products(self) -> dict[str, str]:
         """Image product -> name of the files that it is saved in, where the file says so."""
         names = (
             name
@@ -200,12 +203,12 @@ class RenderedCamera(RenderedSampler):
     def _open(self, topics: Mapping[str, str]) -> None:
         super()._open(topics)
         folder = self.options.save
-        if folder is None or any(isinstance(end, ImageSaver) for _, end, _ in self._ends):
+        if folder is None or any(isinstance(end, ImageSaver) for _, end, _ in self._publishers):
             return
-        for product, name in self.saved().items():
-            self._ends.append((product, self._writer(folder, name), True))
+        for product, name in self.saved_products().items():
+            self._publishers.append((product, self._make_image_saver(folder, name), True))
 
-    def _writer(self, folder: Path, name: str) -> ImageSaver:
+    def _make_image_saver(self, folder: Path, name: str) -> ImageSaver:
         """What writes a product's pictures to files."""
         far = self.options.depth_far if self.has_depth else None
         return ImageSaver(self.sim, self.scene, folder, name, far)

@@ -18,6 +18,8 @@ from simkit.sensors.cameras.rendering.renderer import Composition, Renderer, fre
 from simkit.sensors.cameras.rendering.view import Film, Shot
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Publisher
     from simkit.runtime.communication.topic_bus import LazyMessage
     from simkit.scene import SceneSensor
@@ -32,7 +34,7 @@ class RenderedSampler(Sensor):
     Without a renderer it is switched off, which is said once; all else goes on.
 
     Attributes:
-        around: what besides the physics the sample at work is made of, see `look_around`.
+        surroundings: what besides the physics the sample at work is made of, see `capture_surroundings`.
     """
 
     is_deferred = True
@@ -44,52 +46,52 @@ class RenderedSampler(Sensor):
         self._failure: RenderError | None = None
         self._lost: RenderError | None = None  # what went wrong with a picture, perhaps on the render thread
         self._is_called = False
-        self.around: Any = None
+        self.surroundings: Any = None
 
     @abc.abstractmethod
     def shots(self) -> Sequence[Shot]:
         """What is drawn for one sample."""
 
-    def settle(self) -> None:
+    def finish_samples(self) -> None:
         """Measures what waits to be looked at, before something that it is made of changes."""
         try:
-            for sample in self._kept():
-                self._settle(sample)
+            for sample in self._kept_samples():
+                self._finish_sample(sample)
         except RenderError:
-            self._drop()
+            self._drop_samples()
 
     def leave(self) -> None:
-        self.settle()
-        self.around = None
+        self.finish_samples()
+        self.surroundings = None
 
-    def measure(self, model: Any, data: Any) -> Any:
-        self.around = self.look_around()
-        return render_thread.at_once(self._exposed(model, data)).result()
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
+        self.surroundings = self.capture_surroundings()
+        return render_thread.run_now(self._make_exposure(model, data)).result()
 
-    def capture(self, model: Any, data: Any) -> render_thread.RenderJob:
+    def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> render_thread.RenderJob:
         """Composes what is to be drawn, and has it drawn: on the render thread, unless somebody waits for it."""
-        expose = self._exposed(model, data)
+        expose = self._make_exposure(model, data)
         # the first picture of all is drawn here, so that it is known at once whether there is a renderer
         if self._is_called or not (self.sim.render_thread and gl_context.is_open()):
-            return render_thread.at_once(expose)
+            return render_thread.run_now(expose)
         return render_thread.submit(expose)
 
-    def capture_held(self, model: Any, data: Any, sample: Sample) -> render_thread.RenderJob:
+    def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> render_thread.RenderJob:
         # labels, temperatures, lights and what is in the world may be others by now
-        self.around, lights = sample.around
+        self.surroundings, lights = sample.surroundings
         with use_lights(model, data, lights):
-            expose = self._exposed(model, data)
-        return render_thread.at_once(expose)
+            expose = self._make_exposure(model, data)
+        return render_thread.run_now(expose)
 
     def finish(self, raw: render_thread.RenderJob) -> Any:
         return raw.result()
 
-    def _exposed(self, model: Any, data: Any) -> Callable[[], Any]:
+    def _make_exposure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Any]:
         """What draws and develops the pictures of a state; it needs the state no more."""
         renderer = renderer_of(self.sim)
         smooth = self.options.anti_aliasing > 0
         composition = renderer.compose(model, data, *self._frame_in_world(data), unseen=self._unseen, smooth=smooth)
-        return functools.partial(self._expose, renderer, composition, self.shots(), self.note(model, data))
+        return functools.partial(self._expose, renderer, composition, self.shots(), self.take_notes(model, data))
 
     def _expose(self, renderer: Renderer, composition: Composition, shots: Sequence[Shot], notes: Any) -> Any:
         films = renderer.films(composition, shots)
@@ -101,17 +103,17 @@ class RenderedSampler(Sensor):
         finally:
             films.close()
 
-    def look_around(self) -> Any:
-        """What besides the physics a sample is made of, as it is now; `note` finds that of its sample in `around`."""
+    def capture_surroundings(self) -> Any:
+        """Return what a sample is made of besides the physics; `take_notes` reads it in `surroundings`."""
         return None
 
-    def _begin(self, tick: int) -> Sample:
-        sample = super()._begin(tick)
-        self.around = self.look_around()
-        sample.around = self.around, read_lights(self.sim.mj_model)
+    def _begin_sample(self, tick: int) -> Sample:
+        sample = super()._begin_sample(tick)
+        self.surroundings = self.capture_surroundings()
+        sample.surroundings = self.surroundings, read_lights(self.sim.mj_model)
         return sample
 
-    def note(self, model: Any, data: Any) -> Any:
+    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> Any:
         """What `develop` needs of the state besides pictures."""
         return None
 
@@ -121,7 +123,7 @@ class RenderedSampler(Sensor):
 
         Args:
             films: one of each shot, in their order; to be taken in turn.
-            notes: what `note` gave.
+            notes: what `take_notes` gave.
         """
 
     def close(self) -> None:
@@ -147,14 +149,14 @@ class RenderedSampler(Sensor):
         except RenderError as error:
             self._switch_off(error)
 
-    def _look_who_reads(self) -> None:
-        super()._look_who_reads()
+    def _update_readers(self) -> None:
+        super()._update_readers()
         # what has a latency is not waited for when it is taken
         self._is_called = self._delayed is None and any(end.is_live for _, end, needs in self._wanted if needs)
 
     def _publish(self, sample: Sample, wanted: list[tuple[str, Publisher, bool]]) -> list[LazyMessage]:
         put_off = super()._publish(sample, wanted)
-        drawing = self._work_on(sample)
+        drawing = self._pending_job(sample)
         # what somebody will look at is made as soon as the picture is there; what may never be seen is not
         awaited = [later for later in put_off if later.is_awaited]
         if drawing is not None and awaited:
@@ -163,7 +165,7 @@ class RenderedSampler(Sensor):
                 later.work = sample.work
         return put_off
 
-    def _work_on(self, sample: Sample) -> render_thread.RenderJob | None:
+    def _pending_job(self, sample: Sample) -> render_thread.RenderJob | None:
         drawing: render_thread.RenderJob | None = sample.raw
         return None if drawing is None or drawing.is_at_once else drawing
 
@@ -172,9 +174,9 @@ class RenderedSampler(Sensor):
             sample.work.wait()
         return super()._message(sample, product)
 
-    def _message_later(self, sample: Sample, product: str) -> Any:
+    def _message_on_demand(self, sample: Sample, product: str) -> Any:
         try:
-            return super()._message_later(sample, product)
+            return super()._message_on_demand(sample, product)
         except RenderError:
             return NO_MESSAGE  # it has been said why
 
@@ -192,11 +194,11 @@ class RenderedSampler(Sensor):
             raise self._failure
         return super().truth
 
-    def _settle(self, sample: Sample) -> None:
+    def _finish_sample(self, sample: Sample) -> None:
         if sample.work is not None:
             sample.work.wait()
         try:
-            super()._settle(sample)
+            super()._finish_sample(sample)
         except RenderError as error:
             self._switch_off(error)
             raise
@@ -205,7 +207,7 @@ class RenderedSampler(Sensor):
         if self._failure is not None:
             return
         self._failure = error
-        self._drop()
+        self._drop_samples()
         why = str(error).removeprefix(error.code).strip()
         is_known = any(d.code == error.code and d.message.endswith(why) for d in self.sim.reports)
         message = f"camera {self.scoped!r} is switched off: {why}"

@@ -96,35 +96,35 @@ class RgbdCamera(RenderedCamera):
         self._is_blended = self.options.anti_aliasing > 0 and Appearance.of(sim.world).quality.samples > 0
         super().attach(sim)
 
-    def bound_depths(self, near: float | None, far: float | None) -> None:
+    def set_depth_range(self, near: float | None, far: float | None) -> None:
         """Sets the range of depths [m]; None leaves an end as it is."""
         old = self.options
         near, far = old.depth_near if near is None else near, old.depth_far if far is None else far
         self.options = replace(old, depth_near=near, depth_far=far)
         self._view = None
 
-    def _aimed(self) -> View:
+    def _drawn_view(self) -> View:
         if self._view is None:
             self._range = DepthRange(self.options)
             near, far = self._range.planes()
-            self._view = replace(super()._aimed(), near=near, far=far)
+            self._view = replace(super()._drawn_view(), near=near, far=far)
         return self._view
 
     def shots(self) -> Sequence[Shot]:
-        view = self._aimed()
+        view = self._drawn_view()
         if self._is_blended:
             return Shot(view), Shot(view, depth=True, sharp=True)
         return (Shot(view, depth=True),)
 
     def develop(self, films: Iterator[Film], notes: Any) -> Any:
         film = next(films)
-        colours = _NO_COLOURS if film.colours is None else self._coloured(film.colours)
+        colours = _NO_COLOURS if film.colours is None else self._develop_colours(film.colours)
         if film.depths is None:
             film = next(films)
         raw = film.depths
         assert raw is not None
         if self._distorter:
-            raw = self._distorter.bend_depths(raw)
+            raw = self._distorter.distort_depths(raw)
         return CameraReading(colours, self._range.metres(raw, film.view, self._spare_depths.take()))
 
     def products(self) -> dict[str, Product]:
@@ -141,7 +141,7 @@ class RgbdCamera(RenderedCamera):
         topics = {product: f"{base}/{product}" for product in ("image", "depth_image", "points")}
         return {**topics, "camera_info": self._info_topic(base + "/image")}
 
-    def turn_clouds(self) -> None:
+    def use_optical_cloud_axes(self) -> None:
         """Gives clouds as Gazebo Classic does: z forward, x right, y down, 32 bytes a point, whatever the frame is.
 
         Where they are published in the frame of a link of the same model that has other axes, that is noted.
@@ -149,18 +149,18 @@ class RgbdCamera(RenderedCamera):
         self._is_classic = True
         self._clouds_made = None
 
-    def cut_depths(self, near: float, far: float, *, in_millimetres: bool) -> None:
+    def crop_depth_images(self, near: float, far: float, *, in_millimetres: bool) -> None:
         """Gives depth images as drivers do: NaN where depth is not between `near` and `far` [m], or 16UC1 and 0."""
         change = depth_messages.depths_in_millimetres if in_millimetres else depth_messages.depths_with_nan
-        self.rework("depth_image", functools.partial(change, near=near, far=far))
+        self.transform_messages("depth_image", functools.partial(change, near=near, far=far))
 
-    def cut_clouds(self, near: float, far: float) -> None:
+    def crop_clouds(self, near: float, far: float) -> None:
         """Gives clouds whose points are NaN where depth, along z, is not between `near` and `far` [m]."""
-        self.rework("points", functools.partial(depth_messages.crop_cloud, near=near, far=far))
+        self.transform_messages("points", functools.partial(depth_messages.crop_cloud, near=near, far=far))
 
     def publish_on(self, topics: Mapping[str, str]) -> None:
         super().publish_on(topics)
-        if not (self._is_classic and "points" in topics) or self._turned_from_frame() < _TURNED:
+        if not (self._is_classic and "points" in topics) or self._angle_to_frame() < _TURNED:
             return
         frame = self._cloud_frame
         message = f"sensor {self.scoped!r}: its cloud has z forward, as in Gazebo Classic, but its frame is {frame!r}"
@@ -192,7 +192,7 @@ class RgbdCamera(RenderedCamera):
         sample = self._sample
         if sample is None:
             return None
-        self._settle(sample)
+        self._finish_sample(sample)
         return sample.noisy
 
     def _newest_depths(self, reading: Any | None) -> Depths | None:
@@ -251,8 +251,8 @@ class RgbdCamera(RenderedCamera):
         is_with_images = bool(self.optical_frame_id) and not self.points_frame_id
         return self._is_classic or self._has_ros_axes or is_with_images
 
-    def name_frame(self, frame: str) -> None:
-        super().name_frame(frame)
+    def set_frame_id(self, frame: str) -> None:
+        super().set_frame_id(frame)
         self.points_frame_id = ""
 
     def optical_frames(self) -> dict[str, Pose]:
@@ -261,7 +261,7 @@ class RgbdCamera(RenderedCamera):
             found[self.points_frame_id] = OPTICAL_POSE if self._is_cloud_optical else IDENTITY
         return found
 
-    def _turned_from_frame(self) -> float:
+    def _angle_to_frame(self) -> float:
         """By how much the frame's axes are turned from optical ones [rad]; 0 where it is no link of the model."""
         frame, (owner, _, _) = self._cloud_frame, self.scene.parent.rpartition("::")
         links = [link for model in self.sim.models.values() for link in model.scene.all_links()]

@@ -19,6 +19,8 @@ from simkit.sensors.cameras.labelled_objects import LabelledObjects
 from simkit.sensors.cameras.rendering.view import Film, Ids, Shot
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.scene import SceneSensor
 
 
@@ -130,7 +132,7 @@ class SegmentationCamera(LabelCamera):
         self._palette: Palette | None = None
         self._palette_of: LabelledObjects | None = None
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         return {**super().describe(), "segmentation_type": self.options.type}
 
     def products(self) -> dict[str, Product]:
@@ -147,18 +149,18 @@ class SegmentationCamera(LabelCamera):
         return {**topics, "camera_info": self._info_topic(base + "/labels_map")}
 
     def shots(self) -> Sequence[Shot]:
-        view = self._aimed()
+        view = self._drawn_view()
         ids = Shot(view, ids=True)
         return (Shot(view), ids) if self.options.save is not None else (ids,)
 
-    def saved(self) -> dict[str, str]:
+    def saved_products(self) -> dict[str, str]:
         return {
             "picture": label_camera.IMAGE,
             "colored_map": label_camera.COLOURS,
             "labels_map": label_camera.LABELS,
         }
 
-    def note(self, model: Any, data: Any) -> Palette:
+    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> Palette:
         items = self.items
         if self._palette is None or items is not self._palette_of:
             self._palette, self._palette_of = make_palette(items, self.options.type), items

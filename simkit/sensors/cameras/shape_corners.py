@@ -33,7 +33,7 @@ class Corners:
     edges: Pairs
 
 
-def geom_corners(model: Any, geom: int) -> Corners:
+def geom_corners(model: mujoco.MjModel, geom: int) -> Corners:
     """The corners of a geom as it is drawn; round shapes have enough of them."""
     kind, size = int(model.geom_type[geom]), np.array(model.geom_size[geom])
     if kind in (_KINDS.mjGEOM_SPHERE, _KINDS.mjGEOM_ELLIPSOID):
@@ -57,14 +57,14 @@ def geom_corners(model: Any, geom: int) -> Corners:
     return Corners(CUBE * size, CUBE_EDGES)
 
 
-def _mesh(model: Any, number: int) -> Corners:
+def _mesh(model: mujoco.MjModel, number: int) -> Corners:
     first, count = int(model.mesh_vertadr[number]), int(model.mesh_vertnum[number])
     start, faces = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
     points = np.array(model.mesh_vert[first : first + count], dtype=np.float64)
     return Corners(points, _unique_edges(np.asarray(model.mesh_face[start : start + faces])))
 
 
-def _ground(model: Any, number: int) -> Corners:
+def _ground(model: mujoco.MjModel, number: int) -> Corners:
     rows, columns, first = (int(a[number]) for a in (model.hfield_nrow, model.hfield_ncol, model.hfield_adr))
     half_x, half_y, height, _ = model.hfield_size[number]
     data = model.hfield_data[first : first + rows * columns].reshape(rows, columns)

@@ -19,6 +19,8 @@ from simkit.sensors.cameras.rendering.view import Ids
 from simkit.sensors.rays.embree_rays import TriangleScene, has_embree
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
 Kelvins = npt.NDArray[np.float32]
@@ -74,7 +76,7 @@ class TexturedMesh:
         starts = first - np.einsum("mij,mj->mi", slopes, a)
         self._maps = np.concatenate((slopes, starts[:, :, None]), axis=2)
 
-    def look_up(self, origin: Vector, directions: Vector) -> tuple[npt.NDArray[np.intp], Vector]:
+    def texture_hits(self, origin: Vector, directions: Vector) -> tuple[npt.NDArray[np.intp], Vector]:
         """Which rays from a point hit, and the texture coordinates there.
 
         Args:
@@ -108,9 +110,9 @@ class HeatSurface:
     @property
     def mean(self) -> float:
         """[K]."""
-        return float(self._warm(np.float32(self.picture.mean)))
+        return float(self._temperature_at(np.float32(self.picture.mean)))
 
-    def _warm(self, share: Any) -> Any:
+    def _temperature_at(self, share: Any) -> Any:
         coldest, hottest = self.signature.coldest, self.signature.hottest
         return coldest + (hottest - coldest) * share
 
@@ -124,8 +126,8 @@ class HeatSurface:
         """
         found = np.full(len(directions), self.mean, np.float32)
         if self.skin is not None and len(directions):
-            which, uv = self.skin.look_up(eye, directions @ rotation.T)
-            found[which] = self._warm(self.picture.at(uv))
+            which, uv = self.skin.texture_hits(eye, directions @ rotation.T)
+            found[which] = self._temperature_at(self.picture.at(uv))
         return found
 
 
@@ -188,7 +190,7 @@ def make_temperature_map(sim: Simulation, air: float, span: float) -> Temperatur
     return TemperatureMap(table, is_source, tuple(surfaces), surface_of)
 
 
-def _brightness(model: Any) -> Vector:
+def _brightness(model: mujoco.MjModel) -> Vector:
     """Of each geom's colour without light, from 0 to 1 (Rec. 601); a texture counts with its mean."""
     from mujoco import mjtTextureRole
 
@@ -208,7 +210,7 @@ def _brightness(model: Any) -> Vector:
     return brightness
 
 
-def _mean_colour(model: Any, texture: int) -> Vector:
+def _mean_colour(model: mujoco.MjModel, texture: int) -> Vector:
     size = int(model.tex_height[texture]) * int(model.tex_width[texture])
     channels, start = int(model.tex_nchannel[texture]), int(model.tex_adr[texture])
     pixels = model.tex_data[start : start + size * channels].reshape(size, channels)

@@ -21,6 +21,9 @@ from simkit.sensors.cameras.rendering.view import Film, Shot, View
 from simkit.sensors.cameras.temperature_map import Kelvins, TemperatureMap, make_temperature_map
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.scene import SceneSensor
 
 _FINE, _COARSE = 0.01, 3.0
@@ -79,7 +82,7 @@ class ThermalCamera(RenderedCamera):
         self._heat: TemperatureMap | None = None
         self._heat_of: tuple[Any, Any] = (None, None)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Temperatures in K."""
         options = self.options
         return {**super().describe(), "thermal": {"bits": options.bits, "resolution": options.resolution}}
@@ -96,7 +99,7 @@ class ThermalCamera(RenderedCamera):
         self._ways: Vector | None = None
         self._span = abs(air.temperature_gradient) * self._height_of_view()
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         self._heat = None
 
@@ -120,14 +123,14 @@ class ThermalCamera(RenderedCamera):
 
     # ------------------------------------------------------------------ measuring
 
-    def _aimed(self) -> View:
-        view = super()._aimed()
+    def _drawn_view(self) -> View:
+        view = super()._drawn_view()
         return replace(view, near=view.near * _NEARER)
 
     def shots(self) -> Sequence[Shot]:
-        return (Shot(self._aimed(), ids=True),)
+        return (Shot(self._drawn_view(), ids=True),)
 
-    def look_around(self) -> TemperatureMap:
+    def capture_surroundings(self) -> TemperatureMap:
         """What is how warm now."""
         sim = self.sim
         state, structure = sim.temperatures.state, sim.structure
@@ -140,8 +143,8 @@ class ThermalCamera(RenderedCamera):
                 table[self._heat.is_source] = self._coarse(table[self._heat.is_source])
         return self._heat
 
-    def note(self, model: Any, data: Any) -> ThermalState:
-        heat: TemperatureMap = self.around
+    def take_notes(self, model: mujoco.MjModel, data: mujoco.MjData) -> ThermalState:
+        heat: TemperatureMap = self.surroundings
         views = []
         if heat.surfaces:
             position, rotation = self._frame_in_world(data)
@@ -155,7 +158,7 @@ class ThermalCamera(RenderedCamera):
         """Temperatures [K], shape (height, width)."""
         film = next(films)
         assert film.ids is not None
-        ids = self._distorter.bend_ids(film.ids) if self._distorter else film.ids
+        ids = self._distorter.distort_ids(film.ids) if self._distorter else film.ids
         kelvins = notes.heat.table.take(ids, mode="wrap")
         if notes.views:
             self._wear(kelvins, ids, notes)

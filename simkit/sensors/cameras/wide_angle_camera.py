@@ -30,12 +30,10 @@ class WideAngleCamera(Camera):
         super().attach(sim)
         self._cube: CubeMap | None = None
 
-    def describe(self) -> dict[str, Any]:
-        found = super().describe()
+    def describe(self) -> dict[str, object]:
         model = self.options.model
         assert isinstance(model, WideAngleModel)
-        found["camera"]["lens"] = model.lens.type
-        return found
+        return {"camera": {**self._describe_image(), "lens": model.lens.type}}
 
     def shots(self) -> Sequence[Shot]:
         """What is drawn for one sample; found out at the first picture, since a lens takes a while."""

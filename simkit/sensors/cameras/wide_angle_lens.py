@@ -116,7 +116,7 @@ class WideAngleModel(CameraModel):
         return np.zeros(5) if self.lens.type == "gnomonical" else np.array(self.polynomial)
 
     @property
-    def is_bent(self) -> bool:
+    def is_distorted(self) -> bool:
         return True
 
     def offsets(self) -> tuple[Vector, Vector]:

@@ -25,7 +25,10 @@ from simkit.sensors.devices.contact_reading import ContactReading, RawContacts
 from simkit.sensors.topics_and_frames import check_topic
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    import mujoco
+
+    from simkit.compiler import Compiled, SpecBuilder
+    from simkit.compiler.name_map import NameMap
     from simkit.scene import SceneSensor, SceneWorld
 
 
@@ -152,7 +155,7 @@ class Contact(Sensor):
         self.collisions: tuple[str, ...] = ()
         self._states_frame: str | None = None
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         return {"contact": {"collisions": [name for name, _ in self.options.collisions]}}
 
     def build(self, builder: SpecBuilder) -> None:
@@ -190,7 +193,7 @@ class Contact(Sensor):
             self.update_rate = 0.0  # Gazebo tells of contacts at every step, whatever <update_rate> says
         self._is_named = _includes_entity_names(self.sim.world)
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         self._numbers: CollisionTable = collision_table(compiled)
         self._mine = self._numbers.mask(self.collisions)
@@ -199,14 +202,14 @@ class Contact(Sensor):
         self._centres = {number: self._centre_of(self._numbers.names[number], compiled) for number in self._order}
         self._frame = self._find_frame(compiled.names)
 
-    def _centre_of(self, collision: str, compiled: Any) -> tuple[int, Vector]:
+    def _centre_of(self, collision: str, compiled: Compiled) -> tuple[int, Vector]:
         """Body, and centre of mass in its frame, of a collision's link."""
         link = compiled.names.link(collision.rsplit("::", 1)[0])
         return int(link.body), link.offset.transform(link.scene.inertial.com)
 
     # ------------------------------------------------------------------ what Classic's bumper tells
 
-    def tell_states(self, topic: str, frame: str) -> bool:
+    def publish_states(self, topic: str, frame: str) -> bool:
         """Publishes `ContactsState` instead, at every sample; False where there is no link of that name (yet).
 
         Args:
@@ -218,7 +221,7 @@ class Contact(Sensor):
         self.publish_on({"states": topic})
         return self._frame is not None or self._states_frame in _WORLD_FRAMES
 
-    def _find_frame(self, names: Any) -> tuple[int, Vector, Vector] | None:
+    def _find_frame(self, names: NameMap) -> tuple[int, Vector, Vector] | None:
         """Body, position and rotation in it of the link that states are told in; None for the world."""
         frame = self._states_frame
         if frame is None or frame in _WORLD_FRAMES or self._quirks:
@@ -240,13 +243,13 @@ class Contact(Sensor):
         given = self.options.topic
         return {"contacts": valid_topic(given) if given else self._default_topic("contact")}
 
-    def tells(self, product: str, raw: RawContacts) -> bool:
+    def publishes(self, product: str, raw: RawContacts) -> bool:
         return product == "states" or raw.touches is not None
 
-    def measure(self, model: Any, data: Any) -> ContactReading:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> ContactReading:
         return self.finish(self.capture(model, data))
 
-    def capture(self, model: Any, data: Any) -> RawContacts:
+    def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> RawContacts:
         """The engine's contacts, and where the links are that a bumper's states need."""
         found = find_contacts(model, data, self._mine)
         if self._states_frame is None:

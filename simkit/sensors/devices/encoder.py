@@ -18,7 +18,7 @@ from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import NoiseModel, quantise, read_noise
 
 if TYPE_CHECKING:
-    from simkit.compiler import SpecBuilder
+    from simkit.compiler import Compiled, SpecBuilder
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/JointState"
@@ -95,7 +95,7 @@ class Encoder(Sensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """What it counts in."""
         return {"encoder": {"resolution": self.options.resolution, "absolute": self.options.absolute}}
 
@@ -125,9 +125,9 @@ class Encoder(Sensor):
         self._track: CountHistory | None = None
         if options.from_counts:
             # last, so that the noise of a sample has moved on before its position is read
-            self._track = self._add_noise(CountHistory(self, round(options.window * 1e9)))
+            self._track = self._register_noise(CountHistory(self, round(options.window * 1e9)))
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         self._joint = compiled.names.joint(self.scene.parent)
         if not self._joint.dofs:
@@ -140,7 +140,7 @@ class Encoder(Sensor):
     def default_topics(self) -> dict[str, str]:
         return {"encoder": self._default_topic("encoder")}
 
-    def measure(self, model: Any, data: Any) -> JointReading:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> JointReading:
         position = self._position_in(data)
         velocity = joint_velocity(self._joint, data) if self._joint.dofs else np.zeros(self._width)
         return JointReading(position if self.options.absolute else self.change(self._start, position), velocity)
@@ -150,7 +150,7 @@ class Encoder(Sensor):
         if self._track is not None:
             position, velocity = self._track.told()
         else:
-            position = self._counted(reading.position, index)
+            position = self._count_position(reading.position, index)
         if not self._velocity_noise.is_silent:
             velocity = self._velocity_noise.apply(velocity, index)
         return JointReading(position, quantise(velocity, self._velocity_step))
@@ -165,7 +165,7 @@ class Encoder(Sensor):
         _, position, index, state = mark
         noise = self._position_noise
         now, noise.state = noise.state, state
-        told = self._counted(position if self.options.absolute else self.change(self._start, position), index)
+        told = self._count_position(position if self.options.absolute else self.change(self._start, position), index)
         noise.state = now
         return told
 
@@ -181,10 +181,10 @@ class Encoder(Sensor):
         mujoco.mju_subQuat(turn, second, first)
         return turn
 
-    def _position_in(self, data: Any) -> Vector:
+    def _position_in(self, data: mujoco.MjData) -> Vector:
         return joint_position(self._joint, data) if self._joint.dofs else np.zeros(self._width)
 
-    def _counted(self, position: Vector, index: int) -> Vector:
+    def _count_position(self, position: Vector, index: int) -> Vector:
         if not self._position_noise.is_silent:
             position = self._position_noise.apply(position, index)
         return quantise(position, self._step)

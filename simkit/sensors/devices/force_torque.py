@@ -16,6 +16,9 @@ from simkit.sensors.base import Product, Sensor
 from simkit.sensors.noise import Noise, ThreeAxes, read_axes
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.scene import SceneSensor
 
 TYPE = "geometry_msgs/msg/WrenchStamped"
@@ -78,7 +81,7 @@ class ForceTorque(Sensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Frame and direction."""
         direction = "parent_to_child" if self.options.from_parent else "child_to_parent"
         return {"force_torque": {"frame": self.options.frame, "measure_direction": direction}}
@@ -86,7 +89,7 @@ class ForceTorque(Sensor):
     def prepare(self) -> None:
         self.noise = self._make_noise((*self.options.force, *self.options.torque), "force_torque")
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         names = compiled.names
         joint = self._joint = names.joint(self.scene.parent)
@@ -113,9 +116,9 @@ class ForceTorque(Sensor):
     def default_topics(self) -> dict[str, str]:
         return {"forcetorque": self._default_topic("forcetorque")}
 
-    def measure(self, model: Any, data: Any) -> Wrench:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Wrench:
         if data is not self._viewed:
-            self._look_at(model, data)
+            self._bind_views(model, data)
         if self.sim.world.gazebo_quirks or self._joint.moved_body <= 0:
             force, torque = self._forces(model, data)
         else:  # `transmitted_wrench`, of what is looked at
@@ -126,20 +129,20 @@ class ForceTorque(Sensor):
             axes = -axes
         return Wrench(force @ axes, torque @ axes)
 
-    def _look_at(self, model: Any, data: Any) -> None:
+    def _bind_views(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Chooses what a measurement is made of: views of the data, which are got once."""
         self._viewed, body, moved = data, self._body, max(self._joint.moved_body, 0)
         self._wrench, self._centre = data.cfrc_int[moved], data.subtree_com[model.body_rootid[moved]]
         self._place, self._attitude = data.xpos[body], data.xmat[body].reshape(3, 3)
         self._arm, self._axes = self._offset_position, data.xmat[self._axes_body].reshape(3, 3)
 
-    def _forces(self, model: Any, data: Any) -> tuple[Vector, Vector]:
+    def _forces(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """What passes through the joint, about the sensor's origin, world axes."""
         if self.sim.world.gazebo_quirks:
             return self._as_gazebo(model, data)
         return transmitted_wrench(model, data, self._joint, self._place + self._attitude @ self._arm)
 
-    def _as_gazebo(self, model: Any, data: Any) -> tuple[Vector, Vector]:
+    def _as_gazebo(self, model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """The same, the lever arm taken in the joint's axes though the force is in the sensor's, world axes."""
         body = data.xmat[self._body].reshape(3, 3)
         origin = data.xpos[self._body] + body @ self._joint_frame.position

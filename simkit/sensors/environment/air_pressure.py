@@ -15,6 +15,8 @@ from simkit.sensors.environment.air_sensor import AirSensor
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/FluidPressure"
@@ -51,14 +53,14 @@ class AirPressure(AirSensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Height of the origin that the file gives [m], standard deviation [Pa]."""
         options = self.options
         altitude, stddev = options.reference_altitude, options.pressure.stddev
         return {"air_pressure": {"reference_altitude": altitude, "pressure_stddev": stddev}}
 
     def prepare(self) -> None:
-        self._enter_air(self.options.reference_altitude)
+        self._read_air_column(self.options.reference_altitude)
         self.noise = self._make_noise((self.options.pressure,), "air_pressure")
         if self.sim.world.gazebo_quirks and self.options.reference_altitude:
             message = (
@@ -73,7 +75,7 @@ class AirPressure(AirSensor):
     def default_topics(self) -> dict[str, str]:
         return {"air_pressure": self._default_topic("air_pressure")}
 
-    def measure(self, model: Any, data: Any) -> float:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> float:
         return self._column.at(self._height(data)).pressure
 
     def perturb(self, reading: float, index: int) -> float:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import abc
-from typing import Any
+from typing import TYPE_CHECKING
 
 from simkit.scene import Atmosphere
 from simkit.sensors.base import Sensor, report_once
 from simkit.sensors.environment.atmosphere import MAX_ALTITUDE, MIN_ALTITUDE, AirColumn, air_column
+
+if TYPE_CHECKING:
+    import mujoco
 
 
 class AirSensor(Sensor, abc.ABC):
@@ -18,7 +21,7 @@ class AirSensor(Sensor, abc.ABC):
     of `<spherical_coordinates>` does not count, as in Gazebo.
     """
 
-    def _enter_air(self, origin: float = 0.0) -> None:
+    def _read_air_column(self, origin: float = 0.0) -> None:
         """To be called in `prepare`.
 
         Args:
@@ -39,7 +42,7 @@ class AirSensor(Sensor, abc.ABC):
             )
             self.diagnostics.warning("SK-SENSOR-061", message, self.scene.where)
 
-    def _height(self, data: Any) -> float:
+    def _height(self, data: mujoco.MjData) -> float:
         """Of the sensor above sea level [m]."""
         body = self._body
         return self._origin_height + float(data.xpos[body][2] + data.xmat[body][6:] @ self._offset_position)

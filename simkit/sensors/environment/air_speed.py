@@ -17,6 +17,8 @@ from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.scene import SceneSensor
 
 TYPE = "ros_gz_interfaces/msg/AirSpeed"
@@ -58,12 +60,12 @@ class AirSpeed(AirSensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Standard deviation [Pa]."""
         return {"air_speed": {"pressure_stddev": self.options.pressure.stddev}}
 
     def prepare(self) -> None:
-        self._enter_air()
+        self._read_air_column()
         quirks = self.sim.world.gazebo_quirks
         self._is_calm = quirks
         self._unit = _HECTO if quirks else 1.0
@@ -75,7 +77,7 @@ class AirSpeed(AirSensor):
     def default_topics(self) -> dict[str, str]:
         return {"air_speed": self._default_topic("air_speed")}
 
-    def measure(self, model: Any, data: Any) -> Flow:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Flow:
         body = self._body
         rotation = data.xmat[body].reshape(3, 3)
         velocity = point_velocity(model, data, body, rotation @ self._offset_position)
@@ -83,7 +85,7 @@ class AirSpeed(AirSensor):
         air = self._column.at(self._height(data))
         return Flow(0.5 * air.density * speed * abs(speed), air.temperature)
 
-    def _wind(self, data: Any) -> Vector:
+    def _wind(self, data: mujoco.MjData) -> Vector:
         """Velocity of the air [m/s] in the step that led to a state, shape (3,); Gazebo's sensor knows of none."""
         if self._is_calm:
             return np.zeros(3)

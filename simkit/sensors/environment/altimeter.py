@@ -15,6 +15,9 @@ from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.scene import SceneSensor
 
 TYPE = "ros_gz_interfaces/msg/Altimeter"
@@ -61,7 +64,7 @@ class Altimeter(Sensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Standard deviations [m, m/s]."""
         options = self.options
         return {"altimeter": {"position_stddev": options.position.stddev, "velocity_stddev": options.velocity.stddev}}
@@ -69,7 +72,7 @@ class Altimeter(Sensor):
     def prepare(self) -> None:
         self.noise = self._make_noise((self.options.position, self.options.velocity), "altimeter")
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         if self._reference is None:
             self._reference = float(self._frame_in_world(self.sim.fresh_data())[0][2])
@@ -86,7 +89,7 @@ class Altimeter(Sensor):
     def default_topics(self) -> dict[str, str]:
         return {"altimeter": self._default_topic("altimeter")}
 
-    def measure(self, model: Any, data: Any) -> Climb:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Climb:
         body = self._body
         lever = data.xmat[body].reshape(3, 3) @ self._offset_position
         velocity = point_velocity(model, data, body, lever)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import mujoco
 import numpy as np
@@ -15,6 +15,8 @@ from simkit.compiler.lights import spot_share
 from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
+    from simkit.compiler import Compiled
+    from simkit.compiler.name_map import NameMap
     from simkit.runtime.handles.light import Light, LightState
     from simkit.scene import SceneLight
 
@@ -59,19 +61,19 @@ class Lamp:
         """What the light is like now."""
         return self.light.scene
 
-    def bind(self, names: Any) -> None:
+    def bind(self, names: NameMap) -> None:
         """Finds what carries it in a compiled model's name map."""
         carrier = names.link(self.scene.link) if self.scene.link else None
         self._body = int(carrier.body) if carrier else 0
         self._offset: Pose | None = carrier.offset if carrier else None
 
-    def pose(self, state: LightState, data: Any) -> Pose:
+    def pose(self, state: LightState, data: mujoco.MjData) -> Pose:
         """In the world, of a state of the light and one of the physics."""
         if self._offset is None:
             return state.pose
         return Pose(data.xpos[self._body], data.xquat[self._body]) @ self._offset @ state.pose
 
-    def at(self, state: LightState, data: Any, point: Vector) -> Beam:
+    def at(self, state: LightState, data: mujoco.MjData, point: Vector) -> Beam:
         """The light at a point of the world [m], shape (3,), of a state of the light and one of the physics."""
         pose = self.pose(state, data)
         share = 1.0 if state.on else 0.0
@@ -116,7 +118,7 @@ class ShadowRay:
         self._groups[_OPEN_GROUP] = 1
         self._geom = np.empty(1, dtype=np.int32)
 
-    def bind(self, compiled: Any, link: str, lamp: str = "") -> None:
+    def bind(self, compiled: Compiled, link: str, lamp: str = "") -> None:
         """Finds what throws shadows on a link in a compiled model; `lamp` is the link of the light, if any (scoped)."""
         names = self._names = compiled.names
         casters = names.shared("what throws shadows", lambda: _shadow_casters(compiled.model, names))
@@ -124,7 +126,7 @@ class ShadowRay:
         own = {geom for end in ends for geom in (*end.visuals, *end.ray_geoms)}
         self._casters = np.array([g for g in casters if g not in own], dtype=np.intp)
 
-    def find(self, model: Any, data: Any, origin: Vector, beam: Beam) -> str:
+    def find(self, model: mujoco.MjModel, data: mujoco.MjData, origin: Vector, beam: Beam) -> str:
         """Scoped name of the visual or collision nearest to `origin` that is in the way, or an empty text.
 
         The ray ends at the lamp; a parallel one passes through the whole scene.
@@ -143,7 +145,7 @@ class ShadowRay:
         return str(self._names.geom_owner(int(self._geom[0]))[1])
 
 
-def _shadow_casters(model: Any, names: Any) -> list[int]:
+def _shadow_casters(model: mujoco.MjModel, names: NameMap) -> list[int]:
     """Ids of the geoms that throw shadows."""
     opaque: npt.NDArray[np.bool_] = model.geom_rgba[:, 3] >= LEAST_OPACITY
     drawn = opaque & np.asarray(model.geom_castshadow, dtype=bool)

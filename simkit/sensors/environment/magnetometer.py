@@ -26,6 +26,8 @@ from simkit.sensors.environment.magnetic_field import (
 from simkit.sensors.noise import Noise, ThreeAxes, read_axes
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/MagneticField"
@@ -85,7 +87,7 @@ class Magnetometer(Sensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Decimal year of the Earth's field, standard deviations [T]."""
         return {"magnetometer": {"year": self.options.year, "stddev": [axis.stddev for axis in self.options.axes]}}
 
@@ -101,9 +103,9 @@ class Magnetometer(Sensor):
         self._earth: EarthField | None = None
         self._scale, self._to_world = 1.0, np.eye(3)
         if world.spherical_coordinates is not None:
-            self._stand_on_planet(world)
+            self._locate_on_planet(world)
 
-    def _stand_on_planet(self, world: SceneWorld) -> None:
+    def _locate_on_planet(self, world: SceneWorld) -> None:
         place = world.spherical_coordinates
         assert place is not None
         written = world.magnetic_field != SceneWorld().magnetic_field
@@ -134,7 +136,7 @@ class Magnetometer(Sensor):
     def default_topics(self) -> dict[str, str]:
         return {"magnetometer": self._default_topic("magnetometer")}
 
-    def measure(self, model: Any, data: Any) -> Vector:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
         position, rotation = self._frame_in_world(data)
         field = self._uniform
         if self._earth is not None:

@@ -18,6 +18,8 @@ from simkit.sensors.environment.point_velocity import point_velocity
 from simkit.sensors.noise import Noise, NoiseModel, read_noise
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.scene import SceneSensor, SphericalCoordinates
 
 FIX, VELOCITY, GPS = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/Vector3Stamped", "gps_msgs/msg/GPSFix"
@@ -85,7 +87,7 @@ class NavSat(Sensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Standard deviations [m, m/s]."""
         options = self.options
         return {
@@ -124,7 +126,7 @@ class NavSat(Sensor):
         sine, cosine = math.sin(place.heading), math.cos(place.heading)
         self._heading = np.array(((cosine, -sine), (sine, cosine)))
 
-    def err_as_classic(self) -> None:
+    def use_classic_noise(self) -> None:
         """With `<gazebo_quirks>` the world's heading is half a turn off, as in Gazebo Classic, and nothing else is."""
         place = self.sim.world.spherical_coordinates
         if self._quirks and place is not None:
@@ -145,7 +147,7 @@ class NavSat(Sensor):
         topic = self._default_topic("navsat")
         return {"fix": topic, "velocity": f"{topic}/velocity", "gps_fix": f"{topic}/gps_fix"}
 
-    def measure(self, model: Any, data: Any) -> NavSatReading:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> NavSatReading:
         place = self._place
         assert place is not None
         body = self._body
@@ -170,10 +172,10 @@ class NavSat(Sensor):
         if self._quirks:
             latitude, longitude = _normalised(math.radians(first)), _normalised(math.radians(second))
         else:
-            latitude, longitude = self._moved(reading, first - reading.east, second - reading.north)
+            latitude, longitude = self._move_over_ground(reading, first - reading.east, second - reading.north)
         return NavSatReading(reading.east, reading.north, latitude, longitude, altitude, values[3:])
 
-    def _moved(self, reading: NavSatReading, east: float, north: float) -> tuple[float, float]:
+    def _move_over_ground(self, reading: NavSatReading, east: float, north: float) -> tuple[float, float]:
         """Latitude and longitude that many metres away along the ground [m]."""
         place = self._place
         assert place is not None

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import mujoco
 import numpy as np
 
@@ -13,7 +11,7 @@ _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 _object_velocity = mujoco.mj_objectVelocity
 
 
-def point_velocity(model: Any, data: Any, body: int, lever: Vector) -> Vector:
+def point_velocity(model: mujoco.MjModel, data: mujoco.MjData, body: int, lever: Vector) -> Vector:
     """Velocity [m/s] in the world frame of a point that is fixed to a body, shape (3,).
 
     Args:

@@ -13,6 +13,9 @@ from simkit.pose import Vector, quat_from_rpy, quat_multiply
 from simkit.sensors.environment.illumination import Lamp, ShadowRay, falloff_share
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.runtime.handles.light import Light, LightState
     from simkit.scene.geometry import Vec3
 
@@ -160,13 +163,15 @@ class SolarView:
         self._ray = ShadowRay() if options.shadow else None
         self._half = options.field_of_view / 2 + 1e-12
 
-    def bind(self, compiled: Any, link: str) -> None:
+    def bind(self, compiled: Compiled, link: str) -> None:
         """Finds the light and what throws shadows on `link` in a compiled model."""
         self.lamp.bind(compiled.names)
         if self._ray is not None:
             self._ray.bind(compiled, link, self.light.scene.link)
 
-    def measure(self, model: Any, data: Any, state: LightState, origin: Vector, rotation: Vector) -> SolarReading:
+    def measure(
+        self, model: mujoco.MjModel, data: mujoco.MjData, state: LightState, origin: Vector, rotation: Vector
+    ) -> SolarReading:
         """The reading.
 
         Args:

@@ -19,6 +19,9 @@ from simkit.sensors.environment.solar_irradiance import NO_LIGHT, SolarOptions, 
 from simkit.sensors.noise import Noise, NoiseModel, quantise, read_noise
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.runtime.handles.light import Light, LightMotion, LightState
     from simkit.scene import SceneSensor
 
@@ -73,7 +76,7 @@ class SolarSensor(Sensor):
         self._motions: list[tuple[int, LightMotion | None]] = []
         self._view: SolarView | None = None
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         options, view = self.options, self.options.view
         panel = view.panel
         return {
@@ -118,7 +121,7 @@ class SolarSensor(Sensor):
             topics["shadow"] = topic + "/shadow"
         return topics
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         if self.light is None or self.sim.lights.get(self.light.scoped) is not self.light:
             self._find_light()  # it came, or went, with a model
@@ -155,7 +158,7 @@ class SolarSensor(Sensor):
         if motions and motions[-1][1] is motion:
             return
         # a sample that is measured later keeps the light of its own time
-        oldest = min((sample.index for sample in self._kept()), default=index)
+        oldest = min((sample.index for sample in self._kept_samples()), default=index)
         while len(motions) > 1 and motions[1][0] <= oldest:
             del motions[0]
         motions.append((index, motion))
@@ -174,14 +177,14 @@ class SolarSensor(Sensor):
 
     # ------------------------------------------------------------------ measuring
 
-    def measure(self, model: Any, data: Any) -> SolarReading:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> SolarReading:
         return self._measure(model, data, self.light.state if self.light is not None else None)
 
-    def capture_held(self, model: Any, data: Any, sample: Sample) -> SolarReading:
+    def capture_held(self, model: mujoco.MjModel, data: mujoco.MjData, sample: Sample) -> SolarReading:
         motion = next((motion for index, motion in reversed(self._motions) if index <= sample.index), None)
         return self._measure(model, data, motion.at(sample.time_ns) if motion is not None else None)
 
-    def _measure(self, model: Any, data: Any, state: LightState | None) -> SolarReading:
+    def _measure(self, model: mujoco.MjModel, data: mujoco.MjData, state: LightState | None) -> SolarReading:
         """With the light as it was at the time of the data; None where there is none."""
         if self._view is None or state is None:
             return NO_LIGHT

@@ -15,6 +15,8 @@ from simkit.sensors.inertial.inertial_kinematics import sensor_motion
 from simkit.sensors.sample import Sample
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.sensors.sampler import Sampler
 
 TYPES = "sensor_msgs/msg/Imu", "geometry_msgs/msg/Vector3", "geometry_msgs/msg/Quaternion"
@@ -53,11 +55,11 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         self._is_silent, self._is_white = first.noise.is_silent, first.noise._white is not None
         self._normals, self._first_index, self._seed = np.empty((0, 0, 0)), 0, self.sim.seed
         self._index = -1
-        self._told_of: Any = None
+        self._constants_of: Any = None
         self._states: list[Any] = []
-        self._told: list[tuple[str, tuple[Vector, ...], bool]] = []
+        self._message_constants: list[tuple[str, tuple[Vector, ...], bool]] = []
 
-    def capture_all(self, data: Any) -> None:
+    def capture_all(self, data: mujoco.MjData) -> None:
         bodies, raw = self._bodies, np.empty((len(self.members), _NUMBERS))
         raw[:, :4] = data.xquat[bodies]
         raw[:, 4:13] = data.xmat[bodies]
@@ -91,7 +93,7 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
 
     def _message(self, place: int) -> Any:
         make, vector, quaternion, header, time = msgs.types_of(*_TYPES)
-        frame, (of_orientation, of_rate, of_force), has_attitude = self._told[place]
+        frame, (of_orientation, of_rate, of_force), has_attitude = self._message_constants[place]
         w, x, y, z, rx, ry, rz, fx, fy, fz = self._rows[place]
         if not has_attitude:
             w, x, y, z = 1.0, 0.0, 0.0, 0.0
@@ -117,14 +119,14 @@ class ImuBatch(SensorBatch[ImuMeasurement]):
         if not self._is_silent:
             numbers[:, 4:] = self._with_noise(numbers[:, 4:], index)
         self._rows, self._index = numbers.tolist(), index
-        if self._told_of is not self.members[0].noise.state.interval:
-            self._tell_about()
+        if self._constants_of is not self.members[0].noise.state.interval:
+            self._update_message_constants()
 
-    def _tell_about(self) -> None:
+    def _update_message_constants(self) -> None:
         """What of everybody's message changes with the rate alone."""
-        self._told_of, self._told = self.members[0].noise.state.interval, []
+        self._constants_of, self._message_constants = self.members[0].noise.state.interval, []
         for imu in self.members:
-            self._told.append((imu.frame_id, tuple(imu.covariances()), imu.options.enable_orientation))
+            self._message_constants.append((imu.frame_id, tuple(imu.covariances()), imu.options.enable_orientation))
 
     def _with_noise(self, motion: Vector, index: int) -> Vector:
         states = [imu.noise.state for imu in self.members]

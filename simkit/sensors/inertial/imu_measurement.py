@@ -13,6 +13,7 @@ from simkit.diagnostics import Diagnostics
 from simkit.params import Params
 from simkit.pose import Vector, quat_conjugate, quat_from_rpy, quat_multiply
 from simkit.sensors.base import Sensor
+from simkit.sensors.bias_drift import NoiseInterval
 from simkit.sensors.inertial.inertial_kinematics import (
     NO_ROTATION,
     QuaternionTuple,
@@ -24,6 +25,9 @@ from simkit.sensors.inertial.orientation_reference import OrientationReference, 
 from simkit.sensors.noise import Noise, NoiseModel, ThreeAxes, read_axes, read_noise
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.scene import SceneSensor
 
 _unpack_numbers = struct.Struct("=31d").unpack  # of what is captured
@@ -103,7 +107,7 @@ class ImuMeasurement(Sensor):
         super().__init__(scene, diagnostics)
         self.options = read_options(scene.params)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         reference = self.options.reference
         return {
             "imu": {
@@ -118,19 +122,20 @@ class ImuMeasurement(Sensor):
         self.noise = self._make_noise((*options.angular_velocity, *options.linear_acceleration), "imu")
         self._attitude_noise = self._make_noise(options.orientation, "orientation")
         self._more_noise: Noise | None = None
-        self._covariances_of: Any = None
-        self.measure_against(reference_orientation(options.reference, self.scene, self.sim))
+        self._covariances_of: NoiseInterval | None = None
+        self._covariances: list[Vector] = []
+        self.set_orientation_reference(reference_orientation(options.reference, self.scene, self.sim))
 
-    def measure_against(self, reference: Vector | QuaternionTuple) -> None:
+    def set_orientation_reference(self, reference: Vector | QuaternionTuple) -> None:
         """Sets the frame, (w, x, y, z) in the world, that the orientation is measured against."""
         self.batch = None  # until the next schedule
         self.reference = np.array(reference, dtype=np.float64)
         w, x, y, z = self.reference.tolist()
         self._from_reference: QuaternionTuple = (w, -x, -y, -z)
 
-    def turn_orientation(self, rpy: tuple[float, float, float]) -> None:
+    def rotate_orientation(self, rpy: tuple[float, float, float]) -> None:
         """Turns every orientation by roll, pitch, yaw [rad] about the reference's axes."""
-        self.measure_against(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
+        self.set_orientation_reference(quat_multiply(self.reference, quat_conjugate(quat_from_rpy(*rpy))))
 
     def add_white_noise(self, stddev: float) -> None:
         """Noise on top of the file's, the same number on every rate [rad/s], acceleration [m/s²] and angle [rad]."""
@@ -148,7 +153,7 @@ class ImuMeasurement(Sensor):
         """Whether its orientation is measured against the world's axes."""
         return self._from_reference == NO_ROTATION
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         # as numbers: so few are sooner multiplied one by one than by NumPy
         self._arm: tuple[float, ...] = tuple(self._offset_position.tolist())
@@ -158,16 +163,16 @@ class ImuMeasurement(Sensor):
 
     # ------------------------------------------------------------------ measuring
 
-    def measure(self, model: Any, data: Any) -> ImuReading:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> ImuReading:
         return self.finish(self.capture(model, data))
 
-    def capture(self, model: Any, data: Any) -> bytes:
+    def capture(self, model: mujoco.MjModel, data: mujoco.MjData) -> bytes:
         """How the body lies and moves, see `_look_at`; as bytes, which are the soonest taken."""
         if data is not self._viewed:
-            self._look_at(model, data)
+            self._bind_views(model, data)
         return b"".join(self._views)
 
-    def _look_at(self, model: Any, data: Any) -> None:
+    def _bind_views(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Chooses what is captured: the body's quaternion, rotation matrix and place, and the point that its spatial
         velocity and acceleration (rotation first, in world axes) are of."""
         body, self._viewed = self._body, data
@@ -206,7 +211,7 @@ class ImuMeasurement(Sensor):
 
     def remember(self, memory: Any) -> None:
         super().remember(memory[0])
-        self.measure_against(memory[1])
+        self.set_orientation_reference(memory[1])
 
     def covariances(self) -> list[Vector]:
         """Return the covariances of orientation, rate and force; anew where white noise follows the sample interval."""

@@ -1,4 +1,4 @@
-"""RayBundle on triangles by Embree, which finds the triangle in float32; the distance is then worked out in float64.
+"""Rays on triangles by Embree, which finds the triangle in float32; the distance is then worked out in float64.
 
 Embree's time hardly grows with the number of triangles. Its scenes are built with the robust intersector, so that no
 ray slips between two triangles that share an edge.
@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 
@@ -136,7 +137,9 @@ class TriangleBody:
         scenes: those that others have made of the same triangles in the same place.
     """
 
-    def __init__(self, model: Any, carrier: int, body: int, geoms: Ids, scenes: dict[Any, TriangleScene]) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, carrier: int, body: int, geoms: Ids, scenes: dict[Any, TriangleScene]
+    ) -> None:
         self.carrier, self.body, self.geoms = carrier, body, geoms
         parts = [triangles_of(model, int(geom)) for geom in geoms]
         self._geom_of = np.repeat(geoms, [len(faces) for _, faces in parts]).astype(np.int32)
@@ -150,7 +153,7 @@ class TriangleBody:
         self.centre, self.radius = self._scene.centre, self._scene.radius
 
     def cast(
-        self, data: Any, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
+        self, data: mujoco.MjData, origin: Vector, directions: Vector, start: float, limit: npt.NDArray[np.float32]
     ) -> tuple[Ids, Vector, npt.NDArray[np.int32]]:
         """Of rays in the world: which hit, their distances [m], and the geoms."""
         if self.body > 0:
@@ -169,7 +172,7 @@ class MovingBodies:
         self._centres = np.array([body.centre for body in bodies]).reshape(-1, 3)
         self._radii = np.array([body.radius for body in bodies])
 
-    def met(self, data: Any, rays: RayBundle) -> Iterator[tuple[TriangleBody, Ids]]:
+    def met(self, data: mujoco.MjData, rays: RayBundle) -> Iterator[tuple[TriangleBody, Ids]]:
         """Each body that rays may meet, with those rays."""
         if not self._bodies:
             return
@@ -193,14 +196,14 @@ class MovingBodies:
                 yield self._bodies[i], some
 
 
-def _geometry_key(model: Any, geom: int) -> tuple[Any, ...]:
+def _geometry_key(model: mujoco.MjModel, geom: int) -> tuple[Any, ...]:
     """What the triangles of a geom follow from."""
     kind, data = int(model.geom_type[geom]), int(model.geom_dataid[geom])
     size = model.geom_size[geom].tobytes() if kind == BOX else b""
     return kind, data, size, model.geom_pos[geom].tobytes(), model.geom_quat[geom].tobytes()
 
 
-def triangles_of(model: Any, geom: int) -> tuple[Vector, Faces]:
+def triangles_of(model: mujoco.MjModel, geom: int) -> tuple[Vector, Faces]:
     """Vertices [m], shape (n, 3), and faces, shape (m, 3), of a geom in its body's frame."""
     import mujoco
 
@@ -221,7 +224,7 @@ def triangles_of(model: Any, geom: int) -> tuple[Vector, Faces]:
     return vertices @ turn.reshape(3, 3).T + model.geom_pos[geom], np.asarray(faces, dtype=np.int32)
 
 
-def _heightmap_triangles(model: Any, field: int) -> tuple[Vector, Faces]:
+def _heightmap_triangles(model: mujoco.MjModel, field: int) -> tuple[Vector, Faces]:
     """The surface, each cell cut from its first to its last corner, the skirt around it and the base below."""
     rows, columns = int(model.hfield_nrow[field]), int(model.hfield_ncol[field])
     half_x, half_y, height, depth = model.hfield_size[field].tolist()

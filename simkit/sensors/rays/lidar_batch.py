@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,9 @@ from simkit.sensors.rays.lidar_measurement import LidarMeasurement, LidarReading
 from simkit.sensors.rays.numpy_rays import Shapes, cast_on_shapes, in_frame
 from simkit.sensors.rays.ray_culling import geom_half_sizes, reaches_between_cones
 from simkit.sensors.rays.ray_fan import RayFan
+
+if TYPE_CHECKING:
+    import mujoco
 
 _CHUNK = 1 << 16  # pairs of fan and shape that are looked at together
 _MARGIN = 1e-9
@@ -35,7 +38,9 @@ class FanBatch:
         self._carriers = self._targets.carriers[which]
         self._radii, self._halves = model.geom_rbound[self._geoms], geom_half_sizes(model, self._geoms)
 
-    def cast(self, chosen: Sequence[int], data: Any, origins: Vector, rotations: Vector, start: float) -> None:
+    def cast(
+        self, chosen: Sequence[int], data: mujoco.MjData, origins: Vector, rotations: Vector, start: float
+    ) -> None:
         """Makes `distances`, `hits` and `infinite` of these fans anew.
 
         Args:
@@ -50,7 +55,7 @@ class FanBatch:
         for i, fan in enumerate(fans):
             mine = slice(i * count, (i + 1) * count)
             fan.distances, fan.hits = best[mine], hits[mine]
-            fan._cast_on_others(self._targets, data, fan._rays(origins[i], rotations[i], start))
+            fan._cast_on_planes_and_triangles(self._targets, data, fan._rays(origins[i], rotations[i], start))
         for of, shapes in self._near(fans, data, origins, rotations):
             self._cast(fans[0], data, origins, rotations, start, of, shapes, best, hits)
         for fan in fans:
@@ -61,7 +66,7 @@ class FanBatch:
     def _cast(
         self,
         fan: RayFan,
-        data: Any,
+        data: mujoco.MjData,
         origins: Vector,
         rotations: Vector,
         start: float,
@@ -80,7 +85,9 @@ class FanBatch:
         assert fan._fan is not None
         cast_on_shapes(fan._fan, found, fan.reach, start, best, hits, of * self._count)
 
-    def _near(self, fans: Sequence[RayFan], data: Any, origins: Vector, rotations: Vector) -> Iterator[tuple[Ids, Ids]]:
+    def _near(
+        self, fans: Sequence[RayFan], data: mujoco.MjData, origins: Vector, rotations: Vector
+    ) -> Iterator[tuple[Ids, Ids]]:
         """Pairs of fan and shape where rays may meet it, some fans at a time; never one too few."""
         carriers = np.array([fan._carrier for fan in fans], dtype=np.intp)
         places = data.geom_xpos.take(self._geoms, 0)
@@ -98,7 +105,7 @@ class FanBatch:
             yield of[within] + first, shapes[within]
 
     def _within(
-        self, fan: RayFan, data: Any, shapes: Ids, axes: Vector, height: Vector, square: Vector
+        self, fan: RayFan, data: mujoco.MjData, shapes: Ids, axes: Vector, height: Vector, square: Vector
     ) -> npt.NDArray[np.bool_]:
         """Whether shapes reach between the ends of a fan, by their height over it."""
         lowest, highest = fan._bounds
@@ -137,7 +144,7 @@ class LidarBatch(SensorBatch[LidarMeasurement]):
         self._fans, self._start = FanBatch([lidar._fan for lidar in members]), members[0]._start
         self._readings: dict[int, LidarReading] = {}
 
-    def capture_all(self, data: Any) -> None:
+    def capture_all(self, data: mujoco.MjData) -> None:
         read = [place for place, lidar in enumerate(self.members) if lidar.is_read_now]
         self._readings.clear()
         if len(read) < MIN_MEMBERS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ from simkit.sensors.rays.ray_fan import RayFan, fan_directions
 from simkit.sensors.visibility_mask import ALL_VISIBLE, hidden_geoms
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.scene import SceneSensor
 
 _BRIGHTEST = 2000.0  # of Gazebo's rendered lidars
@@ -84,7 +87,7 @@ class LidarMeasurement(Sensor):
         # as arrays: NumPy takes as long to look at a number as to go through a planar scan
         self._limits = np.array(options.range_min), np.array(options.range_max)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         o = self.options
         return {
             "lidar": {
@@ -102,7 +105,7 @@ class LidarMeasurement(Sensor):
     def prepare(self) -> None:
         self.noise = self._make_uniform_noise(self.options.noise, self._fan.count, "ranges")
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         names = compiled.names
         link = names.link(self.scene.parent)
@@ -115,7 +118,7 @@ class LidarMeasurement(Sensor):
         self._retro = names.shared(f"laser_retro of {kind}", lambda: self._reflectances(compiled))
         self._names = names.shared("scoped names of geoms", lambda: _scoped_names(compiled))
 
-    def _reflectances(self, compiled: Any) -> Vector | None:
+    def _reflectances(self, compiled: Compiled) -> Vector | None:
         """`laser_retro` by geom id (the last entry, index -1, is for no hit), or None where all are 0."""
         names, found = compiled.names, {}
         for link in names.links.values():
@@ -149,14 +152,14 @@ class LidarMeasurement(Sensor):
         names: npt.NDArray[np.object_] = reading.names[geoms]
         return names
 
-    def measure(self, model: Any, data: Any) -> LidarReading:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> LidarReading:
         origin, rotation = self._place(data)
         self._fan.cast(model, data, origin, rotation, self._start)
         return self.reading_of_cast()
 
     def measure_now(self) -> LidarReading:
         """Of the state at this tick."""
-        return self.measure(self.sim.mj_model, self._data_now())
+        return self.measure(self.sim.mj_model, self._computed_data())
 
     def reading_of_cast(self) -> LidarReading:
         """What the rays found when they were last cast."""
@@ -168,7 +171,7 @@ class LidarMeasurement(Sensor):
             infinite = infinite | too_near
         return LidarReading(ranges, self._intensities(infinite), infinite, fan.hits, fan.ids, self._names)
 
-    def _place(self, data: Any) -> tuple[Vector, Vector]:
+    def _place(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """The same as `_frame_in_world`, without the arithmetic of an offset that is none."""
         place, turn = data.xpos[self._body], data.xmat[self._body].reshape(3, 3)
         if self._is_moved:
@@ -213,7 +216,7 @@ class LidarMeasurement(Sensor):
         self.point_noise = self._make_uniform_noise(NoiseModel(stddev=stddev), 4 * self._fan.count, "points")
 
 
-def _scoped_names(compiled: Any) -> npt.NDArray[np.object_]:
+def _scoped_names(compiled: Compiled) -> npt.NDArray[np.object_]:
     """Of the collision or visual that each geom is part of; the last, for no geom, is empty."""
     count = compiled.model.ngeom
     table = np.empty(count + 1, dtype=object)

@@ -27,7 +27,9 @@ _SOLIDS = np.array((1, 0, 0, 0, 0, 0), dtype=np.uint8)
 _SOLIDS_AND_PLANES = np.array((1, 1, 0, 0, 0, 0), dtype=np.uint8)
 
 
-def _cast(model: Any, data: Any, rays: RayBundle, groups: npt.NDArray[np.uint8], exclude: int = -1) -> RayHits:
+def _cast(
+    model: mujoco.MjModel, data: mujoco.MjData, rays: RayBundle, groups: npt.NDArray[np.uint8], exclude: int = -1
+) -> RayHits:
     directions, start = rays.directions, rays.start
     count = len(directions)
     geoms, distances = np.empty(count, np.int32), np.empty(count)
@@ -56,7 +58,7 @@ class WholeModelCaster:
     collides of them. Their bounds hold all that is seen here.
     """
 
-    def __init__(self, model: Any, seen: npt.NDArray[np.bool_]) -> None:
+    def __init__(self, model: mujoco.MjModel, seen: npt.NDArray[np.bool_]) -> None:
         self.model = own = copy.copy(model)
         own.geom_group[:] = np.where(seen, _SEEN, _UNSEEN)
         own.geom_matid[:] = -1
@@ -64,7 +66,7 @@ class WholeModelCaster:
         rows, bounds = _bounds_to_widen(own, seen)
         own.bvh_aabb[rows] = bounds
 
-    def cast(self, data: Any, rays: RayBundle, body: int, own: Sequence[int]) -> RayHits:
+    def cast(self, data: mujoco.MjData, rays: RayBundle, body: int, own: Sequence[int]) -> RayHits:
         """Casts through everything.
 
         Args:
@@ -132,19 +134,19 @@ class ReducedModelCaster:
             met &= can_meet(self._model, body, offset, self._full, lowest, highest)
         return np.flatnonzero(met)
 
-    def cast(self, data: Any, rays: RayBundle, sight: Ids) -> RayHits:
+    def cast(self, data: mujoco.MjData, rays: RayBundle, sight: Ids) -> RayHits:
         """Casts through planes, what stands still, and the movers in `sight`.
 
         Geoms are positions in `ids`.
         """
-        met = self._met(data, rays, sight) if sight.size else None
+        met = self._movers_met(data, rays, sight) if sight.size else None
         if met is None:
             groups = _SOLIDS_AND_PLANES if self._planes and self._reaches_plane(rays) else _SOLIDS
             return _cast(*self._alone, rays, groups)
         self._move(data, met)
         return _cast(*self._all, rays, _SOLIDS_AND_PLANES)
 
-    def _met(self, data: Any, rays: RayBundle, sight: Ids) -> npt.NDArray[np.bool_] | None:
+    def _movers_met(self, data: mujoco.MjData, rays: RayBundle, sight: Ids) -> npt.NDArray[np.bool_] | None:
         """Which of the movers in sight rays may meet where they are now; None for nothing at all."""
         geoms = self._full[sight]
         places = data.geom_xpos.take(geoms, 0)
@@ -163,7 +165,7 @@ class ReducedModelCaster:
         met[sight[in_sight]] = True
         return met
 
-    def _move(self, data: Any, met: npt.NDArray[np.bool_]) -> None:
+    def _move(self, data: mujoco.MjData, met: npt.NDArray[np.bool_]) -> None:
         """Puts movers in their places; far away those that no ray meets, where the engine passes them over soonest."""
         # the sizes fit, so this is memory copied to memory; "clip" only spares NumPy a buffer
         data.geom_xpos.take(self._full, 0, self._geom_xpos, "clip")
@@ -180,14 +182,14 @@ class ReducedModelCaster:
         return any(reaches_plane(rays, point, normal) for point, normal in self._planes)
 
 
-def _compile_reduced_model(model: Any, geoms: Ids, carriers: Ids) -> tuple[Any, Any]:
+def _compile_reduced_model(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> tuple[Any, Any]:
     reduced = mujoco.MjModel.from_xml_string(_reduced_mjcf(model, geoms, carriers))
     data = mujoco.MjData(reduced)
     mujoco.mj_kinematics(reduced, data)
     return reduced, data
 
 
-def _reduced_mjcf(model: Any, geoms: Ids, carriers: Ids) -> str:
+def _reduced_mjcf(model: mujoco.MjModel, geoms: Ids, carriers: Ids) -> str:
     """MJCF of some geoms, those of carrier 0 in the world, the others in a body each; sorted by carrier."""
     text, carrier = [_MJCF_HEADER], 0
     for geom, of in zip(geoms.tolist(), carriers.tolist(), strict=True):
@@ -208,7 +210,7 @@ def _reduced_mjcf(model: Any, geoms: Ids, carriers: Ids) -> str:
     return "".join(text)
 
 
-def _bounds_to_widen(model: Any, is_seen: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], Vector]:
+def _bounds_to_widen(model: mujoco.MjModel, is_seen: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], Vector]:
     """Bounds of bodies (rows of `bvh_aabb`: centre and half size, in the inertial frame) that seen geoms stick out of.
 
     Returns:

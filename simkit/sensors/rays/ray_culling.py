@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Pose, Vector
+
+if TYPE_CHECKING:
+    from simkit.sensors.rays.ray_bundle import RayBundle
 
 _ROTARY_JOINTS = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL))
 _MARGIN = 1e-9  # [m]
@@ -54,7 +57,7 @@ def reaches_between_cones(
     return found
 
 
-def geom_half_sizes(model: Any, geoms: npt.NDArray[np.intp]) -> Vector:
+def geom_half_sizes(model: mujoco.MjModel, geoms: npt.NDArray[np.intp]) -> Vector:
     """Of the boxes around geoms, along their own axes [m], shape (m, 3)."""
     is_plane = model.geom_type[geoms] == int(mujoco.mjtGeom.mjGEOM_PLANE)
     halves: Vector = np.where(is_plane[:, None], ENDLESS, model.geom_aabb[geoms, 3:])
@@ -70,11 +73,11 @@ class NearbyGeoms:
         geoms: theirs, shape (m,).
     """
 
-    def __init__(self, model: Any, which: npt.NDArray[np.intp], geoms: npt.NDArray[np.intp]) -> None:
+    def __init__(self, model: mujoco.MjModel, which: npt.NDArray[np.intp], geoms: npt.NDArray[np.intp]) -> None:
         self._which, self._geoms = which, geoms
         self._radii, self._halves = model.geom_rbound[geoms], geom_half_sizes(model, geoms)
 
-    def met(self, data: Any, rays: Any) -> npt.NDArray[np.intp]:
+    def met(self, data: mujoco.MjData, rays: RayBundle) -> npt.NDArray[np.intp]:
         """Numbers of those within reach and between the ends of the fan; never one too few."""
         places = data.geom_xpos.take(self._geoms, 0)
         places -= rays.origin
@@ -99,7 +102,7 @@ class NearbyGeoms:
 
 
 def can_meet(
-    model: Any, body: int, offset: Pose, geoms: npt.NDArray[np.intp], lowest: float, highest: float
+    model: mujoco.MjModel, body: int, offset: Pose, geoms: npt.NDArray[np.intp], lowest: float, highest: float
 ) -> npt.NDArray[np.bool_]:
     """Which geoms rays may ever meet, shape (m,); never wrongly False.
 
@@ -129,7 +132,7 @@ def can_meet(
     return reaches_between_cones(places[:, 2], side, extents, lowest, highest)
 
 
-def _tied_bodies(model: Any, body: int, offset: Pose) -> dict[int, BodyTie]:
+def _tied_bodies(model: mujoco.MjModel, body: int, offset: Pose) -> dict[int, BodyTie]:
     """Of all bodies that turning joints alone tie to a body, the world left out."""
     if body <= 0:
         return {}
@@ -152,7 +155,7 @@ def _tied_bodies(model: Any, body: int, offset: Pose) -> dict[int, BodyTie]:
     return ties
 
 
-def _tie_of_neighbour(model: Any, tie: BodyTie, here: int, there: int) -> BodyTie | None:
+def _tie_of_neighbour(model: mujoco.MjModel, tie: BodyTie, here: int, there: int) -> BodyTie | None:
     """The tie of a neighbour in the tree; None where something else than a turning joint is between them."""
     child = there if int(model.body_parentid[there]) == here else here
     step = Pose(model.body_pos[child], model.body_quat[child])  # of the child in its parent

@@ -15,7 +15,7 @@ It is only Embree's float32 that says on which side of the edge of a mesh a ray 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,11 @@ from simkit.sensors.rays.numpy_rays import (
 from simkit.sensors.rays.ray_bundle import RayBundle, finite_limit_bits, reaches_plane
 from simkit.sensors.rays.ray_culling import NearbyGeoms, can_meet
 from simkit.sensors.rays.ray_targets import MAX_MOVING_BODIES, RayTargets
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler.name_map import NameMap
 
 MANY_RAYS: Final = 2048
 """From so many rays on NumPy is faster on shapes than the engine."""
@@ -96,8 +101,8 @@ class RayFan:
 
     def bind(
         self,
-        model: Any,
-        names: Any,
+        model: mujoco.MjModel,
+        names: NameMap,
         body: int,
         own_geoms: Sequence[int],
         *,
@@ -129,7 +134,7 @@ class RayFan:
         if not self._by_engine and self._fan is None:
             self._fan = FanDirections(self.directions, self._grid)
 
-    def _find_targets(self, model: Any, names: Any, hidden: Sequence[int]) -> RayTargets:
+    def _find_targets(self, model: mujoco.MjModel, names: NameMap, hidden: Sequence[int]) -> RayTargets:
         def find() -> RayTargets:
             seen = self.groups[model.geom_group] > 0
             seen[list(hidden)] = False
@@ -139,7 +144,9 @@ class RayFan:
         found: RayTargets = names.shared(what, find)
         return found
 
-    def cast(self, model: Any, data: Any, origin: Vector, rotation: Vector, start: float = 0.0) -> None:
+    def cast(
+        self, model: mujoco.MjModel, data: mujoco.MjData, origin: Vector, rotation: Vector, start: float = 0.0
+    ) -> None:
         """Makes `distances`, `hits` and `infinite` anew.
 
         Args:
@@ -168,7 +175,7 @@ class RayFan:
             self._cast_on_triangles(targets.triangles_for_engine, data, rays)
         else:
             self._clear()
-            self._cast_on_others(targets, data, rays)
+            self._cast_on_planes_and_triangles(targets, data, rays)
             self._cast_on_shapes(targets, data, rays, rotation)
         self._end()
 
@@ -184,12 +191,12 @@ class RayFan:
         self.hits = np.full(self.count, -1, dtype=np.int32)
         self.distances = np.full(self.count, np.inf)
 
-    def _cast_on_others(self, targets: RayTargets, data: Any, rays: RayBundle) -> None:
+    def _cast_on_planes_and_triangles(self, targets: RayTargets, data: mujoco.MjData, rays: RayBundle) -> None:
         """On all but shapes, in NumPy and by Embree."""
         self._cast_on_triangles(targets.triangles_and_boxes, data, rays)
         self._cast_on_planes(targets, data, rays)
 
-    def _cast_on_planes(self, targets: RayTargets, data: Any, rays: RayBundle) -> None:
+    def _cast_on_planes(self, targets: RayTargets, data: mujoco.MjData, rays: RayBundle) -> None:
         best = self.distances
         for i in targets.planes.tolist():
             if self._carrier and targets.carriers[i] == self._carrier:
@@ -204,7 +211,7 @@ class RayFan:
                 np.copyto(best, found, where=nearer)
                 self.hits[nearer] = geom
 
-    def _cast_on_shapes(self, targets: RayTargets, data: Any, rays: RayBundle, rotation: Vector) -> None:
+    def _cast_on_shapes(self, targets: RayTargets, data: mujoco.MjData, rays: RayBundle, rotation: Vector) -> None:
         model, which = targets.model, targets.shapes
         if self._nearby is None:
             if self._carrier:
@@ -221,11 +228,11 @@ class RayFan:
         shapes = Shapes(kinds, sizes, *placed, radii, geoms.astype(np.int32))
         cast_on_shapes(self._fan, shapes, rays.reach, rays.start, self.distances, self.hits)
 
-    def _cast_on_triangles(self, bodies: list[TriangleBody], data: Any, rays: RayBundle) -> None:
+    def _cast_on_triangles(self, bodies: list[TriangleBody], data: mujoco.MjData, rays: RayBundle) -> None:
         """First what stands still, then each body by the rays that may meet it."""
         if self._standing is None:
             self._standing = [body for body in bodies if not body.carrier]
-            self._movers = MovingBodies([body for body in bodies if body.carrier and self._may_meet(body)])
+            self._movers = MovingBodies([body for body in bodies if body.carrier and self._can_meet(body)])
         for body in self._standing:
             for first in range(0, self.count, _RAYS_PER_CHUNK):
                 part = slice(first, first + _RAYS_PER_CHUNK)
@@ -243,7 +250,7 @@ class RayFan:
         which = which[nearer]
         self.distances[which], self.hits[which] = found[nearer], geoms[nearer]
 
-    def _may_meet(self, body: TriangleBody) -> bool:
+    def _can_meet(self, body: TriangleBody) -> bool:
         if body.carrier == self._carrier:
             return False
         if self._offset is None:

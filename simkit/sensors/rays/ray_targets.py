@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,11 @@ import numpy.typing as npt
 from simkit.sensors.rays.embree_rays import TriangleBody, has_embree
 from simkit.sensors.rays.geom_types import BOX, PLANE, SHAPES, SUPPORTED, TRIANGLES, Ids
 from simkit.sensors.rays.mujoco_rays import ReducedModelCaster, WholeModelCaster
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler.name_map import NameMap
 
 MAX_MOVING_BODIES: Final = 64
 """So many moving bodies at most are looked through one after the other for every ray."""
@@ -31,7 +36,7 @@ class RayTargets:
         use_embree: False traces triangles by the engine alone.
     """
 
-    def __init__(self, model: Any, names: Any, seen: npt.NDArray[np.bool_], use_embree: bool) -> None:
+    def __init__(self, model: mujoco.MjModel, names: NameMap, seen: npt.NDArray[np.bool_], use_embree: bool) -> None:
         self.model, self.seen = model, seen
         self.geoms: Ids = np.flatnonzero(seen)
         self.types = model.geom_type[self.geoms].astype(np.intp)
@@ -41,19 +46,19 @@ class RayTargets:
         self._use_embree = use_embree
         self.needs_engine = not is_known or (has_triangles and not self.has_embree)
 
-    def _sort_carriers(self, names: Any) -> None:
+    def _sort_carriers(self, names: NameMap) -> None:
         bodies = self.model.geom_bodyid[self.geoms]
         self.bodies = [0]
-        self._of_body: dict[int, int] = {}
-        self._of_link: dict[str, int] = {}
+        self._carrier_by_body: dict[int, int] = {}
+        self._carrier_by_link: dict[str, int] = {}
         self.carriers = np.zeros(len(self.geoms), dtype=np.intp)
         for i, (geom, body) in enumerate(zip(self.geoms.tolist(), bodies.tolist(), strict=True)):
             if body > 0:
-                self.carriers[i] = self._carrier(self._of_body, body, body)
+                self.carriers[i] = self._carrier(self._carrier_by_body, body, body)
             else:
                 link = names.geom_owner(geom)[0]
                 if link and names.links[link].scene.sensors:
-                    self.carriers[i] = self._carrier(self._of_link, link, 0)
+                    self.carriers[i] = self._carrier(self._carrier_by_link, link, 0)
 
     def _carrier(self, known: dict[Any, int], key: Any, body: int) -> int:
         if key not in known:
@@ -68,7 +73,7 @@ class RayTargets:
             Its number; 0 where nothing of it is seen; -1 where the geoms are no carrier of their own.
         """
         if body > 0:
-            return self._of_body.get(body, 0)
+            return self._carrier_by_body.get(body, 0)
         mine = {int(c) for c in self.carriers[np.isin(self.geoms, list(own_geoms))]}
         if not mine:
             return 0

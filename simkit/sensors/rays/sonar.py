@@ -18,6 +18,9 @@ from simkit.sensors.noise import Noise, NoiseModel, read_noise
 from simkit.sensors.rays.ray_fan import RayFan
 
 if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.compiler import Compiled
     from simkit.scene import SceneSensor
 
 TYPE = "sensor_msgs/msg/Range"
@@ -102,7 +105,7 @@ class Sonar(Sensor):
         self._directions = cone_directions(options.half_angle, options.axis)
         self._fan = RayFan(self._directions, SEEN_AS_COLLISIONS, options.range_max)
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         o = self.options
         return {
             "sonar": {
@@ -122,7 +125,7 @@ class Sonar(Sensor):
     def default_topics(self) -> dict[str, str]:
         return {"range": self._default_topic("sonar")}
 
-    def bind(self, compiled: Any) -> None:
+    def bind(self, compiled: Compiled) -> None:
         super().bind(compiled)
         names = compiled.names
         self._fan.bind(compiled.model, names, self._body, names.link(self.scene.parent).ray_geoms)
@@ -134,7 +137,7 @@ class Sonar(Sensor):
         reading: SonarReading | None = self._true_reading()
         return reading.hit if reading is not None else ""
 
-    def measure(self, model: Any, data: Any) -> SonarReading:
+    def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> SonarReading:
         options, fan = self.options, self._fan
         origin, rotation = self._frame_in_world(data)
         fan.cast(model, data, origin, rotation)

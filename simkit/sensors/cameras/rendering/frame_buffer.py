@@ -17,7 +17,11 @@ _ROWS = 32  # at once: they fit into a processor's cache, and OpenCV wakes no th
 
 
 def read(
-    colours: Colours, depths: Depths | None, rectangle: Any, context: Any, background: Colours | None = None
+    colours: Colours,
+    depths: Depths | None,
+    rectangle: mujoco.MjrRect,
+    context: mujoco.MjrContext,
+    background: Colours | None = None,
 ) -> None:
     """Reads the picture, bottom row first; the context is current, and its offscreen buffer is the one drawn to.
 

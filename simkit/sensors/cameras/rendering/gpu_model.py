@@ -31,7 +31,7 @@ class GpuModel:
                     for context in self._contexts.values():
                         mujoco.mjr_resizeOffscreen(self._width, self._height, context)
 
-    def context_of(self, model: Any, smooth: bool) -> Any:
+    def context_of(self, model: mujoco.MjModel, smooth: bool) -> Any:
         """The engine's handle of the model; uploads one that is not the last one."""
         if model is not self._model:
             self.free()
@@ -54,7 +54,7 @@ class GpuModel:
             context.free()
 
 
-def _upload(model: Any, quality: Quality, smooth: bool) -> Any:
+def _upload(model: mujoco.MjModel, quality: Quality, smooth: bool) -> Any:
     own = model.vis.quality
     kept = own.offsamples, own.shadowsize, own.numslices, own.numstacks
     own.offsamples, own.shadowsize = quality.samples if smooth else 0, quality.shadow_map

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -21,13 +21,13 @@ Lights = Sequence[Vector]
 """How the lights of a model stood and shone at one time."""
 
 
-def read_lights(model: Any) -> Lights:
+def read_lights(model: mujoco.MjModel) -> Lights:
     """How the lights of a model stand and shine now."""
     return [getattr(model, field).copy() for field in _LIGHT_FIELDS]
 
 
 @contextmanager
-def use_lights(model: Any, data: Any, lights: Lights) -> Iterator[None]:
+def use_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) -> Iterator[None]:
     """While it lasts, the lights of a model, and of data computed of it, are as they were."""
     now = read_lights(model)
     is_same = all(np.array_equal(*pair) for pair in zip(lights, now, strict=True))
@@ -40,7 +40,7 @@ def use_lights(model: Any, data: Any, lights: Lights) -> Iterator[None]:
             _write_lights(model, data, now)
 
 
-def _write_lights(model: Any, data: Any, lights: Lights) -> None:
+def _write_lights(model: mujoco.MjModel, data: mujoco.MjData, lights: Lights) -> None:
     for field, values in zip(_LIGHT_FIELDS, lights, strict=True):
         getattr(model, field)[:] = values
     options = model.opt
@@ -51,7 +51,9 @@ def _write_lights(model: Any, data: Any, lights: Lights) -> None:
 
 
 @contextmanager
-def keep_strongest_lights(model: Any, data: Any, position: Vector, rotation: Vector) -> Iterator[None]:
+def keep_strongest_lights(
+    model: mujoco.MjModel, data: mujoco.MjData, position: Vector, rotation: Vector
+) -> Iterator[None]:
     """While it lasts, only so many lights of the model shine as can be drawn: those that a camera gets most of.
 
     Suns come first. Lamps follow by what they give a surface at the camera or a little ahead of it.
@@ -79,7 +81,7 @@ def keep_strongest_lights(model: Any, data: Any, position: Vector, rotation: Vec
         active[:] = kept
 
 
-def convert_point_lights(scene: Any) -> None:
+def convert_point_lights(scene: mujoco.MjvScene) -> None:
     """Point lights of MuJoCo's own format, which its rasteriser leaves out, as spots that are open all around."""
     for light in scene.lights[: scene.nlight]:
         if light.type == mujoco.mjtLightType.mjLIGHT_POINT:
@@ -88,7 +90,12 @@ def convert_point_lights(scene: Any) -> None:
 
 
 def place_directional_lights(
-    scene: Any, context: Any, model: Any, position: Vector, forward: Vector, far: float
+    scene: mujoco.MjvScene,
+    context: mujoco.MjrContext,
+    model: mujoco.MjModel,
+    position: Vector,
+    forward: Vector,
+    far: float,
 ) -> None:
     """Puts directional lights where their shadow maps cover what a view looks at.
 
@@ -111,7 +118,7 @@ def place_directional_lights(
         light.pos = place - back * direction
 
 
-def fit_shadow_maps(context: Any) -> None:
+def fit_shadow_maps(context: mujoco.MjrContext) -> None:
     """Lets the engine read a shadow map where it has drawn it: within a border of one pixel, which it forgets.
 
     Without it, what is read lies up to a pixel away from the surface that asks, at the map's border. That is more than

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from simkit.sensors.cameras.rendering.renderer import renderer_of
 from simkit.sensors.cameras.rendering.view import Colours, Shot, View, look_at
 
 if TYPE_CHECKING:
+    import mujoco
+
     from simkit.runtime import Simulation
 
 
@@ -24,7 +26,7 @@ def render_view(
     eye: Vector | None = None,
     target: Vector | None = None,
     vertical_fov: float = 0.8,
-    decorate: Callable[[Any], None] | None = None,
+    decorate: Callable[[mujoco.MjvScene], None] | None = None,
 ) -> Colours:
     """A picture of the simulation as it is now.
 
@@ -51,7 +53,7 @@ def render_view(
     view = View(width, height, -wide, wide, -half, half, min(0.01 * extent, 0.1 * distance), distance + 50.0 * extent)
     is_dark = model.nlight == 0
 
-    def prepare(scene: Any) -> None:
+    def prepare(scene: mujoco.MjvScene) -> None:
         if is_dark:
             _add_headlight(scene)
         if decorate is not None:
@@ -66,7 +68,7 @@ def render_view(
     return colours.copy()
 
 
-def _add_headlight(scene: Any) -> None:
+def _add_headlight(scene: mujoco.MjvScene) -> None:
     """A bare model has no sun: without one, all of its sides look the same."""
     for light in scene.lights[: scene.nlight]:
         if light.headlight and not light.diffuse.any():

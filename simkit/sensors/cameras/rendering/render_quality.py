@@ -25,7 +25,7 @@ class Quality:
     shadow_map: int
     slices: int
 
-    def leaves_out(self) -> str:
+    def missing_features(self) -> str:
         """In words: what Gazebo would draw."""
         parts = [word for word, there in (("shadows", self.shadow_map), ("smooth edges", self.samples)) if not there]
         return " and ".join(parts)

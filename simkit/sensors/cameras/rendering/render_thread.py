@@ -176,7 +176,7 @@ def submit(do: Callable[[], Any]) -> RenderJob:
     return work
 
 
-def at_once(do: Callable[[], Any]) -> RenderJob:
+def run_now(do: Callable[[], Any]) -> RenderJob:
     """Does something here, after all that was submitted before."""
     _thread.drain()
     work = RenderJob(do, is_at_once=True)

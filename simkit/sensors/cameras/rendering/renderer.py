@@ -36,7 +36,14 @@ if TYPE_CHECKING:
 __all__ = ["Composition", "Renderer", "free_renderer", "renderer_of"]
 
 
-def draw_ids(scene: Any, context: Any, shot: Shot, rectangle: Any, colours: Colours, depths: Depths) -> Film:
+def draw_ids(
+    scene: mujoco.MjvScene,
+    context: mujoco.MjrContext,
+    shot: Shot,
+    rectangle: mujoco.MjrRect,
+    colours: Colours,
+    depths: Depths,
+) -> Film:
     """Which geom is seen at each pixel: edges must not be blended, so the context is one without multisampling."""
     with draw_plain_colours(scene):
         mujoco.mjr_render(rectangle, scene, context)
@@ -78,10 +85,10 @@ class Renderer:
         self._composer = Composer(flags)
         self._uploads = GpuModel(appearance.quality)
         self._backdrop = Background(appearance.surroundings)
-        self._rectangles: dict[tuple[int, int], Any] = {}
+        self._rectangles: dict[tuple[int, int], mujoco.MjrRect] = {}
         self._buffers: dict[tuple[int, int], tuple[Colours, Depths]] = {}
-        self._shade: Colours | None = None
-        self._is_said = False
+        self._background_colour: Colours | None = None
+        self._is_logged = False
         gl_context.hold_memory(self)
 
     def reserve(self, width: int, height: int) -> None:
@@ -90,11 +97,11 @@ class Renderer:
 
     def compose(
         self,
-        model: Any,
-        data: Any,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
         position: Vector,
         rotation: Vector,
-        decorate: Callable[[Any], None] | None = None,
+        decorate: Callable[[mujoco.MjvScene], None] | None = None,
         *,
         unseen: Sequence[int] = (),
         smooth: bool = True,
@@ -147,7 +154,7 @@ class Renderer:
                 if shot.ids:
                     with hide_shapes(scene, hidden):
                         return draw_ids(scene, context, shot, rectangle, colours, depths)
-                self._say()
+                self._log_renderer()
                 glassy = [i for i in transparent_shapes(composition) if i not in hidden]
                 if shot.sharp:
                     with hide_shapes(scene, [*hidden, *glassy]), draw_plain_colours(scene):
@@ -158,17 +165,17 @@ class Renderer:
                     place_directional_lights(scene, context, composition.model, position, rotation[:, 0], view.far)
                     fit_shadow_maps(context)
                 self._render(scene, context, rectangle, hidden, glassy)
-                is_masked = not glassy and self._can_mask(composition.model)
+                is_masked = not glassy and self._can_paint_background(composition.model)
                 # glass colours what is behind it and leaves its depth: that is not the background's colour
-                learns = not (is_masked or glassy) and self._backdrop.is_plain and self._shade is None
+                learns = not (is_masked or glassy) and self._backdrop.is_plain and self._background_colour is None
                 if not is_masked:
                     self._backdrop.draw()
                 if glassy:
                     draw_transparent(scene, context, glassy, position)
-                background = self._shade if is_masked else None
+                background = self._background_colour if is_masked else None
                 frame_buffer.read(colours, depths if shot.depth or learns else None, rectangle, context, background)
                 if learns:
-                    self._learn_shade(colours, depths)
+                    self._learn_background_colour(colours, depths)
             except mujoco.FatalError as error:
                 raise RenderError(f"drawing a picture failed: {error}", "SK-RENDER-002") from error
         return Film(view, colours[::-1], depths[::-1] if shot.depth else None)
@@ -190,7 +197,14 @@ class Renderer:
 
     # ------------------------------------------------------------------ within
 
-    def _render(self, scene: Any, context: Any, rectangle: Any, hidden: list[int], glassy: list[int]) -> None:
+    def _render(
+        self,
+        scene: mujoco.MjvScene,
+        context: mujoco.MjrContext,
+        rectangle: mujoco.MjrRect,
+        hidden: list[int],
+        glassy: list[int],
+    ) -> None:
         """Draws what is opaque; nothing of the places in `hidden`, and of those in `glassy` only shadows."""
         if self._appearance.surroundings.fog is not None:
             enable_fog(self._appearance.surroundings.fog, scene, context)
@@ -200,20 +214,22 @@ class Renderer:
         with hide_shapes(scene, [*hidden, *(i for i in glassy if i not in dark)]), make_transparent(scene, dark):
             mujoco.mjr_render(rectangle, scene, context)
 
-    def _can_mask(self, model: Any) -> bool:
+    def _can_paint_background(self, model: mujoco.MjModel) -> bool:
         """Whether the background can be painted as the picture is read, where nothing has covered the empty buffer.
 
         That is five times as fast as a renderer in software, where there are no edges to blend and no holes in what is
         drawn.
         """
-        is_plain = self._backdrop.is_plain and not self._appearance.quality.samples and self._shade is not None
+        is_plain = (
+            self._backdrop.is_plain and not self._appearance.quality.samples and self._background_colour is not None
+        )
         return is_plain and not (model.tex_nchannel == 4).any()
 
-    def _learn_shade(self, colours: Colours, depths: Depths) -> None:
+    def _learn_background_colour(self, colours: Colours, depths: Depths) -> None:
         """Remembers how the driver rounds the background's colour."""
         empty = int(depths.argmin())
         if depths.flat[empty] == 0:
-            self._shade = colours.reshape(-1, 3)[empty].copy()
+            self._background_colour = colours.reshape(-1, 3)[empty].copy()
 
     def _buffer(self, width: int, height: int) -> tuple[Any, tuple[Colours, Depths]]:
         size = (width, height)
@@ -222,13 +238,15 @@ class Renderer:
             self._buffers[size] = np.empty((height, width, 3), np.uint8), np.empty((height, width), np.float32)
         return self._rectangles[size], self._buffers[size]
 
-    def _say(self) -> None:
+    def _log_renderer(self) -> None:
         """Once for each simulation: who draws, and what is left out."""
-        if self._is_said:
+        if self._is_logged:
             return
-        self._is_said = True
+        self._is_logged = True
         quality = self._appearance.quality
-        text = f"without {quality.leaves_out()}" if quality.leaves_out() else "with shadows and smooth edges"
+        text = (
+            f"without {quality.missing_features()}" if quality.missing_features() else "with shadows and smooth edges"
+        )
         logging.getLogger("simkit").info(
             "renderer: %s; quality %s, %s", gl_context.describe_renderer(), quality.name, text
         )

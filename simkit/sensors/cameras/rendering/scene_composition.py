@@ -44,7 +44,7 @@ class Composition:
 
     __slots__ = ("bounds", "glassy", "is_spare", "model", "planes", "position", "rotation", "scene", "smooth")
 
-    def __init__(self, model: Any, scene: Any, position: Vector, rotation: Vector) -> None:
+    def __init__(self, model: mujoco.MjModel, scene: mujoco.MjvScene, position: Vector, rotation: Vector) -> None:
         self.model, self.scene, self.position, self.rotation = model, scene, position, rotation
         self.smooth = self.is_spare = True
         self.bounds: Bounds | None = None
@@ -71,11 +71,11 @@ class Composer:
 
     def compose(
         self,
-        model: Any,
-        data: Any,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
         position: Vector,
         rotation: Vector,
-        decorate: Callable[[Any], None] | None = None,
+        decorate: Callable[[mujoco.MjvScene], None] | None = None,
         unseen: Sequence[int] = (),
         smooth: bool = True,
     ) -> Composition:
@@ -107,7 +107,7 @@ class Composer:
             ):
                 self._scenes.append(composition.scene)
 
-    def _spare_scene(self, model: Any) -> Any:
+    def _spare_scene(self, model: mujoco.MjModel) -> Any:
         """A list of shapes to be filled."""
         with self._turn:
             if model is not self._scenes_model:
@@ -116,7 +116,7 @@ class Composer:
                 return self._scenes.pop()
         return self._fresh_scene(model, _SPARE)
 
-    def _fresh_scene(self, model: Any, more: int) -> Any:
+    def _fresh_scene(self, model: mujoco.MjModel, more: int) -> Any:
         scene = mujoco.MjvScene(model, model.ngeom + model.nflex + model.nskin + more)
         scene.flags[:] = 0
         scene.flags[self._flags] = 1
@@ -124,7 +124,7 @@ class Composer:
 
 
 @contextmanager
-def _hide_geoms(model: Any, geoms: Sequence[int]) -> Iterator[None]:
+def _hide_geoms(model: mujoco.MjModel, geoms: Sequence[int]) -> Iterator[None]:
     """While it lasts, these are in no group that is drawn."""
     if not len(geoms):
         yield
@@ -138,11 +138,11 @@ def _hide_geoms(model: Any, geoms: Sequence[int]) -> Iterator[None]:
         groups[geoms] = kept
 
 
-def _has_transparent_geoms(model: Any) -> bool:
+def _has_transparent_geoms(model: mujoco.MjModel) -> bool:
     return bool((model.geom_rgba[:, 3] < SOLID).any() or (model.mat_rgba[:, 3] < SOLID).any())
 
 
-def _scene_index(scene: Any, geom: int) -> list[int]:
+def _scene_index(scene: mujoco.MjvScene, geom: int) -> list[int]:
     """Where a geom of the model is in the list, whose first part is in their order; empty where it is not."""
     geoms = scene.geoms
     place = bisect_left(range(min(geom, scene.ngeom)), geom, key=lambda i: geoms[i].objid)

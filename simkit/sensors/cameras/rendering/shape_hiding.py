@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -42,7 +41,7 @@ def transparent_shapes(composition: Composition) -> list[int]:
 
 
 @contextlib.contextmanager
-def draw_plain_colours(scene: Any) -> Iterator[None]:
+def draw_plain_colours(scene: mujoco.MjvScene) -> Iterator[None]:
     """While it lasts, shapes are drawn in plain colours, without light and shadow."""
     kept = scene.flags.copy()
     scene.flags[_FLAGS.mjRND_SHADOW] = 0
@@ -54,7 +53,7 @@ def draw_plain_colours(scene: Any) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def hide_shapes(scene: Any, places: Sequence[int]) -> Iterator[None]:
+def hide_shapes(scene: mujoco.MjvScene, places: Sequence[int]) -> Iterator[None]:
     """While it lasts, these shapes of the list are not drawn."""
     geoms = scene.geoms if places else ()
     kinds = [geoms[i].type for i in places]
@@ -68,7 +67,7 @@ def hide_shapes(scene: Any, places: Sequence[int]) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def make_transparent(scene: Any, places: Sequence[int]) -> Iterator[None]:
+def make_transparent(scene: mujoco.MjvScene, places: Sequence[int]) -> Iterator[None]:
     """While it lasts, these shapes of the list can be seen through altogether."""
     geoms = scene.geoms if places else ()
     opacities = [float(geoms[i].rgba[3]) for i in places]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 
@@ -50,12 +50,12 @@ class Background:
             GL.glDeleteLists(number, 1)
 
 
-def enable_fog(fog: Fog, scene: Any, context: Any) -> None:
+def enable_fog(fog: Fog, scene: mujoco.MjvScene, context: mujoco.MjrContext) -> None:
     """Lets the next `mjr_render` draw fog."""
     from OpenGL import GL
 
     scene.flags[mujoco.mjtRndFlag.mjRND_FOG] = 1
-    context.fogRGBA = fog.colour  # what the engine goes back to after drawing shadows
+    context.fogRGBA[:] = fog.colour  # what the engine goes back to after drawing shadows
     GL.glFogi(GL.GL_FOG_MODE, {"linear": GL.GL_LINEAR, "exp": GL.GL_EXP, "exp2": GL.GL_EXP2}[fog.type])
     GL.glFogfv(GL.GL_FOG_COLOR, fog.colour)
     GL.glFogf(GL.GL_FOG_START, fog.start)

@@ -30,7 +30,7 @@ DRAWN_HERE: Final = frozenset(
 """Kinds of shapes that `draw_transparent` knows; the engine draws the others in its own way."""
 
 
-def draw_transparent(scene: Any, context: Any, places: Sequence[int], eye: Vector) -> None:
+def draw_transparent(scene: mujoco.MjvScene, context: mujoco.MjrContext, places: Sequence[int], eye: Vector) -> None:
     """Draws shapes of a list with the view, lights and fog of the `mjr_render` before.
 
     Args:
@@ -57,7 +57,7 @@ def draw_transparent(scene: Any, context: Any, places: Sequence[int], eye: Vecto
         GL.glDisable(GL.GL_LIGHT0 + light)
 
 
-def _draw(gl: Any, geom: Any, context: Any) -> None:
+def _draw(gl: Any, geom: Any, context: mujoco.MjrContext) -> None:
     rgba, both = np.asarray(geom.rgba), gl.GL_FRONT_AND_BACK
     gl.glColor4fv(rgba)
     gl.glMaterialfv(both, gl.GL_EMISSION, (*(float(geom.emission) * rgba[:3]), 1.0))
@@ -74,7 +74,7 @@ def _draw(gl: Any, geom: Any, context: Any) -> None:
         gl.glDisable(switch)
 
 
-def _call(gl: Any, geom: Any, context: Any) -> None:
+def _call(gl: Any, geom: Any, context: mujoco.MjrContext) -> None:
     """The shape itself, in its own frame."""
     kind, size, builtin = int(geom.type), [float(s) for s in geom.size], int(context.baseBuiltin)
     if kind == _KINDS.mjGEOM_PLANE:
@@ -99,7 +99,7 @@ def _call(gl: Any, geom: Any, context: Any) -> None:
         gl.glCallList(builtin + _BUILTIN[kind])
 
 
-def _bind_texture(gl: Any, geom: Any, context: Any) -> tuple[Any, ...]:
+def _bind_texture(gl: Any, geom: Any, context: mujoco.MjrContext) -> tuple[Any, ...]:
     """Lets the shape wear its material's picture; what has to be switched off again."""
     role = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
     number = int(context.mat_texid.reshape(-1, int(mujoco.mjtTextureRole.mjNTEXROLE))[geom.matid, role])

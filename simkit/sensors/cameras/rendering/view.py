@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from simkit.pose import Vector
+
+if TYPE_CHECKING:
+    import mujoco
 
 Colours = npt.NDArray[np.uint8]
 Depths = npt.NDArray[np.float32]
@@ -84,7 +87,7 @@ def look_at(eye: Vector, target: Vector) -> Vector:
     return np.stack((forward, left, np.cross(forward, left)), axis=1)
 
 
-def aim(scene: Any, position: Vector, rotation: Vector, view: View) -> None:
+def aim(scene: mujoco.MjvScene, position: Vector, rotation: Vector, view: View) -> None:
     """Sets both eyes of the scene's camera; their mean is what is drawn."""
     near = view.near
     for camera in scene.camera:

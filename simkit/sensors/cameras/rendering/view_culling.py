@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import mujoco
 import numpy as np
@@ -57,7 +57,9 @@ def _planes(view: View) -> tuple[Vector, Vector]:
     return normals, np.array((0, view.far, 0, 0, 0, 0), dtype=np.float64)
 
 
-def bounds_of(model: Any, data: Any, scene: Any, groups: npt.NDArray[np.uint8]) -> Bounds | None:
+def bounds_of(
+    model: mujoco.MjModel, data: mujoco.MjData, scene: mujoco.MjvScene, groups: npt.NDArray[np.uint8]
+) -> Bounds | None:
     """Balls around the shapes of a scene that was made of a state; None where it is not worth it.
 
     Args:
