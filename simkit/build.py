@@ -25,6 +25,7 @@ from simkit.pose import Pose
 from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
+    from simkit.compiler.mjcf_parser import MjcfParser
     from simkit.loaders.spawn_option import SpawnedModel
     from simkit.plugins.ros2_control.run_parameter_files import ParameterFileArgument, RunParameterFile
     from simkit.runtime import Simulation
@@ -94,8 +95,8 @@ def load(
         on_error: what becomes of a plugin that raises: "stop" ends the run with a PluginError, "disable" goes on
             without it. Goes over what the file (`<simkit:on_error>`) and the plugin's class say; None leaves it to
             them, and they to "stop".
-        spawn: models that come into the world as it is loaded: `"MODEL:x,y,yaw[:name]"`, or `SpawnedModel` objects. MODEL is
-            a file or a bare name; unlike what `Simulation.spawn` adds later, they are there after a reset as well.
+        spawn: models that come into the world as it is loaded: `"MODEL:x,y,yaw[:name]"`, or `SpawnedModel` objects.
+            MODEL is a file or a bare name; unlike what `Simulation.spawn` adds later, they are there after a reset.
         params_files: parameter files for the control plugins of all models, in the layout of ROS 1 or ROS 2, or
             `"MODEL=FILE"` for those of one; models that are spawned later read them too. What they say goes over the
             files that the plugins name themselves.
@@ -274,6 +275,7 @@ def _scene(
         xacro_args=dict(xacro_args or {}),
         base=base,
         mesh_reader=_read_mesh,
+        mjcf_parser=_mjcf_parser,
     )
     if spawn:
         from simkit.loaders.spawn_option import add_spawned_models
@@ -306,6 +308,14 @@ def _read_mesh(mesh: Mesh, diagnostics: Diagnostics, where: Where) -> Sequence[A
     from simkit.compiler.meshes.mesh_reader import load_mesh
 
     return load_mesh(mesh, diagnostics, where)
+
+
+def _mjcf_parser() -> MjcfParser:
+    """MuJoCo's own parser, for the loader of MJCF."""
+    import_mujoco()
+    from simkit.compiler.mjcf_parser import MjcfParser
+
+    return MjcfParser()
 
 
 def _without_sleep(world: SceneWorld) -> SceneWorld:
@@ -401,6 +411,7 @@ def _model_to_spawn(
         pose=pose,
         as_model=True,
         mesh_reader=_read_mesh,
+        mjcf_parser=_mjcf_parser,
         xacro_args=xacro_args,
     )
     diagnostics.raise_if_errors()

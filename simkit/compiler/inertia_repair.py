@@ -9,8 +9,8 @@ by fixed joints), about their common centre of mass:
 * Its moments are positive but A + B < C: the engine's equations hold for such a tensor too, only its compiler refuses
   it. It gets the nearest one that a body has, and after the compile the file's own is put back, so that the motion is
   what the file says. Reported, as a note up to `SLIGHT_VIOLATION` of C, else as a warning.
-* A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: it is raised to what the smallest body of that
-  mass would have, the largest is kept. Reported with old and new numbers.
+* A moment is zero, or negative by at most `REPAIRABLE_VIOLATION` of the largest: it is raised to what the smallest body
+  of that mass would have, the largest is kept. Reported with old and new numbers.
 * Beyond that it is an error with the moments.
 """
 

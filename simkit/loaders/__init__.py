@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
 from simkit.loaders.resources.bundled_models import turtlebot3_name
-from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader
+from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.paths import access_problem, sibling_names
 from simkit.loaders.resources.resolver import Resolver
 from simkit.loaders.resources.xml_reader import ALLOWED_FORMATS, Document, foreign_root_hint, parse_file, parse_text
@@ -38,6 +38,7 @@ def load_scene(
     pose: Pose | None = None,
     as_model: bool = False,
     mesh_reader: MeshReader | None = None,
+    mjcf_parser: Callable[[], MjcfParser] | None = None,
 ) -> Scene:
     """Reads a file, or XML text, into a scene.
 
@@ -51,6 +52,7 @@ def load_scene(
         pose: replaces the pose of a bare model [m], in the world.
         as_model: one model is wanted, where a file could be a world as well.
         mesh_reader: gives the triangles of a mesh, for automatic inertia; without it meshes have no volume.
+        mjcf_parser: gives MuJoCo's parser, which MJCF files need (`simkit.compiler.mjcf_parser.MjcfParser`).
 
     Returns:
         What could be read; an empty scene when nothing could.
@@ -65,7 +67,18 @@ def load_scene(
         hint = foreign_root_hint(root.name) or did_you_mean(root.name, kinds) or ALLOWED_FORMATS
         diagnostics.error("SK-LOAD-003", f"the root element is <{root.name}>, known are {known}", root.where, hint)
         return Scene()
-    request = LoadRequest(resolver, diagnostics, dict(xacro_args or {}), base, name, pose, as_model, mesh_reader)
+    request = LoadRequest(
+        resolver=resolver,
+        diagnostics=diagnostics,
+        xacro_args=dict(xacro_args or {}),
+        base=base,
+        name=name,
+        pose=pose,
+        as_model=as_model,
+        mesh_reader=mesh_reader,
+        mjcf_parser=mjcf_parser,
+        loaders=kinds,
+    )
     return kinds[root.name]().load(document, request)
 
 

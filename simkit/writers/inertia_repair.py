@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from simkit.compiler.inertia_repair import format_moments, repair_inertia
+from simkit.compiler.mjcf_parser import MjcfParser
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
 from simkit.loaders import Resolver, load_scene
@@ -91,7 +92,7 @@ def find_inertia_fixes(source: Path, resource_paths: Sequence[Path] = ()) -> Ine
     """
     resolver = Resolver(list(resource_paths), missing_meshes=True)
     diagnostics = Diagnostics()
-    scene = load_scene(source, resolver=resolver, diagnostics=diagnostics)
+    scene = load_scene(source, resolver=resolver, diagnostics=diagnostics, mjcf_parser=MjcfParser)
     path = Path(scene.file or source)
     if not path.is_file():
         diagnostics.raise_if_errors()

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 BROKEN = """
-from simkit.mujoco_import import import_engine
-import_engine()
+from simkit.mujoco_import import import_mujoco
+import_mujoco()
 import mujoco
 model = mujoco.MjModel.from_xml_string(
     "<mujoco><worldbody><body><freejoint/><geom size='0.1'/></body></worldbody></mujoco>")

@@ -157,10 +157,10 @@ def test_two_processes_at_once_get_the_same_and_leave_nothing_half_written(tmp_p
         textwrap.dedent("""
             import hashlib, sys
             from pathlib import Path
-            from simkit.compiler.meshes import mesh
+            from simkit.compiler.meshes import mesh_reader
             for _ in range(5):
-                mesh._converted.cache_clear()
-                part = mesh.load_file(Path(sys.argv[1]))[0]
+                mesh_reader._converted.cache_clear()
+                part = mesh_reader.load_file(Path(sys.argv[1]))[0]
             print(hashlib.sha256(part.vertices.tobytes() + part.faces.tobytes()).hexdigest())
         """)
     )

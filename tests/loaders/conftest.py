@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from simkit.compiler.mjcf_parser import MjcfParser
 from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.loaders import Resolver, load_scene
 from simkit.scene import Scene
@@ -23,7 +24,7 @@ def load() -> Load:
 
     def _load(source: str | Path, paths: tuple[Path, ...] = (), **options: object) -> tuple[Scene, list[Diagnostic]]:
         diagnostics = Diagnostics()
-        scene = load_scene(source, resolver=Resolver(paths), diagnostics=diagnostics, **options)  # type: ignore[arg-type]
+        scene = load_scene(source, resolver=Resolver(paths), diagnostics=diagnostics, mjcf_parser=MjcfParser, **options)  # type: ignore[arg-type]
         return scene, list(diagnostics)
 
     return _load

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import simkit
+from simkit.compiler.mjcf_parser import MjcfParser
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, load_scene
 from simkit.loaders.mjcf import size_limits
@@ -55,7 +56,8 @@ STL = (
 
 def scene_of(source: str | Path, **options: object) -> tuple[Scene, Diagnostics]:
     diagnostics = Diagnostics()
-    return load_scene(source, resolver=Resolver(), diagnostics=diagnostics, **options), diagnostics  # type: ignore[arg-type]
+    scene = load_scene(source, resolver=Resolver(), diagnostics=diagnostics, mjcf_parser=MjcfParser, **options)  # type: ignore[arg-type]
+    return scene, diagnostics
 
 
 def errors_of(source: str | Path) -> list[simkit.Diagnostic]:
@@ -349,7 +351,7 @@ def test_a_picture_that_promises_too_many_pixels_is_refused(tmp_path: Path) -> N
 
 def test_a_muscle_whose_range_cannot_be_found_in_time_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without any solver iteration the arm below flies apart, and the engine would measure its muscle for ever."""
-    monkeypatch.setattr("simkit.loaders.mjcf.engine.RANGE_TIMEOUT", 0.01)
+    monkeypatch.setattr("simkit.compiler.mjcf_parser.RANGE_TIMEOUT", 0.01)
     text = """<mujoco><worldbody><body><joint name="j" range="-1 1" limited="true"/><geom size=".1" pos="1 0 0"/></body>
       </worldbody><actuator><muscle joint="j"/></actuator></mujoco>"""
     assert [d.code for d in errors_of(text)] == ["SK-MJCF-014"]

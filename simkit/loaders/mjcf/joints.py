@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from simkit.loaders.mjcf.element_ids import ElementIds, ModelPlacement
+from simkit.loaders.mjcf.compiled_file import CompiledFile, ElementIds, ModelPlacement
 from simkit.pose import Pose
 from simkit.scene import Axis, Mimic, SceneJoint
-
-if TYPE_CHECKING:
-    from simkit.loaders.mjcf.model import ModelReader
 
 _FREE, _BALL, _SLIDE, _HINGE = range(4)
 _EQUAL_JOINTS: Final = 2
@@ -18,38 +15,38 @@ _TYPES: Final = {_BALL: "ball", _SLIDE: "prismatic"}
 
 
 def read_joints(
-    reader: ModelReader, body: int, placed: ModelPlacement, place: Pose, found: ElementIds
+    file: CompiledFile, body: int, placed: ModelPlacement, place: Pose, found: ElementIds
 ) -> list[SceneJoint]:
     """The joints that carry a body; one that is rigidly held hangs on a fixed joint."""
-    model = reader.model
-    child, parent = reader.scoped_link(body, placed), reader.scoped_link(int(model.body_parentid[body]), placed)
+    model = file.model
+    child, parent = file.scoped_link(body, placed), file.scoped_link(int(model.body_parentid[body]), placed)
     if int(model.body_parentid[body]) == 0:
         parent = "world"
     numbers = list(range(model.body_jntadr[body], model.body_jntadr[body] + model.body_jntnum[body]))
     is_free = bool(numbers) and int(model.jnt_type[numbers[0]]) == _FREE
-    pose, where = place @ reader.pose(body), reader.where("body", reader.name("BODY", body))
+    pose, where = place @ file.pose(body), file.where("body", file.name("BODY", body))
     if is_free and placed.base != "fixed":
-        found.free[child] = reader.name("JOINT", numbers[0])
+        found.free[child] = file.name("JOINT", numbers[0])
         return []
     if not numbers and parent == "world" and placed.base == "floating":
-        found.free[child] = f"{reader.name('BODY', body)}_free"
+        found.free[child] = f"{file.name('BODY', body)}_free"
         return []
     if is_free or not numbers:
         if int(model.body_mocapid[body]) >= 0:
             return []
-        name = f"{reader.link_name(body, placed)}_fixed"
-        while reader.spec.joint(name) is not None:
+        name = f"{file.link_name(body, placed)}_fixed"
+        while file.spec.joint(name) is not None:
             name += "_"
         scoped = f"{placed.scoped}::{name}"
         found.joints[scoped] = ""
         return [SceneJoint(name, scoped, "fixed", parent, child, pose, where=where)]
-    return [_joint(reader, j, placed, pose, parent, child, found) for j in numbers]
+    return [_joint(file, j, placed, pose, parent, child, found) for j in numbers]
 
 
 def _joint(
-    reader: ModelReader, j: int, placed: ModelPlacement, body: Pose, parent: str, child: str, found: ElementIds
+    file: CompiledFile, j: int, placed: ModelPlacement, body: Pose, parent: str, child: str, found: ElementIds
 ) -> SceneJoint:
-    model, full = reader.model, reader.name("JOINT", j)
+    model, full = file.model, file.name("JOINT", j)
     name = full.removeprefix(placed.strip)
     scoped = f"{placed.scoped}::{name}"
     found.joints[scoped] = full
@@ -57,7 +54,7 @@ def _joint(
     kind = int(model.jnt_type[j])
     limited = bool(model.jnt_limited[j])
     if kind != _BALL:
-        axes = (_axis(reader, j, body),)
+        axes = (_axis(file, j, body),)
     return SceneJoint(
         name=name,
         scoped=scoped,
@@ -66,12 +63,12 @@ def _joint(
         child_link=child,
         pose_world=body @ Pose(model.jnt_pos[j]),
         axes=axes,
-        where=reader.where("joint", full),
+        where=file.where("joint", full),
     )
 
 
-def _axis(reader: ModelReader, j: int, body: Pose) -> Axis:
-    model = reader.model
+def _axis(file: CompiledFile, j: int, body: Pose) -> Axis:
+    model = file.model
     dof = int(model.jnt_dofadr[j])
     x, y, z = (float(v) for v in model.jnt_axis[j])
     wx, wy, wz = (float(v) for v in body.rotate((x, y, z)))
@@ -87,14 +84,14 @@ def _axis(reader: ModelReader, j: int, body: Pose) -> Axis:
         friction=float(model.dof_frictionloss[dof]),
         stiffness=float(model.jnt_stiffness[j]),
         spring_ref=float(model.qpos_spring[model.jnt_qposadr[j]]),
-        mimic=_mimic(reader, j),
+        mimic=_mimic(file, j),
     )
 
 
-def _mimic(reader: ModelReader, j: int) -> Mimic | None:
+def _mimic(file: CompiledFile, j: int) -> Mimic | None:
     """The leader of a joint that an equality ties to another in a straight line."""
-    model = reader.model
-    for e in reader.equalities_of.get(j, ()):
+    model = file.model
+    for e in file.equalities_of.get(j, ()):
         data = model.eq_data[e]
         if int(model.eq_type[e]) != _EQUAL_JOINTS:
             continue
@@ -103,5 +100,5 @@ def _mimic(reader: ModelReader, j: int) -> Mimic | None:
             continue
         rest, start = (float(model.qpos0[model.jnt_qposadr[k]]) for k in (j, leader))
         ratio = float(data[1])
-        return Mimic(reader.name("JOINT", leader), 0, ratio, rest + float(data[0]) - ratio * start)
+        return Mimic(file.name("JOINT", leader), 0, ratio, rest + float(data[0]) - ratio * start)
     return None

@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-from simkit.loaders.mjcf.element_ids import ElementIds
+from simkit.loaders.mjcf.compiled_file import CompiledFile, ElementIds
 from simkit.pose import Pose
 from simkit.scene import SceneLight
-
-if TYPE_CHECKING:
-    from simkit.loaders.mjcf.model import ModelReader
 
 _TYPES: Final = {0: "spot", 1: "directional"}
 
 
-def read_lights(reader: ModelReader, body: int, link: str, pose: Pose, found: ElementIds) -> tuple[SceneLight, ...]:
+def read_lights(file: CompiledFile, body: int, link: str, pose: Pose, found: ElementIds) -> tuple[SceneLight, ...]:
     """The lights of a body.
 
     Args:
         link: its link's scoped name; empty for those of the world.
         pose: of the body in the world.
     """
-    return tuple(_light(reader, i, link, pose, found) for i in reader.lights_of.get(body, ()))
+    return tuple(_light(file, i, link, pose, found) for i in file.lights_of.get(body, ()))
 
 
-def _light(reader: ModelReader, i: int, link: str, body: Pose, found: ElementIds) -> SceneLight:
-    model, name = reader.model, reader.name("LIGHT", i)
+def _light(file: CompiledFile, i: int, link: str, body: Pose, found: ElementIds) -> SceneLight:
+    model, name = file.model, file.name("LIGHT", i)
     pose = body @ Pose(model.light_pos[i])
     x, y, z = (float(v) for v in model.light_dir[i])
     wx, wy, wz = (float(v) for v in pose.rotate((x, y, z)))
@@ -47,7 +44,7 @@ def _light(reader: ModelReader, i: int, link: str, body: Pose, found: ElementIds
         spot=(0.0, 2.0 * math.radians(float(model.light_cutoff[i])), float(model.light_exponent[i])),
         cast_shadows=bool(model.light_castshadow[i]),
         on=bool(model.light_active[i]),
-        where=reader.where("light", name),
+        where=file.where("light", name),
     )
 
 

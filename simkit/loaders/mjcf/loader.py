@@ -1,22 +1,24 @@
-"""The outermost `<mujoco>`: a world, or one model."""
+"""The loader of MJCF: a world, one model, or a model that an SDF file includes."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.mjcf.element_ids import ElementIds, ModelPlacement
-from simkit.loaders.mjcf.engine import allows_sleep, has_gravity, is_aligned, open_and_compile
-from simkit.loaders.mjcf.gathered_file import GatheredFile, gather_files
+from simkit.loaders.mjcf.compiled_file import WORLD_LINK, CompiledFile, ElementIds, ModelPlacement
+from simkit.loaders.mjcf.gathered_file import gather_files
 from simkit.loaders.mjcf.lights import read_lights
-from simkit.loaders.mjcf.model import WORLD_LINK, ModelReader
+from simkit.loaders.mjcf.model import ModelReader
 from simkit.loaders.mjcf.schema import check_names
 from simkit.loaders.mjcf.size_limits import check_bounds
-from simkit.loaders.resources.loader import Loader, LoadRequest
+from simkit.loaders.resources.loader import LoadRequest, MjcfParser
 from simkit.loaders.resources.resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.workspace import IncludableLoader, IncludedModel, ModelDraft, Workspace
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
 from simkit.scene import Physics, Scene, SceneModel, ScenePlugin, SceneWorld, Surroundings
@@ -29,11 +31,11 @@ class MjcfFile:
     """A file that MuJoCo takes.
 
     Attributes:
+        content: what it compiles to.
         name: of the model: its `model` attribute, else the name of the file.
     """
 
-    bundle: GatheredFile
-    reader: ModelReader
+    content: CompiledFile
     name: str
 
     def model(
@@ -48,52 +50,23 @@ class MjcfFile:
         where: Where | None = None,
     ) -> SceneModel:
         """The whole file as one model, its world at `pose_world`."""
-        reader = self.reader
-        return reader.read(
-            ModelPlacement(
-                name,
-                scoped,
-                reader.roots,
-                reader.has_world or not reader.roots,
-                pose_world=pose_world,
-                prefix=f"{scoped}::",
-                static=static,
-                base="fixed" if static else base,
-                plugins=plugins,
-                where=where,
-            )
+        content = self.content
+        placed = ModelPlacement(
+            name,
+            scoped,
+            content.roots,
+            content.has_world or not content.roots,
+            pose_world=pose_world,
+            prefix=f"{scoped}::",
+            static=static,
+            base="fixed" if static else base,
+            plugins=plugins,
+            where=where,
         )
+        return ModelReader(content, placed).read()
 
 
-def open_mjcf(
-    root: Params, path: Path | None, resolver: Resolver, diagnostics: Diagnostics, as_model: bool = True
-) -> MjcfFile | None:
-    """Reads a file with all that it includes and names; None, with errors recorded, where it cannot be used.
-
-    Args:
-        as_model: it is wanted as a model, even where it could be a world.
-    """
-    found = Diagnostics()
-    bundle = gather_files(root, path, resolver, found)
-    check_bounds(bundle.root, found)
-    check_names(bundle.root, found)
-    opened = None if found.has_errors else open_and_compile(bundle, found)
-    diagnostics.extend(found)
-    if opened is None:
-        return None
-    reader = ModelReader(bundle, *opened)
-    if is_aligned(reader.spec) and (as_model or not is_world(reader)):
-        again = open_and_compile(bundle, Diagnostics(), in_axes_of_file=True)
-        reader = reader if again is None else ModelReader(bundle, *again)
-    name = root.attribute("model")
-    if name in _UNNAMED:
-        name = path.stem if path is not None else "model"
-    file = MjcfFile(bundle, reader, name.replace("::", "_"))
-    _report_engine_elements(file, diagnostics)
-    return file
-
-
-class MjcfLoader(Loader):
+class MjcfLoader(IncludableLoader):
     """MuJoCo's own format."""
 
     roots: ClassVar[tuple[str, ...]] = ("mujoco",)
@@ -101,11 +74,12 @@ class MjcfLoader(Loader):
     def load(self, document: Document, request: LoadRequest) -> Scene:
         resolver = request.resolver.around(document.folder)
         is_part = request.as_model or request.name is not None or request.pose is not None
-        file = open_mjcf(document.root, document.path, resolver, request.diagnostics, is_part)
+        parser = _parser(request.mjcf_parser)
+        file = _open_mjcf(document.root, document.path, resolver, request.diagnostics, parser, is_part)
         name = None if document.path is None else str(document.path)
         if file is None:
             return Scene(file=name)
-        if is_part or not is_world(file.reader):
+        if is_part or not _is_world(file.content):
             model_name = request.name or file.name
             model = file.model(model_name, model_name, request.pose or IDENTITY, base=request.base)
             _report_base(model, request)
@@ -119,32 +93,124 @@ class MjcfLoader(Loader):
             )
         return Scene((_surroundings_of(file, tuple(_world_models(file))),), None, name)
 
+    def open_included(self, document: Document, workspace: Workspace) -> IncludedMjcf | None:
+        parser = _parser(workspace.mjcf_parser)
+        file = _open_mjcf(document.root, document.path, workspace.resolver, workspace.diagnostics, parser)
+        return None if file is None else IncludedMjcf(_frames_document(file, workspace.diagnostics), file)
 
-def is_world(reader: ModelReader) -> bool:
+
+@dataclass
+class IncludedMjcf(IncludedModel):
+    """A model in MuJoCo's own format that an SDF file includes: its names as frames, its content as it is."""
+
+    version: ClassVar[tuple[int, int]] = (1, 7)  # names with `::` inside are one name there
+    fixed_content: ClassVar[tuple[str, str, str]] = ("SK-MJCF-015", "a model in MuJoCo's own format", "")
+    frames: Params
+    file: MjcfFile
+
+    def build(self, draft: ModelDraft, static: bool, workspace: Workspace, base: str) -> SceneModel:
+        return self.file.model(
+            draft.source.name,
+            draft.scoped,
+            draft.scope.world,
+            static=static,
+            base=base,
+            plugins=read_plugins(draft.plugins, draft.scoped),
+            where=draft.source.where,
+        )
+
+
+def _parser(mjcf_parser: Callable[[], MjcfParser] | None) -> MjcfParser:
+    if mjcf_parser is None:
+        raise TypeError("a file in MuJoCo's own format needs `mjcf_parser`")
+    return mjcf_parser()
+
+
+def _open_mjcf(
+    root: Params,
+    path: Path | None,
+    resolver: Resolver,
+    diagnostics: Diagnostics,
+    parser: MjcfParser,
+    as_model: bool = True,
+) -> MjcfFile | None:
+    """Reads a file with all that it includes and names; None, with errors recorded, where it cannot be used.
+
+    Args:
+        as_model: it is wanted as a model, even where it could be a world.
+    """
+    found = Diagnostics()
+    gathered = gather_files(root, path, resolver, found)
+    check_bounds(gathered.root, found)
+    check_names(gathered.root, parser.schema_text(), found)
+    compiled = None if found.has_errors else parser.compile(gathered, found)
+    diagnostics.extend(found)
+    if compiled is None:
+        return None
+    content = CompiledFile(gathered, compiled)
+    if compiled.is_aligned and (as_model or not _is_world(content)):
+        again = parser.compile(gathered, Diagnostics(), in_axes_of_file=True)
+        content = content if again is None else CompiledFile(gathered, again)
+    name = root.attribute("model")
+    if name in _UNNAMED:
+        name = path.stem if path is not None else "model"
+    file = MjcfFile(content, name.replace("::", "_"))
+    _report_engine_elements(file, diagnostics)
+    return file
+
+
+def _frames_document(file: MjcfFile, diagnostics: Diagnostics) -> Params:
+    """An `<sdf>` with a model of the file's name, links and sites, which poses and joints of the including file use."""
+    scene = file.model(file.name, file.name)
+    where = file.content.source.root.where
+    seen = {link.name for link in scene.links}
+    children = [_frame_element("link", link.name, link.pose_world, {}, diagnostics) for link in scene.links]
+    for frame in scene.frames:
+        if frame.name not in seen:
+            seen.add(frame.name)
+            link = frame.attached_to.removeprefix(f"{scene.scoped}::")
+            attributes = {"attached_to": link}
+            children.append(_frame_element("frame", frame.name, frame.pose_world, attributes, diagnostics))
+    model = Params("model", "", {"name": file.name}, children, where, diagnostics)
+    root = Params("sdf", "", {"version": "1.7"}, [model], where, diagnostics)
+    root.mark_all_read()
+    return root
+
+
+def _frame_element(kind: str, name: str, pose: Pose, attributes: dict[str, str], diagnostics: Diagnostics) -> Params:
+    x, y, z = (repr(float(v)) for v in pose.position)
+    w, i, j, k = (repr(float(v)) for v in pose.quaternion)
+    style = {"rotation_format": "quat_xyzw", "relative_to": "__model__"}
+    placed = Params("pose", f"{x} {y} {z} {i} {j} {k} {w}", style, diagnostics=diagnostics)
+    return Params(kind, "", {"name": name, **attributes}, [placed], diagnostics=diagnostics)
+
+
+def _is_world(content: CompiledFile) -> bool:
     """Whether a file is a world: it has something solid of its own beside a body, or not exactly one body."""
-    return reader.has_world or len(reader.roots) != 1
+    return content.has_world or len(content.roots) != 1
 
 
 def _surroundings_of(file: MjcfFile, models: tuple[SceneModel, ...]) -> SceneWorld:
     """The world that a file's options make."""
-    option, spec = file.reader.model.opt, file.reader.spec
+    content, compiled = file.content, file.content.compiled
+    option, spec = content.model.opt, content.spec
     gx, gy, gz = (float(v) for v in option.gravity)
-    if not has_gravity(file.reader.model):
+    if not compiled.has_gravity:
         gx = gy = gz = 0.0
     mx, my, mz = (float(v) for v in option.magnetic)
     r, g, b = (float(c) for c in spec.visual.headlight.ambient)
-    root = file.bundle.root
+    root = content.source.root
     place = next((e.where for e in root.children if e.name == "option"), root.where)
     return SceneWorld(
         name=file.name,
         gravity=(gx, gy, gz),
         magnetic_field=(mx, my, mz),
-        physics=Physics(float(option.timestep), 1.0, place, sleep=allows_sleep(file.reader.model)),
+        physics=Physics(float(option.timestep), 1.0, place, sleep=compiled.allows_sleep),
         models=models,
-        lights=read_lights(file.reader, 0, "", IDENTITY, ElementIds()),
+        lights=read_lights(content, 0, "", IDENTITY, ElementIds()),
         surroundings=Surroundings(ambient=(r, g, b, 1.0)),
         where=root.where,
-        mjcf=file.reader.document,
+        mjcf=compiled.document,
     )
 
 
@@ -153,24 +219,25 @@ def _world_models(file: MjcfFile) -> list[SceneModel]:
 
     Bodies of one included file are one model with that file's name; so are bodies whose names begin alike up to `::`.
     """
-    reader, origins = file.reader, file.bundle.origins
+    content, origins = file.content, file.content.source.origins
     groups: dict[tuple[str, str], list[int]] = {}
-    for body in reader.roots:
-        own = reader.name("BODY", body)
+    for body in content.roots:
+        own = content.name("BODY", body)
         first, colons, _ = own.partition("::")
         name = first if colons else origins.get(own, own).replace("::", "_")
         groups.setdefault((name, f"{first}::" if colons else ""), []).append(body)
     models: list[SceneModel] = []
     taken: set[str] = set()
-    if reader.has_world:
+    if content.has_world:
         name = _free_name(WORLD_LINK, {n for n, _ in groups})
         taken.add(name)
-        models.append(reader.read(ModelPlacement(name, name, (), True, static=True)))
+        models.append(ModelReader(content, ModelPlacement(name, name, (), True, static=True)).read())
     for (name, strip), bodies in groups.items():
         name = _free_name(name, taken)
         taken.add(name)
-        frame = reader.pose(bodies[0])
-        models.append(reader.read(ModelPlacement(name, name, bodies, False, frame, frame, strip=strip)))
+        frame = content.pose(bodies[0])
+        placed = ModelPlacement(name, name, bodies, False, frame, frame, strip=strip)
+        models.append(ModelReader(content, placed).read())
     return models
 
 
@@ -199,7 +266,7 @@ def _report_base(model: SceneModel, request: LoadRequest) -> None:
 
 def _report_engine_elements(file: MjcfFile, diagnostics: Diagnostics) -> None:
     """Says which of the file's elements are the engine's alone."""
-    model, where = file.reader.model, file.bundle.root.where
+    model, where = file.content.model, file.content.source.root.where
     counts = {
         "sensors": model.nsensor,
         "cameras": model.ncam,

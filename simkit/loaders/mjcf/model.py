@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-from simkit.diagnostics import Where
-from simkit.loaders.mjcf.element_ids import ElementIds, ModelPlacement
-from simkit.loaders.mjcf.engine import first_state, name_of
-from simkit.loaders.mjcf.gathered_file import GatheredFile
+from simkit.loaders.mjcf.compiled_file import CompiledFile, ElementIds, ModelPlacement
 from simkit.loaders.mjcf.joints import read_joints
 from simkit.loaders.mjcf.lights import read_lights
 from simkit.pose import Pose
@@ -36,86 +32,47 @@ from simkit.scene import (
 )
 from simkit.scene.mjcf_source import MjcfGeom, MjcfSource
 
-WORLD_LINK: Final = "worldbody"
-"""Name of the link that holds what a file puts into its world body."""
-
 _PLANE, _HFIELD, _SPHERE, _CAPSULE, _ELLIPSOID, _CYLINDER, _BOX, _MESH, _SDF = range(9)
 _SHOWN_GROUPS: Final = 3
 """Geoms of the groups below this are drawn: MuJoCo's own viewers show those from the start."""
 
-_LINE: Final = re.compile(r"line (\d+)")
-
 
 class ModelReader:
-    """Reads models out of one compiled file.
+    """Reads one model out of a compiled file.
 
     Args:
-        bundle: the file.
-        spec, model: MuJoCo's specification of it and what that compiles to.
-        document: makes a fresh specification of the same content.
+        file: the compiled file.
+        placed: which of its bodies are the model's, and where they are.
     """
 
-    def __init__(self, bundle: GatheredFile, spec: Any, model: Any, document: Any) -> None:
-        self.bundle, self.spec, self.model, self.document = bundle, spec, model, document
-        self.data = first_state(model)
-        pairs = {int(g) for ids in (model.pair_geom1, model.pair_geom2) for g in ids}
-        self.colliding = {
-            g for g in range(model.ngeom) if model.geom_contype[g] or model.geom_conaffinity[g] or g in pairs
-        }
-        self.settings = _engine_settings(bundle)
-        self.sites_of = _ids_by_owner(model.site_bodyid)
-        self.lights_of = _ids_by_owner(model.light_bodyid)
-        self.equalities_of = _ids_by_owner(model.eq_obj1id)
-        self.bodies_of = _ids_by_owner(model.body_rootid)
+    def __init__(self, file: CompiledFile, placed: ModelPlacement) -> None:
+        self._file, self._placed = file, placed
+        self._model = file.model
+        self._place = placed.pose_world @ placed.frame.inverse()
+        self._ids = ElementIds()
 
-    def name(self, kind: str, number: int) -> str:
-        """The name of an element of the compiled model."""
-        return name_of(self.model, kind, number)
-
-    @property
-    def roots(self) -> list[int]:
-        """Ids of the top-level bodies."""
-        return [b for b in range(1, self.model.nbody) if self.model.body_parentid[b] == 0]
-
-    @property
-    def has_world(self) -> bool:
-        """Whether anything solid stands in the world body itself."""
-        return bool(self.model.body_geomnum[0])
-
-    def pose(self, body: int) -> Pose:
-        """Pose of a body in the file's world, as the file stands."""
-        return Pose(self.data.xpos[body], self.data.xquat[body])
-
-    def where(self, kind: str, name: str) -> Where:
-        """The line of a named element."""
-        element = getattr(self.spec, kind)(name)
-        found = _LINE.search(element.info) if element is not None else None
-        return self.bundle.where(int(found[1])) if found is not None else self.bundle.root.where
-
-    # ------------------------------------------------------------------ models
-
-    def read(self, placed: ModelPlacement) -> SceneModel:
+    def read(self) -> SceneModel:
         """One model with its links, joints and frames."""
-        found = ElementIds()
-        place = placed.pose_world @ placed.frame.inverse()
-        bodies = sorted(b for root in placed.roots for b in self.bodies_of[root])
-        links = [self._link(b, placed, place, found) for b in ([0] if placed.has_world else []) + bodies]
-        joints = [j for b in bodies for j in read_joints(self, b, placed, place, found)]
-        frames = [f for b in ([0] if placed.has_world else []) + bodies for f in self._frames(b, placed, place)]
-        canonical = self.scoped_link(placed.roots[0], placed) if placed.roots else links[0].scoped if links else ""
+        file, placed, ids = self._file, self._placed, self._ids
+        bodies = sorted(b for root in placed.roots for b in file.bodies_of[root])
+        own = [*((0,) if placed.has_world else ()), *bodies]
+        links = [self._link(b) for b in own]
+        joints = [j for b in bodies for j in read_joints(file, b, placed, self._place, ids)]
+        frames = [f for b in own for f in self._frames(b)]
+        canonical = file.scoped_link(placed.roots[0], placed) if placed.roots else links[0].scoped if links else ""
         source = MjcfSource(
-            document=self.document,
-            place=place,
+            document=file.compiled.document,
+            place=self._place,
             prefix=placed.prefix,
-            roots=tuple(self.name("BODY", b) for b in placed.roots),
-            bodies=found.bodies,
-            joints=found.joints,
-            free=found.free,
-            geoms=found.geoms,
-            lights=found.lights,
-            masses=found.masses,
+            roots=tuple(file.name("BODY", b) for b in placed.roots),
+            bodies=ids.bodies,
+            joints=ids.joints,
+            free=ids.free,
+            geoms=ids.geoms,
+            lights=ids.lights,
+            masses=ids.masses,
             base=placed.base,
-            settings=self.settings,
+            settings=file.settings,
         )
         return SceneModel(
             name=placed.name,
@@ -130,35 +87,28 @@ class ModelReader:
             joints=tuple(joints),
             frames=tuple(frames),
             plugins=placed.plugins,
-            where=placed.where or (links[0].where if links else self.bundle.root.where),
+            where=placed.where or (links[0].where if links else file.source.root.where),
             mjcf=source,
         )
 
-    def link_name(self, body: int, placed: ModelPlacement) -> str:
-        """What a body's link is called within its model."""
-        return WORLD_LINK if body == 0 else self.name("BODY", body).removeprefix(placed.strip)
-
-    def scoped_link(self, body: int, placed: ModelPlacement) -> str:
-        """The same from the world down."""
-        return f"{placed.scoped}::{self.link_name(body, placed)}"
-
-    def _link(self, body: int, placed: ModelPlacement, place: Pose, found: ElementIds) -> SceneLink:
-        model, name = self.model, self.link_name(body, placed)
-        scoped = f"{placed.scoped}::{name}"
-        found.bodies[scoped] = self.name("BODY", body)
+    def _link(self, body: int) -> SceneLink:
+        file, model, found = self._file, self._model, self._ids
+        name = file.link_name(body, self._placed)
+        scoped = f"{self._placed.scoped}::{name}"
+        found.bodies[scoped] = file.name("BODY", body)
         if body:
-            found.masses[self.name("BODY", body)] = (
+            found.masses[file.name("BODY", body)] = (
                 float(model.body_mass[body]),
                 tuple(model.body_ipos[body].tolist()),
                 tuple(model.body_iquat[body].tolist()),
                 tuple(model.body_inertia[body].tolist()),
             )
-        pose = place @ self.pose(body)
+        pose = self._place @ file.pose(body)
         collisions: list[SceneCollision] = []
         visuals: list[SceneVisual] = []
         for g in range(model.body_geomadr[body], model.body_geomadr[body] + model.body_geomnum[body]):
-            self._geom(g, scoped, collisions, visuals, found)
-        lights = read_lights(self, body, scoped, pose, found) if body else ()
+            self._geom(g, scoped, collisions, visuals)
+        lights = read_lights(file, body, scoped, pose, found) if body else ()
         return SceneLink(
             name=name,
             scoped=scoped,
@@ -170,35 +120,34 @@ class ModelReader:
             collisions=tuple(collisions),
             visuals=tuple(visuals),
             lights=lights,
-            where=self.where("body", self.name("BODY", body)) if body else self.bundle.root.where,
+            where=file.where("body", file.name("BODY", body)) if body else file.source.root.where,
         )
 
     def _inertial(self, body: int) -> Inertial:
-        model = self.model
+        model = self._model
         turn = Pose((0.0, 0.0, 0.0), model.body_iquat[body]).matrix
         i = (turn * model.body_inertia[body]) @ turn.T
         xx, yy, zz, xy, xz, yz = (float(v) for v in (i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]))
         x, y, z = (float(v) for v in model.body_ipos[body])
         return Inertial(float(model.body_mass[body]), (x, y, z), (xx, yy, zz, xy, xz, yz))
 
-    def _frames(self, body: int, placed: ModelPlacement, place: Pose) -> Iterable[SceneFrame]:
-        model = self.model
-        for s in self.sites_of.get(body, ()):
-            name = self.name("SITE", s).removeprefix(placed.strip)
-            pose = place @ self.pose(body) @ Pose(model.site_pos[s], model.site_quat[s])
-            yield SceneFrame(name, f"{placed.scoped}::{name}", pose, self.scoped_link(body, placed))
+    def _frames(self, body: int) -> Iterable[SceneFrame]:
+        file, model, placed = self._file, self._model, self._placed
+        for s in file.sites_of.get(body, ()):
+            name = file.name("SITE", s).removeprefix(placed.strip)
+            pose = self._place @ file.pose(body) @ Pose(model.site_pos[s], model.site_quat[s])
+            yield SceneFrame(name, f"{placed.scoped}::{name}", pose, file.scoped_link(body, placed))
 
     # ------------------------------------------------------------------ geoms
 
-    def _geom(
-        self, g: int, link: str, collisions: list[SceneCollision], visuals: list[SceneVisual], found: ElementIds
-    ) -> None:
-        model, name = self.model, self.name("GEOM", g)
-        collides, drawn = g in self.colliding, int(model.geom_group[g]) < _SHOWN_GROUPS
+    def _geom(self, g: int, link: str, collisions: list[SceneCollision], visuals: list[SceneVisual]) -> None:
+        file, model = self._file, self._model
+        name = file.name("GEOM", g)
+        collides, drawn = g in file.colliding, int(model.geom_group[g]) < _SHOWN_GROUPS
         shape, pose = self._shape(g)
-        where = self.where("geom", name)
+        where = file.where("geom", name)
         scoped = f"{link}::{name}"
-        found.geoms[name] = MjcfGeom(link, scoped, collides, drawn)
+        self._ids.geoms[name] = MjcfGeom(link, scoped, collides, drawn)
         if collides:
             surface = Surface(
                 mu=float(model.geom_friction[g][0]) if model.geom_condim[g] > 1 else 0.0,
@@ -211,7 +160,7 @@ class ModelReader:
             visuals.append(SceneVisual(name, scoped, pose, shape, self._material(g), where=where))
 
     def _material(self, g: int) -> Material:
-        model = self.model
+        model = self._model
         colour = model.geom_rgba[g]
         number = int(model.geom_matid[g])
         if number >= 0 and colour.tolist() == [0.5, 0.5, 0.5, 1.0]:
@@ -221,17 +170,17 @@ class ModelReader:
 
     def _shape(self, g: int) -> tuple[Geometry, Pose]:
         """The shape of a geom, and its pose in the link; a mesh's is that of its file's own axes."""
-        model = self.model
+        model = self._model
         pose = Pose(model.geom_pos[g], model.geom_quat[g])
         a, b, c = (float(s) for s in model.geom_size[g])
         kind, number = int(model.geom_type[g]), int(model.geom_dataid[g])
         if kind in (_MESH, _SDF):
             own = Pose(model.mesh_pos[number], model.mesh_quat[number])
-            file, uri = self._file("mesh", self.name("MESH", number))
+            file, uri = self._asset("mesh", self._file.name("MESH", number))
             x, y, z = (float(v) for v in model.mesh_scale[number])
             return Mesh(file, uri, (x, y, z), missing=not file.is_file()), pose @ own.inverse()
         if kind == _HFIELD:
-            file, uri = self._file("hfield", self.name("HFIELD", number))
+            file, uri = self._asset("hfield", self._file.name("HFIELD", number))
             x, y, z, _ = (float(v) for v in model.hfield_size[number])
             return Heightmap(file, uri, (2 * x, 2 * y, z)), pose
         shapes: dict[int, Geometry] = {
@@ -244,31 +193,11 @@ class ModelReader:
         }
         return shapes.get(kind, Empty()), pose
 
-    def _file(self, kind: str, name: str) -> tuple[Path, str]:
+    def _asset(self, kind: str, name: str) -> tuple[Path, str]:
         """The user's file behind an asset; for one that is written in the model, that file and the asset's name."""
-        asset = getattr(self.spec, kind)(name)
+        source = self._file.source
+        asset = getattr(self._file.spec, kind)(name)
         key = asset.file if asset is not None else ""
-        if key in self.bundle.files:
-            return self.bundle.files[key]
-        return Path(self.bundle.file or ""), f"#{name}"
-
-
-def _ids_by_owner(owners: Any) -> dict[int, list[int]]:
-    """Numbers of elements by the number of what they belong to."""
-    found: dict[int, list[int]] = {}
-    for number, owner in enumerate(owners.tolist()):
-        found.setdefault(owner, []).append(number)
-    return found
-
-
-def _engine_settings(bundle: GatheredFile) -> dict[str, Where]:
-    """What the file itself says of the engine: option attributes and flags, and other global elements, with lines."""
-    found: dict[str, Where] = {}
-    for element in bundle.root.children:
-        if element.name == "option":
-            found.update(dict.fromkeys(element.attributes, element.where))
-            for flag in element.children:
-                found.update({f"flag {name}": flag.where for name in flag.attributes})
-        elif element.name in ("size", "visual", "statistic", "keyframe"):
-            found.setdefault(f"<{element.name}>", element.where)
-    return found
+        if key in source.files:
+            return source.files[key]
+        return Path(source.file or ""), f"#{name}"

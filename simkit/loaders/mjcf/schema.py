@@ -11,7 +11,6 @@ from functools import lru_cache
 from typing import Final
 
 from simkit.diagnostics import Diagnostics, did_you_mean
-from simkit.loaders.mjcf.engine import schema_text
 from simkit.params import Params
 
 _LINE: Final = re.compile(r"^( *)(\S+) \((.)\) *(.*)$")
@@ -32,11 +31,11 @@ class _ElementKind:
 
 
 @lru_cache(maxsize=1)
-def _schema_table() -> _ElementKind | None:
+def _schema_table(text: str) -> _ElementKind | None:
     """The outermost element's kind; None where the engine's table has another form than it had."""
     stack: list[tuple[int, _ElementKind]] = []
     root: _ElementKind | None = None
-    for line in schema_text().splitlines():
+    for line in text.splitlines():
         found = _LINE.match(line)
         if found is None:
             if stack:
@@ -56,28 +55,32 @@ def _schema_table() -> _ElementKind | None:
     return root if body is not None and "geom" in body.children and "pos" in body.attributes else None
 
 
-def check_names(root: Params, diagnostics: Diagnostics) -> None:
-    """Records an error for every element and attribute that MJCF does not have, with the closest name."""
-    table = _schema_table()
+def check_names(root: Params, schema_text: str, diagnostics: Diagnostics) -> None:
+    """Records an error for every element and attribute that MJCF does not have, with the closest name.
+
+    Args:
+        schema_text: MuJoCo's own table of the format.
+    """
+    table = _schema_table(schema_text)
     if table is not None:
-        _check_children(root, table, diagnostics)
+        _check_children(root, table, table, diagnostics)
 
 
-def _check_children(element: Params, kind: _ElementKind, diagnostics: Diagnostics) -> None:
+def _check_children(element: Params, kind: _ElementKind, table: _ElementKind, diagnostics: Diagnostics) -> None:
     for child in element.children:
         name = child.name
         if name in _PREPROCESSED:
             _check_attributes(child, _PREPROCESSED[name], diagnostics)
-            _check_children(child, kind, diagnostics)
+            _check_children(child, kind, table, diagnostics)
             continue
         below = kind if kind.recursive and name == _own_name(element, name) else kind.children.get(name)
         if below is None:
             known = [*kind.children, *_PREPROCESSED, *(("body", "default") if kind.recursive else ())]
-            hint = did_you_mean(name, known) or _allowed_parents(name)
+            hint = did_you_mean(name, known) or _allowed_parents(name, table)
             diagnostics.error("SK-MJCF-002", f"<{element.name}> has no element <{name}>", child.where, hint)
             continue
         _check_attributes(child, below.attributes, diagnostics)
-        _check_children(child, below, diagnostics)
+        _check_children(child, below, table, diagnostics)
 
 
 def _own_name(element: Params, name: str) -> str:
@@ -104,8 +107,7 @@ def _shortened_value(element: Params, name: str) -> str:
     return repr(text if len(text) <= 40 else text[:37] + "...")
 
 
-def _allowed_parents(name: str) -> str:
+def _allowed_parents(name: str, table: _ElementKind) -> str:
     """Where an element belongs that stands in the wrong place."""
-    table = _schema_table()
-    places = [] if table is None else [f"<{p}>" for p, kind in table.children.items() if name in kind.children]
+    places = [f"<{p}>" for p, kind in table.children.items() if name in kind.children]
     return f"<{name}> belongs in {' or '.join(places[:3])}" if places else ""

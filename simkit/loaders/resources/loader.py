@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Protocol
 from simkit.diagnostics import Diagnostics, Where
 from simkit.loaders.resources.resolver import Resolver
 from simkit.loaders.resources.xml_reader import Document
+from simkit.params import Params
 from simkit.pose import Pose
 from simkit.scene import Mesh, Scene
 
@@ -27,6 +28,78 @@ class Triangles(Protocol):
 MeshReader = Callable[[Mesh, Diagnostics, Where], Sequence[Triangles]]
 
 
+class MjcfText(Protocol):
+    """An MJCF file with everything that it includes and names, as MuJoCo reads it."""
+
+    @property
+    def root(self) -> Params: ...
+
+    @property
+    def text(self) -> str: ...
+
+    @property
+    def models(self) -> Mapping[str, bytes]: ...
+
+    @property
+    def assets(self) -> Mapping[str, bytes]: ...
+
+    def where(self, line: int) -> Where:
+        """The place in the user's files of a line of the text."""
+        ...
+
+
+class CompiledMjcf(Protocol):
+    """What MuJoCo makes of one MJCF file; loaders do not know MuJoCo's own types.
+
+    Attributes:
+        spec: the `mujoco.MjSpec`, in which every element has a name.
+        model: the `mujoco.MjModel` that it compiles to.
+        data: a `mujoco.MjData` as the file stands, with the poses of all bodies.
+        document: makes a fresh `mujoco.MjSpec` of the same content.
+    """
+
+    spec: Any
+    model: Any
+    data: Any
+    document: Callable[[], Any]
+
+    @property
+    def is_aligned(self) -> bool:
+        """Whether compiling turns a free body into the axes of its inertia."""
+        ...
+
+    @property
+    def has_gravity(self) -> bool:
+        """Whether the file's flags leave gravity on."""
+        ...
+
+    @property
+    def allows_sleep(self) -> bool:
+        """Whether the file's flags let sleep what rests."""
+        ...
+
+    def name(self, kind: str, number: int) -> str:
+        """The name of an element; `kind` is MuJoCo's word (`BODY`, `JOINT`, ...)."""
+        ...
+
+
+class MjcfParser(Protocol):
+    """MuJoCo's own parser and compiler: they alone can say what an MJCF file means."""
+
+    def compile(self, file: MjcfText, diagnostics: Diagnostics, in_axes_of_file: bool = False) -> CompiledMjcf | None:
+        """What a file compiles to on its own; None, with an error recorded, where it does not.
+
+        Args:
+            in_axes_of_file: bodies with a free joint keep the frame that the file gives them, whatever it says of
+                aligning them with their inertia.
+        """
+        ...
+
+    def schema_text(self) -> str:
+        """MuJoCo's own table of elements and attributes."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class LoadRequest:
     """What the caller wants beside the file itself.
@@ -36,6 +109,8 @@ class LoadRequest:
         name, pose: replace those of a bare model.
         as_model: one model is wanted, where a file could be a world as well.
         mesh_reader: gives the triangles of a mesh, for automatic inertia; without it meshes have no volume.
+        mjcf_parser: gives MuJoCo's parser, which MJCF files need; it is called when there is such a file.
+        loaders: the loader of every root element, for what a file includes.
     """
 
     resolver: Resolver
@@ -46,6 +121,8 @@ class LoadRequest:
     pose: Pose | None = None
     as_model: bool = False
     mesh_reader: MeshReader | None = None
+    mjcf_parser: Callable[[], MjcfParser] | None = None
+    loaders: Mapping[str, type[Loader]] = field(default_factory=dict)
 
 
 class Loader(abc.ABC):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from simkit.diagnostics import Diagnostics, did_you_mean
+from simkit.diagnostics import did_you_mean
 from simkit.loaders.resources.bundled_models import builtin_model, turtlebot3_uri
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.entity_names import read_name
@@ -43,18 +43,10 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Entity
     element = _only_entity(found, uri, include, workspace)
     if element is None:
         return None
-    if found.mjcf is not None and (include.attribute("merge", "false").lower() in ("true", "1") or include.has(BLOCK)):
-        include.error(
-            "SK-MJCF-015", f"{uri} is a model in MuJoCo's own format: it cannot be merged or changed by its include"
-        )
-        include.all(BLOCK)
-        return None
-    if found.urdf is not None and (include.attribute("merge", "false").lower() in ("true", "1") or include.has(BLOCK)):
-        include.error(
-            "SK-URDF-029",
-            f"{uri} is a robot in URDF: it cannot be merged or changed by its include",
-            hint="convert it once (simkit convert ROBOT.urdf -o model.sdf) and include that, or include it as it is",
-        )
+    merge = include.attribute("merge", "false").lower() in ("true", "1")
+    if found.included is not None and (merge or include.has(BLOCK)):
+        code, reason, hint = found.included.fixed_content
+        include.error(code, f"{uri} is {reason}: it cannot be merged or changed by its include", hint=hint)
         include.all(BLOCK)
         return None
     element = _with_changes(include, element, found, workspace)
@@ -64,7 +56,6 @@ def read_include(include: Params, file: SdfFile, workspace: Workspace) -> Entity
         return None
     if placement and not placed:
         include.error("SK-SDF-016", "<placement_frame> of an include needs a <pose> beside it")
-    merge = include.attribute("merge", "false").lower() in ("true", "1")
     if merge and element.name != "model":
         include.error("SK-SDF-016", f"only a model can be merged, {uri} holds a <{element.name}>")
         return None
@@ -102,7 +93,7 @@ def _included_name(include: Params, file: SdfFile, workspace: Workspace) -> str:
     uri = include.text("uri", "")
     if name or not uri:
         return name
-    quiet = Workspace(workspace.resolver, Diagnostics())
+    quiet = workspace.quiet()
     found = _open_include(uri, include, file, quiet)
     element = None if found is None else _only_entity(found, uri, include, quiet)
     return "" if element is None else element.attribute("name").strip()

@@ -135,7 +135,8 @@ def _automatic(
         inertia += moments + mass * (float(d @ d) * np.eye(3) - np.outer(d, d))
     given = block.number("mass", total, maximum=_MAX_MOMENT)
     if not (total <= _MAX_MOMENT and np.abs(inertia).max() <= _MAX_MOMENT):
-        text = f"link {name!r} weighs {total:g} kg by its collisions; at most {_MAX_MOMENT:g} kg and kg·m² can be simulated"
+        weight = f"link {name!r} weighs {total:g} kg by its collisions"
+        text = f"{weight}; at most {_MAX_MOMENT:g} kg and kg·m² can be simulated"
         diagnostics.error("SK-SDF-013", text, block.where)
         return Inertial()
     if given <= 0:

@@ -24,7 +24,7 @@ class SdfLoader(Loader):
 
     def load(self, document: Document, request: LoadRequest) -> Scene:
         resolver = request.resolver.around(document.folder)
-        workspace = Workspace(resolver, request.diagnostics, mesh_reader=request.mesh_reader)
+        workspace = Workspace.of(request, resolver)
         chain = (str(document.path.resolve()),) if document.path is not None else ("",)
         folder = document.folder or request.resolver.base
         file = workspace.file(document.root, folder, chain)

@@ -144,9 +144,7 @@ def merge_model(draft: ModelDraft, source: EntitySource, scope: Scope, workspace
     name = f"_merged__{source.name}__{MODEL}"
     pose = source.pose
     if source.placement:
-        alone = declare_model(
-            replace(source, merge=False), scope, draft.scoped, Workspace(workspace.resolver, Diagnostics())
-        )
+        alone = declare_model(replace(source, merge=False), scope, draft.scoped, workspace.quiet())
         pose = pose if alone is None else pose @ alone.scope.pose_of(source.placement, None, source.where).inverse()
     proxy = Frame(
         name, "frame", scoped(draft.scoped, name), scope, pose, source.relative_to or base, where=source.where
@@ -224,14 +222,8 @@ def build_model(draft: ModelDraft, static: bool, workspace: Workspace, base: str
     source, element = draft.source, draft.source.element
     declared = _is_static(source)
     still = declared or static
-    if source.file.mjcf is not None:
-        from simkit.loaders.mjcf.included_model import build_included_model
-
-        return build_included_model(source.file.mjcf, draft, still, base)
-    if source.file.urdf is not None:
-        from simkit.loaders.urdf import included_robot  # it reads <gazebo> with the readers of this package
-
-        return included_robot.build_included_robot(draft, source.file.urdf, still, workspace, base)
+    if source.file.included is not None:
+        return source.file.included.build(draft, still, workspace, base)
     element.child("pose")
     windy = element.boolean("enable_wind", False)
     links = tuple(read_link(part, draft.scoped, still, windy, workspace) for part in draft.links)

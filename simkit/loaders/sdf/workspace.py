@@ -2,25 +2,55 @@
 
 from __future__ import annotations
 
+import abc
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.loaders.resources.loader import MeshReader
+from simkit.loaders.resources.loader import Loader, LoadRequest, MeshReader, MjcfParser
 from simkit.loaders.resources.resolver import NEWEST_SDF, Resolver, sdf_version
 from simkit.loaders.resources.xml_reader import Document, parse_file
 from simkit.loaders.sdf.frames import Frame, Scope, pose_base
 from simkit.loaders.sdf.older_versions import modernise, nest_flattened_models
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
-
-if TYPE_CHECKING:
-    from simkit.loaders.mjcf.loader import MjcfFile
-
+from simkit.scene import SceneModel
 
 MAX_INCLUDE_DEPTH = 32
 MAX_MODELS = 20_000
+
+
+class IncludedModel(abc.ABC):
+    """A model of another format that an SDF file includes.
+
+    Attributes:
+        version: of SDF, in which `frames` is written.
+        frames: an `<sdf>` with the model's links, joints and frames, which poses and joints of the including file use.
+        fixed_content: code, reason and hint of the error that such a model can be neither merged nor changed.
+    """
+
+    version: ClassVar[tuple[int, int]]
+    fixed_content: ClassVar[tuple[str, str, str]]
+    frames: Params
+
+    @abc.abstractmethod
+    def build(self, draft: ModelDraft, static: bool, workspace: Workspace, base: str) -> SceneModel:
+        """The model as the including file has named and placed it.
+
+        Args:
+            static: whether it, or what it lies in, is static.
+            base: "auto", "fixed" or "floating".
+        """
+
+
+class IncludableLoader(Loader):
+    """A loader of another format whose models an SDF file may include."""
+
+    @abc.abstractmethod
+    def open_included(self, document: Document, workspace: Workspace) -> IncludedModel | None:
+        """The model of an included file; None, with errors recorded, where it is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,16 +59,14 @@ class SdfFile:
 
     Attributes:
         chain: the files that include one another down to this one.
-        mjcf: the file in MuJoCo's own format that the root stands for.
-        urdf: the `<robot>` that the root stands for.
+        included: the model of another format that the root stands for.
     """
 
     root: Params
     version: tuple[int, int]
     folder: Path | None
     chain: tuple[str, ...] = ()
-    mjcf: MjcfFile | None = None
-    urdf: Params | None = None
+    included: IncludedModel | None = None
 
 
 @dataclass
@@ -50,6 +78,7 @@ class Workspace:
         reported: what is said once however often it is met: missing pictures and meshes.
         changed: models that an include has changed, for the same report.
         places: the files that URIs named so far, by the folder of the file that names them.
+        loaders, mjcf_parser: as in the `LoadRequest`.
     """
 
     resolver: Resolver
@@ -61,9 +90,25 @@ class Workspace:
     models: int = 0
     unknown_materials: set[str] = field(default_factory=set)
     reported: set[str] = field(default_factory=set)
+    loaders: Mapping[str, type[Loader]] = field(default_factory=dict)
+    mjcf_parser: Callable[[], MjcfParser] | None = None
     _documents: dict[Path, Document | None] = field(default_factory=dict)
-    _robots: dict[Path, Params | None] = field(default_factory=dict)
-    _mjcf_files: dict[Path, tuple[MjcfFile, Params] | None] = field(default_factory=dict)
+    _included: dict[Path, IncludedModel | None] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, request: LoadRequest, resolver: Resolver) -> Workspace:
+        """The workspace of a load that begins."""
+        return cls(
+            resolver,
+            request.diagnostics,
+            mesh_reader=request.mesh_reader,
+            loaders=request.loaders,
+            mjcf_parser=request.mjcf_parser,
+        )
+
+    def quiet(self) -> Workspace:
+        """A workspace to look ahead in: what it finds is said when the same is read in earnest."""
+        return Workspace(self.resolver, Diagnostics(), loaders=self.loaders, mjcf_parser=self.mjcf_parser)
 
     def open(self, path: Path, where: Where, chain: tuple[str, ...]) -> SdfFile | None:
         """Reads an included SDF file, once however often it is included; None with an error recorded."""
@@ -80,46 +125,19 @@ class Workspace:
         document = self._documents[path]
         if document is None:
             return None
-        if document.root.name == "mujoco":
-            return self._mjcf(document, path, (*chain, key))
-        if document.root.name == "robot":
-            return self._urdf(document, path, (*chain, key))
-        if document.root.name not in ("sdf", "gazebo"):
-            self.diagnostics.error(
-                "SK-SDF-016", f"{path} begins with <{document.root.name}>, an included file begins with <sdf>", where
-            )
+        if document.root.name in ("sdf", "gazebo"):
+            return self.file(document.root, path.parent, (*chain, key))
+        loader = self.loaders.get(document.root.name)
+        if loader is None or not issubclass(loader, IncludableLoader):
+            message = f"{path} begins with <{document.root.name}>, an included file begins with <sdf>"
+            self.diagnostics.error("SK-SDF-016", message, where)
             return None
-        return self.file(document.root, path.parent, (*chain, key))
-
-    def _urdf(self, document: Document, path: Path, chain: tuple[str, ...]) -> SdfFile | None:
-        """An included robot in URDF or xacro, expanded once however often it is included."""
-        from simkit.loaders.urdf.included_robot import (
-            frames_document,  # it reads <gazebo> with the readers of this package
-        )
-        from simkit.loaders.xacro import expand, needs_expansion
-
-        if path not in self._robots:
-            expanded: Document | None = document
-            if needs_expansion(document):
-                expanded = expand(document, self.resolver, {}, self.diagnostics)
-            self._robots[path] = None if expanded is None else expanded.root
-        robot = self._robots[path]
-        if robot is None:
+        if path not in self._included:
+            self._included[path] = loader().open_included(document, self)
+        included = self._included[path]
+        if included is None:
             return None
-        file = SdfFile(robot, (1, 11), path.parent, chain)
-        return SdfFile(frames_document(file, self), (1, 11), path.parent, chain, urdf=robot)
-
-    def _mjcf(self, document: Document, path: Path, chain: tuple[str, ...]) -> SdfFile | None:
-        """An included file in MuJoCo's own format, read and compiled once however often it is included."""
-        from simkit.loaders.mjcf.included_model import frames_document
-        from simkit.loaders.mjcf.loader import open_mjcf
-
-        if path not in self._mjcf_files:
-            found = open_mjcf(document.root, document.path, self.resolver, self.diagnostics)
-            root = None if found is None else frames_document(found, self.diagnostics)
-            self._mjcf_files[path] = None if found is None or root is None else (found, root)
-        known = self._mjcf_files[path]
-        return None if known is None else SdfFile(known[1], (1, 7), path.parent, chain, known[0])
+        return SdfFile(included.frames, included.version, path.parent, (*chain, key), included)
 
     def file(self, root: Params, folder: Path | None, chain: tuple[str, ...]) -> SdfFile:
         """Notes a root element for the final report and reads its version."""

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar
 
-from simkit.loaders.resources.loader import Loader, LoadRequest
 from simkit.loaders.resources.resolver import Resolver
-from simkit.loaders.resources.xml_reader import Document
 from simkit.loaders.sdf.entity_names import named_elements, scoped
 from simkit.loaders.sdf.frames import Frame, Scope
 from simkit.loaders.sdf.joint import joint_link_name
@@ -27,7 +24,7 @@ from simkit.loaders.urdf.transmission import read_controls, read_transmissions
 from simkit.loaders.urdf.unread_elements import report_unread
 from simkit.params import Params
 from simkit.pose import IDENTITY, Pose
-from simkit.scene import Scene, SceneFrame, SceneJoint, SceneLink, SceneModel
+from simkit.scene import SceneFrame, SceneJoint, SceneLink, SceneModel
 
 
 class GazeboAdditions:
@@ -69,24 +66,6 @@ class GazeboAdditions:
 
 
 WORLD = "world"
-_SDF_VERSION = (1, 11)  # of the words in <gazebo>
-
-
-class UrdfLoader(Loader):
-    """The Unified Robot Description Format, with Gazebo's extensions."""
-
-    roots: ClassVar[tuple[str, ...]] = ("robot",)
-
-    def load(self, document: Document, request: LoadRequest) -> Scene:
-        resolver = request.resolver.around(document.folder)
-        workspace = Workspace(resolver, request.diagnostics)
-        folder = document.folder or resolver.base
-        file = SdfFile(document.root, _SDF_VERSION, folder, (str(document.path or ""),))
-        draft = declare_robot(file, workspace, resolver)
-        if request.name is not None:
-            draft.name = request.name
-        model = build_robot(draft, "", request.pose, request.base)
-        return Scene((), model, None if document.path is None else str(document.path))
 
 
 def declare_robot(file: SdfFile, workspace: Workspace, resolver: Resolver) -> RobotDraft:

@@ -1,0 +1,135 @@
+"""A compiled MJCF file: its elements by name and owner, which of them become one model, and where that model is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from simkit.diagnostics import Where
+from simkit.loaders.mjcf.gathered_file import GatheredFile
+from simkit.loaders.resources.loader import CompiledMjcf
+from simkit.pose import IDENTITY, Pose
+from simkit.scene import ScenePlugin
+from simkit.scene.mjcf_source import Mass, MjcfGeom
+
+WORLD_LINK: Final = "worldbody"
+"""Name of the link that holds what a file puts into its world body."""
+
+_LINE: Final = re.compile(r"line (\d+)")
+
+
+@dataclass(frozen=True)
+class ModelPlacement:
+    """What becomes one model, and where.
+
+    Attributes:
+        roots: ids of its top-level bodies.
+        has_world: whether what stands in the world body is its too.
+        frame: the model frame in the file's world.
+        pose_world: the model frame in the world.
+        prefix: of its names in the compiled world.
+        strip: beginning of the file's names that is left out of the scene's.
+    """
+
+    name: str
+    scoped: str
+    roots: Sequence[int]
+    has_world: bool
+    frame: Pose = IDENTITY
+    pose_world: Pose = IDENTITY
+    prefix: str = ""
+    strip: str = ""
+    static: bool = False
+    base: str = "auto"
+    plugins: tuple[ScenePlugin, ...] = ()
+    where: Where | None = None
+
+
+@dataclass
+class ElementIds:
+    """Which element of the file each part of a model is."""
+
+    bodies: dict[str, str] = field(default_factory=dict)
+    joints: dict[str, str] = field(default_factory=dict)
+    free: dict[str, str] = field(default_factory=dict)
+    geoms: dict[str, MjcfGeom] = field(default_factory=dict)
+    lights: dict[str, tuple[str, str]] = field(default_factory=dict)
+    masses: dict[str, Mass] = field(default_factory=dict)
+
+
+class CompiledFile:
+    """A file, what MuJoCo compiles it to, and which elements belong to which body.
+
+    Args:
+        source: the file.
+        compiled: its specification, model and first state.
+    """
+
+    def __init__(self, source: GatheredFile, compiled: CompiledMjcf) -> None:
+        self.source, self.compiled = source, compiled
+        self.spec, self.model, self.data = compiled.spec, compiled.model, compiled.data
+        model = self.model
+        pairs = {int(g) for ids in (model.pair_geom1, model.pair_geom2) for g in ids}
+        self.colliding = {
+            g for g in range(model.ngeom) if model.geom_contype[g] or model.geom_conaffinity[g] or g in pairs
+        }
+        self.settings = _engine_settings(source)
+        self.sites_of = _ids_by_owner(model.site_bodyid)
+        self.lights_of = _ids_by_owner(model.light_bodyid)
+        self.equalities_of = _ids_by_owner(model.eq_obj1id)
+        self.bodies_of = _ids_by_owner(model.body_rootid)
+
+    def name(self, kind: str, number: int) -> str:
+        """The name of an element of the compiled model."""
+        return self.compiled.name(kind, number)
+
+    @property
+    def roots(self) -> list[int]:
+        """Ids of the top-level bodies."""
+        return [b for b in range(1, self.model.nbody) if self.model.body_parentid[b] == 0]
+
+    @property
+    def has_world(self) -> bool:
+        """Whether anything solid stands in the world body itself."""
+        return bool(self.model.body_geomnum[0])
+
+    def pose(self, body: int) -> Pose:
+        """Pose of a body in the file's world, as the file stands."""
+        return Pose(self.data.xpos[body], self.data.xquat[body])
+
+    def where(self, kind: str, name: str) -> Where:
+        """The line of a named element."""
+        element = getattr(self.spec, kind)(name)
+        found = _LINE.search(element.info) if element is not None else None
+        return self.source.where(int(found[1])) if found is not None else self.source.root.where
+
+    def link_name(self, body: int, placed: ModelPlacement) -> str:
+        """What a body's link is called within its model."""
+        return WORLD_LINK if body == 0 else self.name("BODY", body).removeprefix(placed.strip)
+
+    def scoped_link(self, body: int, placed: ModelPlacement) -> str:
+        """The same from the world down."""
+        return f"{placed.scoped}::{self.link_name(body, placed)}"
+
+
+def _ids_by_owner(owners: Any) -> dict[int, list[int]]:
+    """Numbers of elements by the number of what they belong to."""
+    found: dict[int, list[int]] = {}
+    for number, owner in enumerate(owners.tolist()):
+        found.setdefault(owner, []).append(number)
+    return found
+
+
+def _engine_settings(source: GatheredFile) -> dict[str, Where]:
+    """What the file itself says of the engine: option attributes and flags, and other global elements, with lines."""
+    found: dict[str, Where] = {}
+    for element in source.root.children:
+        if element.name == "option":
+            found.update(dict.fromkeys(element.attributes, element.where))
+            for flag in element.children:
+                found.update({f"flag {name}": flag.where for name in flag.attributes})
+        elif element.name in ("size", "visual", "statistic", "keyframe"):
+            found.setdefault(f"<{element.name}>", element.where)
+    return found

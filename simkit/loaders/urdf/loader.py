@@ -1,0 +1,99 @@
+"""The loader of URDF, for a file of its own and for a robot that an SDF file includes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import ClassVar
+
+from simkit.loaders.resources.loader import LoadRequest
+from simkit.loaders.resources.xml_reader import Document
+from simkit.loaders.sdf.plugin import read_plugins
+from simkit.loaders.sdf.workspace import IncludableLoader, IncludedModel, ModelDraft, SdfFile, Workspace
+from simkit.loaders.urdf.gazebo_extensions import read_flag
+from simkit.loaders.urdf.kinematic_tree import place_links
+from simkit.loaders.urdf.robot import build_robot, declare_robot
+from simkit.loaders.xacro import expand, needs_expansion
+from simkit.params import Params
+from simkit.pose import Pose
+from simkit.scene import Scene, SceneModel
+
+_SDF_VERSION = (1, 11)  # of the words in <gazebo>
+
+
+class UrdfLoader(IncludableLoader):
+    """The Unified Robot Description Format, with Gazebo's extensions."""
+
+    roots: ClassVar[tuple[str, ...]] = ("robot",)
+
+    def load(self, document: Document, request: LoadRequest) -> Scene:
+        resolver = request.resolver.around(document.folder)
+        workspace = Workspace.of(request, resolver)
+        folder = document.folder or resolver.base
+        file = SdfFile(document.root, _SDF_VERSION, folder, (str(document.path or ""),))
+        draft = declare_robot(file, workspace, resolver)
+        if request.name is not None:
+            draft.name = request.name
+        model = build_robot(draft, "", request.pose, request.base)
+        return Scene((), model, None if document.path is None else str(document.path))
+
+    def open_included(self, document: Document, workspace: Workspace) -> IncludedRobot | None:
+        expanded: Document | None = document
+        if needs_expansion(document):
+            expanded = expand(document, workspace.resolver, {}, workspace.diagnostics)
+        if expanded is None:
+            return None
+        path = document.path or Path()
+        file = SdfFile(expanded.root, _SDF_VERSION, path.parent, (str(path.resolve()),))
+        return IncludedRobot(_frames_document(file, workspace), expanded.root)
+
+
+@dataclass
+class IncludedRobot(IncludedModel):
+    """A robot that an SDF file includes: its names for the SDF readers, then its model where they placed it."""
+
+    version: ClassVar[tuple[int, int]] = _SDF_VERSION
+    fixed_content: ClassVar[tuple[str, str, str]] = (
+        "SK-URDF-029",
+        "a robot in URDF",
+        "convert it once (simkit convert ROBOT.urdf -o model.sdf) and include that, or include it as it is",
+    )
+    frames: Params
+    robot: Params
+
+    def build(self, draft: ModelDraft, static: bool, workspace: Workspace, base: str) -> SceneModel:
+        file = replace(draft.source.file, root=self.robot, included=None)
+        own = declare_robot(file, workspace, workspace.resolver)
+        own.name = draft.source.name
+        outer = draft.scoped.rpartition("::")[0]
+        model = build_robot(own, outer, draft.scope.world, base, static, is_included=True)
+        plugins = read_plugins(draft.plugins, draft.scoped)
+        return replace(model, plugins=(*model.plugins, *plugins), where=draft.source.where)
+
+
+def _frames_document(robot: SdfFile, workspace: Workspace) -> Params:
+    """An SDF document with the robot's links and joints as frames, so that poses and joints of the world can name them.
+
+    Says nothing about mistakes: reading the robot in earnest says them.
+    """
+    draft = declare_robot(robot, workspace.quiet(), workspace.resolver)
+    place_links(draft)
+
+    def make(tag: str, text: str = "", children: tuple[Params, ...] = (), **attributes: str) -> Params:
+        return Params(tag, text, attributes, children, robot.root.where, workspace.diagnostics)
+
+    def pose(value: Pose, base: str = "") -> Params:
+        x, y, z, w, a, b, c = (repr(v) for v in value.as_list())
+        named = {"relative_to": base} if base else {}
+        return make("pose", f"{x} {y} {z} {a} {b} {c} {w}", (), rotation_format="quat_xyzw", **named)
+
+    static = "true" if read_flag(draft.extensions.robot, "static") else "false"
+    parts = [make("static", static), pose(draft.extensions.robot.pose("pose"))]
+    parts += [make("link", "", (pose(at),), name=name) for name, at in draft.links_world.items()]
+    for name, joint in draft.joints.items():
+        ends = (make("parent", joint.parent), make("child", joint.child))
+        if name not in draft.links:
+            parts.append(make("joint", "", ends, name=name, type="fixed"))
+    document = make("sdf", "", (make("model", "", tuple(parts), name=draft.name),), version="1.11")
+    document.mark_all_read()
+    return document
