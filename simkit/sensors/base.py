@@ -108,14 +108,14 @@ class Sensor(Sampler):
         return next(iter(self._topics.values()), "")
 
     @property
-    def latest(self) -> Any | None:
+    def latest(self) -> Any:
         """The newest message that has arrived, or None before the first."""
         if self._sample is None:
             return None
         return self._message(self._sample, next(iter(self._topics)))
 
     @property
-    def truth(self) -> Any | None:
+    def truth(self) -> Any:
         """The same message as it would be without noise, or None before the first."""
         sample = self._sample
         if sample is None:

@@ -116,7 +116,7 @@ class Subscription:
         return [m for m in found if m is not NO_MESSAGE]
 
     @property
-    def latest(self) -> Any | None:
+    def latest(self) -> Any:
         """The newest message, or None before the first."""
         self._bus.gather(self.topic)
         if not self._messages:

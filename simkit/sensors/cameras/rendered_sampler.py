@@ -181,14 +181,14 @@ class RenderedSampler(Sensor):
             return NO_MESSAGE  # it has been said why
 
     @property
-    def latest(self) -> Any | None:
+    def latest(self) -> Any:
         """The newest picture, or None before the first; raises RenderError where there is no renderer."""
         if self._failure is not None:
             raise self._failure
         return super().latest
 
     @property
-    def truth(self) -> Any | None:
+    def truth(self) -> Any:
         """The newest picture without noise; raises RenderError where there is no renderer."""
         if self._failure is not None:
             raise self._failure
