@@ -167,23 +167,23 @@ class _GoalRun:
         )
 
     def _print_end(self, handle: LiveGoal) -> None:
-        from simkit.msgs.message_text import plain
+        from simkit.msgs.message_text import message_to_dict
 
         result = handle.result
         if self._json:
-            found = None if result is None else plain(result)
+            found = None if result is None else message_to_dict(result)
             print_json({"status": handle.status.name, "reason": handle.reason, "result": found})
         elif handle.is_done and handle.status.name != "REJECTED":
             print_line(f"Result:\n    {_yaml_text(result)}")
             print_line(f"Goal finished with status: {handle.status.name}")
 
     def _on_feedback(self, message: Any) -> None:
-        from simkit.msgs.message_text import plain
+        from simkit.msgs.message_text import message_to_dict
 
         if self._early is not None:
             self._early.append(message)
         elif self._json:
-            print_json({"feedback": plain(message)})
+            print_json({"feedback": message_to_dict(message)})
         else:
             print_line(f"Feedback:\n    {_yaml_text(message)}")
 
@@ -193,6 +193,6 @@ class _GoalRun:
 
 
 def _yaml_text(message: Any) -> str:
-    from simkit.msgs.message_text import yaml_of
+    from simkit.msgs.message_text import message_to_yaml
 
-    return yaml_of(message)
+    return message_to_yaml(message)

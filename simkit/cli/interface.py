@@ -97,12 +97,12 @@ def show(
     json_: Json = False,
 ) -> int:
     """Prints the definition of a type, with those of its parts below."""
-    from simkit.msgs.interfaces import show as text_of
+    from simkit.msgs.interfaces import interface_text
 
     name = _read(type_)
     try:
         if bag is None:
-            text = text_of(name, comments=not no_comments, all_comments=all_comments)
+            text = interface_text(name, comments=not no_comments, all_comments=all_comments)
         else:
             text = _of_bag(name, bag, comments=not no_comments, all_comments=all_comments)
     except MessageError as error:
@@ -116,13 +116,13 @@ def show(
 
 def _of_bag(name: str, bag: object, *, comments: bool, all_comments: bool) -> str:
     """The definition as a bag has it."""
-    from simkit.msgs.interfaces import show as text_of
+    from simkit.msgs.interfaces import interface_text
     from simkit.recording.bags.reader import open_bag_to_read
 
     with open_bag_to_read(str(bag)) as reader:
         package_name, _, short = name.partition("/")
         long = name if name.count("/") == 2 else f"{package_name}/msg/{short}"
-        return text_of(long, comments=comments, all_comments=all_comments, store=reader.store_of(long))
+        return interface_text(long, comments=comments, all_comments=all_comments, store=reader.store_of(long))
 
 
 @interface.command()
@@ -134,7 +134,7 @@ def proto(
 ) -> int:
     """Prints a message with every field, to be filled in."""
     from simkit.msgs.interfaces import prototype
-    from simkit.msgs.message_text import dump
+    from simkit.msgs.message_text import to_yaml
 
     try:
         found = prototype(_read(type_))
@@ -143,7 +143,7 @@ def proto(
     if json_:
         print_json(found)
     else:
-        text = dump(found)
+        text = to_yaml(found)
         print_line(text if no_quotes else f'"{text}"')
     return 0
 

@@ -181,14 +181,14 @@ def delete(node: Node, name: Name, sim: Sim = None, json_: Json = False) -> int:
 @report_errors_quietly
 def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> int:
     """Says what parameters are, and what they take."""
-    from simkit.msgs.message_text import plain
+    from simkit.msgs.message_text import message_to_dict
 
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)
         _existing_values(client, full, names)
         found = client.call(f"{full}/describe_parameters", {"names": names}).descriptors
     if json_:
-        print_json([plain(d) | {"type": KINDS[int(d.type)]} for d in found])
+        print_json([message_to_dict(d) | {"type": KINDS[int(d.type)]} for d in found])
         return 0
     for one in found:
         print_line(f"Parameter name: {one.name}\n  Type: {KINDS[int(one.type)]}")
@@ -210,7 +210,7 @@ def describe(node: Node, names: Names, sim: Sim = None, json_: Json = False) -> 
 @report_errors_quietly
 def dump(node: Node, sim: Sim = None, json_: Json = False) -> int:
     """Prints all parameters of a node as a parameter file."""
-    from simkit.msgs.message_text import dump as as_yaml
+    from simkit.msgs.message_text import to_yaml as as_yaml
 
     with connect_to_simulation(sim) as client:
         full = _resolve_node(client, node)

@@ -160,12 +160,12 @@ def call(
 
 
 def _call_once(client: Client, name: str, request: Any, json_: bool) -> None:
-    from simkit.msgs.message_text import plain, python_of
+    from simkit.msgs.message_text import message_to_dict, to_python
 
     if not json_:
-        print_line(f"requester: making request: {python_of(request)}\n")
+        print_line(f"requester: making request: {to_python(request)}\n")
     response = client.call(name, request)
     if json_:
-        print_json(plain(response))
+        print_json(message_to_dict(response))
     else:
-        print_line(f"response:\n{python_of(response)}\n")
+        print_line(f"response:\n{to_python(response)}\n")

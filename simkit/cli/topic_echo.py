@@ -19,7 +19,7 @@ from simkit.errors import InputError, MessageError
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-    from simkit.msgs.message_text import Style
+    from simkit.msgs.message_text import TextStyle
 
 TRUNCATE = 128
 _SEPARATOR = "---"
@@ -70,9 +70,9 @@ def echo(
     json_: Json = False,
 ) -> int:
     """Prints the messages of a topic; of a bag, all that were recorded."""
-    from simkit.msgs.message_text import Style
+    from simkit.msgs.message_text import TextStyle
 
-    style = Style(None if full_length or json_ else truncate_length, no_arr, no_str, flow_style)
+    style = TextStyle(None if full_length or json_ else truncate_length, no_arr, no_str, flow_style)
     until = None if timeout is None else time.monotonic() + timeout
     with open_source(sim, bag) as source:
         entry = find_topic(source, topic) if message_type is None else wait_for_topic(source, topic, until)
@@ -126,7 +126,7 @@ class _MessagePrinter:
     def __init__(
         self,
         source: Source,
-        style: Style,
+        style: TextStyle,
         field: str | None,
         csv: bool,
         raw: bool,
@@ -138,7 +138,7 @@ class _MessagePrinter:
         self._csv, self._raw, self._json, self._info = csv, raw, json_, info
 
     def __call__(self, received: ReceivedMessage) -> bool:
-        from simkit.msgs.message_text import part
+        from simkit.msgs.message_text import field_at_path
 
         if self._raw:
             if self._json:
@@ -151,7 +151,7 @@ class _MessagePrinter:
         message, node = self._source.decode(received), None
         if self._field is not None:
             try:
-                message, node = part(message, self._field, store)
+                message, node = field_at_path(message, self._field, store)
             except MessageError as error:
                 raise InputError(f"SK-CLI-033 --field: {error}", "SK-CLI-033") from None
         if self._wanted is not None and not self._wanted(message):
@@ -160,12 +160,12 @@ class _MessagePrinter:
         return True
 
     def _print(self, received: ReceivedMessage, message: Any, node: Any, store: Typestore | None) -> None:
-        from simkit.msgs.message_text import csv_of, field_text, is_message, plain_value, yaml_of
+        from simkit.msgs.message_text import field_text, is_message, message_to_csv, message_to_yaml, to_plain_value
 
         style = self._style
         seconds = received.time_ns * 1e-9
         if self._json:
-            value = plain_value(message, style, store)
+            value = to_plain_value(message, style, store)
             print_json({"time": seconds, "message": value} if self._info else value)
             return
         if not is_message(message):
@@ -175,11 +175,11 @@ class _MessagePrinter:
             print_line(field_text(message, node, store))
             print_line(_SEPARATOR)
         elif self._csv:
-            text = csv_of(message, style, store)
+            text = message_to_csv(message, style, store)
             print_line(f"{received.time_ns},{text}" if self._info else text)
         else:
             if self._info:
                 print_line(f"received_timestamp: {received.time_ns}")
                 print_line(_SEPARATOR)
-            print_line(yaml_of(message, style, store).rstrip("\n"))
+            print_line(message_to_yaml(message, style, store).rstrip("\n"))
             print_line(_SEPARATOR)

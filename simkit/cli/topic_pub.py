@@ -192,9 +192,9 @@ def _times(client: Client, rate: float, number: int, by_wall: bool) -> Iterator[
 
 
 def _print(message: Any, count: int, json_: bool) -> None:
-    from simkit.msgs.message_text import plain, python_of
+    from simkit.msgs.message_text import message_to_dict, to_python
 
     if json_:
-        print_json(plain(message))
+        print_json(message_to_dict(message))
     else:
-        print_line(f"publishing #{count}: {python_of(message)}\n")
+        print_line(f"publishing #{count}: {to_python(message)}\n")

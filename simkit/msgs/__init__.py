@@ -58,7 +58,7 @@ def _builder_of() -> Callable[[str], MessageBuilder]:
 
 
 def make(type_name: str, /, **fields: Any) -> Any:
-    """A message; fields left out are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
+    """Build a message; fields left out are zero (a quaternion's w is 1), dicts become messages, numbers become arrays.
 
     Raises:
         MessageError: an unknown type or field (the closest is named), or a value that does not fit.
@@ -67,7 +67,7 @@ def make(type_name: str, /, **fields: Any) -> Any:
 
 
 def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
-    """A message of the first type that the values fit.
+    """Build a message of the first type that the values fit.
 
     Raises:
         MessageError: they fit none; says why for the first type, and which others were tried.
@@ -85,7 +85,7 @@ def from_dict(type_names: Sequence[str], values: Mapping[str, Any]) -> Any:
 
 
 def type_name(message: Any) -> str:
-    """The ROS type name of a message object, such as `sensor_msgs/msg/Imu`.
+    """Return the ROS type name of a message object, such as `sensor_msgs/msg/Imu`.
 
     Raises:
         MessageError: the object is no message.
@@ -108,35 +108,35 @@ def _stamp_types() -> tuple[type[Time], type[Duration], type[Header]]:
 
 
 def time(ns: int) -> Time:
-    """A `builtin_interfaces/msg/Time` of `ns` nanoseconds."""
+    """Return a `builtin_interfaces/msg/Time` of `ns` nanoseconds."""
     return _stamp_types()[0](*divmod(ns, _NS))
 
 
 def duration(ns: int) -> Duration:
-    """A `builtin_interfaces/msg/Duration` of `ns` nanoseconds."""
+    """Return a `builtin_interfaces/msg/Duration` of `ns` nanoseconds."""
     return _stamp_types()[1](*divmod(ns, _NS))
 
 
 def header(time_ns: int, frame_id: str) -> Header:
-    """A `std_msgs/msg/Header` stamped with `time_ns` [ns]."""
-    stamp, _, made = _stamp_types()
-    return made(stamp(time_ns // _NS, time_ns % _NS), frame_id)
+    """Return a `std_msgs/msg/Header` stamped with `time_ns` [ns]."""
+    stamp, _, header_type = _stamp_types()
+    return header_type(stamp(time_ns // _NS, time_ns % _NS), frame_id)
 
 
 def headers(time_ns: int) -> Callable[[str], Header]:
-    """What makes `header(time_ns, frame_id)` of a frame, sooner where there are many."""
-    stamp, _, made = _stamp_types()
+    """Return a function from frame to `header(time_ns, frame)`, which is faster where there are many frames."""
+    stamp, _, header_type = _stamp_types()
     seconds, rest = divmod(time_ns, _NS)
-    return lambda frame_id: made(stamp(seconds, rest), frame_id)
+    return lambda frame_id: header_type(stamp(seconds, rest), frame_id)
 
 
 def stamp_ns(stamp: Time | Duration) -> int:
-    """The nanoseconds of a Time or Duration message."""
+    """Return the nanoseconds of a Time or Duration message."""
     return int(stamp.sec) * _NS + int(stamp.nanosec)
 
 
 def serialize(message: Any) -> bytes:
-    """The message as CDR, little-endian, as ROS 2 sends it.
+    """Serialise a message as CDR, little-endian, as ROS 2 sends it.
 
     Raises:
         MessageError: a field holds what its type cannot.
@@ -149,5 +149,5 @@ def serialize(message: Any) -> bytes:
 
 
 def deserialize(data: bytes | memoryview, type_name: str) -> Any:
-    """The message that `serialize` wrote."""
+    """Return the message that `serialize` wrote."""
     return type_store().deserialize_cdr(data, full_name(type_name))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from simkit.diagnostics import did_you_mean
 from simkit.errors import MessageError
 from simkit.msgs.message_builder import builder_of
-from simkit.msgs.message_text import plain
+from simkit.msgs.message_text import message_to_dict
 from simkit.msgs.message_types import definition_files, definition_text, full_name, type_store
 
 if TYPE_CHECKING:
@@ -46,8 +46,10 @@ def full_interface_name(name: str) -> str:
         raise MessageError(f"no interface {name!r} is known; {hint}".rstrip("; ")) from None
 
 
-def show(type_name: str, *, comments: bool = True, all_comments: bool = False, store: Typestore | None = None) -> str:
-    """The definition of a type, with those of its fields' types indented below, as `ros2 interface show` prints it.
+def interface_text(
+    type_name: str, *, comments: bool = True, all_comments: bool = False, store: Typestore | None = None
+) -> str:
+    """Return the definition of a type with those of its fields' types indented below, as `ros2 interface show` does.
 
     Raises:
         MessageError: no such type.
@@ -87,4 +89,4 @@ def prototype(type_name: str) -> dict[str, Any]:
     name = full_interface_name(type_name)
     if name in definition_files():
         name += {"msg": "", "srv": "_Request", "action": "_Goal"}[name.split("/")[1]]
-    return plain(builder_of(name).default())
+    return message_to_dict(builder_of(name).default())

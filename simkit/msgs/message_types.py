@@ -95,7 +95,7 @@ def message_type_names() -> list[str]:
 
 
 def full_name(type_name: str) -> str:
-    """`sensor_msgs/Imu` and `sensor_msgs/msg/Imu` are the same type.
+    """Return the full name of a message type: `sensor_msgs/Imu` is `sensor_msgs/msg/Imu`.
 
     Raises:
         MessageError: no such type is known; names the closest.
@@ -154,7 +154,7 @@ def message_class(class_name: str) -> type[Any]:
 
 @cache
 def types_of(*type_names: str) -> tuple[type[Any], ...]:
-    """The dataclasses of several types. The first one there ever was takes 0.2 s: ask when a message is to be made."""
+    """Return the dataclasses of several types; the first call of a process loads the type store, which takes 0.2 s."""
     return tuple(map(type_of, type_names))
 
 

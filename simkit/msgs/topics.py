@@ -6,9 +6,9 @@ import re
 
 
 def valid_topic(name: str) -> str:
-    """`name` as an absolute topic the way gz-transport makes one: spaces become `_`, other bad characters go.
+    """Convert `name` to an absolute topic as gz-transport does: spaces become `_`, other bad characters go.
 
-    What that leaves empty between two slashes goes too.
+    A part between two slashes that is then empty goes too.
     """
     kept = re.sub(r"[^A-Za-z0-9_/.:-]|:=", "", name.replace(" ", "_"))
     return "/" + re.sub("/{2,}", "/", kept).strip("/")

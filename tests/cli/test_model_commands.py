@@ -77,8 +77,8 @@ def test_interfaces_are_shown_with_their_parts(simkit_line: Any) -> None:
 
 
 def test_every_interface_can_be_shown(simkit_line: Any) -> None:
-    from simkit.msgs.interfaces import interface_names, prototype, show
+    from simkit.msgs.interfaces import interface_names, interface_text, prototype
 
     for kind in ("msg", "srv", "action"):
         for name in interface_names(kind):
-            assert show(name) is not None and prototype(name) is not None
+            assert interface_text(name) is not None and prototype(name) is not None

@@ -120,7 +120,7 @@ def interfaces(_: typer.Context) -> Iterable[str]:
 @_silent
 def fields(ctx: typer.Context) -> Iterable[str]:
     """Paths of fields of the topic named before, one level at a time."""
-    from simkit.msgs.message_text import fields_of
+    from simkit.msgs.message_text import field_nodes
 
     with _source(ctx) as source:
         entry = source.topics()[_topic_before(ctx)]
@@ -128,11 +128,11 @@ def fields(ctx: typer.Context) -> Iterable[str]:
         store = source.store(type_name)
         before, _, _ = ctx.meta[_WORD_SO_FAR].rpartition(".")
         for name in before.split(".") if before else ():
-            node = dict(fields_of(_full_type_name(type_name, store), store))[name.partition("[")[0]]
+            node = dict(field_nodes(_full_type_name(type_name, store), store))[name.partition("[")[0]]
             while int(node[0]) in (3, 4):
                 node = node[1][0]
             type_name = node[1]
-        found = fields_of(_full_type_name(type_name, store), store)
+        found = field_nodes(_full_type_name(type_name, store), store)
     return [f"{before}.{name}" if before else name for name, _ in found]
 
 
@@ -162,9 +162,9 @@ def goal_values(ctx: typer.Context) -> Iterable[str]:
 
 def _prototype(type_name: str) -> list[str]:
     from simkit.msgs.interfaces import prototype
-    from simkit.msgs.message_text import dump
+    from simkit.msgs.message_text import to_yaml
 
-    return [dump(prototype(type_name), flow=True).strip()] if type_name else []
+    return [to_yaml(prototype(type_name), flow=True).strip()] if type_name else []
 
 
 @_silent

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit import msgs
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError, MessageError
-from simkit.msgs.message_text import plain
+from simkit.msgs.message_text import message_to_dict
 from simkit.recording.bags.reader import BagMessage, BagReader, open_bag_to_read
 from simkit.runtime.communication.topic_bus import absolute_name
 
@@ -178,7 +178,7 @@ class Playback:
         found = self._bag.decode(message)
         own = _has_all_fields(message.type_name)
         if type(found) is not msgs.type_of(own):  # of the bag's own definition
-            found = msgs.make(own, **plain(found, store=self._bag.store_of(message.type_name)))
+            found = msgs.make(own, **message_to_dict(found, store=self._bag.store_of(message.type_name)))
         if own == wanted:
             return found
         if wanted == _TWIST:

@@ -18,7 +18,7 @@ import numpy as np
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
-from simkit.msgs.message_text import NUMBER_CODES, attribute, fields_of
+from simkit.msgs.message_text import NUMBER_CODES, field_nodes, field_value
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -165,7 +165,7 @@ class _FieldPath:
         if int(place.node[0]) != _NAME:
             hint = self._hint(place)
             raise self._field_error(f"{place.path or 'it'} is {_kind_in_words(place.node)} and has no {name!r}; {hint}")
-        fields = dict(fields_of(place.node[1], self._store))
+        fields = dict(field_nodes(place.node[1], self._store))
         if name not in fields:
             told = did_you_mean(name, [*fields, *self._computed_names(place)])
             hint = told or "its fields are " + (", ".join(fields) or "none")
@@ -203,11 +203,11 @@ class _FieldPath:
         """The item of that name: of messages by what they are called, of numbers by the names beside them."""
         inner = place.node[1][0]
         if int(inner[0]) == _NAME:
-            fields = dict(fields_of(inner[1], self._store))
+            fields = dict(field_nodes(inner[1], self._store))
             key = next((n for n in _NAMED if n in fields and _is_text(fields[n])), None)
             if key is not None:
                 return self._item(place, inner, partial(_item_with_name, key, name), name)
-        beside = dict(fields_of(place.owner, self._store)) if place.path else {}
+        beside = dict(field_nodes(place.owner, self._store)) if place.path else {}
         names = next((n for n in _NAMES if n in beside and int(beside[n][0]) == _SEQUENCE), None)
         if names is None or not name:
             raise self._field_error(f"[{name}] is no number, and nothing names the items of {place.path}")
@@ -224,7 +224,7 @@ class _FieldPath:
                 raise self._path_error(f"{place.path} is a text, no number")
             return [self._curve(place, place.read, place.path)]
         if kind == _NAME:
-            fields = fields_of(place.node[1], self._store)
+            fields = field_nodes(place.node[1], self._store)
             names = [name for name, _ in fields]
             if names == ["sec", "nanosec"]:
                 return [self._curve(place, _compose(place.read, _seconds), place.path or "time", "s")]
@@ -247,7 +247,7 @@ class _FieldPath:
                 read = _compose(read, partial(_attribute, inner))
             return self._curve(place, _compose(read, partial(_angle, name)), path, "rad", is_angle=name != "pitch")
         if name == "norm":
-            names = [n for n, _ in fields_of(place.node[1], self._store)]
+            names = [n for n, _ in field_nodes(place.node[1], self._store)]
             return self._curve(place, _compose(read, partial(_norm, names)), path)
         return self._curve(
             place, _compose(read, partial(_array_statistic, name)), path, "" if name != "length" else "items"
@@ -261,7 +261,7 @@ class _FieldPath:
             return _OF_ARRAYS if is_number else ("length",)
         if kind != _NAME:
             return ()
-        fields = dict(fields_of(place.node[1], self._store))
+        fields = dict(field_nodes(place.node[1], self._store))
         found: tuple[str, ...] = ()
         if self._is_quaternion(place.node) or self._orientation_field(place) is not None:
             found = _ANGLES
@@ -270,11 +270,11 @@ class _FieldPath:
         return tuple(name for name in found if name not in fields)
 
     def _is_quaternion(self, node: Any) -> bool:
-        return int(node[0]) == _NAME and [n for n, _ in fields_of(node[1], self._store)] == ["x", "y", "z", "w"]
+        return int(node[0]) == _NAME and [n for n, _ in field_nodes(node[1], self._store)] == ["x", "y", "z", "w"]
 
     def _orientation_field(self, place: _PathStep) -> str | None:
         """The field that says how something is turned."""
-        for name, node in fields_of(place.node[1], self._store):
+        for name, node in field_nodes(place.node[1], self._store):
             if name in ("orientation", "rotation") and self._is_quaternion(node):
                 return name
         return None
@@ -287,7 +287,7 @@ class _FieldPath:
     def _hint(self, place: _PathStep) -> str:
         kind = int(place.node[0])
         if kind == _NAME:
-            fields = [n for n, _ in fields_of(place.node[1], self._store)]
+            fields = [n for n, _ in field_nodes(place.node[1], self._store)]
             return "its fields are " + (", ".join((*fields, *self._computed_names(place))) or "none")
         if kind in (_ARRAY, _SEQUENCE):
             name = place.path.rpartition(".")[2]
@@ -313,8 +313,8 @@ def _compose(first: Callable[[Any], Any], second: Callable[[Any], Any]) -> Calla
     return second if first is _identity else lambda message: second(first(message))
 
 
-def _attribute(name: str, value: Any) -> Any:
-    return attribute(value, name)
+def _field_value(name: str, value: Any) -> Any:
+    return field_value(value, name)
 
 
 def _item(number: int, value: Any) -> Any:
@@ -324,13 +324,13 @@ def _item(number: int, value: Any) -> Any:
 def _item_with_name(key: str, name: str, items: Any) -> Any:
     """The message of a name; names of frames may be written without what stands before their last part."""
     for item in items:
-        if attribute(item, key) == name:
+        if field_value(item, key) == name:
             return item
     raise LookupError(name)
 
 
 def _item_at_name(before: Callable[[Any], Any], key: str, name: str, read: Callable[[Any], Any], message: Any) -> Any:
-    names = attribute(before(message), key)
+    names = field_value(before(message), key)
     return read(message)[list(names).index(name)]
 
 

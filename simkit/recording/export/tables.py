@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from simkit.errors import InputError
-from simkit.msgs.message_text import attribute, fields_of
+from simkit.msgs.message_text import field_nodes, field_value
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -115,7 +115,7 @@ def columns_of(type_name: str, store: Typestore, without: frozenset[str] = froze
 def _message_columns(
     type_name: str, store: Typestore, path: str, read: Callable[[Any], Any], without: frozenset[str]
 ) -> Iterator[Column]:
-    for name, node in fields_of(type_name, store):
+    for name, node in field_nodes(type_name, store):
         below = f"{path}.{name}" if path else name
         if below not in without:
             yield from _field_columns(node, store, below, _field_of(read, name), without)
@@ -146,7 +146,7 @@ def _identity(value: Any) -> Any:
 
 
 def _field_of(read: Callable[[Any], Any], name: str) -> Callable[[Any], Any]:
-    return lambda message: attribute(read(message), name)
+    return lambda message: field_value(read(message), name)
 
 
 def _each_item(read: Callable[[Any], Any], column: Column) -> Callable[[Any], Any]:
