@@ -109,7 +109,7 @@ def catalogue(prefix: str = "SK-") -> Mapping[str, Code]:
     return MappingProxyType({code.code: code for code in sorted(codes, key=lambda code: code.code)})
 
 
-def explain(code: Code) -> str:
+def code_text(code: Code) -> str:
     """Format one code as plain text: severity, meaning, what helps, and an example."""
     lines = [f"{code.code} ({code.severity})", f"  {code.meaning}"]
     if code.helps:

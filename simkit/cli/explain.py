@@ -22,8 +22,7 @@ def explain(
     json_: Json = False,
 ) -> int:
     """Says what a code means, what helps, and shows an input that brings it about."""
-    from simkit.cli.diagnostic_catalogue import catalogue
-    from simkit.cli.diagnostic_catalogue import explain as plain_text
+    from simkit.cli.diagnostic_catalogue import catalogue, code_text
 
     wanted = code.strip().upper()
     wanted = wanted if wanted.startswith("SK-") else f"SK-{wanted}"
@@ -34,7 +33,7 @@ def explain(
     if json_:
         stdout_console().file.write(json.dumps([asdict(c) for c in found], indent=2, default=_text) + "\n")
     elif len(found) == 1:
-        stdout_console().print(plain_text(found[0]))
+        stdout_console().print(code_text(found[0]))
     else:
         for entry in found:
             stdout_console().print(f"{entry.code}  {entry.severity:<14}  {entry.meaning}")

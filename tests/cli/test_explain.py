@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 import simkit
 from simkit.cli import app, diagnostic_catalogue
-from simkit.cli.diagnostic_catalogue import Example, catalogue, explain, page
+from simkit.cli.diagnostic_catalogue import Example, catalogue, code_text, page
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = re.compile(r"\bSK-[A-Z]+-\d{3}\b")
@@ -91,7 +91,7 @@ def test_every_entry_is_complete() -> None:
         assert code.meaning and not code.meaning.endswith("."), code.code
         assert (code.example is None) == bool(code.without), code.code
         assert "|" not in code.meaning + code.helps, f"{code.code}: it would break the table"
-        assert explain(code).startswith(code.code)
+        assert code_text(code).startswith(code.code)
 
 
 @pytest.mark.parametrize("area", sorted(set(map(area_of, catalogue()))))
