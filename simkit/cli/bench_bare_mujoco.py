@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.cameras.rendering import gl_context, render_thread
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
 _ALL_GEOMS = int(mujoco.mjtCatBit.mjCAT_ALL)
+Numbers = npt.NDArray[np.float64]
 _SPARE_GEOMS = 16
 
 
@@ -82,7 +84,7 @@ class BarePass:
             for _ in range(count):
                 self.draw()
 
-    def reading(self, random: np.random.Generator) -> Callable[[], Any]:
+    def reading(self, random: np.random.Generator) -> Callable[[], object]:
         """What takes a whole reading: drawn, the right way up, depths in metres, noise added; arrays of its own."""
         view, noise = self.view, self.sensor.options.noise
         slope = np.float32(view.near * view.far / (view.far - view.near))
@@ -90,7 +92,7 @@ class BarePass:
         far = np.float32(self.sensor.options.depth_far)
         spread, shape = np.float32(noise.stddev), self.depths.shape
 
-        def read() -> Any:
+        def read() -> object:
             with self.current():
                 self.draw()
             colours = self.colours[::-1]
@@ -162,7 +164,7 @@ class HandWrittenLoop(BareEngine):
         sensors = {sensor.topic: sensor for sensor in sim.sensors.values()}
         self._sim = sim
         self._due = [(p, t, self._reader(types[t], sensors.get(t))) for t, p in periods.items()]
-        self._plans: dict[int, list[tuple[int, list[tuple[str, Callable[[], Any]]]]]] = {}
+        self._plans: dict[int, list[tuple[int, list[tuple[str, Callable[[], object]]]]]] = {}
         self._is_fresh = False
         free = np.flatnonzero(self.model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
         self._root = int(self.model.jnt_bodyid[free[0]]) if len(free) else min(1, self.model.nbody - 1)
@@ -185,7 +187,7 @@ class HandWrittenLoop(BareEngine):
                 for topic, read in readers:
                     latest[topic] = read()
 
-    def _plan(self, count: int) -> list[tuple[int, list[tuple[str, Callable[[], Any]]]]]:
+    def _plan(self, count: int) -> list[tuple[int, list[tuple[str, Callable[[], object]]]]]:
         """How many steps to go, and what to read then; worked out once."""
         plan, at = [], 0
         for tick in sorted({count, *(t for period, _, _ in self._due for t in range(period, count + 1, period))}):
@@ -193,7 +195,7 @@ class HandWrittenLoop(BareEngine):
             at = tick
         return plan
 
-    def _reader(self, type_name: str, sensor: Any) -> Callable[[], Any]:
+    def _reader(self, type_name: str, sensor: Any) -> Callable[[], object]:
         kind = type_name.rsplit("/", 1)[-1]
         if kind == "Imu" and sensor is not None:
             return self._imu(sensor)
@@ -209,12 +211,12 @@ class HandWrittenLoop(BareEngine):
             return lambda: self.data.xquat[self._root].copy()
         return lambda: (self.data.time, self.data.xpos[self._root].copy(), self.data.xquat[self._root].copy())
 
-    def _imu(self, sensor: Any) -> Callable[[], Any]:
+    def _imu(self, sensor: Any) -> Callable[[], object]:
         model, data, body = self.model, self.data, sensor._body
         twist, change = np.zeros(6), np.zeros(6)
         object_type = mujoco.mjtObj.mjOBJ_XBODY
 
-        def read() -> Any:
+        def read() -> object:
             mujoco.mj_rnePostConstraint(model, data)
             mujoco.mj_objectVelocity(model, data, object_type, body, twist, 1)
             mujoco.mj_objectAcceleration(model, data, object_type, body, change, 1)
@@ -223,11 +225,11 @@ class HandWrittenLoop(BareEngine):
 
         return read
 
-    def _scan(self, sensor: Lidar) -> Callable[[], Any]:
+    def _scan(self, sensor: Lidar) -> Callable[[], object]:
         cast = cast_bare_scan(sensor, self.model, self.data)
         options, count = sensor.options, sensor._fan.count
 
-        def read() -> Any:
+        def read() -> object:
             ranges = cast()
             out = np.where((ranges < 0) | (ranges > options.range_max), np.inf, ranges)
             if options.noise.stddev:
@@ -236,13 +238,13 @@ class HandWrittenLoop(BareEngine):
 
         return read
 
-    def _odometry(self) -> Any:
+    def _odometry(self) -> object:
         twist = np.zeros(6)
         mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_XBODY, self._root, twist, 1)
         return self.data.xpos[self._root].copy(), self.data.xquat[self._root].copy(), twist
 
 
-def cast_bare_scan(sensor: Lidar, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Any]:
+def cast_bare_scan(sensor: Lidar, model: mujoco.MjModel, data: mujoco.MjData) -> Callable[[], Numbers]:
     """The same rays from the same place, groups and excluded body included; gives distances, shape (n,)."""
     fan = sensor._fan
     ids, distances, rotated = np.zeros(fan.count, np.int32), np.zeros(fan.count), np.zeros((fan.count, 3))
@@ -250,7 +252,7 @@ def cast_bare_scan(sensor: Lidar, model: mujoco.MjModel, data: mujoco.MjData) ->
     np.matmul(fan.directions, rotation.T, out=rotated)
     flat, own = rotated.reshape(-1), fan.body or -1
 
-    def scan() -> Any:
+    def scan() -> Numbers:
         mujoco.mj_multiRay(model, data, origin, flat, fan.groups, 1, own, ids, distances, None, fan.count, fan.reach)
         return distances
 

@@ -261,8 +261,8 @@ def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], 
     """Reads these topics; gives how many messages came, by topic, and the subscriptions."""
     counts: dict[str, int] = {}
 
-    def count(topic: str) -> Callable[[Any], None]:
-        def one_more(_: Any) -> None:
+    def count(topic: str) -> Callable[[object], None]:
+        def one_more(_: object) -> None:
             counts[topic] = counts.get(topic, 0) + 1
 
         return one_more
@@ -270,7 +270,7 @@ def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], 
     return counts, [sim.bus.tap(topic, count(topic)) for topic in sorted(topics)]
 
 
-def _ignore_message(_: Any) -> None:
+def _ignore_message(_: object) -> None:
     return None
 
 

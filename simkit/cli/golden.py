@@ -199,7 +199,7 @@ def result_dict(result: CheckResult) -> JsonObject:
     return found
 
 
-def _json_number(value: Any) -> Any:
+def _json_number(value: Any) -> object:
     """As JSON has it: what is no number is null."""
     if isinstance(value, dict):
         return {str(key): _json_number(one) for key, one in value.items()}

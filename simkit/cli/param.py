@@ -112,7 +112,7 @@ def get(
     return 0
 
 
-def _value_text(value: Any, kind: str) -> str:
+def _value_text(value: object, kind: str) -> str:
     code = {"double array": "d", "integer array": "q"}.get(kind)
     return f"array('{code}', {value!r})" if code and value else f"array('{code}')" if code else str(value)
 

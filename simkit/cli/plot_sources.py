@@ -142,7 +142,7 @@ def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
     if json_:
         print_json({"output": str(output), "curves": rows})
         return
-    width = max(len(row["label"]) for row in rows)
+    width = max(len(str(row["label"])) for row in rows)
     for row in rows:
         unit = f" {row['unit']}" if row["unit"] else ""
         numbers = "  ".join(f"{key} {row[key]:.6g}" for key in ("min", "max", "mean", "last"))

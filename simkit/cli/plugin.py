@@ -205,7 +205,7 @@ def _default(p: Parameter) -> str:
     return shown
 
 
-def _number(value: Any) -> str:
+def _number(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -275,7 +275,7 @@ def _service_as_dict(service: Service) -> JsonObject:
     return {"name": service.name, "type": service.type, "named_by": list(service.elements)}
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """A value that JSON can hold; what is infinite as text."""
     if isinstance(value, tuple):
         return [_plain(v) for v in value]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -144,13 +144,13 @@ def _message_factory(type_name: str, fields: JsonObject) -> Any:
     return lambda _: kept
 
 
-def _uses_time(value: Any) -> bool:
+def _uses_time(value: object) -> bool:
     if isinstance(value, dict):
         return any(v == "now" or _uses_time(v) for v in value.values())
     return isinstance(value, list) and any(_uses_time(v) for v in value)
 
 
-def _with_time(value: Any, now_ns: int) -> Any:
+def _with_time(value: object, now_ns: int) -> Any:
     stamp = {"sec": now_ns // 10**9, "nanosec": now_ns % 10**9}
     if isinstance(value, dict):
         return {
@@ -164,7 +164,7 @@ def _with_time(value: Any, now_ns: int) -> Any:
     return [_with_time(v, now_ns) for v in value] if isinstance(value, list) else value
 
 
-def _wait_matching(client: Client, topic: str, number: int, tell: Any) -> None:
+def _wait_matching(client: Client, topic: str, number: int, tell: Callable[[str], None]) -> None:
     told = False
     while number and len(_subscribers(client, absolute_name(topic))) < number:
         if not told:

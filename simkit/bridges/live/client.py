@@ -74,7 +74,7 @@ class Client:
 
     # ------------------------------------------------------------------ asking
 
-    def ask(self, question: str, **args: Any) -> Any:
+    def ask(self, question: str, **args: object) -> Any:
         """The answer to a question.
 
         Raises:
@@ -189,7 +189,7 @@ class Client:
         found: dict[str, str] = self.ask("services")
         return found
 
-    def call(self, name: str, request: Any = None) -> Any:
+    def call(self, name: str, request: object = None) -> Any:
         """The response of a service, which is at work when this returns.
 
         Args:
@@ -207,7 +207,7 @@ class Client:
         found: dict[str, str] = self.ask("actions")
         return found
 
-    def send_goal(self, name: str, goal: Any = None, on_feedback: Callable[[Any], None] | None = None) -> LiveGoal:
+    def send_goal(self, name: str, goal: object = None, on_feedback: Callable[[Any], None] | None = None) -> LiveGoal:
         """Sends a goal to an action.
 
         Args:
@@ -225,7 +225,9 @@ class Client:
             raise
         return made
 
-    def _request_with_message(self, question: str, name: str, message: Any, **more: Any) -> tuple[Any, bytes, str]:
+    def _request_with_message(
+        self, question: str, name: str, message: object, **more: object
+    ) -> tuple[Any, bytes, str]:
         if message is None or isinstance(message, Mapping):
             return self._link.request(question, {"name": name, "fields": dict(message or {}), **more})
         content = {"name": name, "type": msgs.type_name(message), **more}

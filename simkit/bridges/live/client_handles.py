@@ -117,7 +117,7 @@ class LivePublisher:
     def __init__(self, link: ServerLink, number: int, topic: str, type_name: str) -> None:
         self._link, self.number, self.topic, self.type_name = link, number, topic, type_name
 
-    def publish(self, message: Any) -> None:
+    def publish(self, message: object) -> None:
         """Sends a message, a dict of its fields, or its CDR.
 
         Raises:

@@ -140,7 +140,7 @@ class NodeNames:
         """The node of an end of a topic."""
         return self._clients.get(id(end)) or self.owner_node(end.owner)
 
-    def owner_node(self, owner: Any) -> str:
+    def owner_node(self, owner: object) -> str:
         """The node of a plugin or a sensor; that of the world where nobody owns something."""
         if owner is None:
             return self._world

@@ -43,7 +43,7 @@ _COPY_BYTES: Final = 2048  # [bytes] of which a copy is made sooner than a view
 LARGEST_OUT: Final = 256 << 20  # [bytes] of a frame from it
 
 
-def json_default(value: Any) -> Any:
+def json_default(value: object) -> object:
     """What JSON does not know, as something that it does."""
     if hasattr(value, "tolist"):  # of NumPy, arrays and numbers
         return value.tolist()

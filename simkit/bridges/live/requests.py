@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
+from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from simkit import msgs
 from simkit.bridges.live.connection import MOST_OPEN, ClientConnection, ClientSubscription
@@ -82,7 +82,7 @@ class Request:
             raise RequestRefused(f"{found!r:.80} is no name of a topic")
         return found
 
-    def new_number(self, table: dict[int, Any]) -> int:
+    def new_number(self, table: Mapping[int, object]) -> int:
         """A number for something that is opened."""
         number = self.arg("number", int)
         if not 0 <= number < 1 << 32:
@@ -93,7 +93,7 @@ class Request:
             raise RequestRefused(f"a client may have {MOST_OPEN} of these open, and has", "SK-LIVE-007")
         return number
 
-    def message(self) -> Any:
+    def message(self) -> object:
         """A request: fields, or CDR with the name of its type."""
         if self.args.get("type") is None:
             return self.arg("fields", dict)
@@ -110,7 +110,7 @@ class Request:
 class Response:
     """An answer that is a message."""
 
-    message: Any
+    message: object
 
 
 RequestHandler = Callable[[Request], object]
@@ -240,7 +240,7 @@ def actions(request: Request) -> object:
 def goal(request: Request) -> object:
     number = request.new_number(request.peer.goals)
 
-    def on_feedback(feedback: Any) -> None:
+    def on_feedback(feedback: object) -> None:
         if not request.peer.is_gone and not request.peer.is_clogged:
             words = {"tell": "goal", "number": number, "type": msgs.type_name(feedback)}
             request.peer.send_json(TELL, words, msgs.serialize(feedback))

@@ -108,7 +108,7 @@ class ServerLink:
             return False
         return True
 
-    def request(self, question: str, args: Mapping[str, Any], data: bytes = b"") -> tuple[Any, bytes, str]:
+    def request(self, question: str, args: Mapping[str, object], data: bytes = b"") -> tuple[Any, bytes, str]:
         """Return the answer to a request, with the CDR behind it and its type.
 
         Raises:
@@ -117,7 +117,7 @@ class ServerLink:
         """
         return self.answer(self.send_request(question, args, data))
 
-    def send_request(self, question: str, args: Mapping[str, Any], data: bytes = b"") -> int:
+    def send_request(self, question: str, args: Mapping[str, object], data: bytes = b"") -> int:
         """Send a request; return the number of its answer."""
         number = next(self._numbers)
         try:

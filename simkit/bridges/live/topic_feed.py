@@ -64,7 +64,7 @@ class TopicFeed:
             self._deliver(time_ns, kept)
         return False
 
-    def _take(self, message: Any) -> None:
+    def _take(self, message: object) -> None:
         """A message that was published now."""
         time_ns = self._sim.time_ns
         if self._waiting or (type(message) is LazyMessage and not message.is_ready):
@@ -83,7 +83,7 @@ class TopicFeed:
                 reader.peer.queue_message(reader, time_ns, *written)
 
 
-def _serialise(message: Any) -> tuple[str, bytes] | None:
+def _serialise(message: object) -> tuple[str, bytes] | None:
     """Type and CDR; None where there is no message, or one that cannot be written, which concerns its publisher."""
     if message is NO_MESSAGE:
         return None

@@ -132,7 +132,7 @@ def print_error(error: SimkitError) -> None:
     stderr_console().print(f"error: {message}", style="red")
 
 
-def report_errors(command: Callable[P, Any]) -> Callable[P, None]:
+def report_errors(command: Callable[P, int | None]) -> Callable[P, None]:
     """Maps what a command raises to the exit codes: no traceback for what the user can mend."""
 
     @functools.wraps(command)
@@ -180,12 +180,12 @@ def print_note(text: str) -> None:
     typer.echo(text, err=True)
 
 
-def print_json(value: Any) -> None:
+def print_json(value: object) -> None:
     """One JSON value on one line; what JSON has no number for is a text: `"inf"`, `"-inf"`, `"nan"`."""
     typer.echo(json.dumps(_json_value(value), allow_nan=False, ensure_ascii=False))
 
 
-def _json_value(value: Any) -> Any:
+def _json_value(value: object) -> object:
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, Mapping):
@@ -193,7 +193,7 @@ def _json_value(value: Any) -> Any:
     return [_json_value(v) for v in value] if isinstance(value, (list, tuple)) else value
 
 
-def report_errors_quietly(command: Callable[P, Any]) -> Callable[P, None]:
+def report_errors_quietly(command: Callable[P, int | None]) -> Callable[P, None]:
     """`report_errors`, and an interrupt is the way to end it: no word about that, exit code 130."""
 
     @functools.wraps(command)
@@ -225,7 +225,7 @@ def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: 
 
 
 def not_found_error(
-    what: str, name: str, there: Sequence[str] | Mapping[str, Any], code: str, where: str
+    what: str, name: str, there: Sequence[str] | Mapping[str, object], code: str, where: str
 ) -> InputError:
     """That something is not there, with the closest name or all there are."""
     names = list(there)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from simkit.recording.bags.reader import BagReader
@@ -45,7 +45,7 @@ def bag_text(bag: BagReader) -> str:
     )
 
 
-def bag_summary(bag: BagReader) -> dict[str, Any]:
+def bag_summary(bag: BagReader) -> dict[str, object]:
     """The same as plain values; times in seconds."""
     return {
         "path": str(bag.path),

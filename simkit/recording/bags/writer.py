@@ -12,7 +12,7 @@ from simkit import msgs
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 
 
-def profile(latched: bool) -> dict[str, Any]:
+def profile(latched: bool) -> dict[str, object]:
     """What a publisher offers: reliable, and transient local where the last message is kept (`/tf_static`)."""
     return {
         "history": "keep_last",
@@ -27,7 +27,7 @@ def profile(latched: bool) -> dict[str, Any]:
     }
 
 
-def as_yaml(profiles: list[dict[str, Any]]) -> str:
+def as_yaml(profiles: list[dict[str, object]]) -> str:
     """The text that belongs into a channel's metadata."""
     import yaml
 
@@ -166,7 +166,7 @@ class Rosbag2Folder(McapBag):
         )
         draft.replace(target)
 
-    def _information(self) -> dict[str, Any]:
+    def _information(self) -> dict[str, object]:
         start = {"nanoseconds_since_epoch": self.span.start}
         duration = {"nanoseconds": self.span.end - self.span.start}
         return {
@@ -209,7 +209,7 @@ def _plain_dumper() -> Any:
     import yaml
 
     class Plain(yaml.SafeDumper):
-        def ignore_aliases(self, data: Any) -> bool:
+        def ignore_aliases(self, data: object) -> bool:
             return True
 
     return Plain

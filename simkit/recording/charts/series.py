@@ -49,7 +49,7 @@ class Series:
         kept = (self.times >= low - 1e-9) & (self.times <= high + 1e-9)
         return replace(self, times=self.times[kept], values=self.values[kept])
 
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, object]:
         """Name, unit, number of finite values, and the least, the greatest, the mean and the last of them."""
         finite = self.values[np.isfinite(self.values)]
         if not finite.size:

@@ -89,7 +89,7 @@ class Column:
 
     def rows(self) -> Iterator[Any]:
         """What each message has: a value, or a list of them."""
-        values: Sequence[Any] = self.values
+        values: Sequence[object] = self.values
         if self.kind == "?":
             values = [bool(v) for v in values]
         if not self.is_list:
@@ -141,7 +141,7 @@ def _field_columns(
         yield Column(column.path, column.kind, True, _each_item(read, column))
 
 
-def _identity(value: Any) -> Any:
+def _identity(value: object) -> object:
     return value
 
 
@@ -225,7 +225,7 @@ def write_npz(path: Path, times: Sequence[int], columns: Sequence[Column]) -> li
     Lists of one length are a matrix; others lie one behind the other, and message i has those from
     `PATH.offsets[i]` to `PATH.offsets[i + 1]`.
     """
-    arrays: dict[str, Any] = {"time_ns": np.array(times, dtype=np.int64)}
+    arrays: dict[str, np.ndarray[Any, Any]] = {"time_ns": np.array(times, dtype=np.int64)}
     for column in columns:
         numbers = column.numbers()
         if column.is_list:
@@ -264,7 +264,7 @@ def check_parquet() -> None:
 def write_parquet(path: Path, times: Sequence[int], columns: Sequence[Column]) -> list[str]:
     """A row for each message; lists stay lists; `time` is a time stamp in nanoseconds."""
     pa, pq = import_module("pyarrow"), import_module("pyarrow.parquet")
-    arrays: dict[str, Any] = {"time": pa.array(times, pa.timestamp("ns"))}
+    arrays: dict[str, object] = {"time": pa.array(times, pa.timestamp("ns"))}
     for column in columns:
         kind = pa.string() if column.kind == TEXT else pa.from_numpy_dtype(np.dtype(column.kind))
         flat = pa.array(column.values if column.kind == TEXT else column.numbers(), kind)
