@@ -37,7 +37,7 @@ class _IntArray:
 def main() -> None:
     """Generate the stubs and mend them."""
     names = [part for module in MODULES for part in ("-m", f"mujoco.{module}")]
-    generate_stubs(["-q", *names, "-o", str(STUBS)])
+    generate_stubs(["-q", "--include-private", *names, "-o", str(STUBS)])
     folder = STUBS / "mujoco"
     imports = [f"from mujoco.{module} import *\n" for module in MODULES if module != "_version"]
     text = "".join(imports) + "\n__version__: str\nPLUGINS_DIR: str\n\nclass GLContext:\n"

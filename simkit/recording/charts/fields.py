@@ -171,7 +171,7 @@ class _FieldPath:
             hint = told or "its fields are " + (", ".join(fields) or "none")
             raise self._field_error(f"{place.node[1]} has no field {name!r}; {hint}")
         path = f"{place.path}.{name}" if place.path else name
-        return _PathStep(fields[name], _compose(place.read, partial(_attribute, name)), path, place.node[1], place.read)
+        return _PathStep(fields[name], _compose(place.read, partial(_field_value, name)), path, place.node[1], place.read)
 
     def _items(self, place: _PathStep, text: str) -> list[_PathStep]:
         if int(place.node[0]) not in (_ARRAY, _SEQUENCE):
@@ -244,7 +244,7 @@ class _FieldPath:
         if name in _ANGLES:
             inner = self._orientation_field(place)
             if inner is not None:
-                read = _compose(read, partial(_attribute, inner))
+                read = _compose(read, partial(_field_value, inner))
             return self._curve(place, _compose(read, partial(_angle, name)), path, "rad", is_angle=name != "pitch")
         if name == "norm":
             names = [n for n, _ in field_nodes(place.node[1], self._store)]

@@ -78,11 +78,11 @@ class StateRecorder:
         physics = self._sim.physics
         if physics.data is not self._data:
             self._look_anew()
-        state = crc32(self._qvel.take(self._dofs), crc32(self._qpos.take(self._positions)))
+        state = crc32(self._qvel.take(self._dofs).data, crc32(self._qpos.take(self._positions).data))
         if self._has_more:
             data = self._data
-            state = crc32(data.act[self._activations], crc32(data.mocap_pos[self._mocaps], state))
-            state = crc32(data.mocap_quat[self._mocaps], state)
+            state = crc32(data.act[self._activations].data, crc32(data.mocap_pos[self._mocaps].data, state))
+            state = crc32(data.mocap_quat[self._mocaps].data, state)
         state ^= state >> 16  # all of it counts in its last byte
         self._marks.append((state ^ (state >> 8)) & 0xFF)
         if physics.edition != self._edition or self._listens:
@@ -93,14 +93,14 @@ class StateRecorder:
             self._keep()
 
     def _hash_inputs(self, physics: Any) -> int:
-        found = crc32(self._ctrl.take(self._controls))
+        found = crc32(self._ctrl.take(self._controls).data)
         applied, pushed = self._applied, self._pushed
         if physics.shows_applied:  # forces of one step are gone by now, and remembered
             applied, pushed = physics.last_applied + applied, physics.last_pushed + pushed
-        if crc32(applied) != self._no_force:
-            found = crc32(applied.take(self._dofs), found)
-        if crc32(pushed) != self._no_push:
-            found = crc32(pushed[self._bodies], found)
+        if crc32(applied.data) != self._no_force:
+            found = crc32(applied.take(self._dofs).data, found)
+        if crc32(pushed.data) != self._no_push:
+            found = crc32(pushed[self._bodies].data, found)
         found ^= found >> 16
         return (found ^ (found >> 8)) & 0xFF
 
