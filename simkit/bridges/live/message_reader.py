@@ -10,9 +10,9 @@ from typing import Any
 
 from simkit.msgs import type_store
 from simkit.msgs.message_text import NUMBER_CODES
+from simkit.msgs.message_types import BASE, NAME
 
 _CODES = {**NUMBER_CODES, "bool": "?"}
-_BASE, _NAME = 1, 2  # kinds of field, as rosbags counts them
 Reader = Callable[[bytes, int], Any]
 
 
@@ -63,14 +63,14 @@ def _layout(type_name: str) -> tuple[str, Classes]:
         nonlocal place
         parts: list[Any] = []
         for _, (kind, about) in store.fielddefs[name][1]:
-            code = _CODES.get(about[0]) if int(kind) == _BASE else None
+            code = _CODES.get(about[0]) if int(kind) == BASE else None
             if code is not None:
                 width = struct.calcsize(f"<{code}")
                 gap = -place % width
                 formats.append(f"{gap}x{code}" if gap else code)
                 place += gap + width
                 parts.append(None)
-            elif int(kind) == _NAME:
+            elif int(kind) == NAME:
                 parts.append(walk(about))
             else:
                 raise _VariableSizeError

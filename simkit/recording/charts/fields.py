@@ -19,6 +19,7 @@ import numpy as np
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.msgs.message_text import NUMBER_CODES, field_nodes, field_value
+from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -27,7 +28,6 @@ Number = Callable[[Any], float]
 Unit = Callable[[str, str], str]
 
 MOST_CURVES: Final = 64
-_BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4  # rosbags.interfaces.Nodetype
 _STEP = re.compile(r"[./]?(?:(\w+)|\[([^\[\]]*)\])")
 _COMPUTED = re.compile(r"\[[^\]]*\]|\.(norm|min|max|mean)$")
 _SPREAD: Final = 12  # items of an array of fixed length that are all meant where none is named
@@ -130,7 +130,7 @@ class _FieldPath:
 
     def __init__(self, store: Typestore, type_name: str, text: str) -> None:
         self._store, self._text = store, text
-        self._root = _PathStep((_NAME, type_name), _identity, "", type_name, _identity)
+        self._root = _PathStep((NAME, type_name), _identity, "", type_name, _identity)
 
     def curves(self, rest: str) -> list[Curve]:
         """The curves behind a path."""
@@ -162,7 +162,7 @@ class _FieldPath:
     # ------------------------------------------------------------------ one step
 
     def _field(self, place: _PathStep, name: str) -> _PathStep:
-        if int(place.node[0]) != _NAME:
+        if int(place.node[0]) != NAME:
             hint = self._hint(place)
             raise self._field_error(f"{place.path or 'it'} is {_kind_in_words(place.node)} and has no {name!r}; {hint}")
         fields = dict(field_nodes(place.node[1], self._store))
@@ -171,10 +171,12 @@ class _FieldPath:
             hint = told or "its fields are " + (", ".join(fields) or "none")
             raise self._field_error(f"{place.node[1]} has no field {name!r}; {hint}")
         path = f"{place.path}.{name}" if place.path else name
-        return _PathStep(fields[name], _compose(place.read, partial(_field_value, name)), path, place.node[1], place.read)
+        return _PathStep(
+            fields[name], _compose(place.read, partial(_field_value, name)), path, place.node[1], place.read
+        )
 
     def _items(self, place: _PathStep, text: str) -> list[_PathStep]:
-        if int(place.node[0]) not in (_ARRAY, _SEQUENCE):
+        if int(place.node[0]) not in (ARRAY, SEQUENCE):
             raise self._field_error(
                 f"{place.path or 'it'} is {_kind_in_words(place.node)}, no array: it has no item [{text}]"
             )
@@ -189,7 +191,7 @@ class _FieldPath:
             if stop is None or (start < 0) != (stop < 0):
                 raise self._path_error(f"[{text}] does not say how many items are meant, as [{max(start, 0)}:10] does")
             numbers = list(range(start, min(stop, start + MOST_CURVES + 1)))
-        if int(place.node[0]) == _ARRAY:
+        if int(place.node[0]) == ARRAY:
             for number in numbers:
                 if not -size <= number < size:
                     raise self._field_error(f"{place.path} has {size} items, found [{number}]")
@@ -202,13 +204,13 @@ class _FieldPath:
     def _named(self, place: _PathStep, name: str) -> _PathStep:
         """The item of that name: of messages by what they are called, of numbers by the names beside them."""
         inner = place.node[1][0]
-        if int(inner[0]) == _NAME:
+        if int(inner[0]) == NAME:
             fields = dict(field_nodes(inner[1], self._store))
             key = next((n for n in _NAMED if n in fields and _is_text(fields[n])), None)
             if key is not None:
                 return self._item(place, inner, partial(_item_with_name, key, name), name)
         beside = dict(field_nodes(place.owner, self._store)) if place.path else {}
-        names = next((n for n in _NAMES if n in beside and int(beside[n][0]) == _SEQUENCE), None)
+        names = next((n for n in _NAMES if n in beside and int(beside[n][0]) == SEQUENCE), None)
         if names is None or not name:
             raise self._field_error(f"[{name}] is no number, and nothing names the items of {place.path}")
         read = partial(_item_at_name, place.before, names, name, place.read)
@@ -219,19 +221,19 @@ class _FieldPath:
     def _numbers(self, place: _PathStep) -> list[Curve]:
         """The numbers at the end of a path: one, or those of a small vector."""
         kind = int(place.node[0])
-        if kind == _BASE:
+        if kind == BASE:
             if _is_text(place.node):
                 raise self._path_error(f"{place.path} is a text, no number")
             return [self._curve(place, place.read, place.path)]
-        if kind == _NAME:
+        if kind == NAME:
             fields = field_nodes(place.node[1], self._store)
             names = [name for name, _ in fields]
             if names == ["sec", "nanosec"]:
                 return [self._curve(place, _compose(place.read, _seconds), place.path or "time", "s")]
-            if fields and all(int(node[0]) == _BASE and not _is_text(node) for _, node in fields):
+            if fields and all(int(node[0]) == BASE and not _is_text(node) for _, node in fields):
                 return [c for name in names for c in self._numbers(self._field(place, name))]
             raise self._path_error(f"{place.path or 'a whole message'} is no number; {self._hint(place)}")
-        if kind == _ARRAY and place.node[1][1] <= _SPREAD:
+        if kind == ARRAY and place.node[1][1] <= _SPREAD:
             return [c for i in self._items(place, f"0:{place.node[1][1]}") for c in self._numbers(i)]
         raise self._path_error(f"{place.path} is {_kind_in_words(place.node)}; {self._hint(place)}")
 
@@ -256,10 +258,10 @@ class _FieldPath:
     def _computed_names(self, place: _PathStep) -> tuple[str, ...]:
         """What is computed of a type, beside its fields."""
         kind = int(place.node[0])
-        if kind in (_ARRAY, _SEQUENCE):
-            is_number = int(place.node[1][0][0]) == _BASE and not _is_text(place.node[1][0])
+        if kind in (ARRAY, SEQUENCE):
+            is_number = int(place.node[1][0][0]) == BASE and not _is_text(place.node[1][0])
             return _OF_ARRAYS if is_number else ("length",)
-        if kind != _NAME:
+        if kind != NAME:
             return ()
         fields = dict(field_nodes(place.node[1], self._store))
         found: tuple[str, ...] = ()
@@ -270,7 +272,7 @@ class _FieldPath:
         return tuple(name for name in found if name not in fields)
 
     def _is_quaternion(self, node: Any) -> bool:
-        return int(node[0]) == _NAME and [n for n, _ in field_nodes(node[1], self._store)] == ["x", "y", "z", "w"]
+        return int(node[0]) == NAME and [n for n, _ in field_nodes(node[1], self._store)] == ["x", "y", "z", "w"]
 
     def _orientation_field(self, place: _PathStep) -> str | None:
         """The field that says how something is turned."""
@@ -286,10 +288,10 @@ class _FieldPath:
 
     def _hint(self, place: _PathStep) -> str:
         kind = int(place.node[0])
-        if kind == _NAME:
+        if kind == NAME:
             fields = [n for n, _ in field_nodes(place.node[1], self._store)]
             return "its fields are " + (", ".join((*fields, *self._computed_names(place))) or "none")
-        if kind in (_ARRAY, _SEQUENCE):
+        if kind in (ARRAY, SEQUENCE):
             name = place.path.rpartition(".")[2]
             extra = "".join(f", .{n}" for n in self._computed_names(place))
             return f"allowed is an item or some of them, as {name}[0] or {name}[0:10]{extra}"
@@ -372,15 +374,15 @@ def _angle(name: str, q: Any) -> float:
 
 
 def _is_text(node: Any) -> bool:
-    return int(node[0]) == _BASE and node[1][0] not in NUMBER_CODES and node[1][0] not in ("bool", "byte")
+    return int(node[0]) == BASE and node[1][0] not in NUMBER_CODES and node[1][0] not in ("bool", "byte")
 
 
 def _kind_in_words(node: Any) -> str:
     kind = int(node[0])
-    if kind == _BASE:
+    if kind == BASE:
         return "a text" if _is_text(node) else "a number"
-    if kind == _NAME:
+    if kind == NAME:
         return str(node[1])
     inner, size = node[1]
-    of = inner[1] if int(inner[0]) == _NAME else inner[1][0]
-    return f"an array of {size} {of}" if kind == _ARRAY else f"an array of {of}"
+    of = inner[1] if int(inner[0]) == NAME else inner[1][0]
+    return f"an array of {size} {of}" if kind == ARRAY else f"an array of {of}"

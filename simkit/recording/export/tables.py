@@ -15,12 +15,12 @@ import numpy as np
 
 from simkit.errors import InputError
 from simkit.msgs.message_text import field_nodes, field_value
+from simkit.msgs.message_types import BASE, NAME
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 
-_BASE_NODE, _NAME_NODE, _ARRAY_NODE, _SEQUENCE_NODE = 1, 2, 3, 4  # rosbags.interfaces.Nodetype
 _DTYPES: Final = {
     "bool": "?",
     "byte": "u1",
@@ -125,14 +125,14 @@ def _field_columns(
     node: Any, store: Typestore, path: str, read: Callable[[Any], Any], without: frozenset[str]
 ) -> Iterator[Column]:
     kind = int(node[0])
-    if kind == _BASE_NODE:
+    if kind == BASE:
         yield Column(path, _DTYPES.get(node[1][0], TEXT), False, read)
         return
-    if kind == _NAME_NODE:
+    if kind == NAME:
         yield from _message_columns(node[1], store, path, read, without)
         return
     inner = node[1][0]
-    if int(inner[0]) == _BASE_NODE:
+    if int(inner[0]) == BASE:
         yield Column(path, _DTYPES.get(inner[1][0], TEXT), True, read)
         return
     for column in _field_columns(inner, store, f"{path}[]", _identity, without):
