@@ -1,4 +1,4 @@
-"""Read YAML that a user wrote: plain values, or the reason why not."""
+"""Read YAML that a user wrote: return plain values, or say why the text is not valid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A window on a running simulation: MuJoCo's own viewer, shown what the loop has."""
+"""Show a running simulation in a window: MuJoCo's own viewer, updated from the run loop."""
 
 from __future__ import annotations
 

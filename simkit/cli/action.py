@@ -1,4 +1,4 @@
-"""`simkit action`: the actions of a running simulation, as `ros2 action` shows them and sends goals to them."""
+"""The command `simkit action`: list the actions of a running simulation and send goals, as `ros2 action` does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit bag record`: a bag of a simulation that runs in another terminal."""
+"""The command `simkit bag record`: record a simulation that runs in another terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit bench`: speed beside bare MuJoCo."""
+"""The command `simkit bench`: compare the speed of a world with bare MuJoCo."""
 
 from __future__ import annotations
 

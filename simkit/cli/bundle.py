@@ -1,4 +1,4 @@
-"""`simkit bundle`: a run in one file."""
+"""The command `simkit bundle`: pack a run into one file that repeats it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit certify`: the same bits, whatever a run stands in."""
+"""The command `simkit certify`: show that a run gives the same bits in other surroundings."""
 
 from __future__ import annotations
 

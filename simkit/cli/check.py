@@ -1,4 +1,4 @@
-"""`simkit check`: every problem of a file."""
+"""The command `simkit check`: print every problem of a file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit convert`: the same in another format."""
+"""The command `simkit convert`: write a world or model in another format."""
 
 from __future__ import annotations
 

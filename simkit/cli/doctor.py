@@ -1,4 +1,4 @@
-"""`simkit doctor`: what is there, what is missing, what helps."""
+"""The command `simkit doctor`: report what is installed, what is missing and what helps."""
 
 from __future__ import annotations
 

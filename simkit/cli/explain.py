@@ -1,4 +1,4 @@
-"""`simkit explain`: what a diagnostic code means."""
+"""The command `simkit explain`: explain a diagnostic code."""
 
 from __future__ import annotations
 

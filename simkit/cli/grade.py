@@ -1,4 +1,4 @@
-"""`simkit grade`: an exercise, and what plugins that were handed in get for it."""
+"""The command `simkit grade`: run an exercise with plugins that were handed in, and report their results."""
 
 from __future__ import annotations
 

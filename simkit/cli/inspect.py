@@ -1,4 +1,4 @@
-"""`simkit inspect`: what a file means once it is resolved."""
+"""The command `simkit inspect`: show what a file means once it is resolved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit interface`: message, service and action types, as `ros2 interface` shows them."""
+"""The command `simkit interface`: show message, service and action types, as `ros2 interface` does."""
 
 from __future__ import annotations
 

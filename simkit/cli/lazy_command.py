@@ -1,4 +1,4 @@
-"""Commands that are known by name and help line, and made of their module only once they are asked for.
+"""Commands with a name and a help line whose module is imported when they are used.
 
 A shell that completes a word, or a user who asks a running simulation something, waits for one command and not for all.
 """

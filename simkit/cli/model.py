@@ -1,4 +1,4 @@
-"""`simkit model`: where the models of a running simulation are, their links and joints."""
+"""The command `simkit model`: show poses, links and joints of models in a running simulation."""
 
 from __future__ import annotations
 

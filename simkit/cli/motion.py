@@ -1,4 +1,4 @@
-"""`simkit motion`: the motions that a robot knows by name, and how it plays them."""
+"""The command `simkit motion`: list the named motions of a robot and play them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit node`: plugins and sensors of a running simulation as the nodes they would be, as `ros2 node` shows them."""
+"""The command `simkit node`: show plugins and sensors of a running simulation as nodes, as `ros2 node` does."""
 
 from __future__ import annotations
 

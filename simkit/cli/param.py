@@ -1,4 +1,4 @@
-"""`simkit param`: the live parameters of a running simulation, as `ros2 param` shows and changes them."""
+"""The command `simkit param`: show and change live parameters of a running simulation, as `ros2 param` does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit plugin`: which plugins there are, what one does with its file, and the beginning of a new one."""
+"""The command `simkit plugin`: list plugins, describe what one reads and publishes, and start a new one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit replay`: the run in a bundle again."""
+"""The command `simkit replay`: repeat the run in a bundle."""
 
 from __future__ import annotations
 

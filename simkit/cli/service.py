@@ -1,4 +1,4 @@
-"""`simkit service`: the services of a running simulation, as `ros2 service` shows and calls them."""
+"""The command `simkit service`: show and call the services of a running simulation, as `ros2 service` does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit tf`: frames of a running simulation or a bag: which hangs on which, and where one is seen from another."""
+"""The command `simkit tf`: show the frame tree of a simulation or a bag, and the pose of one frame in another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit topic`: what is said on the topics of a running simulation, or was in a bag, as `ros2 topic` shows it."""
+"""The command `simkit topic`: show the topics of a running simulation or a bag, as `ros2 topic` does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`simkit topic echo`: messages as they come."""
+"""The command `simkit topic echo`: print messages as they arrive."""
 
 from __future__ import annotations
 

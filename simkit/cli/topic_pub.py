@@ -1,4 +1,4 @@
-"""`simkit topic pub`: messages into a running simulation."""
+"""The command `simkit topic pub`: publish messages into a running simulation."""
 
 from __future__ import annotations
 

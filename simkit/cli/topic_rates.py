@@ -1,4 +1,4 @@
-"""`simkit topic hz`, `bw` and `delay`: how often, how much, how late; by the clock of the simulation.
+"""The commands `simkit topic hz`, `bw` and `delay`: measure rate, bandwidth and delay in simulated time.
 
 Where a simulation runs faster or slower than real time, its own clock is the one by which sensors have their rates;
 `--wall-time` counts by the clock on the wall.

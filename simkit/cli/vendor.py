@@ -1,4 +1,4 @@
-"""`simkit vendor`: a world and everything it names in one folder."""
+"""The command `simkit vendor`: copy a world and every file that it names into one folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands that go in while a world runs: one steady velocity, or a YAML script of messages over time.
+"""Send commands while a world runs: one steady velocity, or a YAML script of messages over time.
 
 A script is a list; times are simulated seconds:
 

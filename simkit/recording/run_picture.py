@@ -1,4 +1,4 @@
-"""A picture of a run: the scene from above, the path driven, the last scan."""
+"""Draw a picture of a run: the scene from above, the driven path and the last scan."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much arrives on each topic, and at what true rate in simulated time."""
+"""Count the messages of each topic and their true rate in simulated time."""
 
 from __future__ import annotations
 

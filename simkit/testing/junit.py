@@ -1,4 +1,4 @@
-"""Results as JUnit XML, which GitHub's actions, GitLab and Jenkins read."""
+"""Write results as JUnit XML, which GitHub's actions, GitLab and Jenkins read."""
 
 from __future__ import annotations
 

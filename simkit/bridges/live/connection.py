@@ -1,4 +1,4 @@
-"""A client, as the simulation sees it: what it sends, what waits to be sent to it."""
+"""Connection of one client at the server: frames received from it, answers and messages queued for it."""
 
 from __future__ import annotations
 

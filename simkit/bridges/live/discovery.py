@@ -1,4 +1,4 @@
-"""Which simulations run, and which of them is meant."""
+"""List the running simulations and find the socket of the one that is meant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What reads the messages that clients send: of types of a fixed size at one go, of all others as rosbags does."""
+"""Decode the messages that clients send: fixed-size types in one call, all others with rosbags."""
 
 from __future__ import annotations
 

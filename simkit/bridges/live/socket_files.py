@@ -1,4 +1,4 @@
-"""Where the sockets of running simulations are: a folder that only their user may enter, a file for each.
+"""Socket files of running simulations: a folder that only their user may enter, one file for each.
 
 The folder is `$XDG_RUNTIME_DIR/simkit`, or `simkit-<uid>` among the temporary files where there is no such place.
 """

@@ -1,4 +1,4 @@
-"""Topics on their way to clients: each message is written once, whoever hears it."""
+"""Feed topics to the clients that subscribe to them; every message is serialised once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Says which plugin keeps a run waiting: looked up in the stack, from beside, so that it changes nothing."""
+"""Report which plugin keeps a run waiting; a second thread reads the stack, so that the run is not changed."""
 
 from __future__ import annotations
 

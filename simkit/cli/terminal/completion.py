@@ -1,4 +1,4 @@
-"""What a shell completes names with: asked of the running simulation or the bag, quickly, and silent when none answers.
+"""Complete words in a shell with names from the running simulation or the bag.
 
 Each function is given the half-written command by typer; what was written before is in its parameters.
 """

@@ -1,4 +1,4 @@
-"""What the commands for topics, services and the like are given on the command line: types, YAML values, patterns."""
+"""Parse the types, YAML values and patterns that commands for topics and services are given."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values of parameters: as text on the command line, as YAML in a file, as `rcl_interfaces/msg/ParameterValue`."""
+"""Convert parameter values between text, YAML files and `rcl_interfaces/msg/ParameterValue`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a person sees while a world runs: simulated time, real-time factor, topics with their true rates."""
+"""Show the progress of a run on a terminal: simulated time, real-time factor, topics with their rates."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The line that a driver sees: how fast, where, and what is near."""
+"""Text lines that a driver sees: speed, pose and the nearest obstacle."""
 
 from __future__ import annotations
 

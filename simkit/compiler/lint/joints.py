@@ -1,4 +1,4 @@
-"""Joints: gains and springs against inertia and step, ranges without room, loads on light links."""
+"""Check gains and springs of joints against inertia and time step, their ranges, and loads on light links."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Links: masses and inertias against the size of what they are made of."""
+"""Check masses and inertias of links against the size of their collisions and visuals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The step, and the rates of sensors against it."""
+"""Check the time step, and the update rates of sensors against it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands of a bag, sent again at their ticks: to the world that was recorded, or to another one."""
+"""Play the commands of a bag back at their ticks, into the recorded world or another one."""
 
 from __future__ import annotations
 

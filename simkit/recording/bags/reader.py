@@ -1,4 +1,4 @@
-"""Reads bags: MCAP files, and rosbag2 folders with MCAP or SQLite in them, recorded by simkit or by ROS 2.
+"""Read bags: MCAP files, and rosbag2 folders with MCAP or SQLite in them, recorded by simkit or by ROS 2.
 
 with open_bag_to_read("run.mcap") as bag:
     for message in bag.messages(["/odom"]):

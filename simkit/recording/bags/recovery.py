@@ -1,4 +1,4 @@
-"""Mends a bag whose writer was killed: copies every complete message into a new, finished bag."""
+"""Recover a bag whose writer was killed: copy every complete message into a new bag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is in a bag, in the words of `ros2 bag info`."""
+"""Describe what is in a bag, as `ros2 bag info` does."""
 
 from __future__ import annotations
 

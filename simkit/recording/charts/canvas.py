@@ -1,4 +1,4 @@
-"""Lines and texts on a white sheet, as SVG or as PNG; the same calls give the same bytes."""
+"""Draw lines and texts on a white sheet, as SVG or PNG; equal calls give equal bytes."""
 
 from __future__ import annotations
 

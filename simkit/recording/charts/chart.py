@@ -1,4 +1,4 @@
-"""Numbers over time as a chart: one panel for each unit, one above the other, over the same times."""
+"""Draw numbers over time as a chart file: one panel for each unit, one above the other."""
 
 from __future__ import annotations
 

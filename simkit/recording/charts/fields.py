@@ -1,4 +1,4 @@
-"""Fields of topics as they are named on a command line, and the numbers that they stand for.
+"""Resolve names of message fields, as on a command line, to functions that read their numbers.
 
 `/odom.pose.pose.position.x`, `/scan.ranges[0]`, `/joint_states.position[left_wheel]`,
 `/odom.pose.pose.orientation.yaw`. What a path names is looked up in the definitions of the

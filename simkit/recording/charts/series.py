@@ -1,4 +1,4 @@
-"""Numbers over time: of a bag, or of a simulation while it runs."""
+"""Collect numbers over time from a bag, or from a simulation while it runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of a topic as files: a PNG each, the numbers as they are, or a film."""
+"""Export images of a topic: a PNG each, one NumPy file, or a video."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Point clouds of a topic as files: NumPy arrays or PLY."""
+"""Export point clouds of a topic as NumPy or PLY files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks several golden runs, one after the other or some at once."""
+"""Check several golden runs, one after the other or in parallel processes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A page that says what checks of golden runs found: one file, which loads nothing and runs nothing."""
+"""Write the HTML report of golden runs: one file that loads nothing and runs nothing."""
 
 from __future__ import annotations
 
