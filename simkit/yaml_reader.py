@@ -55,7 +55,7 @@ def compose_nodes(text: str) -> Any:
 
 
 def node_value(node: Any) -> Any:
-    """What a node stands for.
+    """Return the value of a node.
 
     Raises:
         NotYaml: a value does not fit its tag, holds itself, or much is made out of little.
@@ -90,7 +90,7 @@ def yaml_loader() -> Any:
     import yaml
 
     class Reader(yaml.SafeLoader):
-        """Of its own, so that what it takes as a number stays here."""
+        """Loader of its own, so that its rules for numbers stay here."""
 
         _merged = 0
 

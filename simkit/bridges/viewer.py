@@ -51,7 +51,7 @@ class Viewer:
         self._last = 0.0
 
     def is_open(self) -> bool:
-        """Whether the person has not closed the window."""
+        """Whether the window is still open."""
         return bool(self._handle.is_running())
 
     def update(self) -> None:

@@ -131,7 +131,7 @@ action.command("send", cls=Ros2Command, help="The same as send_goal.")(report_er
 
 
 class _GoalRun:
-    """One goal, from its sending to its end."""
+    """Goal from its sending to its end."""
 
     def __init__(self, client: Client, json_: bool, feedback: bool) -> None:
         self._client, self._json, self._feedback = client, json_, feedback

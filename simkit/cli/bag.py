@@ -176,7 +176,7 @@ def _parse_remappings(pairs: list[str]) -> dict[str, str]:
 
 
 def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> list[str]:
-    """Those that the world's plugins take; its own readings are not said to it again."""
+    """Return the topics that plugins of the world subscribe to; readings of its own sensors are left out."""
     inputs = {row["name"] for row in client.topics() if any(s.get("kind") != "client" for s in row["subscribers"])}
     return [t for t in topics if names.get(t, t) in inputs]
 

@@ -137,7 +137,7 @@ class _Recording:
 
     @property
     def lost(self) -> int:
-        """How many messages were dropped."""
+        """Number of messages dropped."""
         return sum(feed.lost for feed in self._feeds)
 
     def run(self, bag: McapBag, stop: Interrupts) -> None:
@@ -177,7 +177,7 @@ class _Recording:
         return False
 
     def _take_messages(self, wait: float = _LOOK) -> list[Any]:
-        """What has come, in the order of times; waited for where nothing has [s, wall time]."""
+        """Return received messages in the order of times; wait where there are none [s, wall time]."""
         if not self._feeds:
             time.sleep(wait)
             return []

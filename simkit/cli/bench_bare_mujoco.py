@@ -27,7 +27,7 @@ _SPARE_GEOMS = 16
 
 
 class BarePass:
-    """One picture of the engine's own: drawn, colour and depth read as the driver gives them.
+    """Camera image drawn by MuJoCo alone; colour and depth as the driver gives them.
 
     That is bottom row first, black where there is nothing, depth not in metres. Model and context are of its own, with
     the simulation's multisampling and shadow maps.
@@ -79,13 +79,13 @@ class BarePass:
         mujoco.mjr_readPixels(self.colours, depths, self._rectangle, self._context)
 
     def draw_many(self, count: int) -> None:
-        """So many pictures, in one go."""
+        """Draw several images in one go."""
         with self.current():
             for _ in range(count):
                 self.draw()
 
     def reading(self, random: np.random.Generator) -> Callable[[], object]:
-        """What takes a whole reading: drawn, the right way up, depths in metres, noise added; arrays of its own."""
+        """Return a function that takes a whole reading: upright, depths in metres, with noise, in arrays of its own."""
         view, noise = self.view, self.sensor.options.noise
         slope = np.float32(view.near * view.far / (view.far - view.near))
         offset = np.float32(view.near / (view.far - view.near))
@@ -188,7 +188,7 @@ class HandWrittenLoop(BareEngine):
                     latest[topic] = read()
 
     def _plan(self, count: int) -> list[tuple[int, list[tuple[str, Callable[[], object]]]]]:
-        """How many steps to go, and what to read then; worked out once."""
+        """Plan the steps between two readings, and what to read then; computed once."""
         plan, at = [], 0
         for tick in sorted({count, *(t for period, _, _ in self._due for t in range(period, count + 1, period))}):
             plan.append((tick - at, [(topic, read) for period, topic, read in self._due if tick % period == 0]))

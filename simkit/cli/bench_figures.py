@@ -29,7 +29,7 @@ _CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "se
 
 @dataclass(frozen=True)
 class Figure:
-    """One comparison; times in seconds.
+    """Comparison of two times [s].
 
     Attributes:
         ours, bare: median time of one unit; `bare` is None where there is nothing to compare with.
@@ -135,7 +135,7 @@ def _step_figures(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
 
 
 def import_time(rounds: int) -> float:
-    """What `import simkit` adds to a fresh interpreter [s], wall time."""
+    """Measure what `import simkit` adds to a fresh interpreter [s], wall time."""
     # the same simkit as this one, wherever it was imported from
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     taken: dict[str, list[float]] = {"pass": [], "import simkit": []}

@@ -200,7 +200,7 @@ def result_dict(result: CheckResult) -> JsonObject:
 
 
 def _json_number(value: Any) -> object:
-    """As JSON has it: what is no number is null."""
+    """Convert a value to JSON; NaN and infinity become null."""
     if isinstance(value, dict):
         return {str(key): _json_number(one) for key, one in value.items()}
     if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):

@@ -40,7 +40,7 @@ _TOPICS_LISTED: Final = 20  # topics that are listed where no field is named
 
 @dataclass(frozen=True)
 class PlotRequest:
-    """What is to be drawn, and how.
+    """Options of a plot.
 
     Attributes:
         output: the file.
@@ -59,7 +59,7 @@ class PlotRequest:
 
 
 def is_bag(path: Path) -> bool:
-    """Whether that is a recording."""
+    """Check whether a path is a recording."""
     if path.suffix.lower() in _BAGS:
         return True
     return path.is_dir() and ((path / "metadata.yaml").exists() or any(path.glob("*.mcap")))
@@ -103,7 +103,7 @@ def draw_chart(sources: Sequence[str], fields: Sequence[str], wish: PlotRequest,
 
 
 def _source_labels(sources: Sequence[str]) -> list[str]:
-    """What sources are called in the chart: their stems, where those differ."""
+    """Return the names of sources in the chart: their stems, where those differ."""
     stems = [Path(source).stem if "<" not in source else "world" for source in sources]
     return stems if len(set(stems)) == len(stems) else list(sources)
 

@@ -96,7 +96,7 @@ def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float |
 
 
 def compile_filter(expression: str | None) -> Callable[[Any], bool] | None:
-    """Whether a message `m` is one of those that are wanted; the expression is Python, as with ROS 2.
+    """Compile `--filter`, a Python expression of the message `m` as with ROS 2, to a function.
 
     Raises:
         InputError: SK-CLI-033 it is none.

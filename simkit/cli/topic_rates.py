@@ -181,7 +181,7 @@ def hz(
 
 
 def rate_text(found: JsonObject) -> str:
-    """As `ros2 topic hz` prints it."""
+    """Format a rate as `ros2 topic hz` does."""
     return f"average rate: {found['rate']:.3f}\n\t{_statistics_text(found)}"
 
 
@@ -211,7 +211,7 @@ def bw(
 
 
 def amount_text(found: JsonObject) -> str:
-    """As `ros2 topic bw` prints it: all numbers in the unit that fits the rate."""
+    """Format a bandwidth as `ros2 topic bw` does: all numbers in the unit that fits the rate."""
     per_second = found["bytes_per_second"]
     unit, size, digits = ("B", 1.0, 0) if per_second < 1e3 else ("KB", 1e3, 2) if per_second < 1e6 else ("MB", 1e6, 2)
     rate, mean, low, high = (f"{n / size:.{digits}f} {unit}" for n in (per_second, *(found[k] for k in _SIZES)))
@@ -254,5 +254,5 @@ def delay(
 
 
 def delay_text(found: JsonObject) -> str:
-    """As `ros2 topic delay` prints it."""
+    """Format a delay as `ros2 topic delay` does."""
     return f"average delay: {found['delay']:.3f}\n\t{_statistics_text(found)}"

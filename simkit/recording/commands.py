@@ -29,7 +29,7 @@ _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 @dataclass(frozen=True)
 class Command:
-    """One message, sent once or again and again.
+    """Message that is sent once or repeatedly.
 
     Attributes:
         at: first time [s].
@@ -55,7 +55,7 @@ class Command:
         return time if time <= self.until else None
 
     def plain(self) -> dict[str, Any]:
-        """As a mapping, as a scenario has it."""
+        """Return the command as a mapping, as a scenario file holds it."""
         found = {"at": self.at, "topic": self.topic, "message": self.message, "where": self.where}
         return found if self.until is None else {**found, "until": self.until, "rate": self.rate}
 
@@ -142,7 +142,7 @@ def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
 
 
 def script_items(path: Path) -> list[dict[str, Any]]:
-    """What a YAML script holds, each with its place under "where"; whether it fits a world is seen by `commands_of`.
+    """Return the items of a YAML script, each with its place under "where"; `commands_of` validates them for a world.
 
     Raises:
         InputError: SK-CLI-011 with file and line.

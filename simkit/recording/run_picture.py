@@ -32,7 +32,7 @@ _SCANNERS = frozenset({"ray", "gpu_ray", "lidar", "gpu_lidar"})
 
 
 class DrivenPath:
-    """Where the models that move have been, sampled by whoever drives the loop."""
+    """Paths of the models that move; the run loop calls `sample`."""
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim

@@ -16,7 +16,7 @@ RENDERED = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "se
 
 @dataclass
 class TopicCount:
-    """What arrived on one topic.
+    """Count of the messages of one topic.
 
     Attributes:
         counted: False where nobody reads the topic, so that nothing is known.
@@ -58,7 +58,7 @@ class TopicCounter:
 
     @property
     def rows(self) -> list[TopicCount]:
-        """One row a topic, sorted by name."""
+        """Return one row for each topic, sorted by name."""
         return [self._rows[topic] for topic in sorted(self._rows)]
 
     @property

@@ -23,7 +23,7 @@ _LONGEST_NAME: Final = 2_000  # letters of a name or of a message
 
 @dataclass(frozen=True)
 class JunitCase:
-    """One thing that was tried.
+    """Result of one test.
 
     At most one of `failure`, `error` and `skipped` is given; without any it passed.
 

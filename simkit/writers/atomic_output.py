@@ -17,7 +17,7 @@ _MODE = 0o666  # less the process's mask: what `open` would give
 
 
 def check_file(path: Path, *, overwrite: bool) -> None:
-    """Whether a file may be written: it replaces a file only where that is wanted, and anything else never.
+    """Check that a file may be written: it replaces a file only where that is wanted, and anything else never.
 
     Raises:
         InputError: SK-CLI-016 something is there already.
@@ -40,7 +40,7 @@ def write_obstacle(path: Path) -> str:
 
 
 def check_folder(path: Path) -> None:
-    """Whether files may be written into a folder, which need not be there yet.
+    """Check that files may be written into a folder, which need not exist yet.
 
     Raises:
         InputError: SK-CLI-016 it is none, or nothing can be written there.
@@ -54,7 +54,7 @@ def check_folder(path: Path) -> None:
 
 
 def check_target(path: Path, folder: str, *, overwrite: bool) -> None:
-    """Whether a file and the folder beside it may be written.
+    """Check that a file and the folder beside it may be written.
 
     Raises:
         InputError: SK-CLI-016 something is there already, or there is no folder to write into.
@@ -164,7 +164,7 @@ def _prefix(name: str) -> str:
 
 
 def _has_ended(process: str) -> bool:
-    """Whether there is no process of a number any more."""
+    """Check whether the process of a number has ended."""
     if os.name == "nt":  # os.kill would end it there
         return False
     try:
@@ -177,7 +177,7 @@ def _has_ended(process: str) -> bool:
 
 
 def check_writable(path: str | os.PathLike[str] | None) -> None:
-    """Whether `write_atomically` can write a file: to be asked before the work whose outcome goes into it.
+    """Check that `write_atomically` can write a file, before the work whose result goes into it.
 
     Args:
         path: the file; None for none.

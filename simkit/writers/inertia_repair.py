@@ -47,7 +47,7 @@ class InertiaFix:
 
 @dataclass(frozen=True, slots=True)
 class InertiaFixes:
-    """What of a file, and of the files it includes, should be other numbers.
+    """Inertias of a file, and of the files it includes, that need other numbers.
 
     Attributes:
         source: the file that was asked about.
@@ -60,7 +60,7 @@ class InertiaFixes:
 
     @property
     def elsewhere(self) -> tuple[InertiaFix, ...]:
-        """Those in files that the source includes."""
+        """Fixes in files that the source includes."""
         return tuple(f for f in self.fixes if f.file.resolve() != self.source.resolve())
 
     def write(self, target: Path) -> int:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class WrittenMjcf:
-    """What was written.
+    """Files that were written.
 
     Attributes:
         files: how many files lie in the folder beside the XML.

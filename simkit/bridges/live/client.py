@@ -93,7 +93,7 @@ class Client:
         return found
 
     def control(self, action: str, value: float | None = None) -> JsonObject:
-        """Has the simulation `pause`, `resume`, `step` (`value` steps) or keep an `rtf` (`value`; None: none).
+        """Make the simulation `pause`, `resume`, `step` (`value` steps) or keep an `rtf` (`value`; None: none).
 
         Returns:
             The state from then on, as `state` gives it.
@@ -179,7 +179,7 @@ class Client:
         return self._link.receive(timeout)
 
     def fileno(self) -> int:
-        """Of the socket, to wait for together with others."""
+        """Return the socket's file number, to wait for together with others."""
         return self._link.fileno()
 
     # ------------------------------------------------------------------ services and actions

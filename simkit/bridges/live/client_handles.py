@@ -22,7 +22,7 @@ def _goal_statuses() -> type[GoalStatus]:
 
 
 class Received(NamedTuple):
-    """One message as it came.
+    """Message as it was received.
 
     Attributes:
         time_ns: simulated time at which it was published [ns].
@@ -41,7 +41,7 @@ class Received(NamedTuple):
 
 
 class LiveSubscription:
-    """What arrives on a topic: `for time_ns, type_name, cdr in subscription` waits for each, until the simulation ends.
+    """Subscription to a topic: `for time_ns, type_name, cdr in subscription` waits for each, until the simulation ends.
 
     Attributes:
         topic: its absolute name.
@@ -165,7 +165,7 @@ class LiveGoal:
 
     @property
     def is_accepted(self) -> bool:
-        """Whether the action has taken it, though it may have ended since."""
+        """Whether the action accepted it, though it may have ended since."""
         return self.status.name not in ("UNKNOWN", "REJECTED")
 
     def wait(self, timeout: float | None = None) -> bool:

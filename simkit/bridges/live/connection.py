@@ -53,7 +53,7 @@ class ClientSubscription:
 
 
 class ClientConnection:
-    """One client.
+    """Connection of one client.
 
     Attributes:
         node: what lists call it.
@@ -182,7 +182,7 @@ class ClientConnection:
             self.is_gone = True
 
     def _next_piece(self) -> bytes:
-        """What is to be sent next: answers first, then messages in the order in which they were published."""
+        """Return the next bytes to send: answers first, then messages in the order in which they were published."""
         found: list[bytes] = []
         size = 0
         while self._answers and size < _PIECE:

@@ -58,7 +58,7 @@ def simulations() -> list[RunningSim]:
 
 
 def _read_greetings(callers: dict[Path, socket.socket]) -> dict[Path, tuple[int, str]]:
-    """What each says of itself within the time that there is."""
+    """Read the process and world that each simulation sends first, as far as they come in time."""
     readers = {caller: FrameReader(LARGEST_OUT, (TELL,)) for caller in callers.values()}
     paths = {caller: path for path, caller in callers.items()}
     found: dict[Path, tuple[int, str]] = {}

@@ -90,7 +90,7 @@ def parameter_list(sim: Simulation) -> dict[str, JsonObject]:
 
 
 def model_state(sim: Simulation, name: str) -> JsonObject:
-    """Where a model is, and its links and joints.
+    """Return pose, links and joints of a model.
 
     Raises:
         KeyError: there is none of that name; names the closest.
@@ -127,7 +127,7 @@ def _pose_dict(pose: Pose) -> JsonObject:
 
 
 class NodeNames:
-    """What the nodes are called that ends of topics, services and actions belong to."""
+    """Names of the nodes that own publishers, subscribers, services and actions."""
 
     def __init__(self, sim: Simulation, clients: Iterable[ClientConnection]) -> None:
         self._world = "/" + _name_part(sim.world.name)

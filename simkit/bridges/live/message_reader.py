@@ -18,7 +18,7 @@ Reader = Callable[[bytes, int], Any]
 
 @cache
 def reader_of(type_name: str) -> Reader:
-    """What makes a message of the CDR that stands in some bytes from a place on.
+    """Return a function that decodes a message from CDR at a position in some bytes.
 
     Whatever it raises means that it is none of this type, and messages are those that `simkit.msgs.deserialize` makes.
 
@@ -81,7 +81,7 @@ def _layout(type_name: str) -> tuple[str, Classes]:
 
 
 def _message_builder(classes: Classes) -> Callable[[tuple[Any, ...]], Any]:
-    """What makes a message of its numbers."""
+    """Return a function that makes a message of its numbers."""
     cls, parts = classes
     if all(part is None for part in parts):
         return lambda values: cls(*values)

@@ -28,7 +28,7 @@ class LiveClosed(LiveError):
 
 
 class BadFrame(Exception):
-    """What came from the other side is no frame of the protocol."""
+    """Received bytes are not a frame of the protocol."""
 
 
 JsonObject = dict[str, Any]
@@ -44,7 +44,7 @@ LARGEST_OUT: Final = 256 << 20  # [bytes] of a frame from it
 
 
 def json_default(value: object) -> object:
-    """What JSON does not know, as something that it does."""
+    """Convert a value that JSON does not know: arrays, bytes, sets."""
     if hasattr(value, "tolist"):  # of NumPy, arrays and numbers
         return value.tolist()
     if isinstance(value, (bytes, bytearray, memoryview)):
@@ -107,7 +107,7 @@ class FrameReader:
 
     @property
     def is_in_frame(self) -> bool:
-        """Whether a part of a frame is there, or a whole one."""
+        """Whether a frame or a part of one has been received."""
         return len(self._buffer) > self._begin
 
     def next(self) -> tuple[int, bytes] | None:

@@ -32,7 +32,7 @@ class RequestRefused(Exception):
 
 
 class RequestHost(Protocol):
-    """What requests need of the server that answers them.
+    """Protocol of the server that answers requests.
 
     Attributes:
         peers: connections of clients, by file number.

@@ -115,7 +115,7 @@ class Server:
         return found
 
     def measured_rtf(self) -> float:
-        """How fast the simulation has gone of late, as a multiple of real time."""
+        """Return the real-time factor of the last moments."""
         now, tick = time.monotonic(), self.sim.tick
         began, first = self._pace[0]
         if now - self._pace[-1][0] > 0.5:
@@ -124,11 +124,11 @@ class Server:
 
     @property
     def is_closed(self) -> bool:
-        """Whether nobody can connect any more."""
+        """Whether the server accepts no more connections."""
         return self._listening.fileno() < 0
 
     def slices(self, *lengths: float) -> tuple[float, ...]:
-        """How long slices of the run are to be, given how long they would be [s, wall time].
+        """Return the lengths of the run's slices with clients, given those without [s, wall time].
 
         They are shorter with clients, and shorter still where there was no time for all that they sent.
         """
@@ -139,7 +139,7 @@ class Server:
 
     @property
     def has_clients(self) -> bool:
-        """Whether anybody is connected."""
+        """Whether a client is connected."""
         return bool(self.peers)
 
     def _serve_busy_clients(self, until: float) -> None:

@@ -156,7 +156,7 @@ class ServerLink:
         return bool(ready)
 
     def fileno(self) -> int:
-        """Of the socket, to wait for together with others."""
+        """Return the socket's file number, to wait for together with others."""
         return self._socket.fileno()
 
     def send(self, frame: bytes) -> None:

@@ -30,12 +30,12 @@ class NoSocketFolder(Exception):
 
 
 def is_possible() -> bool:
-    """Whether this system's Python has sockets that are files."""
+    """Check whether this system's Python has local sockets."""
     return hasattr(socket, "AF_UNIX") and hasattr(os, "getuid")
 
 
 def socket_folders() -> list[Path]:
-    """Where sockets may be, the preferred one first."""
+    """Return the folders that sockets may be in, the preferred one first."""
     if not is_possible():
         return []
     found = [Path(tempfile.gettempdir()) / f"simkit-{os.getuid()}"]
@@ -162,7 +162,7 @@ def _lock_folder(folder: Path) -> Iterator[None]:
 
 
 def is_living(path: Path) -> bool:
-    """Whether somebody listens at a socket."""
+    """Check whether a process listens at a socket."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as caller:
         caller.setblocking(False)
         try:

@@ -18,7 +18,7 @@ _MOST_WAITING = 100  # messages of a topic that are still being made
 
 
 class TopicFeed:
-    """One topic that clients subscribe to."""
+    """Topic that clients subscribe to."""
 
     def __init__(self, sim: Simulation, topic: str) -> None:
         self._sim, self.topic = sim, topic
@@ -27,7 +27,7 @@ class TopicFeed:
         self._tap: Subscription | None = None
 
     def add(self, reader: ClientSubscription) -> None:
-        """One more who hears the topic; the last message of a latched one goes to them alone."""
+        """Add a subscription; the last message of a latched topic goes to it alone."""
         if self._tap is None:
             self._readers.append(reader)
             self._tap = self._sim.bus.tap(self.topic, self._take, takes_later=True)
@@ -39,7 +39,7 @@ class TopicFeed:
         self._readers.append(reader)
 
     def remove(self, reader: ClientSubscription) -> None:
-        """One less."""
+        """Remove a subscription."""
         if reader in self._readers:
             self._readers.remove(reader)
         if not self._readers and self._tap is not None:
@@ -52,7 +52,7 @@ class TopicFeed:
         return bool(self._readers)
 
     def deliver_ready(self) -> bool:
-        """Hands on what is made by now, in order; whether anything still waits."""
+        """Deliver the messages that are ready, in order; return whether anything still waits."""
         waiting = self._waiting
         while waiting:
             time_ns, kept = waiting[0]
@@ -101,14 +101,14 @@ class TopicFeeds:
         self._feeds: dict[str, TopicFeed] = {}
 
     def add(self, reader: ClientSubscription) -> None:
-        """One more who hears a topic."""
+        """Add a subscription to a topic."""
         feed = self._feeds.get(reader.topic)
         if feed is None:
             feed = self._feeds[reader.topic] = TopicFeed(self._sim, reader.topic)
         feed.add(reader)
 
     def remove(self, reader: ClientSubscription) -> None:
-        """One less."""
+        """Remove a subscription."""
         feed = self._feeds.get(reader.topic)
         if feed is not None:
             feed.remove(reader)
@@ -116,7 +116,7 @@ class TopicFeeds:
                 del self._feeds[reader.topic]
 
     def deliver_ready(self) -> None:
-        """Hands on what had still to be made when it was published."""
+        """Deliver the messages that were not ready when they were published."""
         for feed in self._feeds.values():
             if feed._waiting:
                 feed.deliver_ready()

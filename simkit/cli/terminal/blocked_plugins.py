@@ -62,7 +62,7 @@ class BlockedPlugins:
 
 
 def describe_blocking_plugin(frame: FrameType | None) -> tuple[FrameType, str] | None:
-    """What plugin is at work in a stack: the frame of the outermost call of one, and the innermost in words."""
+    """Find the plugin at work in a stack: the frame of its outermost call, and the innermost call in words."""
     if "simkit.runtime.engine.plugin_faults" not in sys.modules:  # still on the way to the engine
         return None
     from simkit.runtime.engine.plugin_faults import active_plugin_calls

@@ -103,7 +103,7 @@ def topic_types(ctx: typer.Context) -> Iterable[str]:
 
 @_silent
 def message_types(_: typer.Context) -> Iterable[str]:
-    """All message types."""
+    """Complete message types."""
     from simkit.msgs.interfaces import interface_names
 
     return interface_names("msg")
@@ -111,7 +111,7 @@ def message_types(_: typer.Context) -> Iterable[str]:
 
 @_silent
 def interfaces(_: typer.Context) -> Iterable[str]:
-    """All message, service and action types."""
+    """Complete message, service and action types."""
     from simkit.msgs.interfaces import interface_names
 
     return [name for kind in ("msg", "srv", "action") for name in interface_names(kind)]
@@ -217,7 +217,7 @@ def nodes(ctx: typer.Context) -> Iterable[str]:
 
 @_silent
 def all_nodes(ctx: typer.Context) -> Iterable[str]:
-    """All nodes."""
+    """Complete names of all nodes."""
     from simkit.cli.terminal.topic_sources import node_names
 
     with _client(ctx) as client:

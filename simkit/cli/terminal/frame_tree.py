@@ -48,7 +48,7 @@ class FrameTree:
             )
 
     def names(self) -> list[str]:
-        """All frames, sorted."""
+        """Return the names of all frames, sorted."""
         return sorted({*self.edges, *(edge.parent for edge in self.edges.values())})
 
     def lines(self) -> list[str]:

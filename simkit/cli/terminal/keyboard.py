@@ -52,7 +52,7 @@ class KeyDecoder:
 
 
 def _end_of_sequence(data: bytes, at: int) -> int | None:
-    """Where the sequence that begins at `at` ends; None where more is to come (ECMA-48: CSI, SS3)."""
+    """Return the end of the sequence that begins at `at`; None where more is to come (ECMA-48: CSI, SS3)."""
     if at + 1 >= len(data):
         return None
     kind = data[at + 1]
@@ -151,14 +151,14 @@ class Keyboard:
     # ------------------------------------------------------------------ the terminal's modes
 
     def _is_foreground(self) -> bool:
-        """Whether the terminal is ours to use; one that controls no processes always is."""
+        """Check whether this process is in the terminal's foreground; a terminal without job control counts as such."""
         try:
             return os.tcgetpgrp(self._file) == os.getpgrp()
         except OSError:
             return True
 
     def _enter_key_mode(self) -> bool:
-        """Has the terminal give keys; whether it does."""
+        """Switch the terminal to single keys without echo; return whether it did."""
         import termios
 
         if not self._is_foreground():

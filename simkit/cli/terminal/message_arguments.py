@@ -41,7 +41,7 @@ def split_type_and_values(type_name: str | None, values: str | None) -> tuple[st
 
 
 def is_same_type(said: str, type_name: str) -> bool:
-    """Whether a full name is what was said: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist` for it."""
+    """Check whether a type name means a full name: `geometry_msgs/msg/Twist`, or `geometry_msgs/Twist` for it."""
     package, _, rest = type_name.partition("/")
     return said in (type_name, f"{package}/{rest.rpartition('/')[2]}")
 

@@ -88,7 +88,7 @@ def parse_pairs(texts: Sequence[str], option: str) -> dict[str, str]:
 
 
 def validate_base(base: str) -> str:
-    """One of auto, fixed, floating.
+    """Validate `--base`: auto, fixed or floating.
 
     Raises:
         InputError: SK-CLI-018 it is something else.

@@ -50,7 +50,7 @@ def stderr_console() -> Console:
 
 
 def print_status(text: str) -> None:
-    """One line about what is going on; above what a run shows on a terminal, which listens to `sys.stderr` alone."""
+    """Print a line of status on standard error, above the progress of a run, which listens to `sys.stderr` alone."""
     if sys.stderr is not None:
         sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
@@ -92,7 +92,7 @@ def print_diagnostics(
 
 
 def _print_entry(equal: list[Diagnostic], target: Console) -> None:
-    """One problem with the places it was found at."""
+    """Print one problem with the places where it was found."""
     from rich.text import Text
 
     d = equal[0]
@@ -115,7 +115,7 @@ def _location(d: Diagnostic) -> str:
 
 
 def print_error(error: SimkitError) -> None:
-    """What went wrong, in the words of the error; a traceback only for a plugin, of the plugin's own code."""
+    """Print an error; with a traceback only for a plugin, of the plugin's own code."""
     if isinstance(error, LoadError):
         print_diagnostics(error.diagnostics, verbose=False)
         count = sum(d.severity == "error" for d in error.diagnostics)
@@ -171,17 +171,17 @@ def _hang_up_exit_code() -> int:
 
 
 def print_line(text: str = "") -> None:
-    """One line on standard output, at once."""
+    """Print a line on standard output at once."""
     typer.echo(text)
 
 
 def print_note(text: str) -> None:
-    """One line on standard error."""
+    """Print a line on standard error."""
     typer.echo(text, err=True)
 
 
 def print_json(value: object) -> None:
-    """One JSON value on one line; what JSON has no number for is a text: `"inf"`, `"-inf"`, `"nan"`."""
+    """Print a JSON value on one line; infinity and NaN become the texts `"inf"`, `"-inf"`, `"nan"`."""
     typer.echo(json.dumps(_json_value(value), allow_nan=False, ensure_ascii=False))
 
 
@@ -227,7 +227,7 @@ def print_names_and_types(types: Mapping[str, str], *, show_types: bool, count: 
 def not_found_error(
     what: str, name: str, there: Sequence[str] | Mapping[str, object], code: str, where: str
 ) -> InputError:
-    """That something is not there, with the closest name or all there are."""
+    """Make a 'not found' error that suggests the closest name or lists all names."""
     names = list(there)
     listed = ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")
     hint = did_you_mean(name, names) or ("there is " + listed if names else "there is none")
@@ -240,5 +240,5 @@ def absolute_name(name: str) -> str:
 
 
 def is_hidden(name: str) -> bool:
-    """Whether a part of a topic's or service's name begins with `_`, which ROS 2 leaves out of lists."""
+    """Check whether a part of a topic's or service's name begins with `_`, which ROS 2 leaves out of lists."""
     return any(part.startswith("_") for part in name.split("/"))

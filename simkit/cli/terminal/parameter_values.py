@@ -69,7 +69,7 @@ def parameter_value(found: Any) -> JsonObject | None:
 
 
 def read_parameter_file(path: Path, node: str, *, wildcard: bool) -> list[tuple[str, JsonObject]]:
-    """What a parameter file says of a node: names and ParameterValues, those that stand for all nodes first.
+    """Read the parameters of a node from a file: names and ParameterValues, those for all nodes first.
 
     Raises:
         InputError: SK-CLI-041 it cannot be read, or says nothing of this node.

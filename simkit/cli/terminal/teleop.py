@@ -30,7 +30,7 @@ _SLOW: Final = 0.5  # [m/s]: a robot that is no faster is driven in fine steps
 
 @dataclass(frozen=True)
 class TeleopTarget:
-    """What is driven.
+    """Topic, model and speed limits of what is driven.
 
     Attributes:
         topic: takes the commands.
@@ -108,7 +108,7 @@ def _describe_target(sim: Simulation, topic: str, owner: Any) -> TeleopTarget:
 
 
 def _speed_limits(model: Model | None, topic: str, owner: Any) -> tuple[Bounds, Bounds]:
-    """Of the drive itself where it has them, else of the robot where it is known."""
+    """Return the speed limits of the drive where it has some, else of the robot where it is known."""
     asked = getattr(owner, "speed_bounds", None)
     found: tuple[Bounds, Bounds] | None = None if asked is None else asked(topic)
     if found is not None and any(math.isfinite(bound) for bounds in found for bound in bounds):
@@ -191,12 +191,12 @@ class Teleop:
         return True
 
     def stop(self) -> None:
-        """Has it stand still, at once."""
+        """Command zero speed at once."""
         self.speeds, self.is_expired = _EMPTY, False
         self._send()
 
     def release_keys(self) -> None:
-        """Nobody will press a key any more: stops what is being driven, and is silent from then on."""
+        """Stop what is driven and send nothing more, since no key will come."""
         if self._is_active:
             self.stop()
         self._is_active = False
@@ -217,7 +217,7 @@ class Teleop:
         )
 
     def _multiply(self, factor: float) -> None:
-        """All speeds and the steps alike, so that a curve stays the same curve; none goes beyond its bound."""
+        """Scale all speeds and steps alike, so that a curve stays the same curve; no speed exceeds its limit."""
         bounds = (self.target.linear, self.target.linear, self.target.angular)
         for speed, (least, most) in zip(self.speeds, bounds, strict=True):
             if speed and factor > 1:
@@ -278,7 +278,7 @@ class Teleop:
             self.fault = ""
 
     def _takes_stamped(self) -> bool:
-        """Whether the first who takes velocities there wants them with a stamp, or nothing else."""
+        """Check whether the first subscriber of velocities takes TwistStamped first or alone."""
         ends = self._sim.bus.ends(self.target.topic)
         taken: list[str] = [one for _, end, types, does in ends if does == "takes" and end.active for one in types]
         return next((one for one in taken if one in TWISTS), "") == TWISTS[1]

@@ -61,7 +61,7 @@ class DriverLine:
         return f"{ahead:.2f} m/s{sideways}, {turn:.2f} rad/s"
 
     def _model(self) -> Model | None:
-        """What is driven, while it is there."""
+        """Return the model that is driven, while it exists."""
         name = self._teleop.target.model
         if not name:
             return None

@@ -80,7 +80,7 @@ class ReceivedMessage(NamedTuple):
 
 @dataclass(frozen=True)
 class TopicEndpoint:
-    """Who publishes or takes messages on a topic."""
+    """Publisher or subscriber of a topic."""
 
     node: str
     types: tuple[str, ...]
@@ -125,7 +125,7 @@ class LiveSource:
         return found
 
     def feed(self, topics: Sequence[str], depth: int = _DEPTH) -> LiveFeed:
-        """What comes on some topics from now on."""
+        """Subscribe to topics from now on."""
         return LiveFeed(self.client, topics, depth)
 
     def prepare(self, entry: TopicEntry) -> None:
@@ -164,7 +164,7 @@ class LiveFeed:
 
     @property
     def lost(self) -> int:
-        """How many were dropped because they came faster than they were read."""
+        """Number of messages dropped because they came faster than they were read."""
         return sum(s.lost for s in self._subscriptions.values())
 
     def take(self, timeout: float | None = None) -> ReceivedMessage | None:
@@ -235,7 +235,7 @@ class BagSource:
         }
 
     def feed(self, topics: Sequence[str], depth: int = _DEPTH) -> BagFeed:
-        """All that was recorded of some topics."""
+        """Read all messages of some topics."""
         return BagFeed(self.bag, topics)
 
     def prepare(self, entry: TopicEntry) -> None:
@@ -309,7 +309,7 @@ def connect_to_simulation(sim: str | None) -> Iterator[Client]:
 
 
 def connection_name(client: Client) -> str:
-    """What a client is connected to, in words."""
+    """Name of what a client is connected to, in words."""
     return f"the simulation {client.info.get('name', '')!r}"
 
 

@@ -25,7 +25,7 @@ LARGEST_LOAD_RATIO: Final = 1e4
 
 @dataclass(frozen=True, slots=True)
 class JointGains:
-    """What a plugin of the file asks of one joint: gains per error [N·m/rad or N/m] and per its rate."""
+    """Gains that a plugin of the file asks of one joint: per error [N·m/rad or N/m] and per its rate."""
 
     plugin: str
     joint: str

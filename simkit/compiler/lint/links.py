@@ -50,7 +50,7 @@ def check_links(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
 
 
 def first_state(model: mujoco.MjModel) -> mujoco.MjData:
-    """Where everything stands at the start."""
+    """Return the state with all poses at the start."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)

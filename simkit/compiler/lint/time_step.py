@@ -39,12 +39,12 @@ def _check_step(world: SceneWorld, compiled: Compiled, found: Diagnostics) -> No
 
 
 def _can_move(compiled: Compiled, body: int) -> bool:
-    """Whether anything can move a body: it is not rigidly one with the world."""
+    """Check whether a body can move: it is not welded to the world."""
     return int(compiled.model.body_weldid[body]) != 0
 
 
 def rate_pattern(rate: float, step: float) -> str:
-    """What becomes of a rate [Hz] at a step [s], in words; empty where the steps divide evenly.
+    """Describe the stamps of a rate [Hz] at a step [s]; empty where the steps divide evenly.
 
     A sample lies on the first step at or after k / rate.
     """

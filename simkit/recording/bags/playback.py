@@ -79,7 +79,7 @@ class Playback:
 
     @property
     def bag(self) -> BagReader:
-        """What is played."""
+        """Return the bag that is played."""
         return self._bag
 
     @property

@@ -30,7 +30,7 @@ _UNKNOWN_TYPE = "SK-CLI-036"
 
 
 class BagMessage(NamedTuple):
-    """One message as it lies in the bag; the time is that of recording [ns]."""
+    """Serialised message of a bag; the time is that of recording [ns]."""
 
     time_ns: int
     topic: str
@@ -40,7 +40,7 @@ class BagMessage(NamedTuple):
 
 @dataclass(frozen=True)
 class BagTopic:
-    """One topic of a bag with one type.
+    """Topic of a bag with one type.
 
     Attributes:
         definition: the type's definition as the bag has it; empty where it has none.
@@ -93,7 +93,7 @@ class BagReader:
 
     @property
     def count(self) -> int:
-        """How many messages it holds."""
+        """Number of messages in the bag."""
         return sum(topic.count for topic in self.topics)
 
     @property
@@ -171,7 +171,7 @@ class BagReader:
         return True
 
     def _bag_store(self) -> Typestore:
-        """What the bag itself says of its types."""
+        """Return the type store with the bag's own definitions."""
         if self._store is None:
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
@@ -223,7 +223,7 @@ def _bag_files(path: Path) -> tuple[list[str], str, str]:
 
 
 def _open_storage(path: Path) -> _CompleteBag | _TruncatedBag:
-    """What reads the bag: rosbags, or record by record where it lacks its end."""
+    """Open the bag with rosbags, or record by record where its end is missing."""
     from rosbags.rosbag2 import Reader, ReaderError
 
     try:

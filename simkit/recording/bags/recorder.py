@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def matches_topic(topic: str, patterns: Iterable[str]) -> bool:
-    """Whether a topic is meant by one of the shell patterns; `scan` and `/scan` are the same."""
+    """Check whether a topic matches one of the shell patterns; `scan` and `/scan` are the same."""
     return any(fnmatch.fnmatchcase(topic, p if p.startswith(("/", "*")) else f"/{p}") for p in patterns)
 
 
@@ -56,7 +56,7 @@ def check_target(path: Path, *, overwrite: bool = False) -> None:
 
 
 def _path_exists(path: Path) -> bool:
-    """Whether something is there.
+    """Check whether a path exists.
 
     Raises:
         InputError: SK-BAG-002 nothing can be, such as under a name that is too long.
@@ -176,7 +176,7 @@ class Recorder:
         return topic not in self._sim.bus.aside
 
     def records(self, topic: str) -> bool:
-        """Whether the topic is one of those that are recorded."""
+        """Check whether the options select the topic."""
         return topic in self._taps
 
     def _take(self, topic: str, message: Any) -> None:

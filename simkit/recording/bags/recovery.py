@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RecoveredBag:
-    """What a mended bag holds; times in nanoseconds of simulated time."""
+    """Contents of a recovered bag; times in nanoseconds of simulated time."""
 
     messages: int
     topics: int

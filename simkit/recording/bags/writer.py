@@ -13,7 +13,7 @@ _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 
 
 def profile(latched: bool) -> dict[str, object]:
-    """What a publisher offers: reliable, and transient local where the last message is kept (`/tf_static`)."""
+    """Return the profile of a publisher: reliable; transient local where the last message is kept (`/tf_static`)."""
     return {
         "history": "keep_last",
         "depth": 1 if latched else 10,
@@ -42,7 +42,7 @@ _CHUNK_BYTES = 4 << 20
 
 @dataclass
 class Channel:
-    """One topic with one type, and what was written of it."""
+    """Topic with one type, and the number of messages written to it."""
 
     id: int
     topic: str

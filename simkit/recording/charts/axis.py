@@ -37,7 +37,7 @@ class Axis:
 
     @property
     def base_text(self) -> str:
-        """What labels leave out, in words; empty where they leave out nothing."""
+        """Words for the base that labels leave out; empty where there is none."""
         return f", less {self.base:.12g}" if self.base else ""
 
     def at(self, values: Numbers) -> Numbers:

@@ -26,7 +26,7 @@ _MOST_PANELS = 12
 
 @dataclass(frozen=True)
 class Style:
-    """How a line looks: numbers of a colour and of a way of being dashed."""
+    """Style of a line: numbers of its colour and of its dash pattern."""
 
     colour: int = 0
     dash: int = 0
@@ -34,7 +34,7 @@ class Style:
 
 @dataclass(frozen=True)
 class Chart:
-    """What is drawn.
+    """Contents of a chart.
 
     Attributes:
         series: the lines.
@@ -80,7 +80,7 @@ def render_chart(chart: Chart, ending: str) -> bytes:
 
 
 class _Layout:
-    """Where everything goes."""
+    """Places of panels, legends and labels on the sheet."""
 
     def __init__(self, chart: Chart, panels: list[list[tuple[Series, Style]]]) -> None:
         self._chart, self._panels = chart, panels
@@ -149,7 +149,7 @@ def _tick_count(axis: Axis) -> float:
 
 
 def _equal_scale(x: Axis, y: Axis) -> tuple[Axis, Axis]:
-    """Both with as many pixels a metre."""
+    """Return both axes with the same number of pixels per metre."""
     scale = max((a.high - a.low) / abs(a.end - a.start) for a in (x, y))
     found = []
     for a in (x, y):
@@ -171,5 +171,5 @@ def _legend(labels: list[str]) -> list[tuple[float, int]]:
 
 
 def _shorten(text: str, width: float, size: float) -> str:
-    """As much of a text as there is room for."""
+    """Cut a text to the room that it has."""
     return shorten(text, int(width / text_width("x", size)))

@@ -65,7 +65,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class _PathStep:
-    """Where a path has come to: the type there, and how to get there; `before` is the message around it."""
+    """One step of a path: the type at its end and a function that reads it; `before` reads the message around it."""
 
     node: Any
     read: Callable[[Any], Any]
@@ -256,7 +256,7 @@ class _FieldPath:
         )
 
     def _computed_names(self, place: _PathStep) -> tuple[str, ...]:
-        """What is computed of a type, beside its fields."""
+        """Return the names that can be computed of a type, beside its fields."""
         kind = int(place.node[0])
         if kind in (ARRAY, SEQUENCE):
             is_number = int(place.node[1][0][0]) == BASE and not _is_text(place.node[1][0])
@@ -352,7 +352,7 @@ def _norm(names: list[str], value: Any) -> float:
 
 
 def _array_statistic(what: str, value: Any) -> float:
-    """Of the finite items; NaN where there are none."""
+    """Compute a statistic of the finite items; NaN where there are none."""
     if what == "length":
         return float(len(value))
     numbers = np.asarray(value, dtype=np.float64)

@@ -40,11 +40,11 @@ class Series:
 
     @property
     def count(self) -> int:
-        """How many numbers there are."""
+        """Number of finite values."""
         return int(np.count_nonzero(np.isfinite(self.values)))
 
     def between(self, start: float | None, end: float | None) -> Series:
-        """What lies between two times [s]."""
+        """Return the part between two times [s]."""
         low, high = -math.inf if start is None else start, math.inf if end is None else end
         kept = (self.times >= low - 1e-9) & (self.times <= high + 1e-9)
         return replace(self, times=self.times[kept], values=self.values[kept])
@@ -102,7 +102,7 @@ class SeriesTap:
         self._taps.clear()
 
     def series(self) -> list[Series]:
-        """What came until now."""
+        """Return what came until now."""
         return self._collector.series()
 
 

@@ -118,7 +118,7 @@ _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What is taken out of a bag, and as what.
+    """Options of an export: which topics, and in which formats.
 
     Attributes:
         topics: shell patterns of topics; empty for all.
@@ -142,7 +142,7 @@ class ExportOptions:
 
 @dataclass
 class ExportedTopic:
-    """What became of one topic.
+    """Result of exporting one topic.
 
     Attributes:
         file: its table, relative to the folder.
@@ -260,7 +260,7 @@ class _TopicExport:
         self._is_bad = False
 
     def _file_writer(self, type_name: str, wish: ExportOptions) -> Any:
-        """What writes pictures or clouds, made when the first comes."""
+        """Return what makes the writer of images or clouds when the first one comes; None for other types."""
         target = self._folder / self._name
         makers: dict[str, Callable[[], Any]] = {}
         if type_name in _IMAGE_TYPES:

@@ -101,7 +101,7 @@ def png_pixels(message: Any) -> Pixels:
 
 
 def is_depth(message: Any) -> bool:
-    """Whether a picture's numbers are lengths."""
+    """Check whether the values of an image are lengths."""
     return str(getattr(message, "encoding", "")) in ("32FC1", "64FC1")
 
 
@@ -136,7 +136,7 @@ class PngFiles:
         return f"{self._folder.name}/{target.name}"
 
     def close(self) -> None:
-        """All are written."""
+        """Do nothing: every image is written when it comes."""
 
 
 class NpzFile:
@@ -158,11 +158,11 @@ class NpzFile:
         return f"{self._folder.name}/{target.name}"
 
     def close(self) -> None:
-        """All are written."""
+        """Do nothing: every image is written when it comes."""
 
 
 class VideoFile:
-    """One MP4; a picture stays until the next one, so that the film goes by the bag's times."""
+    """One MP4 video; an image stays until the next one, so that the video keeps the bag's times."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -85,7 +85,7 @@ class CloudFiles:
         return f"{self._folder.name}/{target.name}"
 
     def close(self) -> None:
-        """All are written."""
+        """Do nothing: every cloud is written when it comes."""
 
 
 def _ply_bytes(found: PointArray) -> bytes:

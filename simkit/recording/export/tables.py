@@ -36,7 +36,7 @@ TEXT: Final = "text"
 
 @dataclass
 class Column:
-    """One part of every message of a topic.
+    """Values of one field of all messages of a topic.
 
     Attributes:
         path: of the field; a list of messages has `[]` behind its name.
@@ -71,24 +71,24 @@ class Column:
 
     @property
     def width(self) -> int | None:
-        """How many numbers every message has; None where they differ."""
+        """Number of values in every message; None where messages differ in it."""
         if not self.is_list:
             return 1
         return self.counts[0] if len(set(self.counts)) == 1 else None
 
     @property
     def most(self) -> int:
-        """How many numbers a message has at most."""
+        """Largest number of values in a message."""
         return max(self.counts, default=0) if self.is_list else 1
 
     def numbers(self) -> np.ndarray[Any, Any]:
-        """All values, one behind the other; texts as NumPy's."""
+        """Return all values in one array; texts as NumPy's."""
         if self.kind == TEXT:
             return np.array(self.values, dtype=np.str_) if self.values else np.empty(0, dtype="U1")
         return np.frombuffer(self.values, dtype=self.kind) if len(self.values) else np.empty(0, dtype=self.kind)
 
     def rows(self) -> Iterator[Any]:
-        """What each message has: a value, or a list of them."""
+        """Yield what each message has: a value, or a list of values."""
         values: Sequence[object] = self.values
         if self.kind == "?":
             values = [bool(v) for v in values]
@@ -211,7 +211,7 @@ def _cells(column: Column) -> Iterator[list[Any]]:
 
 
 def _text_writer(kind: str) -> Any:
-    """What writes a value so that reading it gives the same bits."""
+    """Return a function that writes a value so that reading it gives the same bits."""
     if kind == "f4":
         return lambda value: str(np.float32(value))
     if kind == "?":

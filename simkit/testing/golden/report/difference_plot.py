@@ -22,7 +22,7 @@ _QUANTITIES: Final = 3  # of the state that are drawn
 
 @dataclass(frozen=True)
 class PlotFigure:
-    """What is drawn of one difference.
+    """Charts and table of one difference.
 
     Attributes:
         words: the difference.
@@ -223,7 +223,7 @@ def _line(x: Array, y: Array) -> Series:
 
 
 def _common_field(golden: dict[str, Any], run: dict[str, Any], field: str) -> tuple[Any, Any] | None:
-    """What both have of a field, of a part of it, or of what it is a part of."""
+    """Return what both have of a field, of a part of it, or of the field around it."""
     both = sorted(golden.keys() & run.keys())
     near = [name for name in both if name == field]
     near += [name for name in both if field and field.startswith((f"{name}.", f"{name}["))]

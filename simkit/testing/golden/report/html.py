@@ -55,7 +55,7 @@ class _MachineRow:
 
 @dataclass(frozen=True)
 class _VerdictView:
-    """What the page shows of one golden run, beside what its verdict says itself.
+    """Data that the page shows of one golden run, beside its verdict.
 
     Attributes:
         number: of its place on the page.

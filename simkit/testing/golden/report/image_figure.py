@@ -120,12 +120,12 @@ def _absolute_difference(ours: Array, theirs: Array) -> Array:
 
 
 def _mean_difference(apart: Array) -> float:
-    """What is finite only in one of two counts as far."""
+    """Mean of a difference; a pixel that is finite in one image only counts as far."""
     return float(np.nan_to_num(apart, nan=255.0).mean()) if apart.size else 0.0
 
 
 def _amplified_difference(apart: Array, full: float) -> tuple[float, Array]:
-    """How much brighter the difference is shown, and that picture; what is nowhere near is white."""
+    """Return the factor by which the difference is brightened, and that image; values that are not finite are white."""
     most = float(apart[np.isfinite(apart)].max(initial=0.0))
     factor = max(1.0, full / most) if most > 0.0 else 1.0
     scaled = np.where(np.isfinite(apart), apart * factor * 255.0 / full, 255.0)
@@ -133,7 +133,7 @@ def _amplified_difference(apart: Array, full: float) -> tuple[float, Array]:
 
 
 def _display_pixels(image: Array, encoding: str, low: float, high: float) -> Array:
-    """As OpenCV writes it: three channels, blue first."""
+    """Convert an image to three channels, blue first, as OpenCV writes it."""
     if image.dtype != np.uint8:
         finite = np.isfinite(image)
         scaled = np.where(finite, (np.where(finite, image, low).astype(np.float64) - low) / (high - low), 0.0)

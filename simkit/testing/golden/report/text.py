@@ -27,7 +27,7 @@ _ILLEGAL: Final = re.compile(
 
 
 def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENCES, mark: str = "FAILED") -> list[str]:
-    """What a check found, the first lines first.
+    """Return the report of a check as lines, the most important first.
 
     Args:
         verdict: of one golden run.
@@ -46,7 +46,7 @@ def text_report(verdict: Verdict, width: int = 100, *, most: int = MAX_DIFFERENC
 
 
 def passed_text(verdict: Verdict) -> str:
-    """How equal a run is that passed: `5 topics, 1200 messages, bit for bit; 2 checks (1.3 s)`."""
+    """Describe how equal a passed run is: `5 topics, 1200 messages, bit for bit; 2 checks (1.3 s)`."""
     comparison = verdict.comparison
     parts = [f"{_count(comparison.topics, 'topic')}, {_count(comparison.messages, 'message')}, {tier_text(comparison)}"]
     if verdict.checks:
@@ -55,7 +55,7 @@ def passed_text(verdict: Verdict) -> str:
 
 
 def tier_text(comparison: Comparison) -> str:
-    """How equal a run had to be."""
+    """Describe how equal a run had to be."""
     return "bit for bit" if comparison.tier == "exact" else "within the tolerances"
 
 
@@ -83,7 +83,7 @@ def first_difference(comparison: Comparison) -> Difference | None:
 
 
 def cause_lines(explanation: Explanation | None) -> list[str]:
-    """What is known of where the differences come from, in sentences."""
+    """Return sentences on where the differences come from."""
     if explanation is None:
         return []
     if explanation.lines:
@@ -103,7 +103,7 @@ def cause_text(cause: Cause) -> str:
 
 
 def proof_text(cause: Cause) -> str:
-    """What the run with the change put back said of it; empty where it was not tried."""
+    """Describe the run with the change reverted; empty where it was not tried."""
     if cause.proven is None:
         return ""
     return "; put back, the outputs are the golden ones" if cause.proven else "; put back, the outputs still differ"
@@ -116,19 +116,19 @@ def difference_text(difference: Difference, *, exact: bool = False) -> str:
 
 
 def allowed_text(difference: Difference, *, exact: bool) -> str:
-    """What is allowed, unless it is what the tier asks of all."""
+    """Describe what is allowed, unless the tier asks it of all."""
     return "" if exact and difference.allowed == _SAME_BITS else difference.allowed
 
 
 def machine_text(comparison: Comparison) -> str:
-    """What is other about the machine; empty where nothing is."""
+    """Describe how the machine differs; empty where it does not."""
     return ", ".join(
         f"{name} {golden or 'none'} → {run or 'none'}" for name, (golden, run) in comparison.machine.items()
     )
 
 
 def run_failed(verdict: Verdict) -> bool:
-    """Whether the run failed, other than the golden one."""
+    """Check whether the run failed and the golden one did not."""
     return verdict.run.end not in REGULAR_ENDINGS and verdict.run.end != verdict.golden.end
 
 
@@ -192,7 +192,7 @@ def _count(number: int, what: str) -> str:
 
 
 def junit_cases(verdicts: Verdict | Iterable[Verdict]) -> list[JunitCase]:
-    """What is written by `simkit.testing.junit.write_junit`.
+    """Return the cases that `simkit.testing.junit.write_junit` writes.
 
     A golden run is a class. Its first case, `run`, has the run's time and fails where the run did; then comes every
     topic that either run had, the physics state and the world's meaning where they differ, and every check of the
