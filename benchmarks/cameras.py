@@ -24,7 +24,7 @@ from measure import arguments, report
 
 import simkit
 from simkit import msgs
-from simkit.cli.bench_bare_mujoco import BarePass, HandWrittenLoop
+from simkit.cli.bench_bare_mujoco import BareCamera, HandWrittenLoop
 from simkit.cli.bench_figures import Figure, time_interleaved
 from simkit.compiler.geom_groups import VISUAL
 from simkit.recording.bags.recorder import Recorder
@@ -65,7 +65,7 @@ def single(size: tuple[int, int], rounds: int, *, depth: bool) -> Iterator[Figur
         for product, topic in eye._topics.items():
             if product == "image" or (depth and product == "depth_image"):
                 sim.bus.tap(topic, _ignore)
-        bare = BarePass(sim, eye)
+        bare = BareCamera(sim, eye)
 
         def clean() -> None:
             with without_noise(eye):

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from measure import arguments
 
-from simkit.cli.bench_figures import import_time
+from simkit.cli.bench_figures import measure_import_time
 
 
 def main() -> None:
-    print(f"import simkit {import_time(arguments(__doc__, rounds=7).rounds):.3f} s   aim < 0.3 s")
+    print(f"import simkit {measure_import_time(arguments(__doc__, rounds=7).rounds):.3f} s   aim < 0.3 s")
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from measure import arguments, report
 
 import simkit
 from simkit.cli.bench_bare_mujoco import cast_bare_scan
-from simkit.cli.bench_figures import Figure, sensor_cost, time_interleaved
+from simkit.cli.bench_figures import Figure, compare_sensor, time_interleaved
 
 LAYERS, COLUMNS = 64, 1024
 TURTLEBOT = "turtlebot3::base_scan::lds"
@@ -159,7 +159,7 @@ def main() -> None:
     rounds = arguments(__doc__, rounds=9).rounds
     with simkit.load("turtlebot3_world") as sim:
         sim.run(1.0)
-        report([sensor_cost(sim, sim.sensor(TURTLEBOT), 5 * rounds)])
+        report([compare_sensor(sim, sim.sensor(TURTLEBOT), 5 * rounds)])
     figure = beside_pybullet(rounds)
     if figure is not None:
         report([figure])

@@ -36,22 +36,22 @@ def bench(
 
     import_mujoco()
     from simkit.build import load
-    from simkit.cli.bench_figures import import_time, measure, memory_growth
+    from simkit.cli.bench_figures import compare_with_bare_mujoco, measure_import_time, measure_memory_growth
 
     stdout_console().print(f"{'':<52}{'simkit':>12}{'bare':>12}{'ratio':>8}{'aim':>8}")
     how: dict[str, Any] = {
         **source_arguments(resource_path, package_path, xacro_arg, base),
         "plugin_paths": plugin_path,
     }
-    for figure in measure(world, rounds=rounds, how=how):
+    for figure in compare_with_bare_mujoco(world, rounds=rounds, how=how):
         bare = "" if figure.bare is None else f"{figure.bare * 1e6:.1f} µs"
         ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
         aim = f"{figure.most * 1e6:.0f} µs" if figure.most else "" if figure.aim is None else f"{figure.aim:.2f}"
         stdout_console().print(
             f"{figure.name:<52}{figure.ours * 1e6:>9.1f} µs{bare:>12}{ratio:>8}{aim:>8}  a {figure.unit}"
         )
-    stdout_console().print(f"{'import simkit':<52}{import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
+    stdout_console().print(f"{'import simkit':<52}{measure_import_time(rounds):>9.3f} s{'':>21}{'0.3 s':>8}")
     with load(world, **how) as sim:
-        growth = memory_growth(sim, _HOUR if full else 60.0)
+        growth = measure_memory_growth(sim, _HOUR if full else 60.0)
     stdout_console().print(f"{'memory':<52}{growth * _HOUR / 1e6:>9.2f} MB  a simulated hour")
     return 0

@@ -26,7 +26,7 @@ Numbers = npt.NDArray[np.float64]
 _SPARE_GEOMS = 16
 
 
-class BarePass:
+class BareCamera:
     """Camera image drawn by MuJoCo alone; colour and depth as the driver gives them.
 
     That is bottom row first, black where there is nothing, depth not in metres. Model and context are of its own, with
@@ -202,7 +202,7 @@ class HandWrittenLoop(BareEngine):
         if isinstance(sensor, Lidar):
             return self._scan(sensor)
         if isinstance(sensor, RenderedCamera):
-            return BarePass(self._sim, sensor, self.model, self.data).reading(self._random)
+            return BareCamera(self._sim, sensor, self.model, self.data).reading(self._random)
         if kind == "Odometry":
             return self._odometry
         if kind == "JointState":

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from simkit import build
-from simkit.cli.bench_bare_mujoco import BareEngine, BarePass, HandWrittenLoop, cast_bare_scan
+from simkit.cli.bench_bare_mujoco import BareCamera, BareEngine, HandWrittenLoop, cast_bare_scan
 from simkit.plugins import WorldPlugin
 from simkit.runtime.engine.scheduler import Phase
 from simkit.runtime.engine.step_loop import guarded_hook
@@ -80,7 +80,7 @@ def time_interleaved(
     return [statistics.median(times) for times in taken]
 
 
-def measure(
+def compare_with_bare_mujoco(
     source: str,
     *,
     rounds: int = 9,
@@ -106,12 +106,12 @@ def measure(
             sim.run(1.0)
             for sensor in sim.sensors.values():
                 if sensor.topic:
-                    yield sensor_cost(sim, sensor, rounds)
+                    yield compare_sensor(sim, sensor, rounds)
 
 
 def _step_figures(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
     with load() as sim:
-        yield stepping(sim, rounds)
+        yield compare_stepping(sim, rounds)
     plugin = EveryStepPlugin()
     with load(plugin) as sim:
         _schedule_only(sim, None, guarded_hook(sim, plugin, "after_step"), "after")
@@ -129,12 +129,12 @@ def _step_figures(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
         with load() as sim:
             kinds = [s for s in sim.sensors.values() if s.topic and (s.kind == "imu" or isinstance(s, Lidar))]
             if len(kinds) > 1:
-                yield motion_and_scans(sim, {s.topic for s in kinds}, rounds, how)
+                yield compare_motion_and_scans(sim, {s.topic for s in kinds}, rounds, how)
     with load() as sim:
-        yield everything_read(sim, rounds)
+        yield compare_all_readings(sim, rounds)
 
 
-def import_time(rounds: int) -> float:
+def measure_import_time(rounds: int) -> float:
     """Measure what `import simkit` adds to a fresh interpreter [s], wall time."""
     # the same simkit as this one, wherever it was imported from
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
@@ -148,22 +148,22 @@ def import_time(rounds: int) -> float:
     return ours - empty
 
 
-def memory_growth(sim: Simulation, duration: float) -> float:
+def measure_memory_growth(sim: Simulation, duration: float) -> float:
     """Bytes a simulated second adds to the process with all but images read; the first half is left to settle."""
-    _count_messages(sim, _without_pictures(sim))
+    _count_messages(sim, _topics_without_images(sim))
     sim.run(duration / 2)
     before = _resident_memory()
     sim.run(duration / 2)
     return (_resident_memory() - before) / (duration / 2)
 
 
-def _without_pictures(sim: Simulation) -> set[str]:
+def _topics_without_images(sim: Simulation) -> set[str]:
     """The topics for which nothing is drawn; boxes around what is seen are for example not among them."""
     drawn = {t for s in sim.sensors.values() if isinstance(s, RenderedCamera) for t in s._topics.values()}
     return {topic for topic, type_name in sim.topics().items() if type_name not in _CAMERAS} - drawn
 
 
-def stepping(sim: Simulation, rounds: int) -> Figure:
+def compare_stepping(sim: Simulation, rounds: int) -> Figure:
     """Steps with nothing due beside `mj_step` on a copy of the same model and state."""
     sim.step(100)
     sim.scheduler.clear()
@@ -185,7 +185,7 @@ def _compare_step(sim: Simulation, rounds: int, name: str, aim: float) -> Figure
     return Figure(name, "step", ours / _CHUNK, theirs / _CHUNK, aim)
 
 
-def motion_and_scans(sim: Simulation, topics: set[str], rounds: int, how: str) -> Figure:
+def compare_motion_and_scans(sim: Simulation, topics: set[str], rounds: int, how: str) -> Figure:
     """The world with its plugins, IMUs and lidars read, beside a hand-written loop that takes these readings alone.
 
     Args:
@@ -199,9 +199,9 @@ def motion_and_scans(sim: Simulation, topics: set[str], rounds: int, how: str) -
     return _compare_hand_written(sim, topics, rounds, name, 1 / 0.9, keeps_counting=how != "looked at later")
 
 
-def everything_read(sim: Simulation, rounds: int) -> Figure:
+def compare_all_readings(sim: Simulation, rounds: int) -> Figure:
     """The world with its plugins and every topic but images read, beside a hand-written loop of the same readings."""
-    topics = _without_pictures(sim)
+    topics = _topics_without_images(sim)
     return _compare_hand_written(sim, topics, rounds, "step, all plugins, all sensors read but images", 1 / 0.85)
 
 
@@ -222,7 +222,7 @@ def _compare_hand_written(
     return Figure(name, "step", ours / second, theirs / second, aim)
 
 
-def sensor_cost(sim: Simulation, sensor: Any, rounds: int) -> Figure:
+def compare_sensor(sim: Simulation, sensor: Any, rounds: int) -> Figure:
     """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
     bare pass. Pictures are without noise, and clouds are not made."""
     clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
@@ -230,13 +230,13 @@ def sensor_cost(sim: Simulation, sensor: Any, rounds: int) -> Figure:
     sim.fresh_acceleration()
     name, aim = f"{sensor.kind} {sensor.scoped}", None
     bare: Callable[[], object] | None = None
-    one_pass: BarePass | None = None
+    one_pass: BareCamera | None = None
     count = 200
     if isinstance(sensor, RenderedCamera):
         count = 5
         vars(sensor)["perturb"] = lambda reading, _index: reading  # of this one sensor
         if len(sensor.shots()) == 1 and not sensor.shots()[0].ids:
-            one_pass, aim = BarePass(sim, sensor), 1.15
+            one_pass, aim = BareCamera(sim, sensor), 1.15
         name += ", no noise"
     elif isinstance(sensor, Lidar):
         bare, aim = cast_bare_scan(sensor, sim.mj_model, sim.mj_data), 1.15
