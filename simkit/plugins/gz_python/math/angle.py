@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.scalars import format_number
@@ -19,25 +18,25 @@ class Angle:
     TWO_PI = ClassConstant(math.tau)
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, radian: Any = 0.0) -> None:
+    def __init__(self, radian: Angle | float = 0.0) -> None:
         self._value: float = radian._value if isinstance(radian, Angle) else float(radian)
 
-    def radian(self, *value: float) -> Any:
+    def radian(self, *value: float) -> float:
         """[rad]; with an argument, sets it."""
         if not value:
             return self._value
         self._value = float(value[0])
-        return None
+        return None  # type: ignore[return-value]  # who sets it takes nothing
 
     def set_radian(self, value: float) -> None:
         self._value = float(value)
 
-    def degree(self, *value: float) -> Any:
+    def degree(self, *value: float) -> float:
         """[°]; with an argument, sets it."""
         if not value:
             return math.degrees(self._value)
         self._value = math.radians(value[0])
-        return None
+        return None  # type: ignore[return-value]  # who sets it takes nothing
 
     def set_degree(self, value: float) -> None:
         self._value = math.radians(value)

@@ -6,7 +6,7 @@ import math
 import sys
 from typing import Any, Final
 
-from simkit.plugins.gz_python.math.vectors import Vector3d
+from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
 
 _LARGEST: Final = sys.float_info.max
 
@@ -55,7 +55,7 @@ class AxisAlignedBox:
     def volume(self) -> float:
         return math.prod(self.size())
 
-    def contains(self, point: Any) -> bool:
+    def contains(self, point: VectorLike) -> bool:
         return all(a <= p <= b for a, p, b in zip(self._min, Vector3d(point), self._max, strict=True))
 
     def intersects(self, other: AxisAlignedBox) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import TypeVar, cast
 
 T = TypeVar("T")
 
@@ -14,12 +14,11 @@ class ClassConstant:
         values: arguments of the instance.
     """
 
-    def __init__(self, *values: Any) -> None:
+    def __init__(self, *values: float) -> None:
         self._values = values
-        self._instances: dict[type[Any], Any] = {}
+        self._instances: dict[type, object] = {}
 
     def __get__(self, instance: object, owner: type[T]) -> T:
         if owner not in self._instances:
             self._instances[owner] = owner(*self._values)
-        found: T = self._instances[owner]
-        return found
+        return cast(T, self._instances[owner])

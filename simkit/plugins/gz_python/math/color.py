@@ -39,38 +39,38 @@ class Color:
     def reset(self) -> None:
         self._c = [0.0, 0.0, 0.0, 1.0]
 
-    def _one(self, index: int, value: tuple[float, ...]) -> Any:
+    def _one(self, index: int, value: tuple[float, ...]) -> float:
         if not value:
             return self._c[index]
         self._c[index] = clamp(float(value[0]), 0.0, 1.0)
-        return None
+        return None  # type: ignore[return-value]  # who sets a component takes nothing
 
-    def r(self, *value: float) -> Any:
+    def r(self, *value: float) -> float:
         return self._one(0, value)
 
-    def g(self, *value: float) -> Any:
+    def g(self, *value: float) -> float:
         return self._one(1, value)
 
-    def b(self, *value: float) -> Any:
+    def b(self, *value: float) -> float:
         return self._one(2, value)
 
-    def a(self, *value: float) -> Any:
+    def a(self, *value: float) -> float:
         return self._one(3, value)
 
     def __getitem__(self, index: int) -> float:
         return self._c[index]
 
-    def _with(self, other: Any, sign: float) -> Color:
+    def _with(self, other: Color | float, sign: float) -> Color:
         others = other._c if isinstance(other, Color) else [float(other)] * 4
         return Color(*(a + sign * b for a, b in zip(self._c, others, strict=True)))
 
-    def __add__(self, other: Any) -> Color:
+    def __add__(self, other: Color | float) -> Color:
         return self._with(other, 1.0)
 
-    def __sub__(self, other: Any) -> Color:
+    def __sub__(self, other: Color | float) -> Color:
         return self._with(other, -1.0)
 
-    def __mul__(self, other: Any) -> Color:
+    def __mul__(self, other: Color | float) -> Color:
         others = other._c if isinstance(other, Color) else [float(other)] * 4
         return Color(*(a * b for a, b in zip(self._c, others, strict=True)))
 
@@ -94,7 +94,7 @@ class Temperature:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, kelvin: Any = 0.0) -> None:
+    def __init__(self, kelvin: Temperature | float = 0.0) -> None:
         self._kelvin: float = kelvin._kelvin if isinstance(kelvin, Temperature) else float(kelvin)
 
     def kelvin(self) -> float:
@@ -121,10 +121,10 @@ class Temperature:
     def __float__(self) -> float:
         return self._kelvin
 
-    def __add__(self, other: Any) -> Temperature:
+    def __add__(self, other: Temperature | float) -> Temperature:
         return Temperature(self._kelvin + float(other))
 
-    def __sub__(self, other: Any) -> Temperature:
+    def __sub__(self, other: Temperature | float) -> Temperature:
         return Temperature(self._kelvin - float(other))
 
     def __eq__(self, other: object) -> bool:
@@ -132,10 +132,10 @@ class Temperature:
             return bool(abs(self._kelvin - float(other)) <= DEFAULT_TOLERANCE)
         return NotImplemented
 
-    def __lt__(self, other: Any) -> bool:
+    def __lt__(self, other: Temperature | float) -> bool:
         return self._kelvin < float(other)
 
-    def __gt__(self, other: Any) -> bool:
+    def __gt__(self, other: Temperature | float) -> bool:
         return self._kelvin > float(other)
 
     def __repr__(self) -> str:

@@ -12,7 +12,7 @@ from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE
-from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
+from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 
 TOLERANCE: Final = 10.0
 """In units of what rounding does, as gz-math's default."""
@@ -56,14 +56,14 @@ class MassMatrix3d:
     def diagonal_moments(self) -> Vector3d:
         return Vector3d(self._diagonal)
 
-    def set_diagonal_moments(self, moments: Any) -> bool:
+    def set_diagonal_moments(self, moments: VectorLike) -> bool:
         self._diagonal = Vector3d(moments)
         return self.is_valid()
 
     def off_diagonal_moments(self) -> Vector3d:
         return Vector3d(self._rest)
 
-    def set_off_diagonal_moments(self, moments: Any) -> bool:
+    def set_off_diagonal_moments(self, moments: VectorLike) -> bool:
         self._rest = Vector3d(moments)
         return self.is_valid()
 
@@ -159,7 +159,7 @@ class MassMatrix3d:
     # ------------------------------------------------------------------ soundness
 
     @staticmethod
-    def epsilon(moments: Any, tolerance: float = TOLERANCE) -> float:
+    def epsilon(moments: VectorLike, tolerance: float = TOLERANCE) -> float:
         """What rounding may be off by [kg·m²]: `tolerance` times a double's, of half the moments' sum."""
         largest = 0.5 * sum(components_of(moments, 3))
         return abs(tolerance) * float(np.finfo(float).eps) * largest
@@ -184,7 +184,7 @@ class MassMatrix3d:
         return self.is_near_positive(tolerance) and self.valid_moments(self.principal_moments(), tolerance)
 
     @classmethod
-    def valid_moments(cls, moments: Any, tolerance: float = 0.1) -> bool:
+    def valid_moments(cls, moments: VectorLike, tolerance: float = 0.1) -> bool:
         x, y, z = components_of(moments, 3)
         slack = cls.epsilon(moments, tolerance)
         return min(x, y, z) + slack >= 0 and min(x + y - z, y + z - x, z + x - y) + slack >= 0

@@ -11,7 +11,7 @@ from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number
-from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
+from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 
 Rows = npt.NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Matrix3d:
         else:
             self._m[min(int(values[0]), 2), min(int(values[1]), 2)] = values[2]
 
-    def set_axes(self, x: Any, y: Any, z: Any) -> None:
+    def set_axes(self, x: VectorLike, y: VectorLike, z: VectorLike) -> None:
         """One axis for each column."""
         for column, axis in enumerate((x, y, z)):
             self.set_col(column, axis)
@@ -64,10 +64,10 @@ class Matrix3d:
     def set_col(self, column: int, values: Any) -> None:
         self._m[:, column] = components_of(values, 3)
 
-    def set_from_axis_angle(self, axis: Any, angle: float) -> None:
+    def set_from_axis_angle(self, axis: VectorLike, angle: float) -> None:
         self._m[:] = Matrix3d(Quaterniond(axis, angle))._m
 
-    def set_from_2_axes(self, first: Any, second: Any) -> None:
+    def set_from_2_axes(self, first: VectorLike, second: VectorLike) -> None:
         rotation = Quaterniond()
         rotation.set_from_2_axes(first, second)
         self._m[:] = Matrix3d(rotation)._m
@@ -142,7 +142,7 @@ class Matrix4d:
     def translation(self) -> Vector3d:
         return Vector3d(*self._m[:3, 3].tolist())
 
-    def set_translation(self, value: Any) -> None:
+    def set_translation(self, value: VectorLike) -> None:
         self._m[:3, 3] = components_of(value, 3)
 
     def rotation(self) -> Quaterniond:

@@ -31,7 +31,7 @@ class PID:
 
     def __init__(
         self,
-        _p: Any = 0.0,
+        _p: PID | float = 0.0,
         _i: float = 0.0,
         _d: float = 0.0,
         _imax: float = -1.0,

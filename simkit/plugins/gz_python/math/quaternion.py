@@ -8,7 +8,7 @@ from typing import Any, Final, Protocol
 
 from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, round_half_away
-from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE, Vector3d, components_of
+from simkit.plugins.gz_python.math.vectors import EQUALITY_TOLERANCE, Vector3d, VectorLike, components_of
 
 _POLE: Final = 1e-15
 _NEARLY_ONE_AXIS: Final = 1e-3
@@ -162,7 +162,7 @@ class Quaterniond:
         vector[i], vector[j], vector[k] = largest, (m[j][i] + m[i][j]) * s, (m[k][i] + m[i][k]) * s
         self._q = ((m[k][j] - m[j][k]) * s, *vector)  # type: ignore[assignment]
 
-    def set_from_2_axes(self, first: Any, second: Any) -> None:
+    def set_from_2_axes(self, first: VectorLike, second: VectorLike) -> None:
         """The shortest rotation that turns the first vector's direction into the second's."""
         a, b = Vector3d(first).normalized(), Vector3d(second).normalized()
         cosine = a.dot(b)
@@ -225,13 +225,13 @@ class Quaterniond:
     def dot(self, other: Quaterniond) -> float:
         return sum(a * b for a, b in zip(self._q, other._q, strict=True))
 
-    def rotate_vector(self, vector: Any) -> Vector3d:
+    def rotate_vector(self, vector: VectorLike) -> Vector3d:
         """The vector turned by this rotation."""
         x, y, z = components_of(vector, 3)
         product = self * Quaterniond(0.0, x, y, z) * self.inverse()
         return Vector3d(*product._q[1:])
 
-    def rotate_vector_reverse(self, vector: Any) -> Vector3d:
+    def rotate_vector_reverse(self, vector: VectorLike) -> Vector3d:
         """The vector turned by the opposite rotation."""
         return self.inverse().rotate_vector(vector)
 
@@ -244,7 +244,7 @@ class Quaterniond:
     def z_axis(self) -> Vector3d:
         return self.rotate_vector((0.0, 0.0, 1.0))
 
-    def integrate(self, angular_velocity: Any, dt: float) -> Quaterniond:
+    def integrate(self, angular_velocity: VectorLike, dt: float) -> Quaterniond:
         """After turning at a constant angular velocity [rad/s], in fixed axes, for `dt` [s]."""
         half = Vector3d(angular_velocity) * (dt * 0.5)
         angle = half.length()

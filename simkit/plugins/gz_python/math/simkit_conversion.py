@@ -3,14 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Protocol
 
 from simkit.plugins.gz_python.math.pose import Pose3d
-from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
-from simkit.pose import Pose
+from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
+from simkit.pose import Pose, Vector
 
 
-def simkit_pose(value: Any) -> Pose:
+class QuaternionLike(Protocol):
+    """A quaternion of gz-math's kind."""
+
+    def w(self) -> float: ...
+
+    def x(self) -> float: ...
+
+    def y(self) -> float: ...
+
+    def z(self) -> float: ...
+
+
+class PoseLike(Protocol):
+    """A pose of gz-math's kind, of simkit's or of another library."""
+
+    def pos(self) -> VectorLike: ...
+
+    def rot(self) -> QuaternionLike: ...
+
+
+def simkit_pose(value: PoseLike) -> Pose:
     """simkit's pose of one of gz-math's kind."""
     rotation = value.rot()
     return Pose(three_numbers(value.pos()), (rotation.w(), rotation.x(), rotation.y(), rotation.z()))
@@ -20,13 +40,13 @@ def gz_pose(pose: Pose) -> Pose3d:
     return Pose3d(*pose.position.tolist(), *pose.quaternion.tolist())
 
 
-def three_numbers(value: Any) -> tuple[float, float, float]:
+def three_numbers(value: VectorLike) -> tuple[float, float, float]:
     """Three numbers of a vector of gz-math's kind or a sequence."""
     x, y, z = components_of(value, 3)
     return x, y, z
 
 
-def gz_vector(values: Any) -> Vector3d:
+def gz_vector(values: Sequence[float] | Vector) -> Vector3d:
     return Vector3d(*(float(v) for v in values))
 
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from simkit.plugins.gz_python.math.angle import Angle
-from simkit.plugins.gz_python.math.vectors import Vector3d, components_of
+from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike, components_of
 from simkit.scene import SphericalCoordinates as Place
 from simkit.sensors.environment.geodesy import WorldOnPlanet
 
@@ -134,7 +134,7 @@ class SphericalCoordinates:
 
     # ------------------------------------------------------------------ conversions
 
-    def _place(self) -> Any:
+    def _place(self) -> WorldOnPlanet:
         return WorldOnPlanet(
             Place(
                 float(self._latitude),
@@ -147,26 +147,26 @@ class SphericalCoordinates:
             )
         )
 
-    def spherical_from_local_position(self, position: Any) -> Vector3d:
+    def spherical_from_local_position(self, position: VectorLike) -> Vector3d:
         """Latitude [°], longitude [°] and height [m] of a position in the world [m]."""
         latitude, longitude, height = self.position_transform(position, Coordinates.LOCAL, Coordinates.SPHERICAL)
         return Vector3d(math.degrees(latitude), math.degrees(longitude), height)
 
-    def local_from_spherical_position(self, position: Any) -> Vector3d:
+    def local_from_spherical_position(self, position: VectorLike) -> Vector3d:
         """Position in the world [m] of latitude [°], longitude [°] and height [m]."""
         latitude, longitude, height = components_of(position, 3)
         spherical = Vector3d(math.radians(latitude), math.radians(longitude), height)
         return self.position_transform(spherical, Coordinates.SPHERICAL, Coordinates.LOCAL)
 
-    def global_from_local_velocity(self, velocity: Any) -> Vector3d:
+    def global_from_local_velocity(self, velocity: VectorLike) -> Vector3d:
         """East, north, up [m/s] of a velocity in the world."""
         return self.velocity_transform(velocity, Coordinates.LOCAL, Coordinates.GLOBAL)
 
-    def local_from_global_velocity(self, velocity: Any) -> Vector3d:
+    def local_from_global_velocity(self, velocity: VectorLike) -> Vector3d:
         """In the world, of a velocity east, north, up [m/s]."""
         return self.velocity_transform(velocity, Coordinates.GLOBAL, Coordinates.LOCAL)
 
-    def position_transform(self, position: Any, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
+    def position_transform(self, position: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
         """Between spherical (rad, rad, m), the planet's axes, east-north-up and the world's own axes [m]."""
         place, point = self._place(), np.array(components_of(position, 3))
         level, start, end = self._level(place), Coordinates(from_type), Coordinates(to_type)
@@ -182,7 +182,7 @@ class SphericalCoordinates:
             point = axes.T @ (point - place.origin)
         return Vector3d(*point.tolist())
 
-    def velocity_transform(self, velocity: Any, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
+    def velocity_transform(self, velocity: VectorLike, from_type: Coordinates, to_type: Coordinates) -> Vector3d:
         """Between the planet's axes, east-north-up and the world's axes [m/s].
 
         Raises:

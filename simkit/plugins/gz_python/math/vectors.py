@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator
-from typing import Any, ClassVar, Final, TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, ClassVar, Final, Protocol, TypeAlias, TypeVar
+
+import numpy as np
+import numpy.typing as npt
 
 from simkit.plugins.gz_python.math.class_constant import ClassConstant
 from simkit.plugins.gz_python.math.scalars import DEFAULT_TOLERANCE, format_number, round_half_away
@@ -15,7 +18,19 @@ EQUALITY_TOLERANCE: Final = 1e-3
 """How far components may be apart of vectors, quaternions and angles that `==` calls equal."""
 
 
-def components_of(value: Any, size: int) -> tuple[float, ...]:
+class HasComponents(Protocol):
+    """A vector of another library of gz-math's kind."""
+
+    def x(self) -> float: ...
+
+    def y(self) -> float: ...
+
+
+VectorLike: TypeAlias = "Vector | HasComponents | Sequence[float] | npt.NDArray[np.float64]"
+"""What functions of gz-math take for a vector."""
+
+
+def components_of(value: VectorLike, size: int) -> tuple[float, ...]:
     """The components of a vector of ours, of another library's `x()`, `y()`, … kind, or of a sequence.
 
     Raises:
@@ -26,7 +41,7 @@ def components_of(value: Any, size: int) -> tuple[float, ...]:
     elif callable(getattr(value, "x", None)):
         found = tuple(float(getattr(value, axis)()) for axis in "xyzw"[:size])
     else:
-        found = tuple(float(v) for v in value)
+        found = tuple(float(v) for v in value)  # type: ignore[union-attr]
     if len(found) != size:
         raise TypeError(f"a vector of {size} numbers is needed, got {value!r}")
     return found
@@ -41,7 +56,7 @@ class Vector:
     """
 
     SIZE: ClassVar[int]
-    NUMBER: ClassVar[Callable[[Any], Any]] = float
+    NUMBER: ClassVar[type[float] | type[int]] = float
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, *values: Any) -> None:
@@ -50,21 +65,21 @@ class Vector:
         if values and len(values) != self.SIZE:
             raise TypeError(f"{type(self).__name__} takes {self.SIZE} numbers, got {len(values)}")
         number = type(self).NUMBER
-        self._v: list[Any] = [number(v) for v in values] if values else [number(0)] * self.SIZE
+        self._v: list[float] = [number(v) for v in values] if values else [number(0)] * self.SIZE
 
     # ------------------------------------------------------------------ components
 
-    def _component(self, index: int, value: tuple[Any, ...]) -> Any:
+    def _component(self, index: int, value: tuple[float, ...]) -> float:
         if value:
             self._v[index] = type(self).NUMBER(value[0])
-            return None
+            return None  # type: ignore[return-value]  # who sets a component takes nothing
         return self._v[index]
 
-    def x(self, *value: float) -> Any:
+    def x(self, *value: float) -> float:
         """The first component; with an argument, sets it."""
         return self._component(0, value)
 
-    def y(self, *value: float) -> Any:
+    def y(self, *value: float) -> float:
         """The second component; with an argument, sets it."""
         return self._component(1, value)
 
@@ -79,7 +94,7 @@ class Vector:
         padded = [*values, *[0] * (self.SIZE - len(values))]
         self._v[:] = [type(self).NUMBER(v) for v in padded]
 
-    def __getitem__(self, index: int) -> Any:
+    def __getitem__(self, index: int) -> float:
         if not 0 <= index < self.SIZE:
             raise IndexError(f"{type(self).__name__} has components 0 to {self.SIZE - 1}, not {index}")
         return self._v[index]
@@ -89,7 +104,7 @@ class Vector:
             raise IndexError(f"{type(self).__name__} has components 0 to {self.SIZE - 1}, not {index}")
         self._v[index] = type(self).NUMBER(value)
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[float]:
         return iter(tuple(self._v))
 
     def __len__(self) -> int:
@@ -97,7 +112,7 @@ class Vector:
 
     # ------------------------------------------------------------------ arithmetic, by components
 
-    def _with(self: V, other: Any, operation: Callable[[Any, Any], Any]) -> V:
+    def _with(self: V, other: VectorLike | float, operation: Callable[[float, float], float]) -> V:
         if isinstance(other, (int, float)):
             return type(self)(*(operation(a, other) for a in self._v))
         if isinstance(other, Vector) or callable(getattr(other, "x", None)):
@@ -105,34 +120,34 @@ class Vector:
         refused: V = NotImplemented
         return refused
 
-    def __add__(self: V, other: Any) -> V:
+    def __add__(self: V, other: VectorLike | float) -> V:
         return self._with(other, operator.add)
 
-    def __sub__(self: V, other: Any) -> V:
+    def __sub__(self: V, other: VectorLike | float) -> V:
         return self._with(other, operator.sub)
 
-    def __mul__(self: V, other: Any) -> V:
+    def __mul__(self: V, other: VectorLike | float) -> V:
         return self._with(other, operator.mul)
 
-    def __truediv__(self: V, other: Any) -> V:
+    def __truediv__(self: V, other: VectorLike | float) -> V:
         return self._with(other, _divide)
 
-    def __iadd__(self: V, other: Any) -> V:
+    def __iadd__(self: V, other: VectorLike | float) -> V:
         return self._take(self + other)
 
-    def __isub__(self: V, other: Any) -> V:
+    def __isub__(self: V, other: VectorLike | float) -> V:
         return self._take(self - other)
 
-    def __imul__(self: V, other: Any) -> V:
+    def __imul__(self: V, other: VectorLike | float) -> V:
         return self._take(self * other)
 
-    def __itruediv__(self: V, other: Any) -> V:
+    def __itruediv__(self: V, other: VectorLike | float) -> V:
         return self._take(self / other)
 
-    def __rmul__(self: V, other: Any) -> V:
+    def __rmul__(self: V, other: VectorLike | float) -> V:
         return self._with(other, operator.mul)
 
-    def __radd__(self: V, other: Any) -> V:
+    def __radd__(self: V, other: VectorLike | float) -> V:
         return self._with(other, operator.add)
 
     def __neg__(self: V) -> V:
@@ -145,23 +160,23 @@ class Vector:
 
     # ------------------------------------------------------------------ measures
 
-    def sum(self) -> Any:
+    def sum(self) -> float:
         return sum(self._v)
 
-    def dot(self, other: Any) -> Any:
+    def dot(self, other: VectorLike) -> float:
         return sum(a * b for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
-    def abs_dot(self, other: Any) -> Any:
+    def abs_dot(self, other: VectorLike) -> float:
         """The sum of the products' magnitudes."""
         return sum(abs(a * b) for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
-    def squared_length(self) -> Any:
+    def squared_length(self) -> float:
         return sum(a * a for a in self._v)
 
     def length(self) -> float:
         return math.sqrt(self.squared_length())
 
-    def distance(self, *other: Any) -> float:
+    def distance(self, *other: VectorLike | float) -> float:
         """To another point, given as a vector or by its components."""
         return (self - type(self)(*other)).length()
 
@@ -189,14 +204,14 @@ class Vector:
         copy.round()
         return copy
 
-    def max(self, *other: Any) -> Any:
+    def max(self, *other: VectorLike) -> float | None:
         """The largest component; with a vector, takes the larger of each pair."""
         if not other:
             return max(self._v)
         self._v[:] = [max(a, b) for a, b in zip(self._v, components_of(other[0], self.SIZE), strict=True)]
         return None
 
-    def min(self, *other: Any) -> Any:
+    def min(self, *other: VectorLike) -> float | None:
         """The smallest component; with a vector, takes the smaller of each pair."""
         if not other:
             return min(self._v)
@@ -212,7 +227,7 @@ class Vector:
 
     # ------------------------------------------------------------------ equality and text
 
-    def equal(self, other: Any, tolerance: float = EQUALITY_TOLERANCE) -> bool:
+    def equal(self, other: VectorLike, tolerance: float = EQUALITY_TOLERANCE) -> bool:
         """Whether every component is within a tolerance."""
         return all(abs(a - b) <= tolerance for a, b in zip(self._v, components_of(other, self.SIZE), strict=True))
 
@@ -227,7 +242,7 @@ class Vector:
     def __deepcopy__(self: V, memo: dict[int, object]) -> V:
         return type(self)(*self._v)
 
-    def __reduce__(self: V) -> tuple[type[V], tuple[Any, ...]]:
+    def __reduce__(self: V) -> tuple[type[V], tuple[float, ...]]:
         return (type(self), tuple(self._v))
 
     def __repr__(self) -> str:
@@ -260,14 +275,14 @@ class Vector3d(Vector):
     UNIT_Z = ClassConstant(0, 0, 1)
     NAN = ClassConstant(math.nan, math.nan, math.nan)
 
-    def z(self, *value: float) -> Any:
+    def z(self, *value: float) -> float:
         """The third component; with an argument, sets it."""
         return self._component(2, value)
 
     def set_z(self, value: float) -> None:
         self._component(2, (value,))
 
-    def cross(self: V, other: Any) -> V:
+    def cross(self: V, other: VectorLike) -> V:
         ax, ay, az = self._v
         bx, by, bz = components_of(other, 3)
         return type(self)(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
@@ -278,12 +293,12 @@ class Vector3d(Vector):
         return found if found.squared_length() >= DEFAULT_TOLERANCE**2 else Vector3d.cross(self, (0.0, 1.0, 0.0))
 
     @classmethod
-    def normal(cls, a: Any, b: Any, c: Any) -> Vector3d:
+    def normal(cls, a: VectorLike, b: VectorLike, c: VectorLike) -> Vector3d:
         """The unit normal of a triangle, by the right hand."""
         first, second, third = cls(a), cls(b), cls(c)
         return (second - first).cross(third - first).normalize()
 
-    def dist_to_line(self, a: Any, b: Any) -> float:
+    def dist_to_line(self, a: VectorLike, b: VectorLike) -> float:
         """To the endless line through two points."""
         first, second = Vector3d(a), Vector3d(b)
         here = Vector3d(*self._v)
@@ -298,11 +313,11 @@ class Vector4d(Vector):
     ONE = ClassConstant(1, 1, 1, 1)
     NAN = ClassConstant(math.nan, math.nan, math.nan, math.nan)
 
-    def z(self, *value: float) -> Any:
+    def z(self, *value: float) -> float:
         """The third component; with an argument, sets it."""
         return self._component(2, value)
 
-    def w(self, *value: float) -> Any:
+    def w(self, *value: float) -> float:
         """The fourth component; with an argument, sets it."""
         return self._component(3, value)
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from enum import IntEnum
 from typing import Any, Final
 
 from simkit.plugins.gz_python.math.inertia import Inertiald as _Inertiald
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
+from simkit.plugins.gz_python.math.pose import Pose3d as _Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import simkit_pose, three_numbers
 from simkit.plugins.gz_python.sim.entity_table import EntityRecord
 from simkit.plugins.gz_python.sim.entity_view import EntityView
@@ -86,7 +87,7 @@ def _reader_for_kinds(kinds: tuple[str, ...], read: _Reader) -> _Reader:
     return lambda ecm, record: read(ecm, record) if record.kind in kinds else None
 
 
-def _local_pose(ecm: EntityView, record: EntityRecord) -> Any:
+def _local_pose(ecm: EntityView, record: EntityRecord) -> _Pose3d | None:
     """In the frame of the entity it is in."""
     if record.kind == "joint":
         return _Joint(record.entity).pose(ecm)
@@ -102,7 +103,7 @@ def _in_link_axes(read: Callable[[_Link, EntityView], Any]) -> _Reader:
     return turned
 
 
-def _inertial(ecm: EntityView, record: EntityRecord) -> Any:
+def _inertial(ecm: EntityView, record: EntityRecord) -> _Inertiald | None:
     link, pose = _Link(record.entity).world_inertial(ecm), _Link(record.entity).world_pose(ecm)
     if link is None or pose is None:
         return None
@@ -162,7 +163,7 @@ _ENABLING_COMPONENTS: Final = {
 """Component -> reading that its making turns on."""
 
 
-def _numbers(data: Any) -> tuple[float, ...]:
+def _numbers(data: Iterable[float]) -> tuple[float, ...]:
     return tuple(float(v) for v in data)
 
 
@@ -193,13 +194,13 @@ COMPONENT_NAMES: Final = (*_READERS, *_TAG_READERS, *_COMMANDS)
 """Components of gz-sim that are known here."""
 
 
-def _check_component(kind: Any) -> ComponentProxy:
+def _check_component(kind: ComponentProxy) -> ComponentProxy:
     if not isinstance(kind, ComponentProxy):
         raise TypeError(f"a component such as components.Pose is needed, got {kind!r}")
     return kind
 
 
-def read_component(ecm: EntityView, entity: int, kind: Any) -> Any:
+def read_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> Any:
     """The data of a component; of a tag the tag itself; None where the entity has none."""
     proxy = _check_component(kind)
     kept = ecm.custom.get(proxy.name, {})
@@ -216,7 +217,7 @@ def read_component(ecm: EntityView, entity: int, kind: Any) -> Any:
     return reader(ecm, record) if reader is not None else None
 
 
-def write_component(ecm: EntityView, entity: int, kind: Any, *data: Any) -> None:
+def write_component(ecm: EntityView, entity: int, kind: ComponentProxy, *data: Any) -> None:
     """Gives a component, or a command where it is one.
 
     Raises:
@@ -258,7 +259,7 @@ def _read_only_error(proxy: ComponentProxy, record: EntityRecord) -> NotImplemen
     return NotImplementedError(f"{what} is what the simulation says; use a command such as WorldPoseCmd")
 
 
-def mark_changed(ecm: EntityView, entity: int, kind: Any) -> None:
+def mark_changed(ecm: EntityView, entity: int, kind: ComponentProxy) -> None:
     """Takes note that data was changed in place, which is all where it was given from here.
 
     Raises:
@@ -269,7 +270,7 @@ def mark_changed(ecm: EntityView, entity: int, kind: Any) -> None:
         raise _read_only_error(proxy, record)
 
 
-def remove_component(ecm: EntityView, entity: int, kind: Any) -> bool:
+def remove_component(ecm: EntityView, entity: int, kind: ComponentProxy) -> bool:
     """Takes away a component that was given; whether it was there."""
     proxy = _check_component(kind)
     if proxy.name in _COMMANDS and getattr(ecm.commands, _COMMANDS[proxy.name][1]).pop(entity, None) is not None:
@@ -298,7 +299,7 @@ class ComponentCursor:
         return iter((self.entity, tuple(self.components)))
 
 
-def each_entity(ecm: EntityView, kinds: list[Any]) -> Iterator[ComponentCursor]:
+def each_entity(ecm: EntityView, kinds: list[ComponentProxy]) -> Iterator[ComponentCursor]:
     """Every entity that has them all, by number; the same cursor each time."""
     proxies, cursor = [_check_component(kind) for kind in kinds], ComponentCursor()
     for record in list(ecm.sync()):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
@@ -66,31 +66,31 @@ class EntityComponentManager(EntityView):
         record.parent = parent
         return True
 
-    def component(self, entity: int, kind: Any) -> Any:
+    def component(self, entity: int, kind: components.ComponentProxy) -> Any:
         """The data of a component; None where the entity has none."""
         return components.read_component(self, entity, kind)
 
     component_data = component  # its name in later versions
 
-    def create_component(self, entity: int, kind: Any, *data: Any) -> None:
+    def create_component(self, entity: int, kind: components.ComponentProxy, *data: Any) -> None:
         """Gives an entity a component, or other data to the one it has."""
         components.write_component(self, entity, kind, *data)
 
-    def set_component_data(self, entity: int, kind: Any, data: Any, compare: bool = True) -> bool:
+    def set_component_data(self, entity: int, kind: components.ComponentProxy, data: Any, compare: bool = True) -> bool:
         """Other data for a component; False where it had the same and `compare`."""
         if compare and self.component(entity, kind) == data:
             return False
         self.create_component(entity, kind, data)
         return True
 
-    def entity_has_component_type(self, entity: int, kind: Any) -> bool:
+    def entity_has_component_type(self, entity: int, kind: components.ComponentProxy) -> bool:
         return self.component(entity, kind) is not None
 
-    def remove_component(self, entity: int, kind: Any) -> bool:
+    def remove_component(self, entity: int, kind: components.ComponentProxy) -> bool:
         """Takes a component away that was given from here; whether it was there."""
         return components.remove_component(self, entity, kind)
 
-    def set_changed(self, entity: int, kind: Any, state: Any = None) -> None:
+    def set_changed(self, entity: int, kind: components.ComponentProxy, state: object = None) -> None:
         """Says that the data of a component was changed in place.
 
         Raises:
@@ -98,11 +98,11 @@ class EntityComponentManager(EntityView):
         """
         components.mark_changed(self, entity, kind)
 
-    def each(self, kinds: Any) -> Iterator[Any]:
+    def each(self, kinds: Iterable[components.ComponentProxy]) -> Iterator[components.ComponentCursor]:
         """Entities that have every one of some components: `.entity`, `.components`; one object moves along."""
         return components.each_entity(self, list(kinds))
 
-    def each_data(self, *kinds: Any) -> list[tuple[Any, ...]]:
+    def each_data(self, *kinds: components.ComponentProxy) -> list[tuple[Any, ...]]:
         """The same as a list, as later versions have it: (entity, data, data, …)."""
         return [(item.entity, *item.components) for item in self.each(kinds)]
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from simkit.scene import SceneLink, SceneModel
+from simkit.scene import SceneLink, SceneModel, SceneWorld
 
 K_NULL_ENTITY: Final = 0
 """No entity; the name is gz-sim's."""
@@ -35,7 +35,7 @@ class EntityRecord:
     entity: int
     kind: str
     name: str
-    scene: Any
+    scene: Any  # the scene's dataclass of the kind
     parent: int
     children: list[int] = field(default_factory=list)
     handle: Any = None
@@ -50,7 +50,7 @@ class EntityTable:
 
     def __init__(self) -> None:
         self.records: dict[int, EntityRecord] = {}
-        self.numbers: dict[Key, tuple[int, Any]] = {}
+        self.numbers: dict[Key, tuple[int, object]] = {}
         self.next = FIRST_ENTITY
 
     def make(self, parent: int = 0) -> EntityRecord:
@@ -60,7 +60,7 @@ class EntityTable:
         self.next += 1
         return record
 
-    def rebuild(self, world: Any, models: list[SceneModel]) -> None:
+    def rebuild(self, world: SceneWorld, models: list[SceneModel]) -> None:
         """Takes what is there now; entities made by hand stay."""
         own = [record for record in self.records.values() if not record.kind]
         self.records = {WORLD_ENTITY: EntityRecord(WORLD_ENTITY, "world", world.name, world, 0)}

@@ -11,7 +11,7 @@ from simkit.plugins.gz_python.sim.entity_table import EntityRecord, EntityTable
 from simkit.plugins.gz_python.sim.physics_commands import PhysicsCommands
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Simulation, WorldStructure
 
 
 class EntityView:
@@ -26,19 +26,23 @@ class EntityView:
         checks: readings that are turned on: (entity, reading) -> the tick at which each was.
         values: what is set of actors, by entity and name.
         custom: data of components made by hand, by component and entity.
+        hub: what the systems of the simulation share; None before there is one.
+        warned: warnings that were given, which are given once each.
         published: of a simulation, the joints whose state a plugin of gz publishes, by scoped name.
     """
 
     def __init__(self, sim: Simulation | None = None) -> None:
         self._sim: weakref.ref[Simulation] | None = weakref.ref(sim) if sim is not None else None
-        self._structure: Any = None
+        self.hub: object = None
+        self.warned: set[tuple[str, str]] = set()
+        self._structure: WorldStructure | None = None
         self.table = EntityTable()
         self.commands = PhysicsCommands()
         self.checks: dict[tuple[int, str], int] = {}
-        self.values: dict[tuple[int, str], Any] = {}
+        self.values: dict[tuple[int, str], object] = {}
         self.custom: dict[str, dict[int, Any]] = {}
-        self.published: Callable[[Any], frozenset[str]] = lambda _: frozenset()
-        self._published: tuple[Any, frozenset[int]] = (None, frozenset())
+        self.published: Callable[[Simulation], frozenset[str]] = lambda _: frozenset()
+        self._published: tuple[WorldStructure | None, frozenset[int]] = (None, frozenset())
 
     # ------------------------------------------------------------------ the simulation behind it
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import gz_pose
+from simkit.plugins.gz_python.math.vectors import HasComponents
 from simkit.plugins.gz_python.msgs import message_class
+from simkit.plugins.gz_python.msgs.message import Message
 from simkit.plugins.gz_python.sdformat import JointAxis, JointType
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
 from simkit.plugins.gz_python.sim.entity_view import EntityView
@@ -108,7 +109,7 @@ class Joint(EntityHandle):
         values: list[float] = np.atleast_1d(getattr(joint, what)).tolist() if is_read else []
         return values
 
-    def transmitted_wrench(self, ecm: EntityView) -> list[Any] | None:
+    def transmitted_wrench(self, ecm: EntityView) -> list[Message] | None:
         """One `gz.msgs` Wrench: force [N] and torque [N·m] by the parent on the child, in the joint frame."""
         is_read, joint = self._reading(ecm, _WRENCH), self._handle(ecm)
         if is_read is None or joint is None:
@@ -146,21 +147,21 @@ class Joint(EntityHandle):
         if self.valid(ecm):
             ecm.commands.velocity_reset[self._entity] = self._numbers(velocities)
 
-    def set_position_limits(self, ecm: EntityView, limits: Sequence[Any]) -> None:
+    def set_position_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
         """(lower, upper) [rad or m] for each axis, as `Vector2d`."""
         self._limit(ecm, "position", limits)
 
     set_position_imits = set_position_limits  # so it is spelled in gz-sim 8
 
-    def set_velocity_limits(self, ecm: EntityView, limits: Sequence[Any]) -> None:
+    def set_velocity_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
         """The larger magnitude of each pair [rad/s or m/s] counts."""
         self._limit(ecm, "velocity", limits)
 
-    def set_effort_limits(self, ecm: EntityView, limits: Sequence[Any]) -> None:
+    def set_effort_limits(self, ecm: EntityView, limits: Sequence[HasComponents]) -> None:
         """The larger magnitude of each pair [N·m or N] counts."""
         self._limit(ecm, "effort", limits)
 
-    def _limit(self, ecm: EntityView, what: str, limits: Sequence[Any]) -> None:
+    def _limit(self, ecm: EntityView, what: str, limits: Sequence[HasComponents]) -> None:
         if self.valid(ecm):
             pairs = tuple((float(one.x()), float(one.y())) for one in limits)
             ecm.commands.limits[self._entity, what] = pairs

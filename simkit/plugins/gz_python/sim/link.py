@@ -4,9 +4,8 @@ bounding boxes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -15,13 +14,14 @@ from simkit.plugins.gz_python.math.inertia import Inertiald, MassMatrix3d
 from simkit.plugins.gz_python.math.matrices import Matrix3d
 from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.simkit_conversion import cross_product, gz_pose, gz_vector, three_numbers
-from simkit.plugins.gz_python.math.vectors import Vector3d
+from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 from simkit.plugins.gz_python.sim.model import Model
-from simkit.pose import Pose
+from simkit.pose import Pose, Vector
 
 if TYPE_CHECKING:
+    from simkit.runtime import Link as RuntimeLink
     from simkit.runtime import Simulation
 
 
@@ -47,8 +47,8 @@ def box_at_pose(box: AxisAlignedBox, pose: Pose) -> AxisAlignedBox:
     return _box_around(pose, (low + high) / 2, (high - low) / 2) if (low <= high).all() else AxisAlignedBox()
 
 
-def _box_around(pose: Pose, centre: Any, half: Any) -> AxisAlignedBox:
-    corners: Sequence[Any] = [pose @ Pose(centre + np.array(signs) * half) for signs in _CORNERS]
+def _box_around(pose: Pose, centre: Vector, half: Vector) -> AxisAlignedBox:
+    corners = [pose @ Pose(centre + np.array(signs) * half) for signs in _CORNERS]
     points = np.array([corner.position for corner in corners])
     return AxisAlignedBox(Vector3d(*points.min(axis=0).tolist()), Vector3d(*points.max(axis=0).tolist()))
 
@@ -140,7 +140,7 @@ class Link(EntityHandle):
         if self.valid(ecm):
             ecm.enable(self._entity, _ACCELERATION, enable)
 
-    def world_linear_velocity(self, ecm: EntityView, offset: Any = None) -> Vector3d | None:
+    def world_linear_velocity(self, ecm: EntityView, offset: VectorLike | None = None) -> Vector3d | None:
         """[m/s] of the origin, or of the point at `offset` [m] in the link frame."""
         is_read = self._reading(ecm, _VELOCITY)
         link = self._handle(ecm)
@@ -211,7 +211,7 @@ class Link(EntityHandle):
 
     # ------------------------------------------------------------------ commands
 
-    def set_linear_velocity(self, ecm: EntityView, velocity: Any) -> None:
+    def set_linear_velocity(self, ecm: EntityView, velocity: VectorLike) -> None:
         """Velocity [m/s] in the link's axes, which what it moves freely with has at the start of the next step.
 
         As in gz-sim it is then 0 at the start of every step after that, unless it is set again.
@@ -219,12 +219,12 @@ class Link(EntityHandle):
         if self.valid(ecm):
             ecm.commands.linear[self._entity] = three_numbers(velocity)
 
-    def set_angular_velocity(self, ecm: EntityView, velocity: Any) -> None:
+    def set_angular_velocity(self, ecm: EntityView, velocity: VectorLike) -> None:
         """The same of the turning [rad/s], in the link's axes."""
         if self.valid(ecm):
             ecm.commands.angular[self._entity] = three_numbers(velocity)
 
-    def add_world_force(self, ecm: EntityView, force: Any, position: Any = None) -> None:
+    def add_world_force(self, ecm: EntityView, force: VectorLike, position: VectorLike | None = None) -> None:
         """Force [N] in world axes for the next step, at the centre of mass or at an offset [m] from it in link axes."""
         link = self._handle(ecm)
         if link is None:
@@ -235,13 +235,15 @@ class Link(EntityHandle):
         about = cross_product(link.pose.rotate(own).tolist(), pushed) if any(own) else (0.0, 0.0, 0.0)
         ecm.commands.add_wrench(self._entity, pushed, about)
 
-    def add_link_force(self, ecm: EntityView, force: Any, position: Any = None) -> None:
+    def add_link_force(self, ecm: EntityView, force: VectorLike, position: VectorLike | None = None) -> None:
         """The same with the force in the link's axes."""
         link = self._handle(ecm)
         if link is not None:
             self.add_world_force(ecm, link.pose.rotate(three_numbers(force)).tolist(), position)
 
-    def add_world_wrench(self, ecm: EntityView, force: Any, torque: Any, offset: Any = None) -> None:
+    def add_world_wrench(
+        self, ecm: EntityView, force: VectorLike, torque: VectorLike, offset: VectorLike | None = None
+    ) -> None:
         """Force [N] and torque [N·m] in world axes for the next step, at the link's origin or at an offset from it."""
         link = self._handle(ecm)
         if link is None:
@@ -253,7 +255,7 @@ class Link(EntityHandle):
             ecm.commands.add_wrench(self._entity, (0.0, 0.0, 0.0), cross_product(arm, pushed))
 
 
-def _angular_acceleration(ecm: EntityView, link: Any) -> Any:
+def _angular_acceleration(ecm: EntityView, link: RuntimeLink) -> Vector:
     """[rad/s²] in world axes, shape (3,)."""
     import mujoco
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from simkit.plugins.gz_python.math.simkit_conversion import simkit_pose
+from simkit.plugins.gz_python.math.simkit_conversion import PoseLike, simkit_pose
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
 from simkit.plugins.gz_python.sim.entity_table import K_NULL_ENTITY, WORLD_ENTITY
 from simkit.plugins.gz_python.sim.entity_view import EntityView
@@ -70,7 +68,7 @@ class Model(EntityHandle):
         wanted = record.scene.canonical_link
         return next((r.entity for r in ecm.sync() if r.kind == "link" and r.scene.scoped == wanted), K_NULL_ENTITY)
 
-    def set_world_pose_cmd(self, ecm: EntityView, pose: Any) -> None:
+    def set_world_pose_cmd(self, ecm: EntityView, pose: PoseLike) -> None:
         """Puts the model at a pose in the world, before the next step.
 
         A nested model stays where it is, as in gz-sim, and a warning says so.
@@ -80,16 +78,10 @@ class Model(EntityHandle):
             return
         if record.parent != WORLD_ENTITY:
             sim = ecm.simulation
-            if ("nested", record.scene.scoped) not in _warned_models(ecm):
-                _warned_models(ecm).add(("nested", record.scene.scoped))
+            if ("nested", record.scene.scoped) not in ecm.warned:
+                ecm.warned.add(("nested", record.scene.scoped))
                 message = f"set_world_pose_cmd of the nested model {record.scene.scoped!r} has no effect"
                 outer = record.scene.scoped.split("::")[0]
                 sim.reports.warning("SK-PLUGIN-085", message, record.scene.where, f"set the pose of {outer!r}")
             return
         ecm.commands.pose[self._entity] = simkit_pose(pose)
-
-
-def _warned_models(ecm: EntityView) -> set[Any]:
-    """What has been said already of a simulation."""
-    told: set[Any] = vars(ecm).setdefault("_said", set())
-    return told

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.plugins.gz_python.math.simkit_conversion import cross_product
-from simkit.pose import Pose, quat_conjugate, quat_rotate
+from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Joint, Link, Simulation
 
 Numbers = tuple[float, ...]
 FindHandle = Callable[[int, str], Any]
@@ -109,7 +109,7 @@ class PhysicsCommands:
                 kept[entity] = (0.0,) * len(values)
 
 
-def _first_numbers(values: Numbers, count: int, otherwise: Any) -> Any:
+def _first_numbers(values: Numbers, count: int, otherwise: float | Vector) -> float | Numbers:
     """As many of the values as a joint has degrees of freedom; those missing are what they are."""
     if len(values) >= count:
         return float(values[0]) if count == 1 else values[:count]
@@ -117,7 +117,7 @@ def _first_numbers(values: Numbers, count: int, otherwise: Any) -> Any:
     return (*values, *rest[len(values) :].tolist())
 
 
-def _set_limit(joint: Any, what: str, bounds: tuple[Numbers, ...]) -> None:
+def _set_limit(joint: Joint, what: str, bounds: tuple[Numbers, ...]) -> None:
     """Sets a joint's limits, of every axis the same as simkit's handle takes them: of the first."""
     if not bounds:
         return
@@ -130,7 +130,7 @@ def _set_limit(joint: Any, what: str, bounds: tuple[Numbers, ...]) -> None:
         joint.effort_limit = max(abs(lower), abs(upper))
 
 
-def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Any, Pose] | None:
+def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Link, Pose] | None:
     """The link that carries what a model or link moves with, and the frame its velocity is given in.
 
     None where nothing of it is free.
@@ -153,7 +153,7 @@ def _free_root(sim: Simulation, entity: int, handle: FindHandle) -> tuple[Any, P
     return None
 
 
-def _set_link_velocity(sim: Simulation, link: Any, frame: Pose, part: str, velocity: Numbers) -> None:
+def _set_link_velocity(sim: Simulation, link: Link, frame: Pose, part: str, velocity: Numbers) -> None:
     """Gives a free link a linear or an angular velocity; the other part stays."""
     from simkit.runtime.engine.physics import VELOCITY
 
@@ -171,7 +171,7 @@ def _set_link_velocity(sim: Simulation, link: Any, frame: Pose, part: str, veloc
     sim.physics.changed_body(VELOCITY, binding.body)
 
 
-def _set_angular_velocities(sim: Simulation, turned: list[tuple[Any, Numbers]]) -> None:
+def _set_angular_velocities(sim: Simulation, turned: list[tuple[Joint, Numbers]]) -> None:
     """Applies the efforts, within their limits, that bring joints to velocities within one step, contacts aside.
 
     With the acceleration a without them, the inertia I that they feel at these degrees of freedom and the damping D,

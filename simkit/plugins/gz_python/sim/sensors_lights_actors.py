@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 from simkit.plugins.gz_python.math.angle import Angle
 from simkit.plugins.gz_python.math.color import Color
 from simkit.plugins.gz_python.math.pose import Pose3d
-from simkit.plugins.gz_python.math.simkit_conversion import gz_pose, gz_vector, simkit_pose
-from simkit.plugins.gz_python.math.vectors import Vector3d
+from simkit.plugins.gz_python.math.simkit_conversion import PoseLike, gz_pose, gz_vector, simkit_pose
+from simkit.plugins.gz_python.math.vectors import Vector3d, VectorLike
 from simkit.plugins.gz_python.sim.entity_handle import EntityHandle
 from simkit.plugins.gz_python.sim.entity_view import EntityView
 
@@ -55,7 +55,7 @@ class Actor(EntityHandle):
         """What was set, seen from `pose`; None before."""
         return self._kept(ecm, "trajectory_pose", Pose3d)
 
-    def set_trajectory_pose(self, ecm: EntityView, pose: Any) -> None:
+    def set_trajectory_pose(self, ecm: EntityView, pose: PoseLike) -> None:
         self._keep(ecm, "trajectory_pose", gz_pose(simkit_pose(pose)))
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
@@ -79,14 +79,14 @@ class Actor(EntityHandle):
     def bone_transforms(self, ecm: EntityView) -> dict[str, Pose3d] | None:
         return self._kept(ecm, "bone_transforms", dict)
 
-    def set_bone_transforms(self, ecm: EntityView, transforms: dict[str, Any]) -> None:
+    def set_bone_transforms(self, ecm: EntityView, transforms: dict[str, PoseLike]) -> None:
         self._keep(ecm, "bone_transforms", {name: gz_pose(simkit_pose(pose)) for name, pose in transforms.items()})
 
     def _kept(self, ecm: EntityView, what: str, kind: type[T]) -> T | None:
         kept = ecm.values.get((self._entity, what))
         return kept if isinstance(kept, kind) else None
 
-    def _keep(self, ecm: EntityView, what: str, value: Any) -> None:
+    def _keep(self, ecm: EntityView, what: str, value: object) -> None:
         if self.valid(ecm):
             ecm.values[self._entity, what] = value
             ecm.simulation.log.debug("actor %s: %s is kept, only its script moves it", self.name(ecm), what)
@@ -107,7 +107,7 @@ class Light(EntityHandle):
         light = self._handle(ecm)
         return gz_pose(light.state.pose) if light is not None else None
 
-    def set_pose(self, ecm: EntityView, pose: Any) -> None:
+    def set_pose(self, ecm: EntityView, pose: PoseLike) -> None:
         """In the world, or in the frame of the link that carries it; at once."""
         light = self._handle(ecm)
         if light is not None:
@@ -169,10 +169,10 @@ class Light(EntityHandle):
 
     # ------------------------------------------------------------------ changing it, at once
 
-    def set_diffuse_color(self, ecm: EntityView, color: Any) -> None:
+    def set_diffuse_color(self, ecm: EntityView, color: Color) -> None:
         self._change(ecm, diffuse=_rgba(color))
 
-    def set_specular_color(self, ecm: EntityView, color: Any) -> None:
+    def set_specular_color(self, ecm: EntityView, color: Color) -> None:
         self._change(ecm, specular=_rgba(color))
 
     def set_cast_shadows(self, ecm: EntityView, cast_shadows: bool) -> None:
@@ -181,7 +181,7 @@ class Light(EntityHandle):
     def set_intensity(self, ecm: EntityView, value: float) -> None:
         self._change(ecm, intensity=float(value))
 
-    def set_direction(self, ecm: EntityView, direction: Any) -> None:
+    def set_direction(self, ecm: EntityView, direction: VectorLike) -> None:
         """In the light's own frame; its length does not matter, and a zero vector is ignored."""
         wanted = Vector3d(direction)
         light = self._handle(ecm)
@@ -239,5 +239,5 @@ class Light(EntityHandle):
             self._change(ecm, **{name: changed})
 
 
-def _rgba(color: Any) -> tuple[float, float, float, float]:
+def _rgba(color: Color) -> tuple[float, float, float, float]:
     return (color.r(), color.g(), color.b(), color.a())

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from simkit.plugins.gz_python.sim.entity_component_manager import EntityComponentManager, manager_of
+from simkit.plugins.gz_python.sim.entity_component_manager import manager_of
 from simkit.plugins.gz_python.sim.update_info import UpdateInfo
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Simulation, WorldStructure
 
 
 class SystemPlugin(Protocol):
@@ -20,7 +20,7 @@ class SystemPlugin(Protocol):
         """Calls a hook of the system, where it has it."""
 
 
-def systems_of(sim: Simulation) -> list[Any]:
+def systems_of(sim: Simulation) -> list[SystemPlugin]:
     """The plugins that stand for systems of gz, in order, without those that raised and are left out."""
     plugins = sim.structure.all_plugins()
     return [p for p in plugins if getattr(p, "is_gz_system", False) and not sim.faults.is_disabled(p)]
@@ -36,10 +36,10 @@ class SystemHub:
 
     def __init__(self, sim: Simulation) -> None:
         self._sim, self.ecm = sim, manager_of(sim)
-        self._structure: Any = None
+        self._structure: WorldStructure | None = None
         self._count = -1
-        self.first: Any = None
-        self.last: Any = None
+        self.first: SystemPlugin | None = None
+        self.last: SystemPlugin | None = None
         self._info = UpdateInfo(0, sim.clock.time_ns(1), 0, False)
 
     def look(self) -> None:
@@ -69,11 +69,10 @@ class SystemHub:
 
 def hub_of(sim: Simulation) -> SystemHub:
     """The one hub of a simulation."""
-    ecm: EntityComponentManager = manager_of(sim)
-    hub: SystemHub | None = vars(ecm).get("_hub")
-    if hub is None:
-        hub = vars(ecm)["_hub"] = SystemHub(sim)
-    return hub
+    ecm = manager_of(sim)
+    if not isinstance(ecm.hub, SystemHub):
+        ecm.hub = SystemHub(sim)
+    return ecm.hub
 
 
 def update_paused(sim: Simulation) -> None:

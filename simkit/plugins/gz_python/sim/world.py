@@ -91,7 +91,7 @@ class World(EntityHandle):
         return len(self.models(ecm))
 
 
-def _coordinates(place: Any) -> SphericalCoordinates | None:
+def _coordinates(place: Place | None) -> SphericalCoordinates | None:
     if place is None:
         return None
     surface = Surface[place.surface]
