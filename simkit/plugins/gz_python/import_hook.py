@@ -75,7 +75,9 @@ class ShimFinder(MetaPathFinder):
         self.imported_names: list[str] = []
         self.depth = 0
 
-    def find_spec(self, name: str, path: Sequence[str] | None, target: Any = None) -> ModuleSpec | None:
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: types.ModuleType | None = None
+    ) -> ModuleSpec | None:
         found = module_behind(name)
         if found is None:
             self._refuse(name)
@@ -136,7 +138,7 @@ class _ShimLoader(Loader):
 _finder: Final = ShimFinder()
 
 
-def is_shim(module: Any) -> bool:
+def is_shim(module: types.ModuleType) -> bool:
     """Whether a module is one of ours under Gazebo's name."""
     return _OURS in getattr(module, "__dict__", {})
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from simkit.params import Params
 from simkit.plugins.gz_python.math.angle import Angle
@@ -17,6 +17,10 @@ from simkit.plugins.gz_python.math.pose import Pose3d
 from simkit.plugins.gz_python.math.quaternion import Quaterniond
 from simkit.plugins.gz_python.math.vectors import Vector2d, Vector2i, Vector3d
 
+if TYPE_CHECKING:
+    from simkit.scene.model import Axis as SceneAxis
+
+T = TypeVar("T")
 SDF_VERSION: Final = "1.11"
 
 
@@ -162,7 +166,7 @@ class Element:
     def line_number(self) -> int | None:
         return self._params.where.line
 
-    def to_string(self, prefix: str = "", *_: Any) -> str:
+    def to_string(self, prefix: str = "", *_: object) -> str:
         """The element as XML text."""
         p = self._params
         attributes = "".join(f" {k}='{_escape_xml(v)}'" for k, v in p.attributes.items())
@@ -179,7 +183,7 @@ class Element:
 
     # ------------------------------------------------------------------ values by type
 
-    def _read(self, key: str, default: tuple[Any, ...], zero: Any, parse: Callable[[Params, str], Any]) -> Any:
+    def _read(self, key: str, default: tuple[T, ...], zero: T, parse: Callable[[Params, str], T]) -> T | tuple[T, bool]:
         found, block, name = False, self._params, key
         if not key:
             found = bool(block.value)
@@ -196,45 +200,45 @@ class Element:
         value = parse(block, name) if found else (default[0] if default else zero)
         return (value, found) if default else value
 
-    def get_string(self, key: str = "", *default: str) -> Any:
+    def get_string(self, key: str = "", *default: str) -> str | tuple[str, bool]:
         return self._read(key, default, "", lambda p, name: p.text(name))
 
-    def get_bool(self, key: str = "", *default: bool) -> Any:
+    def get_bool(self, key: str = "", *default: bool) -> bool | tuple[bool, bool]:
         return self._read(key, default, False, lambda p, name: p.boolean(name))
 
-    def get_int(self, key: str = "", *default: int) -> Any:
+    def get_int(self, key: str = "", *default: int) -> int | tuple[int, bool]:
         return self._read(key, default, 0, lambda p, name: p.integer(name))
 
-    def get_uint(self, key: str = "", *default: int) -> Any:
+    def get_uint(self, key: str = "", *default: int) -> int | tuple[int, bool]:
         return self._read(key, default, 0, lambda p, name: p.integer(name, minimum=0))
 
-    def get_uint64(self, key: str = "", *default: int) -> Any:
+    def get_uint64(self, key: str = "", *default: int) -> int | tuple[int, bool]:
         return self.get_uint(key, *default)
 
-    def get_double(self, key: str = "", *default: float) -> Any:
+    def get_double(self, key: str = "", *default: float) -> float | tuple[float, bool]:
         return self._read(key, default, 0.0, lambda p, name: p.number(name, finite=False))
 
-    def get_float(self, key: str = "", *default: float) -> Any:
+    def get_float(self, key: str = "", *default: float) -> float | tuple[float, bool]:
         return self.get_double(key, *default)
 
-    def get_angle(self, key: str = "", *default: Angle) -> Any:
+    def get_angle(self, key: str = "", *default: Angle) -> Angle | tuple[Angle, bool]:
         """An angle [rad]."""
         return self._read(key, default, Angle(), lambda p, name: Angle(p.number(name)))
 
-    def get_vector2d(self, key: str = "", *default: Vector2d) -> Any:
+    def get_vector2d(self, key: str = "", *default: Vector2d) -> Vector2d | tuple[Vector2d, bool]:
         return self._read(key, default, Vector2d(), lambda p, name: Vector2d(*p.vector(name, 2)))
 
-    def get_vector2i(self, key: str = "", *default: Vector2i) -> Any:
+    def get_vector2i(self, key: str = "", *default: Vector2i) -> Vector2i | tuple[Vector2i, bool]:
         return self._read(key, default, Vector2i(), lambda p, name: Vector2i(*p.vector(name, 2)))
 
-    def get_vector3d(self, key: str = "", *default: Vector3d) -> Any:
+    def get_vector3d(self, key: str = "", *default: Vector3d) -> Vector3d | tuple[Vector3d, bool]:
         return self._read(key, default, Vector3d(), lambda p, name: Vector3d(*p.vector3(name)))
 
-    def get_quaterniond(self, key: str = "", *default: Quaterniond) -> Any:
+    def get_quaterniond(self, key: str = "", *default: Quaterniond) -> Quaterniond | tuple[Quaterniond, bool]:
         """Of roll, pitch and yaw [rad]."""
         return self._read(key, default, Quaterniond(), lambda p, name: Quaterniond(*p.vector3(name)))
 
-    def get_pose(self, key: str = "", *default: Pose3d) -> Any:
+    def get_pose(self, key: str = "", *default: Pose3d) -> Pose3d | tuple[Pose3d, bool]:
         """Of x, y, z [m], roll, pitch and yaw [rad]."""
 
         def parse(p: Params, name: str) -> Pose3d:
@@ -243,7 +247,7 @@ class Element:
 
         return self._read(key, default, Pose3d(), parse)
 
-    def get_color(self, key: str = "", *default: Color) -> Any:
+    def get_color(self, key: str = "", *default: Color) -> Color | tuple[Color, bool]:
         def parse(p: Params, name: str) -> Color:
             child = p.child(name)
             size = 3 if child is not None and len(child.value.split()) == 3 else 4
@@ -251,7 +255,7 @@ class Element:
 
         return self._read(key, default, Color(), parse)
 
-    def _write(self, value: Any) -> None:
+    def _write(self, value: object) -> None:
         self._params.value = str(value).lower() if isinstance(value, bool) else str(value)
 
     set_string = set_bool = set_int = set_uint = set_double = set_float = _write
@@ -269,7 +273,7 @@ def _escape_xml(text: str) -> str:
 class JointAxis:
     """One degree of freedom of a joint; limits are infinite where there are none."""
 
-    def __init__(self, axis: Any = None) -> None:
+    def __init__(self, axis: SceneAxis | None = None) -> None:
         self._axis = axis
 
     def _of(self, name: str, default: float) -> float:
@@ -313,7 +317,7 @@ class Atmosphere:
     def temperature(self) -> Temperature:
         return self._temperature
 
-    def set_temperature(self, value: Any) -> None:
+    def set_temperature(self, value: Temperature | float) -> None:
         self._temperature = Temperature(value)
 
     def temperature_gradient(self) -> float:

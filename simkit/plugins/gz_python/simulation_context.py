@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
+    from simkit.plugins.base import Plugin
     from simkit.runtime import Simulation
 
-_current: tuple[Simulation, Any] | None = None
+Running: TypeAlias = "tuple[Simulation, Plugin | None]"
+"""A simulation, and the plugin whose code runs in it."""
+
+_current: Running | None = None
 _latest: weakref.ref[Simulation] | None = None
 
 
-def enter_simulation(sim: Simulation, owner: Any) -> tuple[Simulation, Any] | None:
+def enter_simulation(sim: Simulation, owner: Plugin | None) -> Running | None:
     """Says whose code runs now; gives what is to be handed to `leave_simulation`."""
     global _current, _latest
     before, _current = _current, (sim, owner)
@@ -21,13 +25,13 @@ def enter_simulation(sim: Simulation, owner: Any) -> tuple[Simulation, Any] | No
     return before
 
 
-def leave_simulation(before: tuple[Simulation, Any] | None) -> None:
+def leave_simulation(before: Running | None) -> None:
     """Back to what `enter_simulation` gave."""
     global _current
     _current = before
 
 
-def current_simulation() -> tuple[Simulation, Any] | None:
+def current_simulation() -> Running | None:
     """The simulation and the plugin whose code runs; outside of hooks the last simulation that ran one, and None."""
     if _current is not None:
         return _current

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import NOWHERE
 from simkit.errors import MessageError
@@ -16,6 +16,12 @@ from simkit.plugins.gz_python import simulation_context
 from simkit.plugins.gz_python.math.missing_names import missing_name_error
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.gz_python.msgs.ros_conversion import call_service, from_ros, to_ros, twins_of
+
+if TYPE_CHECKING:
+    from simkit.plugins.base import Plugin
+    from simkit.runtime import Simulation
+    from simkit.runtime.communication.publisher import Listener
+    from simkit.runtime.communication.publisher import Publisher as TopicPublisher
 
 __all__ = ["AdvertiseMessageOptions", "AdvertiseServiceOptions", "Node", "Publisher", "SubscribeOptions"]
 
@@ -31,11 +37,13 @@ _INSTEAD: Final = {
 _SCENE_POSES: Final = ("/pose/info", "/dynamic_pose/info")
 """Topics whose poses have names without those of what they are in: of gz's scene broadcaster."""
 
+Handler = Callable[[Message], None]
+
 _early_nodes: list[Node] = []
 """Nodes that topics were asked of before there was a simulation: a script may make them first."""
 
 
-def adopt_early_nodes(sim: Any) -> None:
+def adopt_early_nodes(sim: Simulation) -> None:
     """Opens on a new simulation what nodes were asked for before it was there."""
     waiting, _early_nodes[:] = list(_early_nodes), []
     for node in waiting:
@@ -49,11 +57,11 @@ class _Options:
         msgs_per_sec: has no effect here, and a warning (SK-PLUGIN-086) says so: every message arrives.
     """
 
-    def __init__(self, *_: Any, **__: Any) -> None:
+    def __init__(self, *_: object, **__: object) -> None:
         self.msgs_per_sec = 0
 
 
-def _warn_of_rate(sim: Any, owner: Any, topic: str, options: Any) -> None:
+def _warn_of_rate(sim: Simulation, owner: Plugin | None, topic: str, options: _Options | None) -> None:
     rate = getattr(options, "msgs_per_sec", 0)
     if rate:
         message = f"msgs_per_sec = {rate} for {topic!r} has no effect: every message arrives"
@@ -76,15 +84,15 @@ class SubscribeOptions(_Options):
 class Publisher:
     """Publishes messages of one class on one topic."""
 
-    def __init__(self, topic: str, kind: type[Message], options: Any = None) -> None:
+    def __init__(self, topic: str, kind: type[Message], options: _Options | None = None) -> None:
         self._topic, self._kind, self._options = topic, kind, options
-        self._end: Any = None  # until there is a simulation
+        self._end: TopicPublisher | None = None  # until there is a simulation
         self._ros = ""
 
-    def _open_on(self, sim: Any, owner: Any) -> None:
+    def _open_on(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self._topic, self._options)
-        known, twins = sim.topics().get(self._topic), twins_of(self._kind)
-        self._ros = known if known in (twin.ros for twin in twins) else twins[0].ros
+        known, types = sim.topics().get(self._topic), [twin.ros for twin in twins_of(self._kind)]
+        self._ros = known if known in types else types[0]
         with sim.bus.owned_by(owner):
             self._end = sim.bus.advertise(self._topic, self._ros)
 
@@ -124,9 +132,9 @@ class _Subscription:
         end: the listener; None until there is a simulation.
     """
 
-    def __init__(self, topic: str, kind: type[Message], callback: Callable[[Any], None], options: Any = None) -> None:
+    def __init__(self, topic: str, kind: type[Message], callback: Handler, options: _Options | None = None) -> None:
         self.topic, self._kind, self._callback, self._options = topic, kind, callback, options
-        self.end: Any = None
+        self.end: Listener | None = None
 
     def _hear(self, message: Any) -> None:
         heard = from_ros(self._kind, message)
@@ -135,7 +143,7 @@ class _Subscription:
                 pose.name = pose.name.rpartition("::")[2]
         self._callback(heard)
 
-    def _open_on(self, sim: Any, owner: Any) -> None:
+    def _open_on(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self.topic, self._options)
         known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
         types = sorted(twins, key=lambda ros: ros != known)  # what is published there is listed first
@@ -147,7 +155,7 @@ class _Subscription:
 class Node:
     """An end of the simulation's topics and services."""
 
-    def __init__(self, *_: Any) -> None:
+    def __init__(self, *_: object) -> None:
         found = simulation_context.current_simulation()
         # made outside of a hook it may have been before its simulation: whose it is shows when it is first used
         is_known = found is not None and found[1] is not None
@@ -157,7 +165,7 @@ class Node:
         self._advertised: list[str] = []
         self._waiting: list[Publisher | _Subscription] = []
 
-    def _found(self) -> Any:
+    def _found(self) -> Simulation | None:
         """The simulation it belongs to; None where there is none yet."""
         if self._sim is None:
             found = simulation_context.current_simulation()
@@ -169,7 +177,7 @@ class Node:
             raise RuntimeError("the simulation that this Node belonged to is gone")
         return sim
 
-    def _simulation(self) -> Any:
+    def _simulation(self) -> Simulation:
         sim = self._found()
         if sim is None:
             raise RuntimeError(_NO_SIMULATION)
@@ -185,13 +193,13 @@ class Node:
         if self not in _early_nodes:
             _early_nodes.append(self)
 
-    def _open_on(self, sim: Any) -> None:
+    def _open_on(self, sim: Simulation) -> None:
         self._sim, waiting = weakref.ref(sim), list(self._waiting)
         self._waiting.clear()
         for end in waiting:
             end._open_on(sim, None)
 
-    def advertise(self, topic: str, kind: type[Message], options: Any = None) -> Publisher:
+    def advertise(self, topic: str, kind: type[Message], options: _Options | None = None) -> Publisher:
         """Opens a topic for messages of a class."""
         twins_of(kind)  # said now, not when there is a simulation
         publisher = Publisher(_absolute_topic(topic), kind, options)
@@ -199,7 +207,7 @@ class Node:
         self._open(publisher)
         return publisher
 
-    def subscribe(self, kind: Any, topic: Any, callback: Callable[[Any], None], options: Any = None) -> bool:
+    def subscribe(self, kind: Any, topic: Any, callback: Handler, options: _Options | None = None) -> bool:
         """Calls `callback(message)` between two steps for each message of a class on a topic."""
         if isinstance(kind, str):  # older bindings had the topic first
             kind, topic = topic, kind
@@ -219,7 +227,9 @@ class Node:
                 self._simulation().bus.close(end.end)
         return bool(ends)
 
-    def request(self, service: str, request: Message, request_kind: Any, response_kind: Any, timeout: int) -> Any:
+    def request(
+        self, service: str, request: Message, request_kind: type[Message], response_kind: type[Message], timeout: int
+    ) -> tuple[bool, Message]:
         """Calls a service of the simulation: (whether it is there and took it, the response).
 
         Known are those of a world that take a WorldControl, an EntityFactory, an Entity or a Pose and give a Boolean.
@@ -245,17 +255,17 @@ class Node:
         return self
 
 
-def _call_as_owner(sim: Any, owner: Any, topic: str, callback: Callable[[Any], None]) -> Callable[[Any], None]:
+def _call_as_owner(sim: Simulation, owner: Plugin | None, topic: str, callback: Handler) -> Handler:
     """What a plugin's callback raises is the plugin's, and what it opens too."""
 
-    def run(message: Any) -> None:
+    def run(message: Message) -> None:
         before = simulation_context.enter_simulation(sim, owner)
         try:
             callback(message)
         finally:
             simulation_context.leave_simulation(before)
 
-    found: Callable[[Any], None] = sim.faults.guard(owner, f"its callback for {topic!r}", run)
+    found: Handler = sim.faults.guard(owner, f"its callback for {topic!r}", run)
     return found
 
 

@@ -29,7 +29,7 @@ def message_class(name: str) -> type[Message]:
     return MESSAGE_CLASSES[name]
 
 
-def contents_of(module: str) -> dict[str, Any]:
+def contents_of(module: str) -> dict[str, object]:
     """What a module such as `twist_pb2` holds.
 
     Raises:

@@ -148,7 +148,7 @@ def _unpickle_message(name: str, values: dict[str, Any]) -> Message:
     return made
 
 
-def _is_empty(value: Any) -> bool:
+def _is_empty(value: object) -> bool:
     return value is None or value in (0, "", b"", []) or (isinstance(value, Message) and not value.ListFields())
 
 

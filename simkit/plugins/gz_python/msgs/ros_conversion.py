@@ -6,13 +6,17 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
 from simkit import msgs
 from simkit.errors import InputError, MessageError
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, PLAIN_DEFAULTS, Message
+
+if TYPE_CHECKING:
+    from simkit.msgs import Header, Image, JointState, LaserScan, Odometry, Quaternion, TFMessage
+    from simkit.runtime import Simulation
 
 _FIELDS: Final = """
 Boolean std_msgs/msg/Bool data
@@ -56,6 +60,10 @@ Contacts ros_gz_interfaces/msg/Contacts header contact=contacts
 """Message, ROS type, fields: `gz`, `gz=ros` under another name, `gz<ros` only read, `.` the whole message."""
 
 
+RosFields: TypeAlias = dict[str, Any]
+"""Fields of a ROS message, for `simkit.msgs.make`."""
+
+
 @dataclass(frozen=True, slots=True)
 class RosTwin:
     """A ROS type that a message of gz is.
@@ -68,8 +76,8 @@ class RosTwin:
     """
 
     ros: str
-    to_ros: Callable[[Any], dict[str, Any]]
-    from_ros: Callable[[Any, Any], None]
+    to_ros: Callable[[Message], RosFields]
+    from_ros: Callable[[Message, Any], None]
     is_wrapped: bool = False
 
 
@@ -84,8 +92,8 @@ def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
         kind = name if ours == "." else MESSAGE_CLASSES[name].FIELDS[ours]
         pairs.append((ours, tuple((theirs or ours).split(".")), kind, "<" in field))
 
-    def to_ros(gz: Any) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+    def to_ros(gz: Message) -> RosFields:
+        found: RosFields = {}
         for ours, (*outer, last), kind, is_read_only in pairs:
             if not is_read_only:
                 place = found
@@ -94,7 +102,7 @@ def _twin_by_fields(name: str, ros: str, fields: list[str]) -> RosTwin:
                 place[last] = _value_to_ros(kind, gz if ours == "." else getattr(gz, ours))
         return found
 
-    def from_ros(gz: Any, message: Any) -> None:
+    def from_ros(gz: Message, message: Any) -> None:
         for ours, path, kind, _ in pairs:
             value = message
             for part in path:
@@ -121,7 +129,7 @@ def _value_to_ros(kind: str, value: Any) -> Any:
     return list(value) if kind[:-2] in PLAIN_DEFAULTS else [_value_to_ros(kind[:-2], one) for one in value]
 
 
-def _value_from_ros(gz: Any, ours: str, kind: str, value: Any) -> None:
+def _value_from_ros(gz: Message, ours: str, kind: str, value: Any) -> None:
     if kind in PLAIN_DEFAULTS:
         setattr(gz, ours, value)
     elif not kind.endswith("[]"):
@@ -136,42 +144,42 @@ def _value_from_ros(gz: Any, ours: str, kind: str, value: Any) -> None:
 # ---------------------------------------------------------------------- what is put another way
 
 
-def _header_entry(header: Any, key: str) -> str:
+def _header_entry(header: Message, key: str) -> str:
     """What gz keeps beside the stamp, such as the name of the frame."""
     return next((str(entry.value[0]) for entry in header.data if entry.key == key and entry.value), "")
 
 
-def _header_to(gz: Any) -> dict[str, Any]:
+def _header_to(gz: Message) -> RosFields:
     return {"stamp": _value_to_ros("Time", gz.stamp), "frame_id": _header_entry(gz, "frame_id")}
 
 
-def _header_from(gz: Any, ros: Any) -> None:
+def _header_from(gz: Message, ros: Header) -> None:
     _value_from_ros(gz, "stamp", "Time", ros.stamp)
     if ros.frame_id:
         gz.data.add(key="frame_id", value=[ros.frame_id])
 
 
-def _quaternion_to(gz: Any) -> dict[str, Any]:
+def _quaternion_to(gz: Message) -> RosFields:
     """One of zeros, which is what a new message has, means no rotation."""
     values = {axis: getattr(gz, axis) for axis in "xyzw"}
     return values if any(values.values()) else {**values, "w": 1.0}
 
 
-def _quaternion_from(gz: Any, ros: Any) -> None:
+def _quaternion_from(gz: Message, ros: Quaternion) -> None:
     gz.x, gz.y, gz.z, gz.w = ros.x, ros.y, ros.z, ros.w
 
 
-def _odometry_to(gz: Any) -> dict[str, Any]:
+def _odometry_to(gz: Message) -> RosFields:
     return {**_plain_twin("Odometry").to_ros(gz), "child_frame_id": _header_entry(gz.header, "child_frame_id")}
 
 
-def _odometry_from(gz: Any, ros: Any) -> None:
+def _odometry_from(gz: Message, ros: Odometry) -> None:
     _plain_twin("Odometry").from_ros(gz, ros)
     if ros.child_frame_id:
         gz.header.data.add(key="child_frame_id", value=[ros.child_frame_id])
 
 
-def _scan_from(gz: Any, ros: Any) -> None:
+def _scan_from(gz: Message, ros: LaserScan) -> None:
     _plain_twin("LaserScan").from_ros(gz, ros)
     gz.count, gz.vertical_count = len(gz.ranges), 1
 
@@ -180,12 +188,12 @@ _AXIS: Final = {"position": "position", "velocity": "velocity", "force": "effort
 """What gz has of a joint's axis -> field of a JointState."""
 
 
-def _joints_to(gz: Any) -> dict[str, Any]:
+def _joints_to(gz: Message) -> RosFields:
     columns = {theirs: [getattr(joint.axis1, ours) for joint in gz.joint] for ours, theirs in _AXIS.items()}
     return {"header": _header_to(gz.header), "name": [joint.name for joint in gz.joint], **columns}
 
 
-def _joints_from(gz: Any, ros: Any) -> None:
+def _joints_from(gz: Message, ros: JointState) -> None:
     _header_from(gz.header, ros.header)
     for place, name in enumerate(ros.name):
         axis = gz.joint.add(name=name).axis1
@@ -194,7 +202,7 @@ def _joints_from(gz: Any, ros: Any) -> None:
             setattr(axis, ours, float(column[place]) if place < len(column) else math.nan)
 
 
-def _frames_to(gz: Any) -> dict[str, Any]:
+def _frames_to(gz: Message) -> RosFields:
     transforms = []
     for pose in gz.pose:
         header = _header_to(pose.header if pose.HasField("header") else gz.header)
@@ -203,7 +211,7 @@ def _frames_to(gz: Any) -> dict[str, Any]:
     return {"transforms": transforms}
 
 
-def _frames_from(gz: Any, ros: Any) -> None:
+def _frames_from(gz: Message, ros: TFMessage) -> None:
     for transform in ros.transforms:
         pose = gz.pose.add(name=transform.child_frame_id)
         _header_from(pose.header, transform.header)
@@ -217,13 +225,13 @@ _PIXELS: Final = {"mono8": 1, "mono16": 2, "rgb8": 3, "rgba8": 4, "bgra8": 5, "r
 """Encoding of ROS -> number of gz's pixel format."""
 
 
-def _image_to(gz: Any) -> dict[str, Any]:
+def _image_to(gz: Message) -> RosFields:
     encoding = next((name for name, number in _PIXELS.items() if number == gz.pixel_format_type), "")
     size = {"width": gz.width, "height": gz.height, "step": gz.step}
     return {"header": _header_to(gz.header), **size, "encoding": encoding, "data": np.frombuffer(gz.data, np.uint8)}
 
 
-def _image_from(gz: Any, ros: Any) -> None:
+def _image_from(gz: Message, ros: Image) -> None:
     _header_from(gz.header, ros.header)
     gz.width, gz.height, gz.step = int(ros.width), int(ros.height), int(ros.step)
     gz.pixel_format_type, gz.data = _PIXELS.get(ros.encoding, 0), np.asarray(ros.data).tobytes()
@@ -273,7 +281,7 @@ def twins_of(kind: type[Message]) -> tuple[RosTwin, ...]:
     return found
 
 
-def fields_of(message: Message) -> dict[str, Any]:
+def fields_of(message: Message) -> RosFields:
     """The fields of the ROS message that it is within others."""
     return _twin_of_field(type(message).__name__).to_ros(message)
 
@@ -296,7 +304,7 @@ SERVICE_REQUEST_TYPES: Final = ("WorldControl", "EntityFactory", "Entity", "Pose
 """Messages that are known as requests."""
 
 
-def call_service(sim: Any, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
+def call_service(sim: Simulation, service: str, request: Message, response_kind: type[Message]) -> tuple[bool, Message]:
     """Calls a service: whether it is there and was understood, and the response (of Boolean: whether it succeeded)."""
     response = response_kind()
     if service not in sim.services():
@@ -311,7 +319,7 @@ def call_service(sim: Any, service: str, request: Message, response_kind: type[M
     return True, response
 
 
-def _request_fields(request: Any) -> dict[str, Any]:
+def _request_fields(request: Message) -> RosFields:
     """The fields of the ROS service that does the same.
 
     Raises:

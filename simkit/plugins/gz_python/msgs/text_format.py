@@ -146,7 +146,7 @@ def _kind_of(message: Message, name: str) -> str:
     return kind
 
 
-def _set_field(message: Message, name: str, value: Any, *, is_repeated: bool) -> None:
+def _set_field(message: Message, name: str, value: object, *, is_repeated: bool) -> None:
     if is_repeated:
         getattr(message, name).append(value)
     elif isinstance(value, Message):
