@@ -47,7 +47,7 @@ def adopt_early_nodes(sim: Simulation) -> None:
     """Opens on a new simulation what nodes were asked for before it was there."""
     waiting, _early_nodes[:] = list(_early_nodes), []
     for node in waiting:
-        node._open_on(sim)
+        node._connect(sim)
 
 
 class _Options:
@@ -86,15 +86,15 @@ class Publisher:
 
     def __init__(self, topic: str, kind: type[Message], options: _Options | None = None) -> None:
         self._topic, self._kind, self._options = topic, kind, options
-        self._end: TopicPublisher | None = None  # until there is a simulation
+        self._publisher: TopicPublisher | None = None  # until there is a simulation
         self._ros = ""
 
-    def _open_on(self, sim: Simulation, owner: Plugin | None) -> None:
+    def _connect(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self._topic, self._options)
         known, types = sim.topics().get(self._topic), [twin.ros for twin in twins_of(self._kind)]
         self._ros = known if known in types else types[0]
         with sim.bus.owned_by(owner):
-            self._end = sim.bus.advertise(self._topic, self._ros)
+            self._publisher = sim.bus.advertise(self._topic, self._ros)
 
     def publish(self, message: Message) -> bool:
         """Sends a message.
@@ -105,10 +105,10 @@ class Publisher:
         if not isinstance(message, self._kind):
             got = type(message).__name__
             raise MessageError(f"{self._topic!r} was advertised for gz.msgs.{self._kind.__name__}, got {got}")
-        if self._end is None:
+        if self._publisher is None:
             return True  # nobody could hear it
-        if self._end.wanted:
-            self._end.publish(to_ros(message, self._ros))
+        if self._publisher.wanted:
+            self._publisher.publish(to_ros(message, self._ros))
         return True
 
     def valid(self) -> bool:
@@ -116,7 +116,7 @@ class Publisher:
 
     def has_connections(self) -> bool:
         """Whether somebody reads now."""
-        return self._end is not None and bool(self._end.wanted)
+        return self._publisher is not None and bool(self._publisher.wanted)
 
     def __bool__(self) -> bool:
         return True
@@ -134,22 +134,22 @@ class _Subscription:
 
     def __init__(self, topic: str, kind: type[Message], callback: Handler, options: _Options | None = None) -> None:
         self.topic, self._kind, self._callback, self._options = topic, kind, callback, options
-        self.end: Listener | None = None
+        self.listener: Listener | None = None
 
-    def _hear(self, message: Any) -> None:
+    def _on_message(self, message: Any) -> None:
         heard = from_ros(self._kind, message)
         if self._kind is MESSAGE_CLASSES["Pose_V"] and self.topic.endswith(_SCENE_POSES):
             for pose in heard.pose:
                 pose.name = pose.name.rpartition("::")[2]
         self._callback(heard)
 
-    def _open_on(self, sim: Simulation, owner: Plugin | None) -> None:
+    def _connect(self, sim: Simulation, owner: Plugin | None) -> None:
         _warn_of_rate(sim, owner, self.topic, self._options)
         known, twins = sim.topics().get(self.topic), [twin.ros for twin in twins_of(self._kind)]
         types = sorted(twins, key=lambda ros: ros != known)  # what is published there is listed first
-        called = self._hear if owner is None else _call_as_owner(sim, owner, self.topic, self._hear)
+        called = self._on_message if owner is None else _call_as_owner(sim, owner, self.topic, self._on_message)
         with sim.bus.owned_by(owner):
-            self.end = sim.bus.listen(self.topic, types, called)
+            self.listener = sim.bus.listen(self.topic, types, called)
 
 
 class Node:
@@ -165,7 +165,7 @@ class Node:
         self._advertised: list[str] = []
         self._waiting: list[Publisher | _Subscription] = []
 
-    def _found(self) -> Simulation | None:
+    def _find_simulation(self) -> Simulation | None:
         """The simulation it belongs to; None where there is none yet."""
         if self._sim is None:
             found = simulation_context.current_simulation()
@@ -178,26 +178,26 @@ class Node:
         return sim
 
     def _simulation(self) -> Simulation:
-        sim = self._found()
+        sim = self._find_simulation()
         if sim is None:
             raise RuntimeError(_NO_SIMULATION)
         return sim
 
     def _open(self, end: Publisher | _Subscription) -> None:
         """Opens an end now, or as soon as there is a simulation."""
-        sim = self._found()
+        sim = self._find_simulation()
         if sim is not None:
-            end._open_on(sim, self._owner)
+            end._connect(sim, self._owner)
             return
         self._waiting.append(end)
         if self not in _early_nodes:
             _early_nodes.append(self)
 
-    def _open_on(self, sim: Simulation) -> None:
+    def _connect(self, sim: Simulation) -> None:
         self._sim, waiting = weakref.ref(sim), list(self._waiting)
         self._waiting.clear()
         for end in waiting:
-            end._open_on(sim, None)
+            end._connect(sim, None)
 
     def advertise(self, topic: str, kind: type[Message], options: _Options | None = None) -> Publisher:
         """Opens a topic for messages of a class."""
@@ -223,8 +223,8 @@ class Node:
         for end in ends:
             if end in self._waiting:
                 self._waiting.remove(end)
-            elif end.end is not None:
-                self._simulation().bus.close(end.end)
+            elif end.listener is not None:
+                self._simulation().bus.close(end.listener)
         return bool(ends)
 
     def request(

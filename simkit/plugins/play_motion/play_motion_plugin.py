@@ -123,10 +123,10 @@ class PlayMotion(ModelPlugin):
         self._approach = Approach(self._speed, self._shortest, frozenset(free))
         for motion in self.known.values():
             self._check(motion, params.diagnostics)
-        self._find_names()
-        self._open()
+        self._choose_namespace()
+        self._open_interfaces()
 
-    def _find_names(self) -> None:
+    def _choose_namespace(self) -> None:
         """Plays under the robot's own name where another one has the names that it would have."""
         taken = self.ros.topic("play_motion2")
         if taken not in self.sim.action_table.names():
@@ -136,7 +136,7 @@ class PlayMotion(ModelPlugin):
         hint = "a namespace gives it other names: <ros><namespace>...</namespace></ros>"
         self.params.diagnostics.note("SK-MOTION-007", message, self.where, hint)
 
-    def _open(self) -> None:
+    def _open_interfaces(self) -> None:
         self.act("play_motion2", ROS_2, self._on_goal, self._on_cancel)
         self.act("play_motion2/raw", ROS_2_RAW, self._on_raw_goal, self._on_cancel)
         self.act("play_motion", ROS_1, self._on_goal, self._on_cancel)
@@ -234,7 +234,7 @@ class PlayMotion(ModelPlugin):
         for controller in needed:
             request = trajectory_goal(found, motion, controller, self.robot)
             send = self.sim.action_table.send
-            run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_part_done)
+            run.parts[controller.name] = send(controller.action, request, self._on_feedback, self._on_controller_done)
 
     def _check_idle(self, goal: GoalHandle, names: Sequence[str]) -> None:
         """Raises MotionRefused while another motion is being played; ROS 1 plays several that share no controller."""
@@ -259,13 +259,13 @@ class PlayMotion(ModelPlugin):
         run = next((run for run in self._runs if run.goal is goal), None)
         if run is None:
             return False
-        self._leave(run)
+        self._cancel_controllers(run)
         goal.canceled(_result_fields(goal, OTHER_ERROR, "Motion canceled"), "Motion canceled")
         return True
 
     # ------------------------------------------------------------------ what the controllers say
 
-    def _on_part_done(self, part: GoalHandle) -> None:
+    def _on_controller_done(self, part: GoalHandle) -> None:
         run = next((run for run in self._runs if part in run.parts.values()), None)
         if run is None:
             return
@@ -300,10 +300,10 @@ class PlayMotion(ModelPlugin):
 
     def _fail(self, run: _RunningMotion, code: int, text: str) -> None:
         self.log.info("%s", text)
-        self._leave(run)
+        self._cancel_controllers(run)
         run.goal.abort(_result_fields(run.goal, code, text), text)
 
-    def _leave(self, run: _RunningMotion) -> None:
+    def _cancel_controllers(self, run: _RunningMotion) -> None:
         """Calls the controllers off; their joints hold where they are."""
         self._runs.remove(run)
         for part in run.parts.values():

@@ -57,18 +57,18 @@ class ControlPlugin(ModelPlugin):
         self.hardware = Hardware.of(describe_hardware(scene, params), scene, params.diagnostics, transmissions)
         self._manager_name = params.text("controller_manager_name", "") or "controller_manager"
         given = [one.file for one in builder.parameter_files if one.is_for(scene)]
-        files = [*self._read_files(params, builder, any_given=bool(given)), *self._fitted(given, params)]
+        files = [*self._read_files(params, builder, any_given=bool(given)), *self._adapted_run_files(given, params)]
         self.files = ParameterFiles(files)
-        self._chosen = [(word, one) for one in params.all("controllers") for word in _split_names(one)]
+        self._chosen_controllers = [(word, one) for one in params.all("controllers") for word in _split_names(one)]
         self.hardware.holds = params.boolean("hold_joints", True)
-        self.read_rest(params)
+        self.mark_ignored_elements(params)
         self.before_step_rate = self.read_rate(params, builder)
-        self._report_driven(builder)
+        self._report_driven_twice(builder)
         self.hardware.prepare(builder, self.name, self.read_pids())
 
     # ------------------------------------------------------------------ what the file says
 
-    def read_rest(self, params: Params) -> None:
+    def mark_ignored_elements(self, params: Params) -> None:
         """Elements that mean something to the plugin in Gazebo and nothing here."""
         for name in ("robot_param", "robot_param_node", "position_proportional_gain"):
             params.child(name)
@@ -123,7 +123,7 @@ class ControlPlugin(ModelPlugin):
         asked = (getattr(one.controller, "speed_bounds", None) for one in self.manager.controllers.values())
         return next((found for ask in asked if ask is not None and (found := ask(topic)) is not None), None)
 
-    def _report_driven(self, builder: SpecBuilder) -> None:
+    def _report_driven_twice(self, builder: SpecBuilder) -> None:
         """Tells of joints that another plugin drives too."""
         driven = {ref.joint: ref.owner for record in builder.records.values() for ref in record.actuators}
         for joint in self.hardware.joints.values():
@@ -132,7 +132,7 @@ class ControlPlugin(ModelPlugin):
                 hint = "leave one of the two plugins out, or the joint out of <ros2_control>"
                 self.params.diagnostics.warning("SK-CONTROL-004", message, self.where, hint)
 
-    def _fitted(self, given: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
+    def _adapted_run_files(self, given: Sequence[ParameterFile], params: Params) -> Iterator[ParameterFile]:
         """The files that the run was given, as this manager looks for what they say."""
         if given:
             for file in given:
@@ -164,13 +164,13 @@ class ControlPlugin(ModelPlugin):
     def load(self, parent: Model, params: Params) -> None:
         self.hardware.load(self.sim)
         self.manager = ControllerManager(self, self.hardware, self.files, self._manager_name, params.diagnostics)
-        self._stand_apart(parent.scoped.partition("::")[0], params)
+        self._take_free_namespace(parent.scoped.partition("::")[0], params)
         self.manager.is_ros_1 = self.is_ros_1
         offer_services(self.manager)
         declared = self.manager.declared()
         report_unused_parameters(self.manager, params.diagnostics)
-        chosen = list(declared) if not self._chosen else []
-        for name, element in self._chosen:
+        chosen = list(declared) if not self._chosen_controllers else []
+        for name, element in self._chosen_controllers:
             if name in declared:
                 chosen.append(name)
                 continue
@@ -180,7 +180,7 @@ class ControlPlugin(ModelPlugin):
         self.manager.start(chosen)
         report_high_rates(self.manager, self.before_step_rate, params.diagnostics)
 
-    def _stand_apart(self, model: str, params: Params) -> None:
+    def _take_free_namespace(self, model: str, params: Params) -> None:
         """Takes the model's name for a namespace where another robot has a manager of this one's name."""
         wanted = f"{self.ros.namespace}/{self._manager_name}"
         if f"{wanted}/list_controllers" not in self.sim.services():
@@ -258,7 +258,7 @@ class GazeboRosControl(ControlPlugin):
         if not params.has("robotNamespace"):  # then it is the model's name
             self.ros = RosNames(self.name, model, params=params)
 
-    def read_rest(self, params: Params) -> None:
+    def mark_ignored_elements(self, params: Params) -> None:
         for name in ("robotSimType", "legacyModeNS", "robotParam", "eStopTopic", "joints"):
             params.child(name)
 
@@ -273,11 +273,11 @@ class GazeboRosControl(ControlPlugin):
             if entry is not None:
                 block = entry.block(_ROS_1_NODE, self.params.diagnostics).block("pid_gains")
                 for joint, gains in self.gains_of_joints(block).items():
-                    found.setdefault(joint, self._loop(joint, gains))
+                    found.setdefault(joint, self._gains_by_interface(joint, gains))
                 block.report_unread("SK-CONTROL-011", "pid_gains")
         return found
 
-    def _loop(self, joint: str, gains: PidGains) -> Mapping[str, PidGains]:
+    def _gains_by_interface(self, joint: str, gains: PidGains) -> Mapping[str, PidGains]:
         """One set of gains is for whichever interface the joint has."""
         interfaces = self.hardware.joints[joint].command_interfaces
         return {name: gains for name in (POSITION, VELOCITY) if name in interfaces}

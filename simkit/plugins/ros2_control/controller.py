@@ -83,7 +83,7 @@ class Controller(abc.ABC):
         commands: the command interfaces it named, bound and claimed while it is active.
         update_rate: [Hz]; 0 for the manager's.
         log: a logger below `simkit`.
-        ends: what it has opened; the manager gives it those of its name.
+        endpoints: what it has opened; the manager gives it those of its name.
     """
 
     types: ClassVar[tuple[str, ...]] = ()
@@ -96,7 +96,7 @@ class Controller(abc.ABC):
     commands: InterfaceSelection
     update_rate: int = 0
     log: logging.Logger
-    ends: ControllerEndpoints
+    endpoints: ControllerEndpoints
 
     def __init__(self, name: str, plugin: Plugin, params: Params, hardware: Hardware) -> None:
         """Made by the controller manager.
@@ -109,7 +109,7 @@ class Controller(abc.ABC):
         """
         self.name, self.plugin, self.params, self.hardware = name, plugin, params, hardware
         self.log = logging.getLogger(f"simkit.plugins.ros2_control.{name}")
-        self.ends = ControllerEndpoints()
+        self.endpoints = ControllerEndpoints()
 
     # ------------------------------------------------------------------ what a controller says and does
 
@@ -154,7 +154,7 @@ class Controller(abc.ABC):
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """As `Plugin.advertise`, with the controller's node."""
         name = self.topic(topic)
-        publisher: Publisher = self.ends.open(
+        publisher: Publisher = self.endpoints.open(
             ("advertise", f"{name} {type_name}"), lambda: self.plugin.advertise(name, type_name, latched=latched)
         )
         return publisher
@@ -162,15 +162,15 @@ class Controller(abc.ABC):
     def listen(self, topic: str, types: str | Sequence[str], callback: Callable[[Any], None]) -> Listener:
         """As `Plugin.listen`, with the controller's node."""
         name, key = self.topic(topic), ("listen", f"{self.topic(topic)} {types}")
-        relay = self.ends.relay(key, callback)
-        listener: Listener = self.ends.open(key, lambda: self.plugin.listen(name, types, relay))
+        relay = self.endpoints.relay(key, callback)
+        listener: Listener = self.endpoints.open(key, lambda: self.plugin.listen(name, types, relay))
         return listener
 
     def offer(self, service: str, type_name: str, handler: Callable[[Any], Any]) -> Service:
         """As `Plugin.offer`, with the controller's node."""
         name, key = self.topic(service), ("offer", self.topic(service))
-        relay = self.ends.relay(key, handler)
-        opened: Service = self.ends.open(key, lambda: self.plugin.offer(name, type_name, relay))
+        relay = self.endpoints.relay(key, handler)
+        opened: Service = self.endpoints.open(key, lambda: self.plugin.offer(name, type_name, relay))
         return opened
 
     def act(
@@ -182,9 +182,9 @@ class Controller(abc.ABC):
     ) -> Action:
         """As `Plugin.act`, with the controller's node."""
         name, key = self.topic(action), ("act", self.topic(action))
-        relay = self.ends.relay(key, on_goal, lambda goal: goal.reject("the controller is not loaded"))
-        cancel = on_cancel and self.ends.relay(("cancel", name), on_cancel)
-        opened: Action = self.ends.open(key, lambda: self.plugin.act(name, type_name, relay, cancel))
+        relay = self.endpoints.relay(key, on_goal, lambda goal: goal.reject("the controller is not loaded"))
+        cancel = on_cancel and self.endpoints.relay(("cancel", name), on_cancel)
+        opened: Action = self.endpoints.open(key, lambda: self.plugin.act(name, type_name, relay, cancel))
         return opened
 
     def declare(
@@ -237,7 +237,7 @@ class Controller(abc.ABC):
         try:
             return copy.deepcopy(own, memo)
         except Exception:  # noqa: BLE001 - a foreign object may raise anything when copied
-            return dict(self._copied(own, memo))
+            return dict(self._copy_attributes(own, memo))
 
     def set_state(self, state: Mapping[str, Any]) -> None:
         """Back to a state from `get_state`; what could not be copied stays as it is."""
@@ -246,7 +246,7 @@ class Controller(abc.ABC):
             delattr(self, key)
         vars(self).update(copy.deepcopy(dict(state), {id(self): self}))
 
-    def _copied(self, own: Mapping[str, Any], memo: dict[int, Any]) -> Iterator[tuple[str, Any]]:
+    def _copy_attributes(self, own: Mapping[str, Any], memo: dict[int, Any]) -> Iterator[tuple[str, Any]]:
         """Copies of the attributes that can be copied."""
         uncopied: set[str] = vars(self).setdefault("_uncopied", set())
         for key, value in own.items():
@@ -263,7 +263,9 @@ class Controller(abc.ABC):
         return self
 
 
-_OWN_ATTRIBUTES = frozenset(("name", "plugin", "params", "hardware", "states", "commands", "log", "ends", "_uncopied"))
+_OWN_ATTRIBUTES = frozenset(
+    ("name", "plugin", "params", "hardware", "states", "commands", "log", "endpoints", "_uncopied")
+)
 
 
 class OneTimeWarnings:
@@ -271,13 +273,13 @@ class OneTimeWarnings:
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
-        self._said: set[str] = set()
+        self._reported: set[str] = set()
 
     def warn(self, code: str, what: str, message: str, hint: str = "") -> None:
         """A warning at the controller's place in the YAML, once for each `what`."""
-        if what in self._said:
+        if what in self._reported:
             return
-        self._said.add(what)
+        self._reported.add(what)
         controller = self._controller
         controller.sim.reports.warning(
             code, f"controller {controller.name!r}: {message}", controller.params.where, hint

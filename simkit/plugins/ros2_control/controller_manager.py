@@ -89,9 +89,9 @@ class ControllerManager:
         self.controllers: dict[str, LoadedController] = {}
         self.is_ros_1 = False
         self._last_ns = 0
-        self._ends: dict[str, ControllerEndpoints] = {}
+        self._endpoints: dict[str, ControllerEndpoints] = {}
         # the active ones in their order; None after a change
-        self._at_work: list[tuple[LoadedController, Controller]] | None = None
+        self._active_controllers: list[tuple[LoadedController, Controller]] | None = None
 
     # ------------------------------------------------------------------ what the files say
 
@@ -134,13 +134,13 @@ class ControllerManager:
             kinds = controller_kinds()
             near = did_you_mean(kind, kinds) or "types: " + ", ".join(kinds)
             return f"controller '{name}' (type '{kind}') is not known; {near}"
-        params = self._params(name, entry)
+        params = self._parameters(name, entry)
         controller = cls(name, self.plugin, params, self.hardware)
-        controller.ends = self._ends.setdefault(name, controller.ends)
+        controller.endpoints = self._endpoints.setdefault(name, controller.endpoints)
         self.controllers[name] = LoadedController(controller, kind)
         return ""
 
-    def _params(self, name: str, entry: Entry | None) -> Params:
+    def _parameters(self, name: str, entry: Entry | None) -> Params:
         found = Diagnostics()
         if entry is None:
             return Params(name, where=self.plugin.where, diagnostics=found)
@@ -151,7 +151,7 @@ class ControllerManager:
         """Has a controller read its parameters; returns what is wrong."""
         loaded = self.controllers.get(name)
         if loaded is None:
-            return self._unknown(name)
+            return self._not_found(name)
         if loaded.state == "active":
             return f"controller '{name}' can not be configured from '{loaded.state}' state"
         controller = loaded.controller
@@ -163,8 +163,8 @@ class ControllerManager:
         controller.configure()
         commands, states = controller.command_interfaces(), controller.state_interfaces()
         if params.diagnostics.error_count == before:
-            self._check(controller, commands, self.hardware.commands.names, "command")
-            self._check(controller, states, self.hardware.states.names, "state")
+            self._check_interfaces(controller, commands, self.hardware.commands.names, "command")
+            self._check_interfaces(controller, states, self.hardware.states.names, "state")
         params.report_unread("SK-CONTROL-011", f"controller {name!r}")
         said = [d for d in params.diagnostics if d.severity == "error"]
         self.reports.extend(params.diagnostics)
@@ -175,14 +175,14 @@ class ControllerManager:
         loaded.state = "inactive"
         return ""
 
-    def _check(self, controller: Controller, names: Sequence[str], there: Sequence[str], what: str) -> None:
+    def _check_interfaces(self, controller: Controller, names: Sequence[str], there: Sequence[str], what: str) -> None:
         for name in dict.fromkeys(names):
             if name not in there:
                 near = did_you_mean(name, there) or ("there are: " + ", ".join(there) if there else "there are none")
                 message = f"controller {controller.name!r} needs the {what} interface {name!r}, which is not there"
                 controller.params.error("SK-CONTROL-012", message, near)
 
-    def _unknown(self, name: str) -> str:
+    def _not_found(self, name: str) -> str:
         near = did_you_mean(name, self.controllers)
         return f"could not find a controller named '{name}'" + (f"; {near}" if near else "")
 
@@ -208,13 +208,13 @@ class ControllerManager:
         names = loaded.controller.command_interfaces()
         self.hardware.claim(names, name)
         loaded.state, loaded.last = "active", self.plugin.sim.time_ns
-        self._look()
+        self._update_active()
         self.hardware.read()
         loaded.controller.activate()
 
-    def _look(self) -> None:
+    def _update_active(self) -> None:
         """Has the hardware read what the active controllers need."""
-        self._at_work = None
+        self._active_controllers = None
         active = (c.controller for c in self.controllers.values() if c.state == "active")
         self.hardware.wants(name for controller in active for name in controller.states.names)
 
@@ -224,7 +224,7 @@ class ControllerManager:
         loaded.controller.deactivate()
         self.hardware.release(name)
         loaded.state = "inactive"
-        self._look()
+        self._update_active()
 
     def switch(self, activate: Sequence[str], deactivate: Sequence[str], *, strict: bool) -> str:
         """Deactivates controllers, then activates others, all before the next update.
@@ -237,8 +237,8 @@ class ControllerManager:
             What is wrong; nothing where all is well.
         """
         problems: list[str] = []
-        leaving = self._fit(deactivate, "deactivate", "active", problems, leaving=())
-        coming = self._fit(activate, "activate", "inactive", problems, leaving=leaving)
+        leaving = self._switchable(deactivate, "deactivate", "active", problems, leaving=())
+        coming = self._switchable(activate, "activate", "inactive", problems, leaving=leaving)
         claims: dict[str, str] = {}
         for name in list(coming):
             taken = self.conflicts(name, leaving, claims)
@@ -261,7 +261,7 @@ class ControllerManager:
             self.activate(name)
         return ""
 
-    def _fit(
+    def _switchable(
         self, names: Sequence[str], what: str, needed: State, problems: list[str], leaving: Sequence[str]
     ) -> list[str]:
         """Those that can be switched; what keeps the others from it goes to `problems`."""
@@ -284,10 +284,10 @@ class ControllerManager:
         """Forgets a controller; returns what is wrong."""
         loaded = self.controllers.get(name)
         if loaded is None:
-            return self._unknown(name)
+            return self._not_found(name)
         if loaded.state == "active":
             return f"controller '{name}' is active; deactivate it before it is unloaded"
-        loaded.controller.ends.close()
+        loaded.controller.endpoints.close()
         del self.controllers[name]
         return ""
 
@@ -296,7 +296,7 @@ class ControllerManager:
     def start(self, chosen: Sequence[str]) -> None:
         """Loads, configures and activates controllers in their order; what cannot be is told."""
         for name in chosen:
-            where = self._where(name)
+            where = self._declaration_place(name)
             problem = self.load(name)
             if problem:
                 self.reports.warning("SK-CONTROL-013", f"{problem}; it is left out", where)
@@ -316,7 +316,7 @@ class ControllerManager:
             self.activate(name)
         self._diagnostics = None
 
-    def _where(self, name: str) -> Where:
+    def _declaration_place(self, name: str) -> Where:
         own = self.files.of_node(self.node)
         entry = (own.below or {}).get(name) if own is not None else None
         return self.plugin.where if entry is None else entry.where
@@ -324,9 +324,9 @@ class ControllerManager:
     def update(self, now_ns: int) -> None:
         """Reads the hardware, updates the active controllers, writes the commands."""
         self.hardware.read()
-        if self._at_work is None:
-            self._at_work = [(c, c.controller) for c in self.controllers.values() if c.state == "active"]
-        for loaded, controller in self._at_work:
+        if self._active_controllers is None:
+            self._active_controllers = [(c, c.controller) for c in self.controllers.values() if c.state == "active"]
+        for loaded, controller in self._active_controllers:
             if controller.update_rate and not self._is_due(loaded, now_ns):
                 continue
             if loaded.state == "active":  # still: others may have switched it
@@ -344,7 +344,7 @@ class ControllerManager:
         hardware = self.hardware
         return (
             [(n, c, c.type, c.state, c.last, c.controller.get_state()) for n, c in self.controllers.items()],
-            {name: dict(ends.handlers) for name, ends in self._ends.items()},
+            {name: dict(ends.handlers) for name, ends in self._endpoints.items()},
             self._last_ns,
             hardware.get_state(),
         )
@@ -352,9 +352,9 @@ class ControllerManager:
     def set_state(self, state: Any) -> None:
         """Back to a state from `get_state`."""
         controllers, handlers, self._last_ns, hardware = state
-        for name, ends in self._ends.items():
+        for name, ends in self._endpoints.items():
             ends.handlers = dict(handlers.get(name, {}))
-        self.controllers, self._at_work = {}, None
+        self.controllers, self._active_controllers = {}, None
         for name, loaded, kind, where, last, own in controllers:
             loaded.type, loaded.state, loaded.last = kind, where, last
             loaded.controller.set_state(own)

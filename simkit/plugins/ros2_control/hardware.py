@@ -61,10 +61,10 @@ class Hardware:
     _sim: Simulation = field(init=False, repr=False)
     _sources: Indices = field(default_factory=lambda: np.zeros(0, np.intp))
     _unclaimed: Indices = field(default_factory=lambda: np.zeros(0, np.intp))  # where in `_sources` there is none
-    _read: frozenset[str] = frozenset()  # state interfaces that somebody reads
+    _read_interfaces: frozenset[str] = frozenset()  # state interfaces that somebody reads
     _model: mujoco.MjModel | None = None
     _plan: list[Reading | tuple[int, Callable[[], float]]] = field(default_factory=list)  # read at every update
-    _late: list[Reading] = field(default_factory=list)  # read when somebody asks
+    _deferred: list[Reading] = field(default_factory=list)  # read when somebody asks
 
     @classmethod
     def of(
@@ -104,12 +104,12 @@ class Hardware:
             owner: whose they are.
             pids: loops by joint and interface that take the place of its servo.
         """
-        self._tie(builder)
+        self._couple_mimics(builder)
         driven = [j for j in self.joints.values() if j.command_interfaces]
         self.drives = JointActuators.prepare(builder, owner, driven, pids)
         self._sources = np.full(len(driven), -1, np.intp)
 
-    def _tie(self, builder: SpecBuilder) -> None:
+    def _couple_mimics(self, builder: SpecBuilder) -> None:
         """Couples joints that mimic another by the hardware's words alone."""
         for joint in self.joints.values():
             leader = self.joints.get(joint.leader)
@@ -127,7 +127,7 @@ class Hardware:
             if math.isfinite(joint.initial):
                 joint.handle.set_position(joint.initial)
         self.drives.load(sim)
-        self._switch()
+        self._switch_modes()
 
     # ------------------------------------------------------------------ claims
 
@@ -136,14 +136,14 @@ class Hardware:
         for name in names:
             self.owners[name] = owner
             self.commands.values[self.commands.index(name)] = np.nan
-        self._switch()
+        self._switch_modes()
 
     def release(self, owner: str) -> None:
         """Takes back what a controller claimed: position joints hold, others are let go."""
         self.owners = {name: who for name, who in self.owners.items() if who != owner}
-        self._switch()
+        self._switch_modes()
 
-    def _switch(self) -> None:
+    def _switch_modes(self) -> None:
         claimed: dict[str, str] = {}
         for owner, _, interface in (name.rpartition("/") for name in self.owners):
             if claimed.get(owner) != POSITION:  # with a velocity beside it, that is the servo's own affair
@@ -151,24 +151,24 @@ class Hardware:
         modes = []
         springy = {name.rpartition("/")[0] for name, owner in self.owners.items() if owner in self.springs}
         for owner in dict.fromkeys(self.owners.values()):
-            self.drives.soften(self.springs.get(owner, {}))
+            self.drives.set_springs(self.springs.get(owner, {}))
         for k, joint in enumerate(self.drives.joints):
             chosen = claimed.get(joint.name, "")
             self._sources[k] = self.commands.index(f"{joint.name}/{chosen}") if chosen else -1
-            mode = _MODES[chosen] if chosen else self._idle(joint, claimed.get(joint.leader, ""))
+            mode = _MODES[chosen] if chosen else self._idle_mode(joint, claimed.get(joint.leader, ""))
             modes.append(SPRING_MODE if mode == EFFORT_MODE and joint.name in springy else mode)
         self._unclaimed = np.flatnonzero(self._sources < 0)
-        self._group()
+        self._group_joints()
         self.drives.switch(np.array(modes, np.intp))
 
-    def _group(self) -> None:
+    def _group_joints(self) -> None:
         """Tells the drives which joints one controller has claimed: their wheels wait for one another."""
         by_joint = {name.rpartition("/")[0]: owner for name, owner in self.owners.items()}
         numbers = {owner: k for k, owner in enumerate(dict.fromkeys(by_joint.values()), 1)}
         claimed = [numbers.get(by_joint.get(joint.name, ""), 0) for joint in self.drives.joints]
         self.drives.groups = np.array(claimed, np.intp)
 
-    def _idle(self, joint: HardwareJoint, of_leader: str) -> int:
+    def _idle_mode(self, joint: HardwareJoint, of_leader: str) -> int:
         """How a joint is driven that nobody claims; `of_leader`: how the one is that it mimics."""
         if of_leader:
             return _MODES[of_leader] if of_leader in joint.command_interfaces else FREE
@@ -178,7 +178,7 @@ class Hardware:
 
     def wants(self, names: Iterable[str]) -> None:
         """Says which state interfaces are read from now on; the others are not kept up to date."""
-        self._read = frozenset(names)
+        self._read_interfaces = frozenset(names)
         self._model = None
 
     def read(self) -> None:
@@ -189,14 +189,14 @@ class Hardware:
         values = states.values
         for rows, reading in self._plan:
             values[rows] = reading()
-        if self._late or states.late:
-            states.late = self._late.copy()
+        if self._deferred or states.late:
+            states.late = self._deferred.copy()
 
     def _bind(self) -> None:
         """Plans the readings; another engine's model has other addresses."""
-        self._model, self._plan, self._late = self._sim.mj_model, [], []
+        self._model, self._plan, self._deferred = self._sim.mj_model, [], []
         by_kind: dict[str, list[tuple[int, str]]] = {}
-        for name in (n for n in self.states.names if n in self._read):
+        for name in (n for n in self.states.names if n in self._read_interfaces):
             owner, _, interface = name.rpartition("/")
             if owner in self.joints:
                 by_kind.setdefault(interface, []).append((self.states.index(name), owner))
@@ -209,11 +209,13 @@ class Hardware:
             rows, places = np.array([row for row, _ in found], np.intp), tuple(place for _, place in found)
             if kind.startswith("sensor "):
                 sensor = self.sensors[kind.removeprefix("sensor ")]
-                self._late.append((rows, _sensor_reading(sensor, self._sim, places)))
+                self._deferred.append((rows, _sensor_reading(sensor, self._sim, places)))
             elif kind in _MODES:
-                plan = self._late if kind == EFFORT else self._plan  # efforts are worked out, so only when asked for
+                plan = (
+                    self._deferred if kind == EFFORT else self._plan
+                )  # efforts are worked out, so only when asked for
                 plan.append((rows, self.reading(kind, places)))
-        self.states.late_places = frozenset(row for rows, _ in self._late for row in rows.tolist())
+        self.states.late_places = frozenset(row for rows, _ in self._deferred for row in rows.tolist())
 
     def reading(self, interface: str, joints: Sequence[str]) -> Callable[[], Vector]:
         """What gives the positions, velocities or efforts of joints, as long as the engine's model is the same."""
@@ -244,19 +246,19 @@ class Hardware:
     def get_state(self) -> Any:
         """A copy of everything that changes as it runs."""
         values = self.states.values.copy(), self.commands.values.copy()
-        own = (*values, dict(self.owners), self._sources.copy(), self._read)
+        own = (*values, dict(self.owners), self._sources.copy(), self._read_interfaces)
         drives = self.drives
         return own, (drives.modes.copy(), drives.targets.copy(), drives.integrals.copy())
 
     def set_state(self, state: Any) -> None:
         """Back to a state from `get_state`."""
-        (states, commands, owners, sources, self._read), drives = state
+        (states, commands, owners, sources, self._read_interfaces), drives = state
         self.states.values, self.commands.values = states.copy(), commands.copy()
         self.owners, self._sources = dict(owners), sources.copy()
         self._unclaimed = np.flatnonzero(sources < 0)
         self._model = None
         self.drives.modes, self.drives.targets, self.drives.integrals = (one.copy() for one in drives)
-        self._group()
+        self._group_joints()
 
     def __deepcopy__(self, memo: dict[int, object]) -> Hardware:
         return self

@@ -60,9 +60,9 @@ class HeadJoints:
         angles = tried[int(np.argmin(errors))]
         error, damping = float(errors.min()), 1e-6
         for _ in range(_STEPS):
-            miss = self._misses(angles[None], target)[0]
+            miss = self._squared_errors(angles[None], target)[0]
             step = 1e-6
-            nudged = self._misses(angles + step * np.eye(2), target)
+            nudged = self._squared_errors(angles + step * np.eye(2), target)
             slope = ((nudged - miss) / step).T
             move = np.linalg.solve(slope.T @ slope + damping * np.eye(2), -slope.T @ miss)
             new = np.clip(angles + move, low, high)
@@ -76,11 +76,11 @@ class HeadJoints:
         return angles, error
 
     def _errors(self, angles: Vector, target: Vector) -> Vector:
-        misses = self._misses(angles, target)
+        misses = self._squared_errors(angles, target)
         errors: Vector = 2.0 * np.arcsin(np.clip(np.linalg.norm(misses, axis=1) / 2.0, 0.0, 1.0))
         return errors
 
-    def _misses(self, angles: Vector, target: Vector) -> Vector:
+    def _squared_errors(self, angles: Vector, target: Vector) -> Vector:
         """Direction to the target − where it points, for angles (k, 2); shape (k, 3)."""
         turns = angles - self.angles
         points = np.repeat(self.frame.position[None], len(turns), 0)

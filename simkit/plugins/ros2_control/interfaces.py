@@ -82,9 +82,9 @@ class InterfaceSelection:
         self._table = table
         self.names = tuple(names)
         places = [table.index(name) for name in names]
-        self._wanted = frozenset(places)
-        self._where = array_index(places)
-        self._is_view = isinstance(self._where, slice)
+        self._places = frozenset(places)
+        self._array_index = array_index(places)
+        self._is_view = isinstance(self._array_index, slice)
 
     def __len__(self) -> int:
         return len(self.names)
@@ -96,11 +96,11 @@ class InterfaceSelection:
     def values(self) -> Vector:
         """A copy of their values."""
         table = self._table
-        if table.late and not table.late_places.isdisjoint(self._wanted):
-            table.catch_up(self._wanted)
-        found: Vector = table.values[self._where]
+        if table.late and not table.late_places.isdisjoint(self._places):
+            table.catch_up(self._places)
+        found: Vector = table.values[self._array_index]
         return found.copy() if self._is_view else found
 
     @values.setter
     def values(self, values: Vector | Sequence[float]) -> None:
-        self._table.values[self._where] = values
+        self._table.values[self._array_index] = values

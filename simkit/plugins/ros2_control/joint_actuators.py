@@ -73,12 +73,12 @@ class JointActuators:
     _dofs: Indices = field(default_factory=_no_indices)
     _loops: ControlLoops = field(init=False, repr=False)
     _leaders: Indices = field(default_factory=_no_indices)
-    _leads: Mask = field(default_factory=lambda: np.zeros(0, bool))
-    _law: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # multiplier and offset (2, joints)
-    _ends: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # lower and upper (2, joints)
-    _fastest: Vector = field(default_factory=lambda: np.zeros(0))
-    _follows: bool = False
-    _weights: GravityEfforts = field(init=False, repr=False)
+    _is_leader: Mask = field(default_factory=lambda: np.zeros(0, bool))
+    _mimic_law: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # multiplier and offset (2, joints)
+    _position_limits: Vector = field(default_factory=lambda: np.zeros((2, 0)))  # lower and upper (2, joints)
+    _max_velocities: Vector = field(default_factory=lambda: np.zeros(0))
+    _has_mimics: bool = False
+    _gravity: GravityEfforts = field(init=False, repr=False)
     _cached: ActiveModes | None = None
 
     @classmethod
@@ -104,7 +104,7 @@ class JointActuators:
 
     def load(self, sim: Simulation) -> None:
         """Ties them to a simulation; everything with a position interface holds where it is."""
-        self._sim, self._weights = sim, GravityEfforts(sim, [joint.scoped for joint in self.joints])
+        self._sim, self._gravity = sim, GravityEfforts(sim, [joint.scoped for joint in self.joints])
         self._is_loaded = True
         count = len(self.joints)
         self.integrals, self.groups = np.zeros(count), np.zeros(count, np.intp)
@@ -138,15 +138,15 @@ class JointActuators:
         joints = self.joints
         index = {joint.name: k for k, joint in enumerate(joints)}
         self._leaders = np.array([index.get(j.leader, k) for k, j in enumerate(joints)], np.intp)
-        self._leads = self._leaders == np.arange(len(joints))
-        self._law = np.array([(j.multiplier, j.offset) for j in joints], float).reshape(-1, 2).T
-        self._ends = np.array([(j.lower, j.upper) for j in joints], float).reshape(-1, 2).T
-        self._fastest = np.array([j.max_velocity for j in joints], float)
-        self._follows = not self._leads.all()
+        self._is_leader = self._leaders == np.arange(len(joints))
+        self._mimic_law = np.array([(j.multiplier, j.offset) for j in joints], float).reshape(-1, 2).T
+        self._position_limits = np.array([(j.lower, j.upper) for j in joints], float).reshape(-1, 2).T
+        self._max_velocities = np.array([j.max_velocity for j in joints], float)
+        self._has_mimics = not self._is_leader.all()
 
     # ------------------------------------------------------------------ at work
 
-    def soften(self, springs: Mapping[str, tuple[float, float]]) -> None:
+    def set_springs(self, springs: Mapping[str, tuple[float, float]]) -> None:
         """Sets how joints give way in `SPRING_MODE`, in which a command is an effort that kp and kd take from.
 
         Springs within the engine are calm at any rate of the controllers; what would ring at the engine's step is
@@ -175,20 +175,20 @@ class JointActuators:
         data = sim.mj_data
         self.integrals[changed] = 0.0
         self.targets[changed] = data.qpos[self._qpos[changed]]
-        now = self._now()
+        now = self._active_modes()
         biases = sim.touch("actuator_biasprm")
         biases[self._ids, 1], biases[self._ids, 2] = -now.kp, -now.kv
         for loss in ("dof_damping", "dof_frictionloss"):
             losses = sim.touch(loss)
             losses[self._dofs] = np.where(now.is_helped, 0.0, sim.original(loss)[self._dofs])
-        self._bound(now)
+        self._limit_efforts(now)
         # whoever commands efforts has not spoken yet: until then the joint does not fall
-        held = now.kp * self.targets + np.maximum(now.helped, now.direct) * self._weights.now()
+        held = now.kp * self.targets + np.maximum(now.helped, now.direct) * self._gravity.now()
         data.act[self._states[changed]] = held[changed]
         data.ctrl[self._ids[changed]] = 0.0
         sim.physics.changed(CONTROL)
 
-    def _bound(self, now: ActiveModes) -> None:
+    def _limit_efforts(self, now: ActiveModes) -> None:
         """Bounds the efforts as the present modes have it."""
         is_bound = np.isfinite(now.lowest) | np.isfinite(now.highest)
         if is_bound.any():
@@ -196,13 +196,13 @@ class JointActuators:
             limited[self._ids] = is_bound
             ranges[self._ids] = np.clip(np.stack((now.lowest, now.highest), 1), -_LARGEST_CONTROL, _LARGEST_CONTROL)
 
-    def _now(self) -> ActiveModes:
+    def _active_modes(self) -> ActiveModes:
         """What the present modes amount to."""
         cached = self._cached
         if cached is not None and cached.modes is self.modes and cached.claims is self.groups:
             return cached
         addresses = self._ids, self._qpos, self._dofs
-        self._cached = ActiveModes.of(self.modes, self.groups, self._loops, addresses, self._fastest)
+        self._cached = ActiveModes.of(self.modes, self.groups, self._loops, addresses, self._max_velocities)
         return self._cached
 
     def _rebind_if_needed(self) -> None:
@@ -219,15 +219,15 @@ class JointActuators:
         if not self.joints:
             return
         self._rebind_if_needed()
-        now, physics = self._now(), self._sim.physics
+        now, physics = self._active_modes(), self._sim.physics
         data, wanted = physics.data, commands
-        if self._follows:  # a mimic has no command of its own
-            offset = np.where(now.is_position, self._law[1], 0.0)
-            wanted = np.where(self._leads, wanted, self._law[0] * wanted[self._leaders] + offset)
+        if self._has_mimics:  # a mimic has no command of its own
+            offset = np.where(now.is_position, self._mimic_law[1], 0.0)
+            wanted = np.where(self._is_leader, wanted, self._mimic_law[0] * wanted[self._leaders] + offset)
         if wanted.dot(now.nothing) != 0.0:  # sooner found like this: 0 times what is not finite is not 0
             wanted = np.where(np.isfinite(wanted), wanted, np.where(now.is_position, self.targets, 0.0))
-        reference, rate = self._follow(now, wanted, period)
-        weight = self._weights.now()
+        reference, rate = self._advance_all(now, wanted, period)
+        weight = self._gravity.now()
         state = now.pull * reference
         state += now.kv * rate
         state += weight if now.all_helped else now.helped * weight
@@ -241,25 +241,25 @@ class JointActuators:
         data.ctrl[self._ids] = now.pull * rate
         physics.changed(CONTROL)
 
-    def _follow(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[Vector, Vector]:
+    def _advance_all(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[Vector, Vector]:
         """Where the references are [rad or m], and how fast they move from now on [rad/s or m/s], within the limits."""
         targets = self.targets
         if period <= 0.0:
             return targets, np.zeros_like(targets)
         data = self._sim.physics.data
         if now.period != period:
-            now.period, now.most = period, self._fastest * period
+            now.period, now.most = period, self._max_velocities * period
             now.least = -now.most
         # what is blocked, or was put elsewhere, does not whip back: its reference waits where it pulls with all it has
         place, reach = data.qpos[self._qpos], now.reach
         targets = np.minimum(np.maximum(targets, place - reach), place + reach)
-        move = np.minimum(np.maximum(wanted, self._ends[0]), self._ends[1])
+        move = np.minimum(np.maximum(wanted, self._position_limits[0]), self._position_limits[1])
         move -= targets
         move = np.minimum(np.maximum(move, now.least), now.most)
         if now.all_position:
             self.targets = targets + move
             return targets, move / period
-        led, speeds = self._roll(now, wanted, period)
+        led, speeds = self._advance_velocity_references(now, wanted, period)
         rate, ahead, reference = move / period, targets + move, targets
         for (k, *_), position, speed in zip(now.rolling, led, speeds, strict=True):
             reference[k] = ahead[k] = position
@@ -267,7 +267,9 @@ class JointActuators:
         self.targets = ahead
         return reference, rate
 
-    def _roll(self, now: ActiveModes, wanted: Vector, period: float) -> tuple[list[float], list[float]]:
+    def _advance_velocity_references(
+        self, now: ActiveModes, wanted: Vector, period: float
+    ) -> tuple[list[float], list[float]]:
         """The same of those that are not driven by position, `now.rolling`."""
         data = self._sim.physics.data
         control, place, turning = data.ctrl.item, data.qpos.item, data.qvel.item
@@ -300,7 +302,7 @@ class JointActuators:
 
     def efforts(self) -> Vector:
         """What each gives now [N·m or N]."""
-        now, data = self._now(), self._sim.physics.data
+        now, data = self._active_modes(), self._sim.physics.data
         force = data.act[self._states] - now.kp * data.qpos[self._qpos] - now.kv * data.qvel[self._dofs]
         effort: Vector = np.minimum(np.maximum(force, now.lowest), now.highest)
         return effort

@@ -213,7 +213,7 @@ class TrajectoryMessages:
 
     def __init__(self, group: JointGroup) -> None:
         self._group, self._names = group, list(group.joints)
-        self._none = np.zeros(0)
+        self._empty = np.zeros(0)
         self._point_type: type[JointTrajectoryPoint] = msgs.type_of(_POINT)
         self._multi_dof_point_type: type[MultiDOFJointTrajectoryPoint] = msgs.type_of(_MULTI_DOF_POINT)
         self._feedback_type: type[FollowJointTrajectory_Feedback] = msgs.type_of(_FEEDBACK)
@@ -226,7 +226,7 @@ class TrajectoryMessages:
         """How far a goal is; arrays (3, n)."""
         measured = len(self._group.states)
         points = self._point(desired, 3), self._point(state, measured), self._point(errors, measured)
-        none = (self._no_point() for _ in range(3))
+        none = (self._empty_multi_dof_point() for _ in range(3))
         return self._feedback_type(msgs.header(now, ""), list(self._names), *points, [], *none)
 
     def state(
@@ -235,19 +235,19 @@ class TrajectoryMessages:
         """What the controller is at; arrays (3, n), and the values of its command interfaces."""
         measured = len(self._group.states)
         wanted, actual = self._point(desired, 3), self._point(state, measured)
-        points = wanted, actual, self._point(errors, measured), self._output(commands), wanted, actual
-        none = (self._no_point() for _ in range(6))
+        points = wanted, actual, self._point(errors, measured), self._command_point(commands), wanted, actual
+        none = (self._empty_multi_dof_point() for _ in range(6))
         return self._state_type(msgs.header(now, ""), list(self._names), *points, [], *none)
 
-    def _no_point(self) -> MultiDOFJointTrajectoryPoint:
+    def _empty_multi_dof_point(self) -> MultiDOFJointTrajectoryPoint:
         return self._multi_dof_point_type([], [], [], msgs.duration(0))
 
     def _point(self, motion: Vector, rows: int) -> JointTrajectoryPoint:
-        position, velocity, acceleration = (motion[k] if k < rows else self._none for k in range(3))
-        return self._point_type(position, velocity, acceleration, self._none, msgs.duration(0))
+        position, velocity, acceleration = (motion[k] if k < rows else self._empty for k in range(3))
+        return self._point_type(position, velocity, acceleration, self._empty, msgs.duration(0))
 
-    def _output(self, values: Vector) -> JointTrajectoryPoint:
+    def _command_point(self, values: Vector) -> JointTrajectoryPoint:
         count = len(self._group.commanded_joints)
         found = {kind: values[k * count : (k + 1) * count] for k, kind in enumerate(self._group.commands)}
-        position, velocity, acceleration, effort = (found.get(kind, self._none) for kind in _INTERFACE_ORDER)
+        position, velocity, acceleration, effort = (found.get(kind, self._empty) for kind in _INTERFACE_ORDER)
         return self._point_type(position, velocity, acceleration, effort, msgs.duration(0))

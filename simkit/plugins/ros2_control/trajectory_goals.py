@@ -180,13 +180,13 @@ class Tolerances:
         if fault:
             what = f"Illegal goal time tolerance specified: {fault}. Using default tolerances."
             return self, what
-        path, what = self._changed("path", self.path, goal.path_tolerance, joints)
+        path, what = self._with_changes("path", self.path, goal.path_tolerance, joints)
         if not what:
-            ends, what = self._changed("goal", self.goal, goal.goal_tolerance, joints)
+            ends, what = self._with_changes("goal", self.goal, goal.goal_tolerance, joints)
         return (self, what) if what else (replace(self, path=path, goal=ends, goal_time=goal_time), "")
 
     @staticmethod
-    def _changed(
+    def _with_changes(
         kind: str, table: Vector, wanted: Iterable[JointTolerance], joints: Sequence[str]
     ) -> tuple[Vector, str]:
         changed = table.copy()

@@ -74,7 +74,7 @@ def test_what_is_opened_again_is_the_same_and_goes_to_the_newer_one(tmp_path: Pa
     with opened(tmp_path) as sim:
         first = tuned(sim)
         second = tuned(sim)
-        second.ends = first.ends
+        second.endpoints = first.endpoints
         second.configure()
         sim.publish("/tuned/in", simkit.msgs.make("std_msgs/msg/Float64", data=5.0))
         sim.run(0.01)

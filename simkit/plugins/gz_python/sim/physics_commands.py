@@ -98,9 +98,9 @@ class PhysicsCommands:
         turned = [(joint, self.velocity[e]) for e in held if (joint := handle(e, "joint"))]
         if turned:
             _set_angular_velocities(sim, turned)
-        self._settle()
+        self._clear_after_step()
 
-    def _settle(self) -> None:
+    def _clear_after_step(self) -> None:
         """After a step's commands: what stays becomes zero, the rest goes."""
         for once in (self.position_reset, self.velocity_reset, self.wrench, self.pose, self.limits):
             once.clear()

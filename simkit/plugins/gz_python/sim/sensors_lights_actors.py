@@ -53,10 +53,10 @@ class Actor(EntityHandle):
 
     def trajectory_pose(self, ecm: EntityView) -> Pose3d | None:
         """What was set, seen from `pose`; None before."""
-        return self._kept(ecm, "trajectory_pose", Pose3d)
+        return self._stored(ecm, "trajectory_pose", Pose3d)
 
     def set_trajectory_pose(self, ecm: EntityView, pose: PoseLike) -> None:
-        self._keep(ecm, "trajectory_pose", gz_pose(simkit_pose(pose)))
+        self._store(ecm, "trajectory_pose", gz_pose(simkit_pose(pose)))
 
     def world_pose(self, ecm: EntityView) -> Pose3d | None:
         """Where it is in the world."""
@@ -64,29 +64,29 @@ class Actor(EntityHandle):
         return gz_pose(model.pose) if model is not None else None
 
     def animation_name(self, ecm: EntityView) -> str | None:
-        return self._kept(ecm, "animation_name", str)
+        return self._stored(ecm, "animation_name", str)
 
     def set_animation_name(self, ecm: EntityView, name: str) -> None:
-        self._keep(ecm, "animation_name", str(name))
+        self._store(ecm, "animation_name", str(name))
 
     def animation_time(self, ecm: EntityView) -> timedelta | None:
-        return self._kept(ecm, "animation_time", timedelta)
+        return self._stored(ecm, "animation_time", timedelta)
 
     def set_animation_time(self, ecm: EntityView, time: timedelta | float) -> None:
         """A duration, or whole milliseconds as in gz-sim 8."""
-        self._keep(ecm, "animation_time", time if isinstance(time, timedelta) else timedelta(milliseconds=time))
+        self._store(ecm, "animation_time", time if isinstance(time, timedelta) else timedelta(milliseconds=time))
 
     def bone_transforms(self, ecm: EntityView) -> dict[str, Pose3d] | None:
-        return self._kept(ecm, "bone_transforms", dict)
+        return self._stored(ecm, "bone_transforms", dict)
 
     def set_bone_transforms(self, ecm: EntityView, transforms: dict[str, PoseLike]) -> None:
-        self._keep(ecm, "bone_transforms", {name: gz_pose(simkit_pose(pose)) for name, pose in transforms.items()})
+        self._store(ecm, "bone_transforms", {name: gz_pose(simkit_pose(pose)) for name, pose in transforms.items()})
 
-    def _kept(self, ecm: EntityView, what: str, kind: type[T]) -> T | None:
+    def _stored(self, ecm: EntityView, what: str, kind: type[T]) -> T | None:
         kept = ecm.values.get((self._entity, what))
         return kept if isinstance(kept, kind) else None
 
-    def _keep(self, ecm: EntityView, what: str, value: object) -> None:
+    def _store(self, ecm: EntityView, what: str, value: object) -> None:
         if self.valid(ecm):
             ecm.values[self._entity, what] = value
             ecm.simulation.log.debug("actor %s: %s is kept, only its script moves it", self.name(ecm), what)

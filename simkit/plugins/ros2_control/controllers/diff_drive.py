@@ -101,21 +101,21 @@ class DiffDriveController(Controller):
 
     def configure(self) -> None:
         before = self.params.diagnostics.error_count
-        options = read_drive_options(self.params, self.plugin.ros.namespace, self._measured)
+        options = read_drive_options(self.params, self.plugin.ros.namespace, self._wheel_size_of_model)
         self._options = options
         self._period_ns = max(round(_NS / options.publish_rate), 1) if options.publish_rate > 0 else 0
         self._multipliers = self._read_multipliers(options.is_ros_1)
         if self.params.diagnostics.error_count > before:
             return
         self._once = OneTimeWarnings(self.plugin)
-        self._takes = False  # commands, while it is active
+        self._accepts_commands = False  # commands, while it is active
         self._command, self._stamp_ns = _NO_MOTION, 0
         self._last, self._before_last = _NO_MOTION, _NO_MOTION
-        self._driven: tuple[Any, ...] | None = None  # what the wheels are told, and by which sizes
+        self._commanded: tuple[Any, ...] | None = None  # what the wheels are told, and by which sizes
         self._odometry = WheelOdometry(options.window)
-        self._began = False
+        self._has_begun = False
         self._angles: tuple[float, float] | None = None  # of the wheels, up to which the way is reckoned
-        self._reckoned_ns = self._told_ns = 0
+        self._reckoned_ns = self._published_ns = 0
         self._open_topics(options)
 
     def _open_topics(self, options: DriveOptions) -> None:
@@ -146,19 +146,19 @@ class DiffDriveController(Controller):
     def activate(self) -> None:
         now = self.sim.time_ns
         self._command, self._last, self._before_last = _NO_MOTION, _NO_MOTION, _NO_MOTION
-        self._stamp_ns, self._driven = now, None
-        if not self._began:
-            self._began, self._told_ns, self._reckoned_ns = True, now, now
-        self._takes = True
+        self._stamp_ns, self._commanded = now, None
+        if not self._has_begun:
+            self._has_begun, self._published_ns, self._reckoned_ns = True, now, now
+        self._accepts_commands = True
 
     def deactivate(self) -> None:
-        self._takes = False
+        self._accepts_commands = False
         self._drive(_NO_MOTION, self._sizes())
 
     # ------------------------------------------------------------------ commands
 
     def _on_command(self, message: Twist | TwistStamped) -> None:
-        if not self._takes:
+        if not self._accepts_commands:
             self._warn("inactive", "a command came while it is not active, and is left out")
             return
         command = command_of(message)
@@ -183,8 +183,8 @@ class DiffDriveController(Controller):
         if now_ns - self._stamp_ns > options.timeout_ns:
             self._command = _NO_MOTION
         sizes = self._sizes()
-        self._reckon(now_ns, sizes)
-        self._tell(now_ns)
+        self._update_odometry(now_ns, sizes)
+        self._publish(now_ns)
         (ahead, turn), last, before = self._command, self._last, self._before_last
         self._before_last = last
         self._last = (
@@ -196,9 +196,9 @@ class DiffDriveController(Controller):
         self._drive(self._last, sizes)
 
     def _drive(self, command: tuple[float, float], sizes: tuple[float, float, float]) -> None:
-        if self._driven == (command, sizes):
+        if self._commanded == (command, sizes):
             return  # what was written stays
-        self._driven = command, sizes
+        self._commanded = command, sizes
         separation, left_radius, right_radius = sizes
         ahead, turn = command
         half, count = turn * separation / 2, len(self._options.left)
@@ -206,13 +206,13 @@ class DiffDriveController(Controller):
 
     # ------------------------------------------------------------------ odometry
 
-    def _reckon(self, now_ns: int, sizes: tuple[float, float, float]) -> None:
+    def _update_odometry(self, now_ns: int, sizes: tuple[float, float, float]) -> None:
         elapsed = (now_ns - self._reckoned_ns) / _NS
         separation, left_radius, right_radius = sizes
         if self._options.open_loop:
             self._odometry.follow(*self._last, elapsed)
         else:
-            left, right = self._feedback()
+            left, right = self._wheel_motion()
             if not math.isfinite(left + right):
                 return  # the hardware has not been read yet
             if self._angles is None:
@@ -229,7 +229,7 @@ class DiffDriveController(Controller):
             self._angles = left, right
         self._reckoned_ns = now_ns
 
-    def _feedback(self) -> tuple[float, float]:
+    def _wheel_motion(self) -> tuple[float, float]:
         """Mean of the wheels on either side: angles [rad], or speeds [rad/s]."""
         values, count = self.states.values.tolist(), len(self._options.left)
         if count == 1:
@@ -237,14 +237,14 @@ class DiffDriveController(Controller):
             return left, right
         return sum(values[:count]) / count, sum(values[count:]) / count
 
-    def _tell(self, now_ns: int) -> None:
+    def _publish(self, now_ns: int) -> None:
         """Publishes odometry and its transform, on the grid of the publish rate."""
         options, period_ns = self._options, self._period_ns
         if period_ns:
-            missed = (now_ns - self._told_ns) // period_ns
+            missed = (now_ns - self._published_ns) // period_ns
             if missed < 1:
                 return
-            self._told_ns += missed * period_ns
+            self._published_ns += missed * period_ns
         has_odom, has_tf = self._odom.wanted, self._tf is not None and self._tf.wanted
         if not has_odom and not has_tf:
             return
@@ -272,7 +272,7 @@ class DiffDriveController(Controller):
         }
         return tuple(self.declare(n, v, minimum=1e-3, description=what) for n, (v, what) in defaults.items())
 
-    def _measured(self, left: str, right: str) -> tuple[float | None, float | None]:
+    def _wheel_size_of_model(self, left: str, right: str) -> tuple[float | None, float | None]:
         """Separation and radius as the model has them [m]: by the joints' origins and the left wheel's shape."""
         joints = [self.hardware.joints.get(name) for name in (left, right)]
         if joints[0] is None or joints[1] is None:

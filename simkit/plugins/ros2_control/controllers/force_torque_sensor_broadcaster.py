@@ -32,28 +32,28 @@ class ForceTorqueSensorBroadcaster(Controller):
             params.text("sensor_name", required=True)
         given = {part: f"{sensor}/{part}" for part in _PARTS} if sensor else {p: n for p, n in single.items() if n}
         self._names = list(given.values())
-        self._cells = [_PARTS.index(part) for part in given]
-        self._is_whole = tuple(given) == _PARTS
+        self._columns = [_PARTS.index(part) for part in given]
+        self._has_all_parts = tuple(given) == _PARTS
         offset, multiplier = params.block("offset"), params.block("multiplier")
         self._offset = np.array([_number(offset, part, 0.0) for part in _PARTS])
         self._multiplier = np.array([_number(multiplier, part, 1.0) for part in _PARTS])
-        self._out = self.advertise("~/wrench", WRENCH)
+        self._publisher = self.advertise("~/wrench", WRENCH)
 
     def state_interfaces(self) -> Sequence[str]:
         return self._names
 
     def update(self, now_ns: int, period: float) -> None:
-        if not self._out.wanted:
+        if not self._publisher.wanted:
             return
         values = self.states.values
-        if not self._is_whole:
+        if not self._has_all_parts:
             there, values = values, np.full(6, np.nan)  # what has no interface is not measured
-            values[self._cells] = there
+            values[self._columns] = there
         values *= self._multiplier
         values += self._offset
         stamped, wrench, vector = msgs.types_of(WRENCH, "geometry_msgs/msg/Wrench", "geometry_msgs/msg/Vector3")
         force, torque = values[:3].tolist(), values[3:].tolist()
-        self._out.publish(stamped(msgs.header(now_ns, self._frame), wrench(vector(*force), vector(*torque))))
+        self._publisher.publish(stamped(msgs.header(now_ns, self._frame), wrench(vector(*force), vector(*torque))))
 
 
 def _number(block: Params, part: str, default: float) -> float:

@@ -37,20 +37,20 @@ class ForwardCommandController(Controller):
         else:
             interface, _ = self.interface, params.child("interface_name")
         self._names = [f"{joint}/{interface}" for joint in joints]
-        self._listen()
+        self._open_topics()
 
-    def _listen(self) -> None:
-        self._wanted: Vector | None = None
+    def _open_topics(self) -> None:
+        self._command: Vector | None = None
         ros_1 = getattr(self.plugin, "is_ros_1", False)
-        self.listen("~/command" if ros_1 else "~/commands", COMMANDS, lambda message: self.take(message.data))
+        self.listen("~/command" if ros_1 else "~/commands", COMMANDS, lambda message: self.set_command(message.data))
 
     def command_interfaces(self) -> Sequence[str]:
         return self._names
 
     def activate(self) -> None:
-        self._wanted = None
+        self._command = None
 
-    def take(self, data: Sequence[float]) -> None:
+    def set_command(self, data: Sequence[float]) -> None:
         """Takes a command; one of another length, or with a number that is none, is told and left out."""
         values = np.array(data, dtype=float)
         problem = ""
@@ -62,11 +62,11 @@ class ForwardCommandController(Controller):
             message = f"controller {self.name!r}: {problem}; it is left out"
             self.sim.reports.warning("SK-CONTROL-016", message, self.params.where)
             return
-        self._wanted = values
+        self._command = values
 
     def update(self, now_ns: int, period: float) -> None:
-        if self._wanted is not None:
-            self.commands.values = self._wanted
+        if self._command is not None:
+            self.commands.values = self._command
 
 
 class MultiInterfaceForwardCommandController(ForwardCommandController):
@@ -79,7 +79,7 @@ class MultiInterfaceForwardCommandController(ForwardCommandController):
         joint = params.text("joint", required=True)
         interfaces = read_names(params, "interface_names", required=True)
         self._names = [f"{joint}/{interface}" for interface in interfaces]
-        self._listen()
+        self._open_topics()
 
 
 class PositionController(ForwardCommandController):
@@ -108,8 +108,8 @@ class _OneJointController(ForwardCommandController):
 
     def configure(self) -> None:
         self._names = [f"{self.params.text('joint', required=True)}/{self.interface}"]
-        self._wanted = None
-        self.listen("~/command", COMMAND, lambda message: self.take([message.data]))
+        self._command = None
+        self.listen("~/command", COMMAND, lambda message: self.set_command([message.data]))
 
 
 class OnePositionController(_OneJointController):

@@ -42,12 +42,12 @@ class GripperActionController(Controller):
             params.error("SK-CONTROL-026", "'joint' parameter is empty: a gripper controller is for one joint")
         self._feedback_ns = round(SECOND / params.number("action_monitor_rate", 20.0, minimum=0.1))
         self._tolerance = params.number("goal_tolerance", 0.01, minimum=0.0)
-        self._usual_effort = abs(params.number("max_effort", 0.0))
+        self._default_effort = abs(params.number("max_effort", 0.0))
         self._allow_stalling = params.boolean("allow_stalling", False)
-        self._slow = params.number("stall_velocity_threshold", 0.001, minimum=0.0)
-        self._patience = params.number("stall_timeout", 1.0, minimum=0.0)
-        self._extras: tuple[str, ...] = ()
-        self._said = OneTimeWarnings(self)
+        self._stall_velocity = params.number("stall_velocity_threshold", 0.001, minimum=0.0)
+        self._stall_timeout = params.number("stall_timeout", 1.0, minimum=0.0)
+        self._extra_interfaces: tuple[str, ...] = ()
+        self._warnings = OneTimeWarnings(self)
         self._pids: JointPids | None = None
         if self.interface == "effort":
             self._pids = JointPids.read(params.block("gains"), (self._joint,))
@@ -55,23 +55,23 @@ class GripperActionController(Controller):
                 message = f"gains of joint {self._joint!r} are all 0: no effort is ever given"
                 hint = f"gains: {{{self._joint}: {{p: 100.0, d: 10.0}}}}"
                 params.diagnostics.warning("SK-CONTROL-026", message, params.where, hint)
-        self._read_more()
+        self._read_own_parameters()
         self.act("~/gripper_cmd", self.action_type, self._on_goal, self._on_cancel)
         self._is_active = False
         self._clear()
 
-    def _read_more(self) -> None:
+    def _read_own_parameters(self) -> None:
         """Parameters of a kind of its own."""
 
     def _clear(self) -> None:
         self._goal: GoalHandle | None = None
-        self._wanted, self._effort, self._limits = math.nan, self._usual_effort, np.zeros(0)
-        self._given = 0.0  # the effort that is told
+        self._target, self._effort, self._limits = math.nan, self._default_effort, np.zeros(0)
+        self._commanded_effort = 0.0  # the effort that is told
         self._moved_ns = self._next_feedback = 0
         self._is_new = True
 
     def command_interfaces(self) -> Sequence[str]:
-        return (f"{self._joint}/{self.interface}", *self._extras)
+        return (f"{self._joint}/{self.interface}", *self._extra_interfaces)
 
     def state_interfaces(self) -> Sequence[str]:
         return (f"{self._joint}/position", f"{self._joint}/velocity")
@@ -81,7 +81,7 @@ class GripperActionController(Controller):
         self._is_active = True
         if self._pids is not None:
             self._pids.restart()
-        self._wanted = float(self.states.values[0])
+        self._target = float(self.states.values[0])
 
     def deactivate(self) -> None:
         self._is_active = False
@@ -105,10 +105,10 @@ class GripperActionController(Controller):
         if joint is not None and not joint.lower - 1e-6 <= position <= joint.upper + 1e-6:
             limits = f"its limits are {joint.lower:g} and {joint.upper:g}"
             what = f"a goal asks joint {self._joint!r} for {position:g}, {limits}: there it stops"
-            self._said.warn("SK-CONTROL-021", "limits", what)
+            self._warnings.warn("SK-CONTROL-021", "limits", what)
         if self._goal is not None:
             self._goal.canceled(reason="Current goal cancelled due to new incoming action.")
-        self._goal, self._wanted, self._effort = goal, position, effort
+        self._goal, self._target, self._effort = goal, position, effort
         self._moved_ns, self._next_feedback, self._is_new = self.sim.time_ns, 0, True
 
     def _read_command(self, request: Any) -> tuple[float, float, str]:
@@ -121,7 +121,7 @@ class GripperActionController(Controller):
         if goal is not self._goal:
             return
         self._goal = None
-        self._wanted, self._effort, self._is_new = float(self.states.values[0]), self._usual_effort, True
+        self._target, self._effort, self._is_new = float(self.states.values[0]), self._default_effort, True
         goal.canceled()
 
     # ------------------------------------------------------------------ each period
@@ -131,11 +131,11 @@ class GripperActionController(Controller):
             return
         self._is_new = False
         position, velocity = self.states.values
-        error = self._wanted - float(position)
-        command, self._given = self._wanted, self._effort
+        error = self._target - float(position)
+        command, self._commanded_effort = self._target, self._effort
         if self._pids is not None:
             driven = float(self._pids.update(np.array([error]), np.array([-float(velocity)]), period)[0])
-            command = self._given = max(-abs(self._effort), min(abs(self._effort), driven))
+            command = self._commanded_effort = max(-abs(self._effort), min(abs(self._effort), driven))
         self.commands.values = np.array([command, *self._limits])
         if self._goal is not None:
             self._report_progress(self._goal, now_ns, error, float(velocity))
@@ -146,9 +146,9 @@ class GripperActionController(Controller):
             self._goal = None
             goal.succeed(self._result(reached_goal=True), "Successfully moved to goal.")
             return
-        if abs(velocity) > self._slow:
+        if abs(velocity) > self._stall_velocity:
             self._moved_ns = now
-        elif now - self._moved_ns > self._patience * SECOND:
+        elif now - self._moved_ns > self._stall_timeout * SECOND:
             self._goal = None
             end = goal.succeed if self._allow_stalling else goal.abort
             end(self._result(stalled=True), f"Stall detected moving to goal, {abs(error):g} away from it.")
@@ -161,7 +161,7 @@ class GripperActionController(Controller):
         return {**self._feedback(), "stalled": stalled, "reached_goal": reached_goal}
 
     def _feedback(self) -> dict[str, object]:
-        return {"position": float(self.states.values[0]), "effort": self._given}
+        return {"position": float(self.states.values[0]), "effort": self._commanded_effort}
 
 
 class EffortGripperActionController(GripperActionController):
@@ -177,23 +177,25 @@ class ParallelGripperActionController(GripperActionController):
     types = ("parallel_gripper_action_controller/GripperActionController",)
     action_type = PARALLEL
 
-    def _read_more(self) -> None:
+    def _read_own_parameters(self) -> None:
         params = self.params
         names = params.text("max_velocity_interface", ""), params.text("max_effort_interface", "")
-        self._extras = tuple(f"{self._joint}/{name}" if "/" not in name else name for name in names if name)
+        self._extra_interfaces = tuple(f"{self._joint}/{name}" if "/" not in name else name for name in names if name)
         self._names = names
-        self._usual = params.number("max_velocity", 0.0, minimum=0.0), self._usual_effort
+        self._default_velocity_and_effort = params.number("max_velocity", 0.0, minimum=0.0), self._default_effort
 
     def activate(self) -> None:
         super().activate()
-        self._limits = np.array([v for name, v in zip(self._names, self._usual, strict=True) if name])
+        self._limits = np.array(
+            [v for name, v in zip(self._names, self._default_velocity_and_effort, strict=True) if name]
+        )
 
     def _read_command(self, request: Any) -> tuple[float, float, str]:
         command = request.command
         if not len(command.position):
             return 0.0, 0.0, "The command has no position."
-        velocity = float(command.velocity[0]) if len(command.velocity) else self._usual[0]
-        effort = float(command.effort[0]) if len(command.effort) else self._usual[1]
+        velocity = float(command.velocity[0]) if len(command.velocity) else self._default_velocity_and_effort[0]
+        effort = float(command.effort[0]) if len(command.effort) else self._default_velocity_and_effort[1]
         if not all(math.isfinite(v) for v in (command.position[0], velocity, effort)):
             return 0.0, 0.0, "The command is not a finite number."
         self._limits = np.array([v for name, v in zip(self._names, (velocity, effort), strict=True) if name])
@@ -207,6 +209,6 @@ class ParallelGripperActionController(GripperActionController):
             name=[self._joint],
             position=[position],
             velocity=[velocity],
-            effort=[self._given],
+            effort=[self._commanded_effort],
         )
         return {"state": state}

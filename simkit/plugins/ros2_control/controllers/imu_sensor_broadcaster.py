@@ -32,13 +32,13 @@ class ImuSensorBroadcaster(Controller):
             read_numbers(params, f"static_covariance_{part}", [0.0] * 9)
             for part in ("orientation", "angular_velocity", "linear_acceleration")
         ]
-        self._out = self.advertise("~/imu", IMU)
+        self._publisher = self.advertise("~/imu", IMU)
 
     def state_interfaces(self) -> Sequence[str]:
         return [f"{self._sensor}/{part}" for part in _PARTS]
 
     def update(self, now_ns: int, period: float) -> None:
-        if not self._out.wanted:
+        if not self._publisher.wanted:
             return
         values = self.states.values
         if np.isnan(values).any():
@@ -48,4 +48,4 @@ class ImuSensorBroadcaster(Controller):
         turn, turning, pull = (part.tolist() for part in (values[:4], values[4:7], values[7:]))
         header = msgs.header(now_ns, self._frame)
         told = imu(header, quaternion(*turn), orientation, vector(*turning), rate, vector(*pull), acceleration)
-        self._out.publish(told)
+        self._publisher.publish(told)

@@ -38,7 +38,7 @@ class _LoopController(Controller):
 
     measured: ClassVar[str] = POSITION
     output: ClassVar[str] = EFFORT
-    _out: Publisher | None
+    _publisher: Publisher | None
 
     def configure(self) -> None:
         params = self.params
@@ -49,24 +49,24 @@ class _LoopController(Controller):
             where=params.where,
             diagnostics=params.diagnostics,
         )
-        self._take((joint,), gains)
-        self.listen("~/command", COMMAND, lambda message: self.take([message.data]))
-        self._out = self.advertise("~/state", STATE)
+        self._set_joints((joint,), gains)
+        self.listen("~/command", COMMAND, lambda message: self.set_command([message.data]))
+        self._publisher = self.advertise("~/state", STATE)
 
-    def _take(self, joints: tuple[str, ...], gains: Params) -> None:
+    def _set_joints(self, joints: tuple[str, ...], gains: Params) -> None:
         self._joints = joints
         for joint in joints:
             if not gains.block(joint).has("p"):
                 message = f"No p gain specified for joint {joint!r}: nothing would move it"
                 self.params.error("SK-PARAM-001", message, "pid: {p: 100.0, i: 0.0, d: 10.0}")
         self._pids = JointPids.read(gains, joints)
-        self._wanted = np.full(len(joints), np.nan)
+        self._target = np.full(len(joints), np.nan)
         self._last: Vector | None = None
-        self._out = None
+        self._publisher = None
         hardware = self.hardware.joints
         found = [hardware[joint] for joint in joints if joint in hardware]
-        self._ends = np.array([(j.lower, j.upper) for j in found]).reshape(-1, 2).T
-        self._turns = np.array([j.is_continuous for j in found], bool)
+        self._position_limits = np.array([(j.lower, j.upper) for j in found]).reshape(-1, 2).T
+        self._continuous = np.array([j.is_continuous for j in found], bool)
 
     def command_interfaces(self) -> Sequence[str]:
         return [f"{joint}/{self.output}" for joint in self._joints]
@@ -77,15 +77,15 @@ class _LoopController(Controller):
     def activate(self) -> None:
         """Keeps what is: the position, or standing still."""
         position = self.states.values[: len(self._joints)]
-        self._wanted = position if self.measured == POSITION else np.zeros(len(self._joints))
+        self._target = position if self.measured == POSITION else np.zeros(len(self._joints))
         self._last = None
         self._pids.restart()
 
-    def take(self, data: Sequence[float]) -> None:
+    def set_command(self, data: Sequence[float]) -> None:
         """Takes a command; what it is not is told and left out."""
         values = np.array(data, dtype=float)
         if len(values) == len(self._joints) and np.isfinite(values).all():
-            self._wanted = values
+            self._target = values
             return
         found = f"a command of {len(values)} numbers" if len(values) != len(self._joints) else f"{values.tolist()}"
         message = f"controller {self.name!r}: found {found}, allowed are {len(self._joints)} finite numbers"
@@ -94,21 +94,21 @@ class _LoopController(Controller):
     def update(self, now_ns: int, period: float) -> None:
         position, velocity = self.states.values.reshape(2, -1)
         if self.measured == POSITION:
-            wanted = np.clip(self._wanted, *self._ends)
+            wanted = np.clip(self._target, *self._position_limits)
             error = wanted - position
-            error = np.where(self._turns, np.mod(error + np.pi, 2.0 * np.pi) - np.pi, error)
+            error = np.where(self._continuous, np.mod(error + np.pi, 2.0 * np.pi) - np.pi, error)
         else:
-            wanted = self._wanted
+            wanted = self._target
             error = wanted - velocity
         rate = (error - self._last) / period if self._last is not None and period > 0.0 else np.zeros_like(error)
         self._last = error
         command = self._pids.update(error, rate, period)
         self.commands.values = command
-        if self._out is not None and self._out.wanted:
+        if self._publisher is not None and self._publisher.wanted:
             process = position if self.measured == POSITION else velocity
-            self._out.publish(self._state(now_ns, period, wanted, process, velocity, error, command))
+            self._publisher.publish(self._state_message(now_ns, period, wanted, process, velocity, error, command))
 
-    def _state(self, now_ns: int, period: float, *values: Vector) -> JointControllerState:
+    def _state_message(self, now_ns: int, period: float, *values: Vector) -> JointControllerState:
         wanted, process, velocity, error, command = (float(v[0]) for v in values)
         pids = self._pids
         state: JointControllerState = msgs.make(
@@ -160,9 +160,9 @@ class EffortGroupPositionController(_LoopController):
         if not params.has("gains"):
             blocks = [_renamed_block(params.block(joint).block("pid"), joint) for joint in joints]
             given = Params("gains", children=blocks, where=params.where, diagnostics=params.diagnostics)
-        self._take(joints, given)
+        self._set_joints(joints, given)
         ros_1 = getattr(self.plugin, "is_ros_1", False)
-        self.listen("~/command" if ros_1 else "~/commands", COMMANDS, lambda message: self.take(message.data))
+        self.listen("~/command" if ros_1 else "~/commands", COMMANDS, lambda message: self.set_command(message.data))
 
 
 def _renamed_block(block: Params, name: str) -> Params:

@@ -34,7 +34,7 @@ class JointStateBroadcaster(Controller):
         params = self.params
         prefix = "~/" if params.boolean("use_local_topics", False) else ""
         self._frame = params.text("frame_id", "")
-        self._states = self._chosen(read_names(params, "joints"), read_names(params, "interfaces"))
+        self._states = self._chosen_joints(read_names(params, "joints"), read_names(params, "interfaces"))
         mapping = params.block("map_interface_to_joint_state")
         fields = {(mapping.text(field, field) or field): field for field in _FIELDS}
         params.child("use_urdf_to_filter")  # only the hardware's own joints are there
@@ -48,14 +48,14 @@ class JointStateBroadcaster(Controller):
         self._places = np.array(
             [_FIELDS.index(fields[i]) * len(self._names) + joints.index(o) for o, i in owners if i in fields], np.intp
         )
-        self._told = [f"{owner}/{interface}" for owner, interface in owners if interface in fields]
+        self._state_names = [f"{owner}/{interface}" for owner, interface in owners if interface in fields]
         self._by_owner: dict[str, list[tuple[int, str]]] = {}
         for k, (owner, interface) in enumerate(owners):
             self._by_owner.setdefault(owner, []).append((k, interface))
-        self._out = self.advertise(f"{prefix}joint_states", JOINT_STATE)
+        self._publisher = self.advertise(f"{prefix}joint_states", JOINT_STATE)
         self._dynamic = self.advertise(f"{prefix}dynamic_joint_states", DYNAMIC)
 
-    def _chosen(self, joints: Sequence[str], interfaces: Sequence[str]) -> list[str]:
+    def _chosen_joints(self, joints: Sequence[str], interfaces: Sequence[str]) -> list[str]:
         """The state interfaces that it tells of; both lists are needed to choose."""
         there = self.hardware.states.names
         if any(joints) and any(interfaces):
@@ -71,19 +71,19 @@ class JointStateBroadcaster(Controller):
         return self._states
 
     def activate(self) -> None:
-        self._of_joints = self.hardware.states.select(self._told)
+        self._joint_states = self.hardware.states.select(self._state_names)
 
     def update(self, now_ns: int, period: float) -> None:
-        if self._out.wanted:
+        if self._publisher.wanted:
             columns = self._columns.copy()
-            columns.ravel()[self._places] = self._of_joints.values
+            columns.ravel()[self._places] = self._joint_states.values
             position, velocity, effort = columns
             made = msgs.type_of(JOINT_STATE)(msgs.header(now_ns, self._frame), self._names, position, velocity, effort)
-            self._out.publish(made)
+            self._publisher.publish(made)
         if self._dynamic.wanted:
-            self._dynamic.publish(self._everything(now_ns, self.states.values))
+            self._dynamic.publish(self._dynamic_message(now_ns, self.states.values))
 
-    def _everything(self, now_ns: int, values: Vector) -> DynamicJointState:
+    def _dynamic_message(self, now_ns: int, values: Vector) -> DynamicJointState:
         of_joint = msgs.type_of("control_msgs/msg/InterfaceValue")
         parts = [
             of_joint([interface for _, interface in found], np.array([values[k] for k, _ in found]))

@@ -64,8 +64,8 @@ class JointTrajectoryController(Controller):
     def configure(self) -> None:
         params = self.params
         self._group = JointGroup.read(params, self.hardware, self.default_commands, self.default_states)
-        self._said = OneTimeWarnings(self)
-        self._turns = bool(self._group.turning.any())
+        self._warnings = OneTimeWarnings(self)
+        self._has_continuous_joints = bool(self._group.turning.any())
         joints = self._group.joints
         self._rules = TrajectoryRules(
             joints,
@@ -75,8 +75,8 @@ class JointTrajectoryController(Controller):
         )
         for name in _IGNORED_PARAMETERS:
             params.child(name)
-        self._from_desired = params.boolean("open_loop_control", False)
-        self._from_desired = params.boolean("interpolate_from_desired_state", self._from_desired)
+        self._starts_from_desired = params.boolean("open_loop_control", False)
+        self._starts_from_desired = params.boolean("interpolate_from_desired_state", self._starts_from_desired)
         self._starts_at_command = params.boolean("set_last_command_interface_value_as_state_on_activation", True)
         self._steps = params.choice("interpolation_method", ("splines", "none"), "splines") == "none"
         self._feedback_ns = round(SECOND / params.number("action_monitor_rate", 20.0, minimum=0.1))
@@ -84,7 +84,7 @@ class JointTrajectoryController(Controller):
         self._state_ns = round(SECOND / rate) if rate else 0
         self._constraints = LiveTolerances(self, joints)
         self._timeout = read_timeout(params, self._constraints.tolerances().goal_time)
-        self._stopping = StopRule.read(params, joints)
+        self._stop_rule = StopRule.read(params, joints)
         self._pids = self._read_gains()
         self._period_ns = 0
         scaling = params.block("speed_scaling")
@@ -119,9 +119,9 @@ class JointTrajectoryController(Controller):
     def _clear(self) -> None:
         """As before the first trajectory."""
         self._goal: GoalHandle | None = None
-        self._waiting: JointTrajectory | Spline | str | None = None  # the last is _HOLD
+        self._next_trajectory: JointTrajectory | Spline | str | None = None  # the last is _HOLD
         self._spline: Spline | None = None
-        self._active = self._constraints.tolerances()
+        self._tolerances = self._constraints.tolerances()
         self._is_holding = self._is_first = self._is_idle = False
         self._elapsed = self._last = self._start = 0
         self._next_feedback = self._next_state = 0
@@ -145,16 +145,16 @@ class JointTrajectoryController(Controller):
         # updates that fall on steps come at uneven times; setpoints are as far ahead of each (as in ros2_controllers)
         rate = self.update_rate or self.plugin.before_step_rate
         self._period_ns = max(round(SECOND / rate) if rate else 0, round(self.sim.timestep * SECOND))
-        self._waiting = _HOLD
+        self._next_trajectory = _HOLD
         if self._starts_at_command:
             commanded = self._group.commanded(self.commands.values)
             if commanded is not None:
-                self._waiting = Spline.held(commanded)
+                self._next_trajectory = Spline.held(commanded)
 
     def deactivate(self) -> None:
         self._is_active = False
         if self._goal is not None:
-            self._end("abort", INVALID_GOAL, "Current goal cancelled during deactivate transition.")
+            self._end_goal("abort", INVALID_GOAL, "Current goal cancelled during deactivate transition.")
         self.commands.values = self._group.at_rest(self.commands.values)
 
     # ------------------------------------------------------------------ what comes in
@@ -163,16 +163,16 @@ class JointTrajectoryController(Controller):
         """From the topic."""
         fault = self._rules.fault(message, self.sim.time_ns)
         if fault:
-            self._said.warn("SK-CONTROL-020", fault, f"a trajectory is left out: {fault}")
+            self._warnings.warn("SK-CONTROL-020", fault, f"a trajectory is left out: {fault}")
         if fault or not self._is_active:
             return
         if self._goal is not None:
             what = "a trajectory on the topic takes the place of a goal's, which ends when the new one does"
-            self._said.warn("SK-CONTROL-022", "replaced", what, "cancel the goal first")
+            self._warnings.warn("SK-CONTROL-022", "replaced", what, "cancel the goal first")
         else:
-            self._active = self._constraints.tolerances()
-        self._look_at(message)
-        self._waiting = message
+            self._tolerances = self._constraints.tolerances()
+        self._report_unfollowable(message)
+        self._next_trajectory = message
 
     def _on_goal(self, goal: GoalHandle) -> None:
         trajectory = goal.request.trajectory
@@ -185,13 +185,13 @@ class JointTrajectoryController(Controller):
             goal.reject(fault)
             return
         if self._goal is not None:
-            self._end("canceled", INVALID_GOAL, "Current goal cancelled due to new incoming action.")
+            self._end_goal("canceled", INVALID_GOAL, "Current goal cancelled due to new incoming action.")
         self._goal = goal
-        self._active, what = self._constraints.tolerances().with_goal(goal.request, self._group.joints)
+        self._tolerances, what = self._constraints.tolerances().with_goal(goal.request, self._group.joints)
         if what:
-            self._said.warn("SK-CONTROL-020", what, what)
-        self._look_at(trajectory)
-        self._waiting = trajectory
+            self._warnings.warn("SK-CONTROL-020", what, what)
+        self._report_unfollowable(trajectory)
+        self._next_trajectory = trajectory
         self._next_feedback = 0
 
     def _on_cancel(self, goal: GoalHandle) -> None:
@@ -199,19 +199,19 @@ class JointTrajectoryController(Controller):
             return
         self._goal = None
         goal.canceled()
-        self._waiting = _HOLD
+        self._next_trajectory = _HOLD
 
     def _on_scaling(self, message: SpeedScalingFactor) -> None:
         if 0.0 <= message.factor <= _FASTEST:
             self._scaling = float(message.factor)
         else:
             what = f"a speed scaling of {message.factor:g} is left out; allowed is a number from 0 to {_FASTEST:g}"
-            self._said.warn("SK-CONTROL-020", what, what)
+            self._warnings.warn("SK-CONTROL-020", what, what)
 
-    def _look_at(self, message: JointTrajectory) -> None:
+    def _report_unfollowable(self, message: JointTrajectory) -> None:
         """Says what of a trajectory will not be as it is written."""
         if not self._group.has_effort and any(len(point.effort) for point in message.points):
-            self._said.warn("SK-CONTROL-025", "effort", "efforts of a trajectory are not used: it commands none")
+            self._warnings.warn("SK-CONTROL-025", "effort", "efforts of a trajectory are not used: it commands none")
         for place, name in enumerate(message.joint_names):
             joint = self.hardware.joints.get(self._group.command_of(str(name)))
             asked = [p.positions[place] for p in message.points if len(p.positions)]
@@ -219,31 +219,31 @@ class JointTrajectoryController(Controller):
             if joint is not None and beyond:
                 limits = f"its limits are {joint.lower:g} and {joint.upper:g}"
                 what = f"a trajectory asks joint {name!r} for {beyond[0]:g}, {limits}: there it stops"
-                self._said.warn("SK-CONTROL-021", str(name), what)
+                self._warnings.warn("SK-CONTROL-021", str(name), what)
 
     # ------------------------------------------------------------------ each period
 
     def update(self, now_ns: int, period: float) -> None:
-        if self._waiting is None:
+        if self._next_trajectory is None:
             if self._is_idle:
-                if self._is_watched(now_ns) and self._command is not None:
+                if self._is_state_due(now_ns) and self._command is not None:
                     state = self._group.state(self.states.values)
                     self._publish(now_ns, self._command.motion, state, self._errors(self._command.motion, state))
                 return
-            if self._is_plain and not self._is_first and self._goes_on(now_ns):
+            if self._is_plain and not self._is_first and self._continue_spline(now_ns):
                 return
         state = self._group.state(self.states.values)
         if self._scaling_state:
             factor = float(self.states.values[-1])
             self._scaling = factor if 0.0 <= factor <= _FASTEST else self._scaling
-        if self._waiting is None:
+        if self._next_trajectory is None:
             self._elapsed += round((now_ns - self._last) * self._scaling)
         else:
-            self._begin(now_ns, state)
+            self._begin_trajectory(now_ns, state)
         self._last = now_ns
-        self._follow(now_ns, period, state)
+        self._follow_spline(now_ns, period, state)
 
-    def _goes_on(self, now: int) -> bool:
+    def _continue_spline(self, now: int) -> bool:
         """Commands the next place on the way where nothing else is to be done; whether that was so."""
         spline, scaling = self._spline, self._scaling
         if spline is None or (self._watches_path and not self._is_holding):
@@ -252,7 +252,7 @@ class JointTrajectoryController(Controller):
         elapsed = self._elapsed + passed
         if elapsed >= spline.times[-1] or (self._goal is not None and now >= self._next_feedback):
             return False
-        if now >= self._next_state and self._has_audience():
+        if now >= self._next_state and self._has_subscribers():
             return False
         self._elapsed, self._last = elapsed, now
         step = round(self._period_ns * scaling)
@@ -262,27 +262,27 @@ class JointTrajectoryController(Controller):
         self.commands.values = command.motion[0][self._group.span]
         return True
 
-    def _begin(self, now: int, state: Vector) -> None:
+    def _begin_trajectory(self, now: int, state: Vector) -> None:
         """Takes up the trajectory that waits."""
-        waiting, self._waiting, self._ahead = self._waiting, None, None
-        self._watches_path = self._active.watches_path
+        waiting, self._next_trajectory, self._ahead = self._next_trajectory, None, None
+        self._watches_path = self._tolerances.watches_path
         self._is_holding, self._is_first, self._is_idle = True, True, False
         self._start, self._elapsed = now, 0
         if isinstance(waiting, Spline):
             self._spline = waiting
         elif isinstance(waiting, str):
-            self._spline = self._stopping.spline(state, has_velocity=self._group.has_velocity_state)
+            self._spline = self._stop_rule.spline(state, has_velocity=self._group.has_velocity_state)
         elif waiting is not None:
             self._is_holding = False
             self._start = msgs.stamp_ns(waiting.header.stamp) or now
             self._elapsed = now - self._start
-            self._spline = self._through(waiting, state)
+            self._spline = self._spline_through(waiting, state)
 
-    def _through(self, message: JointTrajectory, state: Vector) -> Spline:
+    def _spline_through(self, message: JointTrajectory, state: Vector) -> Spline:
         """A trajectory's way from here."""
         group = self._group
         start = TrajectoryPoint(self._elapsed, state[0], state[1] if group.has_velocity_state else None)
-        if self._from_desired and self._command is not None:
+        if self._starts_from_desired and self._command is not None:
             start = TrajectoryPoint(self._elapsed, *self._command.motion)
         commanded = group.commanded(self.commands.values)
         points = read_points(message, group.joints, state[0] if commanded is None else commanded)
@@ -294,9 +294,9 @@ class JointTrajectoryController(Controller):
             points = [replace(p, positions=p.positions + turns) for p in points if p.positions is not None]
         return Spline.through(start, points, steps=self._steps)
 
-    def _follow(self, now: int, period: float, state: Vector) -> None:
+    def _follow_spline(self, now: int, period: float, state: Vector) -> None:
         """Compares, commands, and tells the goal."""
-        spline, goal, tolerances = self._spline, self._goal, self._active
+        spline, goal, tolerances = self._spline, self._goal, self._tolerances
         assert spline is not None
         desired = self._ahead[1] if self._ahead is not None and self._ahead[0] == self._elapsed else None
         desired = spline.at(self._elapsed) if desired is None else desired
@@ -319,39 +319,41 @@ class JointTrajectoryController(Controller):
         if goal is not None and (now >= self._next_feedback):
             self._next_feedback = now + self._feedback_ns
             goal.publish_feedback(self._messages.feedback(now, desired.motion, state, errors))
-        if self._is_watched(now):
+        if self._is_state_due(now):
             self._publish(now, desired.motion, state, errors)
         if strays:
             what = describe_violation(off, tolerances.path, self._group.joints)
-            self._finish(PATH_VIOLATED, "Aborted due to path tolerance violation", what)
+            self._abort_and_hold(PATH_VIOLATED, "Aborted due to path tolerance violation", what)
         elif is_late:
             what = describe_violation(off, tolerances.goal, self._group.joints)
-            self._finish(GOAL_VIOLATED, f"Aborted due to goal_time_tolerance exceeding by {late:f} seconds", what)
+            self._abort_and_hold(
+                GOAL_VIOLATED, f"Aborted due to goal_time_tolerance exceeding by {late:f} seconds", what
+            )
         elif is_over and not self._is_holding:
-            self._arrive(misses, late)
+            self._handle_arrival(misses, late)
         elif is_over and self._is_holding:
             self._is_idle = not self._group.is_closed_loop
 
-    def _arrive(self, misses: bool, late: float) -> None:
+    def _handle_arrival(self, misses: bool, late: float) -> None:
         """After the last point."""
         if not misses and self._goal is not None:
-            self._end("succeed", SUCCESSFUL, "Goal successfully reached!")
+            self._end_goal("succeed", SUCCESSFUL, "Goal successfully reached!")
             self.log.info("Goal reached, success!")
             self._is_holding = True
         elif not misses and self._timeout == 0.0:
             self._is_holding = True
         elif 0.0 < self._timeout < late:
             self.log.warning("Aborted due to command timeout")
-            self._waiting = _HOLD
+            self._next_trajectory = _HOLD
 
-    def _finish(self, code: int, text: str, what: str) -> None:
+    def _abort_and_hold(self, code: int, text: str, what: str) -> None:
         """Stops where it is, after a tolerance was not kept."""
         self.log.warning("%s: %s", text, what)
         if self._goal is not None:
-            self._end("abort", code, text, what)
-        self._waiting = _HOLD
+            self._end_goal("abort", code, text, what)
+        self._next_trajectory = _HOLD
 
-    def _end(self, how: str, code: int, text: str, what: str = "") -> None:
+    def _end_goal(self, how: str, code: int, text: str, what: str = "") -> None:
         goal, self._goal = self._goal, None
         getattr(goal, how)({"error_code": code, "error_string": text}, what or text)
 
@@ -361,17 +363,17 @@ class JointTrajectoryController(Controller):
         """Wanted − measured, shape (3, n); 0 for what is not both commanded and measured."""
         group = self._group
         errors = (desired - state) * group.compared
-        if self._turns:
+        if self._has_continuous_joints:
             errors[0] = shortest_differences(errors[0], group.turning)
         return errors
 
-    def _has_audience(self) -> bool:
+    def _has_subscribers(self) -> bool:
         here, there = self._publishers
         return here.wanted or there.wanted
 
-    def _is_watched(self, now: int) -> bool:
+    def _is_state_due(self, now: int) -> bool:
         """Whether somebody wants the state now."""
-        if now < self._next_state or not self._has_audience():
+        if now < self._next_state or not self._has_subscribers():
             return False
         self._next_state = now + self._state_ns
         return True

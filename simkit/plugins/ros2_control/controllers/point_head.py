@@ -41,9 +41,9 @@ class PointHeadAction(Controller):
 
     def configure(self) -> None:
         params = self.params
-        self._mover = params.text("controller", "head_controller")
+        self._trajectory_controller = params.text("controller", "head_controller")
         self._joints = tuple(read_names(params, "joints", code="SK-CONTROL-027"))
-        self._enough = params.number("success_angle_threshold", 0.02, minimum=0.0)
+        self._tolerance = params.number("success_angle_threshold", 0.02, minimum=0.0)
         self._own_frame = params.text("pointing_frame", "")
         self._own_axis = np.array(
             [
@@ -58,17 +58,17 @@ class PointHeadAction(Controller):
             if name not in self.hardware.joints:
                 message = f"there is no joint {name!r} to turn the head by"
                 params.error("SK-CONTROL-027", message, "there are: " + ", ".join(self.hardware.joints))
-        action = params.text("action", f"{self._mover}/point_head_action")
+        action = params.text("action", f"{self._trajectory_controller}/point_head_action")
         self.act(action, POINT_HEAD, self._on_goal, self._on_cancel)
         self._is_active = False
         self._clear()
 
     def _clear(self) -> None:
         self._goal: GoalHandle | None = None
-        self._move: GoalHandle | None = None
-        self._look: tuple[str, Vector] = "", np.zeros(3)
+        self._motion_goal: GoalHandle | None = None
+        self._pointing: tuple[str, Vector] = "", np.zeros(3)
         self._target, self._next_feedback = np.zeros(3), 0
-        self._patience_ns = 0  # until then the head may still be on its last way
+        self._settled_by_ns = 0  # until then the head may still be on its last way
 
     def activate(self) -> None:
         self._clear()
@@ -77,7 +77,7 @@ class PointHeadAction(Controller):
     def deactivate(self) -> None:
         self._is_active = False
         if self._goal is not None:
-            self._end(lambda goal: goal.abort(reason="the controller was deactivated"))
+            self._end_goal(lambda goal: goal.abort(reason="the controller was deactivated"))
             self._stop()
 
     # ------------------------------------------------------------------ goals
@@ -88,9 +88,9 @@ class PointHeadAction(Controller):
             return
         try:
             request = goal.request
-            target = self._target_of(request.target)
-            look = self._look_of(request)
-            neck = self._neck(look)
+            target = self._read_target(request.target)
+            look = self._read_pointing(request)
+            neck = self._head_joints(look)
         except InputError as error:
             goal.reject(str(error))
             return
@@ -103,17 +103,17 @@ class PointHeadAction(Controller):
             goal.reject("max_velocity and min_duration have to be at least 0")
             return
         if self._goal is not None:
-            self._end(lambda old: old.canceled(reason="Current goal cancelled due to new incoming action."))
-        self._goal, self._target, self._look, self._next_feedback = goal, target, look, 0
-        self._go(neck, shortest, speed)
+            self._end_goal(lambda old: old.canceled(reason="Current goal cancelled due to new incoming action."))
+        self._goal, self._target, self._pointing, self._next_feedback = goal, target, look, 0
+        self._send_head(neck, shortest, speed)
 
-    def _target_of(self, target: PointStamped) -> Vector:
+    def _read_target(self, target: PointStamped) -> Vector:
         point = np.array([target.point.x, target.point.y, target.point.z])
         if not (np.abs(point) <= _FARTHEST).all():
             raise InputError("the target is not a finite point")
         return self._frame(target.header.frame_id or "world").transform(point)
 
-    def _look_of(self, request: PointHead_Goal) -> tuple[str, Vector]:
+    def _read_pointing(self, request: PointHead_Goal) -> tuple[str, Vector]:
         """The frame that is to point, and its axis."""
         axis = np.array([request.pointing_axis.x, request.pointing_axis.y, request.pointing_axis.z])
         if not axis.any():
@@ -143,7 +143,7 @@ class PointHeadAction(Controller):
                 found[odom] = frame_pose(self.sim, self.plugin.scoped, base) @ pose.inverse()
         return found
 
-    def _neck(self, look: tuple[str, Vector]) -> HeadJoints:
+    def _head_joints(self, look: tuple[str, Vector]) -> HeadJoints:
         """As it is now."""
         data = self.sim.physics.fresh()
         joints = [self.hardware.joints[name] for name in self._joints]
@@ -158,7 +158,7 @@ class PointHeadAction(Controller):
             look[1],
         )
 
-    def _go(self, neck: HeadJoints, shortest: float, speed: float) -> None:
+    def _send_head(self, neck: HeadJoints, shortest: float, speed: float) -> None:
         """Sends the head where it points at the target."""
         angles, _ = neck.aim(self._target)
         limits = np.array([self.hardware.joints[name].max_velocity for name in self._joints])
@@ -173,23 +173,23 @@ class PointHeadAction(Controller):
         }
         trajectory = {"joint_names": list(self._joints), "points": [point]}
         try:
-            name = self.plugin.ros.topic(f"{self._mover}/follow_joint_trajectory")
-            self._move = self.sim.send_goal(name, {"trajectory": trajectory})
+            name = self.plugin.ros.topic(f"{self._trajectory_controller}/follow_joint_trajectory")
+            self._motion_goal = self.sim.send_goal(name, {"trajectory": trajectory})
         except InputError as error:
             reason = str(error)
-            self._end(lambda goal: goal.abort(reason=reason))
+            self._end_goal(lambda goal: goal.abort(reason=reason))
 
     def _on_cancel(self, goal: GoalHandle) -> None:
         if goal is self._goal:
-            self._end(lambda one: one.canceled())
+            self._end_goal(lambda one: one.canceled())
             self._stop()
 
     def _stop(self) -> None:
-        move, self._move = self._move, None
+        move, self._motion_goal = self._motion_goal, None
         if move is not None and not move.is_done:
             move.cancel()
 
-    def _end(self, how: Callable[[GoalHandle], None]) -> None:
+    def _end_goal(self, how: Callable[[GoalHandle], None]) -> None:
         goal, self._goal = self._goal, None
         if goal is not None:
             how(goal)
@@ -197,25 +197,25 @@ class PointHeadAction(Controller):
     # ------------------------------------------------------------------ each period
 
     def update(self, now_ns: int, period: float) -> None:
-        goal, move = self._goal, self._move
+        goal, move = self._goal, self._motion_goal
         if goal is None or move is None:
             return
         if now_ns < self._next_feedback:
             return
         self._next_feedback = now_ns + _FEEDBACK_NS
-        neck = self._neck(self._look)
+        neck = self._head_joints(self._pointing)
         error = neck.error(neck.angles, self._target)
         goal.publish_feedback({"pointing_angle_error": error})
         if not move.is_done:
-            self._patience_ns = now_ns + _SETTLING_NS
+            self._settled_by_ns = now_ns + _SETTLING_NS
             return
-        if error <= self._enough:
-            self._end(lambda one: one.succeed())
-        elif now_ns < self._patience_ns and move.status is GoalStatus.SUCCEEDED:
+        if error <= self._tolerance:
+            self._end_goal(lambda one: one.succeed())
+        elif now_ns < self._settled_by_ns and move.status is GoalStatus.SUCCEEDED:
             return
         elif move.status is GoalStatus.SUCCEEDED:
             what = f"the neck's limits leave it {error:.3f} rad from the target"
-            self._end(lambda one: one.abort(reason=what))
+            self._end_goal(lambda one: one.abort(reason=what))
         else:
             said = move.reason
-            self._end(lambda one: one.abort(reason=f"the head did not get there: {said}"))
+            self._end_goal(lambda one: one.abort(reason=f"the head did not get there: {said}"))
