@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, TypeVar
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 from simkit.params import Params
+from simkit.plugins.endpoints import Endpoint
+from simkit.plugins.options import Options
 from simkit.plugins.ros_names import RosNames
 
 if TYPE_CHECKING:
@@ -50,6 +52,8 @@ class Plugin(abc.ABC):
         names: gz class names that do (`gz::sim::systems::DiffDrive`).
         parent_kind: what it may hang on; the base classes set it. Several kinds where the file may choose.
         lets_sleep: whether a model that it hangs on may sleep while it rests: nobody could tell by this plugin.
+        option_types: classes of options that it reads, besides that of its `options`; see `simkit.plugins.options`.
+        endpoints: its topics, services and actions where `load` does not name them literally.
         before_step_rate, after_step_rate: [Hz]; set in the class, or on the instance in `load`.
         on_error: "stop": what it raises stops the run; "disable": the run goes on without it. `<simkit:on_error>` in
             the file goes over it, and what `simkit.load` is told over both. None is "stop".
@@ -66,6 +70,8 @@ class Plugin(abc.ABC):
     names: ClassVar[tuple[str, ...]] = ()
     parent_kind: ClassVar[ParentKind | tuple[ParentKind, ...]]
     lets_sleep: ClassVar[bool] = False
+    option_types: ClassVar[tuple[type[Options], ...]] = ()
+    endpoints: ClassVar[tuple[Endpoint, ...]] = ()
     drives: ClassVar[bool] = False  # whether it moves joints of its model; on a static one it is left out
 
     before_step_rate: float | None = None
@@ -343,7 +349,7 @@ class Plugin(abc.ABC):
 
 _OWNED = frozenset(
     ("sim", "name", "scoped", "params", "where", "ros", "log", "_source", "_uncopied", "_values")  # noqa: RUF005
-    + ("_actuators", "_failed", "_order", "plugin_paths")
+    + ("_actuators", "_failed", "_order", "_read_options", "plugin_paths")
 )
 
 

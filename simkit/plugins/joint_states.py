@@ -11,7 +11,9 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import find_joint
+from simkit.plugins.options import Options, OptionsOf, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -56,19 +58,29 @@ class _JointStates(ModelPlugin):
             self._states.publish_later(partial(joint_state_message, self.sim.time_ns, joint_readings(self._handles)))
 
 
+class GazeboRosJointStatePublisherOptions(Options):
+    """Options of `GazeboRosJointStatePublisher`."""
+
+    joint_name: str = text(required=True)
+    joint_name_ros_1: tuple[str, ...] = texts(element="jointName")
+    update_rate_ros_1: float = number(100.0, "Hz", element="updateRate", minimum=0.0)
+    update_rate: float = number(100.0, "Hz", minimum=0.0)
+
+
 class GazeboRosJointStatePublisher(_JointStates):
     """Gazebo Classic's publisher: the listed joints, in that order, on `joint_states`.
 
     ROS 1 lists them in `<jointName>`, separated by commas.
     """
 
+    options = OptionsOf(GazeboRosJointStatePublisherOptions)
     filenames = ("libgazebo_ros_joint_state_publisher.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         names = [c.value for c in params.all("joint_name")]
         names += [name for c in params.all("jointName") for name in c.value.replace(",", " ").split()]
         if not names:
-            params.text("joint_name", required=True)
+            _ = self.options.joint_name
         found = [find_joint(scene, name, params) for name in names]
         self._joints = [joint.scoped for joint in found if joint is not None]
         self._topic = "joint_states"
@@ -76,9 +88,19 @@ class GazeboRosJointStatePublisher(_JointStates):
         self.after_step_rate = params.number(rate, 100.0, minimum=0)
 
 
+class JointStatePublisherOptions(Options):
+    """Options of `JointStatePublisher`."""
+
+    joint_name: tuple[str, ...] = texts()
+    topic: str = text()
+    update_rate: float = number(0.0, "Hz", minimum=0)
+
+
 class JointStatePublisher(_JointStates):
     """gz's publisher: the listed joints, or all of the model, on `/world/<world>/model/<model>/joint_state`."""
 
+    endpoints = (publishes("/world/{world}/model/{model}/joint_state", JOINT_STATE, named_by=("topic",)),)
+    options = OptionsOf(JointStatePublisherOptions)
     filenames = ("gz-sim-joint-state-publisher-system",)
     names = ("gz::sim::systems::JointStatePublisher",)
 
@@ -92,9 +114,9 @@ class JointStatePublisher(_JointStates):
             for element in again[1:]:
                 message = f"joint {element.value!r} is named twice; it is told once"
                 params.diagnostics.warning("SK-PLUGIN-063", message, element.where)
-        self._given = params.text("topic", "")
+        self._given = self.options.topic
         self._path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
-        self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
+        self.after_step_rate = self.options.update_rate
 
     def load(self, parent: Any, params: Params) -> None:
         self._topic = valid_topic(self._given or f"/world/{self.sim.world.name}{self._path}/joint_state")

@@ -132,7 +132,13 @@ def read_numbers(params: Params, name: str, minimum: float | None = None) -> lis
 def read_frame(sensor: Any, params: Params) -> str:
     """`<frame_name>` (`<frameName>` in ROS 1), else the plain name of the sensor's link."""
     name = params.text("frame_name", "") or params.text("frameName", "")
-    return name or sensor.scene.parent.rsplit("::", 1)[-1]
+    return name or link_name(sensor)
+
+
+def link_name(sensor: Any) -> str:
+    """The plain name of a sensor's link."""
+    scoped: str = sensor.scene.parent
+    return scoped.rsplit("::", 1)[-1]
 
 
 def private_topic(plugin: Plugin, private: str, old_element: str) -> str:

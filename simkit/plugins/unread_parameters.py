@@ -12,6 +12,7 @@ from typing import Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
+from simkit.plugins.options import option_types_of
 
 _READERS = frozenset(
     ("all", "attribute", "block", "boolean", "child", "choice", "declare", "each", "has", "integer", "number")  # noqa: RUF005
@@ -28,7 +29,8 @@ def names_read(cls: Any) -> frozenset[str]:
     """Names of elements and attributes that the modules of a class and its bases ask for; the source is only parsed."""
     own = (c for c in cls.__mro__ if c.__module__ != "simkit.plugins.base")
     modules = dict.fromkeys(c.__module__ for c in own if c is not object)
-    return frozenset(name for module in modules for name in _names_in_module(module))
+    declared = (name for options in option_types_of(cls) for name in options.element_names())
+    return frozenset(declared).union(*map(_names_in_module, modules))
 
 
 def _names_in_module(module: str) -> frozenset[str]:

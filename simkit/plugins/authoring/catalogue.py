@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -14,10 +14,11 @@ from simkit.diagnostics import Diagnostics, closest
 from simkit.errors import InputError
 from simkit.params import Params
 from simkit.plugins import Plugin
-from simkit.plugins.authoring.abstract_values import Block, Hole
-from simkit.plugins.authoring.plugin_facts import Facts
-from simkit.plugins.authoring.source_interpreter import Interpreter
+from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic, merged
+from simkit.plugins.authoring.source_scan import scan, scan_function
 from simkit.plugins.discovery.plugin_kinds import find_plugin, plugin_kinds
+from simkit.plugins.endpoints import Endpoint
+from simkit.plugins.options import Option, Options, option_types_of
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP, normalise
 from simkit.scene import ScenePlugin
 
@@ -139,40 +140,69 @@ def _origin(cls: type[Plugin]) -> str:
 
 @functools.cache
 def facts_of(cls: type[Any]) -> Facts:
-    """What a plugin's code reads and opens; found by reading it, so nothing of it runs.
+    """What a plugin reads and opens: the options that it declares, and what its source says literally; it does not run.
 
     Args:
         cls: the class; its module is imported.
     """
     of_gz = getattr(cls, "stands_for", None)
     if of_gz is not None:
-        return _facts_of_gz(of_gz)
+        return scan(of_gz, "model") if inspect.isclass(of_gz) else scan_function(getattr(of_gz, "configure", None))
     kinds = getattr(cls, "parent_kind", "any")
-    parent = Hole(kinds if isinstance(kinds, str) and kinds != "any" else "model")
-    reader = Interpreter(cls)
-    reader.method("prepare", parent, Block(), Hole("builder"))
-    reader.method("load", parent, Block())
-    found, common = reader.facts(), {p.path[0] for p in common_facts().parameters}
-    return replace(found, parameters=tuple(p for p in found.parameters if p.path[0] not in common))
+    found = scan(cls, kinds if isinstance(kinds, str) and kinds != "any" else "model")
+    declared = [p for options in option_types_of(cls) for p in _declared(options)]
+    # what is read in a block that was handed on appears without the block
+    known = {name for p in declared for name in (p.name, p.path[-1])}
+    both = merged([*declared, *(p for p in found.parameters if p.name not in known)])
+    common = {p.path[0] for p in common_facts().parameters}
+    found = replace(found, parameters=tuple(p for p in both if p.path[0] not in common))
+    return (
+        found if not cls.endpoints else replace(found, topics=_topics(cls.endpoints), services=_services(cls.endpoints))
+    )
 
 
-def _facts_of_gz(system: Any) -> Facts:
-    """What a class, or a module, with the hooks of gz reads in its `configure`."""
-    arguments = (Hole("entity"), Block(), Hole("ecm"), Hole("event_manager"))
-    if inspect.isclass(system):
-        reader = Interpreter(system)
-        reader.method("configure", *arguments)
-    else:
-        reader = Interpreter(type(system))
-        reader.module = system.__name__
-        reader.function(getattr(system, "configure", None), *arguments)
-    return reader.facts()
+def _topics(endpoints: Iterable[Endpoint]) -> tuple[Topic, ...]:
+    topics = (e for e in endpoints if e.role in ("publishes", "listens"))
+    return tuple(Topic(e.name, e.types, e.role == "publishes", False, e.named_by) for e in topics)
+
+
+def _services(endpoints: Iterable[Endpoint]) -> tuple[Service, ...]:
+    services = (e for e in endpoints if e.role in ("offers", "acts"))
+    return tuple(Service(e.name, e.types[0], e.named_by, e.role == "acts") for e in services)
+
+
+def _declared(options: type[Options], above: tuple[str, ...] = ()) -> Iterator[Parameter]:
+    """The parameters of a class of options."""
+    fields = options.fields()
+    for option in fields.values():
+        inside, path = option.options is not None, (*above, option.element)
+        yield Parameter(
+            path,
+            option.kind,
+            None if option.required or inside or option.kind == "pose" else _default(option, fields),
+            (fields[option.instead].element,) if option.instead else (),
+            option.required,
+            option.minimum,
+            option.maximum,
+            option.choices,
+            option.size,
+            option.repeated,
+            option.is_live,
+            option.description,
+            option.unit,
+        )
+        if option.options is not None:
+            yield from _declared(option.options, path)
+
+
+def _default(option: Option, fields: Mapping[str, Option]) -> Any:
+    """The default that is shown: of a field that is read instead, that one's."""
+    while option.instead:
+        option = fields[option.instead]
+    return option.default
 
 
 @functools.cache
 def common_facts() -> Facts:
     """What every plugin's file may have besides: names as of a ROS node, what becomes of it when it raises."""
-    reader = Interpreter(Plugin)
-    setter: Any = inspect.getattr_static(Plugin, "source").fset
-    reader.call(setter, [reader.me, Hole("plugin")], {})
-    return reader.facts()
+    return scan_function(Plugin._describe)

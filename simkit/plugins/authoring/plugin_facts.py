@@ -6,9 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from simkit.plugins.authoring.abstract_values import Either, Given, Hole, alternatives, text_of
-from simkit.plugins.authoring.parameter_units import unit_of
-
 _NARROWER = ("", "block", "text")  # any other kind is narrower still
 
 
@@ -29,7 +26,7 @@ class Parameter:
         repeated: whether every element of that name counts.
         live: whether it may be changed while the simulation runs.
         says: what its author says of it.
-        line: the source line it is read at.
+        unit: SI unit; empty where it has none or nothing tells it.
     """
 
     path: tuple[str, ...]
@@ -44,17 +41,12 @@ class Parameter:
     repeated: bool = False
     live: bool = False
     says: str = ""
-    line: str = ""
+    unit: str = ""
 
     @property
     def name(self) -> str:
         """`odometry_noise/radius`."""
         return "/".join(self.path)
-
-    @property
-    def unit(self) -> str:
-        """SI unit; empty where it has none or nothing tells it."""
-        return unit_of(self.path[-1], self.kind, self.says, self.line)
 
 
 @dataclass(frozen=True)
@@ -93,25 +85,6 @@ class Facts:
     parameters: tuple[Parameter, ...] = ()
     topics: tuple[Topic, ...] = ()
     services: tuple[Service, ...] = ()
-
-
-def plain_default(value: Any) -> tuple[Any, tuple[str, ...]]:
-    """A default as plain data, and the elements that are read in its place."""
-    instead: list[str] = []
-    while isinstance(value, (Given, Either)):
-        if isinstance(value, Given):
-            instead.append("/".join(value.path))
-            value = value.default
-        else:
-            instead += ["/".join(v.path) for v in value.values if isinstance(v, Given)]
-            value = next((v for v in value.values if not isinstance(v, Given)), value.values[0])
-    if isinstance(value, Hole):
-        return text_of(value), tuple(dict.fromkeys(instead))
-    if isinstance(value, (list, tuple)):
-        value = tuple(v if isinstance(v, (int, float, str, bool)) else text_of(v) for v in value)
-    elif value is not None and not isinstance(value, (int, float, str, bool)):
-        value = text_of(value)
-    return value, tuple(dict.fromkeys(instead))
 
 
 def merged(read: Iterable[Parameter]) -> tuple[Parameter, ...]:
@@ -161,13 +134,3 @@ def merged_topics(found: Iterable[Topic]) -> tuple[Topic, ...]:
 
 def _rank(kind: str) -> int:
     return _NARROWER.index(kind) if kind in _NARROWER else len(_NARROWER)
-
-
-def topic_name(value: Any) -> tuple[str, tuple[str, ...]]:
-    """A topic's name as the code has it, and the elements that may change it."""
-    named: list[str] = []
-    for one in alternatives(value):
-        while isinstance(one, Given):
-            named.append("/".join(one.path))
-            one = one.default
-    return text_of(value), tuple(dict.fromkeys(named))

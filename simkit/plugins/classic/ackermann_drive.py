@@ -19,9 +19,11 @@ from simkit.plugins.drives.drive_outputs import DriveOutputOptions, DriveOutputs
 from simkit.plugins.drives.odometry import COMMAND_TYPES, TrueMotion, command_of
 from simkit.plugins.drives.steering import find_drive_joint, steering_angles
 from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.joints.pid import Pid
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector, vector3
 from simkit.scene import Cylinder, Sphere
 
 if TYPE_CHECKING:
@@ -33,6 +35,36 @@ _WHEELS = ("front_left_joint", "front_right_joint", "rear_left_joint", "rear_rig
 _STEERING = ("left_steering_joint", "right_steering_joint")
 
 
+class GazeboRosAckermannDriveOptions(Options):
+    """Options of `GazeboRosAckermannDrive`."""
+
+    max_speed: float = number(20.0, minimum=0)
+    max_steer: float = number(0.6, minimum=1e-6, maximum=1.5)
+    max_steering_angle: float = number(7.85, "rad", minimum=1e-6)
+    update_rate: float = number(100.0, "Hz", minimum=0)
+    left_steering_pid_gain: tuple[float, float, float] = vector3()
+    left_steering_i_range: tuple[float, ...] = vector((0.0, 0.0))
+    right_steering_pid_gain: tuple[float, float, float] = vector3()
+    right_steering_i_range: tuple[float, ...] = vector((0.0, 0.0))
+    linear_velocity_pid_gain: tuple[float, float, float] = vector3()
+    linear_velocity_i_range: tuple[float, ...] = vector((0.0, 0.0), "m/s")
+    publish_distance: bool = boolean()
+    publish_steerangle: bool = boolean()
+    odometry_frame: str = text("odom")
+    robot_base_frame: str = text("base_footprint")
+    publish_odom: bool = boolean()
+    publish_odom_tf: bool = boolean()
+    publish_wheel_tf: bool = boolean()
+    covariance_yaw: float = number(1e-3, minimum=0)
+    front_left_joint: str = text("front_left_joint")
+    front_right_joint: str = text("front_right_joint")
+    rear_left_joint: str = text("rear_left_joint")
+    rear_right_joint: str = text("rear_right_joint")
+    left_steering_joint: str = text("left_steering_joint")
+    right_steering_joint: str = text("right_steering_joint")
+    steering_wheel_joint: str = text("steering_wheel_joint")
+
+
 class GazeboRosAckermannDrive(ModelPlugin):
     """Steers the front wheels and drives the rear ones of a car from `cmd_vel`; odometry is the world's truth.
 
@@ -40,6 +72,14 @@ class GazeboRosAckermannDrive(ModelPlugin):
     collisions, as in Classic.
     """
 
+    endpoints = (
+        listens("cmd_vel", *COMMAND_TYPES),
+        publishes("odom", "nav_msgs/msg/Odometry"),
+        publishes("/tf", "tf2_msgs/msg/TFMessage"),
+        publishes("distance", _FLOAT),
+        publishes("steerangle", _FLOAT),
+    )
+    options = OptionsOf(GazeboRosAckermannDriveOptions)
     filenames = ("libgazebo_ros_ackermann_drive.so",)
     drives = True
 
@@ -56,24 +96,24 @@ class GazeboRosAckermannDrive(ModelPlugin):
         self._hand: Any = self._prepare_hand(scene, params, builder)
 
     def _read(self, params: Params) -> None:
-        self._most_speed = params.number("max_speed", 20.0, minimum=0)
-        self._most_steer = params.number("max_steer", 0.6, minimum=1e-6, maximum=1.5)
-        hand = params.number("max_steering_angle", 7.85, minimum=1e-6)
+        self._most_speed = self.options.max_speed
+        self._most_steer = self.options.max_steer
+        hand = self.options.max_steering_angle
         self._ratio = self._most_steer / hand
-        self._rate = params.number("update_rate", 100.0, minimum=0)
+        self._rate = self.options.update_rate
         self._gains = {name: _read_pid(params, name) for name in ("left_steering", "right_steering", "linear_velocity")}
-        self._tells_distance = params.boolean("publish_distance", False)
-        self._tells_angle = params.boolean("publish_steerangle", False)
+        self._tells_distance = self.options.publish_distance
+        self._tells_angle = self.options.publish_steerangle
         x, y = (params.number(f"covariance_{axis}", 1e-5, minimum=0) for axis in "xy")
         self._told = DriveOutputOptions(
             odometry_topic="odom",
-            odometry_frame=params.text("odometry_frame", "odom"),
-            base_frame=params.text("robot_base_frame", "base_footprint"),
-            odometry=params.boolean("publish_odom", False),
-            odometry_tf=params.boolean("publish_odom_tf", False),
-            wheel_tf=params.boolean("publish_wheel_tf", False),
+            odometry_frame=self.options.odometry_frame,
+            base_frame=self.options.robot_base_frame,
+            odometry=self.options.publish_odom,
+            odometry_tf=self.options.publish_odom_tf,
+            wheel_tf=self.options.publish_wheel_tf,
             joint_states=False,
-            covariance=(x, y, params.number("covariance_yaw", 1e-3, minimum=0)),
+            covariance=(x, y, self.options.covariance_yaw),
         )
 
     def _measure(self, scene: SceneModel, wheels: list[SceneJoint], params: Params) -> None:
@@ -104,7 +144,7 @@ class GazeboRosAckermannDrive(ModelPlugin):
 
     def _prepare_hand(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> Any:
         """The servo of the driver's wheel, where there is one; Classic's default is no demand."""
-        name = params.text("steering_wheel_joint", "steering_wheel_joint")
+        name = self.options.steering_wheel_joint
         there = any(name in (joint.name, joint.scoped) for joint in scene.all_joints())
         if not (params.has("steering_wheel_joint") or there):
             return None

@@ -7,6 +7,17 @@ from typing import Any
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
+from simkit.plugins.endpoints import publishes
+from simkit.plugins.options import Options, OptionsOf, text, without_effect
+
+
+class GazeboRosBumperOptions(Options):
+    """Options of `GazeboRosBumper`."""
+
+    bumper_topic_name: str = text(element="bumperTopicName")
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
+    always_on: bool = without_effect(element="alwaysOn")
 
 
 class GazeboRosBumper(SensorPlugin):
@@ -15,11 +26,13 @@ class GazeboRosBumper(SensorPlugin):
     Positions, normals and wrenches are in the frame of the link `<frame_name>` (ROS 1: `<frameName>`), or in the world.
     """
 
+    endpoints = (publishes("bumper_states", "gazebo_msgs/msg/ContactsState", named_by=("bumperTopicName",)),)
+    options = OptionsOf(GazeboRosBumperOptions)
     filenames = ("libgazebo_ros_bumper.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        topic = self.ros.topic(params.text("bumperTopicName", "") or "bumper_states")
-        frame = params.text("frame_name", "") or params.text("frameName", "") or "world"
+        topic = self.ros.topic(self.options.bumper_topic_name or "bumper_states")
+        frame = self.options.frame_name or self.options.frame_name_ros_1 or "world"
         params.child("alwaysOn")
         if not hasattr(parent, "publish_states"):
             self.refuse(parent, "contact")

@@ -13,6 +13,7 @@ from simkit.plugins.fluids.buoyant_force import Fluid
 from simkit.plugins.fluids.collision_volumes import Hull
 from simkit.plugins.fluids.floating_links import BuoyancyBase
 from simkit.plugins.lookups import find_link
+from simkit.plugins.options import Options, OptionsOf, blocks, number, text, vector3
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -22,16 +23,32 @@ WATER: Final = 999.1026
 """[kg/m³], at 15 °C."""
 
 
+class BuoyancyPluginLinkOptions(Options):
+    """The `<link>` block."""
+
+    name: str = text(element="@name")
+    volume: float = number(minimum=1e-15, maximum=1000000000000000.0, required=True)
+    center_of_volume: tuple[float, float, float] = vector3(required=True)
+
+
+class BuoyancyPluginOptions(Options):
+    """Options of `BuoyancyPlugin`."""
+
+    fluid_density: float = number(WATER, minimum=0, maximum=1e9)
+    link: tuple[BuoyancyPluginLinkOptions, ...] = blocks(BuoyancyPluginLinkOptions)
+
+
 class BuoyancyPlugin(BuoyancyBase, ModelPlugin):
     """The links of the model float, wholly under water, by the volume of their collisions or by numbers of the file.
 
     `<link name="…">` with `<center_of_volume>` (link frame) and `<volume>` says what the shapes do not.
     """
 
+    options = OptionsOf(BuoyancyPluginOptions)
     filenames = ("libBuoyancyPlugin.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._fluid = Fluid((params.number("fluid_density", WATER, minimum=0, maximum=1e9),))
+        self._fluid = Fluid((self.options.fluid_density,))
         self._links = [link.scoped for link in scene.all_links()]
         self._given: dict[str, Hull] = {}
         for element in params.all("link"):

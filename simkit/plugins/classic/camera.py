@@ -6,14 +6,23 @@ import math
 from typing import Any
 
 from simkit.params import Params
-from simkit.plugins.base import SensorPlugin
 from simkit.plugins.classic import camera_settings
-from simkit.plugins.classic.camera_settings import CameraNames
+from simkit.plugins.classic.camera_settings import CameraNames, CameraOptions, CameraPlugin
+from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.options import OptionsOf, boolean, number, text, without_effect
 
 _NEAREST = 0.4  # [m] where <min_depth> says nothing
 
 
-class GazeboRosCamera(SensorPlugin):
+class GazeboRosCameraOptions(CameraOptions):
+    """Options of `GazeboRosCamera`."""
+
+    min_depth: float = number(_NEAREST, "m", minimum=0, maximum=camera_settings.FARTHEST)
+    max_depth: float = number(math.inf, "m", minimum=0, finite=False)
+    triggered: bool = boolean()
+
+
+class GazeboRosCamera(CameraPlugin):
     """Publishes its camera below `<camera_name>` (by default the sensor's name), in the link's frame.
 
     Topics: `image_raw` and `camera_info`; of a depth camera also `depth/image_raw`, `depth/camera_info` and `points`,
@@ -23,6 +32,15 @@ class GazeboRosCamera(SensorPlugin):
     for ROS 1: `<cameraName>`, `<imageTopicName>`, `<cameraInfoTopicName>`, `<frameName>`, `<updateRate>`, ….
     """
 
+    endpoints = (
+        publishes("{camera_name}/image_raw", "sensor_msgs/msg/Image", named_by=("imageTopicName",)),
+        publishes("{camera_name}/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("cameraInfoTopicName",)),
+        publishes("{camera_name}/depth/image_raw", "sensor_msgs/msg/Image"),
+        publishes("{camera_name}/depth/camera_info", "sensor_msgs/msg/CameraInfo"),
+        publishes("{camera_name}/points", "sensor_msgs/msg/PointCloud2"),
+        listens("{camera_name}/image_trigger", "std_msgs/msg/Empty", "std_msgs/msg/Bool"),
+    )
+    options = OptionsOf(GazeboRosCameraOptions)
     filenames = ("libgazebo_ros_camera.so",)
 
     def load(self, parent: Any, params: Params) -> None:
@@ -32,19 +50,26 @@ class GazeboRosCamera(SensorPlugin):
             names = CameraNames(self, parent)
             topics = image_topics(names)
             if parent.has_depth:
-                near, far = camera_settings.read_depths(params, "min_depth", "max_depth", _NEAREST)
+                near, far = camera_settings.read_depths(self.options, "min_depth", "max_depth")
                 parent.set_depth_range(near, far if math.isfinite(far) else None)
                 topics["depth_image"] = names.topic("depth/image_raw")
                 topics["depth_camera_info"] = names.topic("depth/camera_info")
                 topics["points"] = names.topic("points")
             connect_camera(self, parent, names, topics)
-        if params.boolean("triggered", False) and hasattr(parent, "trigger_on"):
+        if self.options.triggered and hasattr(parent, "trigger_on"):
             parent.trigger_on(CameraNames(self, parent).topic("image_trigger"), camera_settings.EMPTY, counts=True)
 
 
-class GazeboRosTriggeredCamera(SensorPlugin):
+class TriggeredCameraOptions(CameraOptions):
+    """Options of the cameras that are triggered by a message."""
+
+    trigger_topic_name: str = text("image_trigger", element="triggerTopicName")
+
+
+class GazeboRosTriggeredCamera(CameraPlugin):
     """ROS 1: as `libgazebo_ros_camera.so`, a picture after a message on `<triggerTopicName>` (`image_trigger`)."""
 
+    options = OptionsOf(TriggeredCameraOptions)
     filenames = ("libgazebo_ros_triggered_camera.so",)
 
     def load(self, parent: Any, params: Params) -> None:
@@ -54,9 +79,17 @@ class GazeboRosTriggeredCamera(SensorPlugin):
             connect_trigger(self, parent, names)
 
 
-class GazeboRosProsilica(SensorPlugin):
+class ProsilicaOptions(CameraOptions):
+    """Options of `GazeboRosProsilica`."""
+
+    poll_service_name: bool = without_effect(element="pollServiceName")
+    trigger_mode: bool = without_effect()
+
+
+class GazeboRosProsilica(CameraPlugin):
     """ROS 1: streams as `libgazebo_ros_camera.so` does; it cannot be polled, since there are no services."""
 
+    options = OptionsOf(ProsilicaOptions)
     filenames = ("libgazebo_ros_prosilica.so",)
 
     def load(self, parent: Any, params: Params) -> None:
@@ -72,10 +105,9 @@ def image_topics(names: CameraNames) -> dict[str, str]:
     return {"image": names.topic(names.image), "camera_info": names.topic(names.info)}
 
 
-def connect_camera(plugin: SensorPlugin, sensor: Any, names: CameraNames, topics: dict[str, str]) -> None:
+def connect_camera(plugin: CameraPlugin, sensor: Any, names: CameraNames, topics: dict[str, str]) -> None:
     """Names a camera's topics and frame, and reads what all camera plugins do with it."""
-    params = plugin.params
-    baseline = params.number("hack_baseline", params.number("hackBaseline", 0.0))
+    baseline = plugin.options.hack_baseline
     camera_settings.name_frame(plugin, sensor)
     if names.is_ros_1:
         camera_settings.apply_update_rate(plugin, sensor)
@@ -88,7 +120,7 @@ def connect_camera(plugin: SensorPlugin, sensor: Any, names: CameraNames, topics
     sensor.publish_on(topics)
 
 
-def connect_stereo(plugin: SensorPlugin, sensor: Any, names: CameraNames, folder: Any) -> None:
+def connect_stereo(plugin: CameraPlugin, sensor: Any, names: CameraNames, folder: Any) -> None:
     """The same for a multicamera.
 
     Args:
@@ -101,7 +133,7 @@ def connect_stereo(plugin: SensorPlugin, sensor: Any, names: CameraNames, folder
     connect_camera(plugin, sensor, names, topics)
 
 
-def connect_trigger(plugin: SensorPlugin, sensor: Any, names: CameraNames) -> None:
+def connect_trigger(plugin: CameraPlugin, sensor: Any, names: CameraNames) -> None:
     """ROS 1: pictures only after a message on `<triggerTopicName>`."""
-    topic = plugin.params.text("triggerTopicName", "image_trigger")
+    topic = TriggeredCameraOptions(plugin.params).trigger_topic_name
     sensor.trigger_on(names.topic(topic), camera_settings.EMPTY)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
@@ -30,13 +30,26 @@ from simkit.plugins.drives.odometry_noise import (
     EquivalentWheelAngles,
     NoisyOdometry,
     OdometryNoise,
-    read_odometry_noise,
+    OdometryNoiseOptions,
+    odometry_noise,
     replace_planar_pose,
 )
 from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joint_states import JOINT_STATE, joint_readings, joint_state_message
-from simkit.plugins.lookups import read_numbers
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import (
+    Options,
+    block,
+    boolean,
+    choice,
+    integer,
+    number,
+    numbers,
+    text,
+    texts,
+    without_effect,
+)
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector
 
@@ -59,7 +72,7 @@ class Pair:
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class DriveSettings:
     """The plugin's parameters; rates Hz, torque N·m, acceleration m/s² at the rim (0: no limit); `noise` is our own."""
 
     update_rate: float
@@ -80,8 +93,38 @@ class Options:
     noise: OdometryNoise | None = None
 
 
-def read_options(params: Params) -> Options:
+class CommonDiffDriveOptions(Options):
+    """Options in either spelling."""
+
+    publish_ground_truth: bool = boolean()
+    covariance_x: float = number(1e-5, minimum=0)
+    covariance_y: float = number(1e-5, minimum=0)
+    covariance_yaw: float = number(1e-3, minimum=0)
+    odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
+
+
+class DiffDriveOptions(CommonDiffDriveOptions):
+    """Options in the spelling of ROS 2."""
+
+    update_rate: float = number(100.0, "Hz", minimum=0)
+    max_wheel_torque: float = number(5.0, "N·m", minimum=0)
+    max_wheel_acceleration: float = number(0.0, "m/s²", minimum=0)
+    odometry_frame: str = text("odom")
+    robot_base_frame: str = text("base_footprint")
+    odometry_source: int = integer(1, minimum=0, maximum=1)
+    publish_odom: bool = boolean()
+    publish_odom_tf: bool = boolean()
+    publish_wheel_tf: bool = boolean()
+    num_wheel_pairs: int = integer(1, minimum=1)
+    left_joints: tuple[str, ...] = texts(element="left_joint")
+    right_joints: tuple[str, ...] = texts(element="right_joint")
+    wheel_separations: tuple[float, ...] = numbers("m", element="wheel_separation", minimum=1e-6)
+    wheel_diameters: tuple[float, ...] = numbers("m", element="wheel_diameter", minimum=1e-6)
+
+
+def read_options(params: Params) -> DriveSettings:
     """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    given = DiffDriveOptions(params)
     if is_ros_1(params, _ROS_1):
         return _read_ros_1(params)
     command_topic, odometry_topic = "cmd_vel", "odom"
@@ -89,80 +132,96 @@ def read_options(params: Params) -> Options:
         # the ROS 2 plugin has no such element; one that only repeats the name it uses anyway is no loss
         if any(c.name == name and c.value.strip("/") == fixed for c in params.children):
             params.child(name)
-    return Options(
-        update_rate=params.number("update_rate", 100.0, minimum=0),
-        pairs=_read_pairs(params),
-        max_torque=params.number("max_wheel_torque", 5.0, minimum=0),
-        max_acceleration=params.number("max_wheel_acceleration", 0.0, minimum=0),
+    return DriveSettings(
+        update_rate=given.update_rate,
+        pairs=_read_pairs(given),
+        max_torque=given.max_wheel_torque,
+        max_acceleration=given.max_wheel_acceleration,
         command_topic=command_topic,
         odometry_topic=odometry_topic,
-        odometry_frame=params.text("odometry_frame", "odom"),
-        base_frame=params.text("robot_base_frame", "base_footprint"),
-        from_encoders=params.integer("odometry_source", 1, minimum=0, maximum=1) == 0,
-        publish_odom=params.boolean("publish_odom", False),
-        publish_odom_tf=params.boolean("publish_odom_tf", False),
-        publish_wheel_tf=params.boolean("publish_wheel_tf", False),
+        odometry_frame=given.odometry_frame,
+        base_frame=given.robot_base_frame,
+        from_encoders=given.odometry_source == 0,
+        publish_odom=given.publish_odom,
+        publish_odom_tf=given.publish_odom_tf,
+        publish_wheel_tf=given.publish_wheel_tf,
         publish_wheel_joint_state=False,
-        publish_ground_truth=params.boolean("publish_ground_truth", False),
-        covariance=_read_covariance(params),
-        noise=read_odometry_noise(params),
+        publish_ground_truth=given.publish_ground_truth,
+        covariance=(given.covariance_x, given.covariance_y, given.covariance_yaw),
+        noise=odometry_noise(given.odometry_noise),
     )
 
 
-def _read_ros_1(params: Params) -> Options:
-    left, right = params.text("leftJoint", "left_joint"), params.text("rightJoint", "right_joint")
-    if params.boolean("legacyMode", False):
+class DiffDriveRos1Options(CommonDiffDriveOptions):
+    """Options in the spelling of ROS 1."""
+
+    left_joint: str = text("left_joint", element="leftJoint")
+    right_joint: str = text("right_joint", element="rightJoint")
+    legacy_mode: bool = boolean(element="legacyMode")
+    wheel_separation: float = number(0.34, "m", element="wheelSeparation", minimum=1e-6)
+    wheel_diameter: float = number(0.15, "m", element="wheelDiameter", minimum=1e-6)
+    publish_tf: bool = boolean(True, element="publishTf")
+    update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
+    wheel_torque: float = number(5.0, "N·m", element="wheelTorque", minimum=0)
+    wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
+    command_topic: str = text("cmd_vel", element="commandTopic")
+    odometry_topic: str = text("odom", element="odometryTopic")
+    odometry_frame: str = text("odom", element="odometryFrame")
+    robot_base_frame: str = text("base_footprint", element="robotBaseFrame")
+    odometry_source: str = choice(("world", "encoder", "1", "0"), "world", element="odometrySource")
+    publish_odom_tf: bool = boolean(True, element="publishOdomTF")
+    publish_wheel_tf: bool = boolean(element="publishWheelTF")
+    publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
+    ros_debug_level: bool = without_effect(element="rosDebugLevel")
+
+
+def _read_ros_1(params: Params) -> DriveSettings:
+    given = DiffDriveRos1Options(params)
+    left, right = given.left_joint, given.right_joint
+    if given.legacy_mode:
         # for files of before 2016, whose wheels were named the other way round
         left, right = right, left
-    params.child("rosDebugLevel")  # of the plugin's log
+    _ = given.ros_debug_level  # of the plugin's log
     pair = Pair(
         left=left,
         right=right,
-        separation=params.number("wheelSeparation", 0.34, minimum=1e-6),
-        radius=params.number("wheelDiameter", 0.15, minimum=1e-6) / 2,
+        separation=given.wheel_separation,
+        radius=given.wheel_diameter / 2,
     )
-    publish_tf = params.boolean("publishTf", True)
-    return Options(
-        update_rate=params.number("updateRate", 100.0, minimum=0),
+    publish_tf = given.publish_tf
+    return DriveSettings(
+        update_rate=given.update_rate,
         pairs=(pair,),
-        max_torque=params.number("wheelTorque", 5.0, minimum=0),
-        max_acceleration=params.number("wheelAcceleration", 0.0, minimum=0),
-        command_topic=params.text("commandTopic", "cmd_vel"),
-        odometry_topic=params.text("odometryTopic", "odom"),
-        odometry_frame=params.text("odometryFrame", "odom"),
-        base_frame=params.text("robotBaseFrame", "base_footprint"),
-        from_encoders=params.choice("odometrySource", ("world", "encoder", "1", "0"), "world") in {"encoder", "0"},
+        max_torque=given.wheel_torque,
+        max_acceleration=given.wheel_acceleration,
+        command_topic=given.command_topic,
+        odometry_topic=given.odometry_topic,
+        odometry_frame=given.odometry_frame,
+        base_frame=given.robot_base_frame,
+        from_encoders=given.odometry_source in {"encoder", "0"},
         publish_odom=publish_tf,  # Gazebo's element of that name is of both
-        publish_odom_tf=params.boolean("publishOdomTF", True) and publish_tf,
-        publish_wheel_tf=params.boolean("publishWheelTF", False),
-        publish_wheel_joint_state=params.boolean("publishWheelJointState", False),
-        publish_ground_truth=params.boolean("publish_ground_truth", False),
-        covariance=_read_covariance(params),
-        noise=read_odometry_noise(params),
+        publish_odom_tf=given.publish_odom_tf and publish_tf,
+        publish_wheel_tf=given.publish_wheel_tf,
+        publish_wheel_joint_state=given.publish_wheel_joint_state,
+        publish_ground_truth=given.publish_ground_truth,
+        covariance=(given.covariance_x, given.covariance_y, given.covariance_yaw),
+        noise=odometry_noise(given.odometry_noise),
     )
 
 
-def _read_covariance(params: Params) -> tuple[float, float, float]:
-    x = params.number("covariance_x", 1e-5, minimum=0)
-    y = params.number("covariance_y", 1e-5, minimum=0)
-    return x, y, params.number("covariance_yaw", 1e-3, minimum=0)
-
-
-def _read_pairs(params: Params) -> tuple[Pair, ...]:
-    count = params.integer("num_wheel_pairs", 1, minimum=1)
-    left, right = ([c.value for c in params.all(name)] for name in ("left_joint", "right_joint"))
+def _read_pairs(given: DiffDriveOptions) -> tuple[Pair, ...]:
+    count, left, right = given.num_wheel_pairs, given.left_joints, given.right_joints
     for name, found in (("left_joint", left), ("right_joint", right)):
         if not found:
-            params.text(name, required=True)
+            given.params.text(name, required=True)
     if left and right and not len(left) == len(right) == count:
         found_text = f"found {len(left)} <left_joint> and {len(right)} <right_joint>"
-        params.error("SK-PARAM-002", f"{found_text}, allowed is one of each for each of {count} <num_wheel_pairs>")
+        allowed = f"allowed is one of each for each of {count} <num_wheel_pairs>"
+        given.params.error("SK-PARAM-002", f"{found_text}, {allowed}")
         return ()
-    separations = read_numbers(params, "wheel_separation", minimum=1e-6)
-    diameters = read_numbers(params, "wheel_diameter", minimum=1e-6)
     # Gazebo's default stands for each pair that the lists do not reach
-    separations += [0.34] * (len(left) - len(separations))
-    diameters += [0.15] * (len(left) - len(diameters))
+    separations = [*given.wheel_separations, *[0.34] * (len(left) - len(given.wheel_separations))]
+    diameters = [*given.wheel_diameters, *[0.15] * (len(left) - len(given.wheel_diameters))]
     joined = zip(left, right, separations, diameters, strict=False)
     return tuple(Pair(a, b, separation, diameter / 2) for a, b, separation, diameter in joined)
 
@@ -175,11 +234,19 @@ class GazeboRosDiffDrive(ModelPlugin):
     the odometry errs from either source, and tells the covariance that its wheels' errors add up to.
     """
 
+    endpoints = (
+        listens("cmd_vel", *COMMAND_TYPES, named_by=("commandTopic",)),
+        publishes("odom", ODOMETRY, named_by=("odometryTopic",)),
+        publishes("/tf", TRANSFORMS),
+        publishes("ground_truth/odom", ODOMETRY),
+        publishes("joint_states", JOINT_STATE),
+    )
+    option_types: ClassVar[tuple[type[Options], ...]] = (DiffDriveOptions, DiffDriveRos1Options)
     filenames = ("libgazebo_ros_diff_drive.so",)
     drives = True
     is_level = False  # whether the odometry leaves out the height
 
-    def read(self, params: Params) -> Options:
+    def read(self, params: Params) -> DriveSettings:
         """The parameters, in the spelling that they are in."""
         return read_options(params)
 

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.endpoints import listens
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.lookups import find_axis_joint, read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, integer, number, text
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
@@ -36,6 +38,16 @@ _DOOR_WITHIN: Final = 0.05
 _FLOOR: Final = re.compile(r"\s*[-+]?\d+")
 
 
+class ElevatorPluginOptions(Options):
+    """Options of `ElevatorPlugin`."""
+
+    door_wait_time: float = number(5.0, "s", minimum=0.0, maximum=1e9)
+    floor_height: float = number(3.0, "m", minimum=-1e6, maximum=1e6)
+    lift_joint: str = text(required=True)
+    door_joint: str = text(required=True)
+    topic: str = text()
+
+
 class ElevatorPlugin(ModelPlugin):
     """Takes the cabin to the floor whose number comes as text, with the door shut; opens it there, waits, and shuts it.
 
@@ -48,14 +60,16 @@ class ElevatorPlugin(ModelPlugin):
     goes on; here it is the speed that is damped. The wait is in simulated time, in Gazebo by the clock on the wall.
     """
 
+    endpoints = (listens("/gazebo/{world}/elevator", STRING, named_by=("topic",)),)
+    options = OptionsOf(ElevatorPluginOptions)
     filenames = ("libElevatorPlugin.so",)
     drives = True
     _bottom: int | None = None
     _top: int | None = None
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._wait_ns = round(params.number("door_wait_time", 5.0, minimum=0.0, maximum=1e9) * 1e9)
-        self._height = params.number("floor_height", 3.0, minimum=-1e6, maximum=1e6)
+        self._wait_ns = round(self.options.door_wait_time * 1e9)
+        self._height = self.options.floor_height
         if not params.has("floor_height"):
             message = f"plugin {self.name!r} has no <floor_height>: floors are 3 m apart"
             params.diagnostics.warning("SK-PLUGIN-137", message, params.where)
@@ -84,7 +98,7 @@ class ElevatorPlugin(ModelPlugin):
     def open_topic(self, params: Params) -> None:
         """Listens to what floor to go to."""
         own = f"/gazebo/{self.sim.world.name}"
-        topic = params.text("topic", "")
+        topic = self.options.topic
         found = read_topic(params, "topic", f"{own}/elevator")
         self.listen(valid_topic(f"{own}/{topic[2:]}") if topic.startswith("~/") else found, STRING, self._on_floor)
 
@@ -140,16 +154,27 @@ class ElevatorPlugin(ModelPlugin):
         sim.physics.changed(CONTROL)
 
 
+class GazeboRosElevatorOptions(ElevatorPluginOptions):
+    """Options of `GazeboRosElevator`."""
+
+    door_wait_time: float = number(5.0, "s", minimum=0.0, maximum=1000000000.0)
+    floor_height: float = number(3.0, "m", minimum=-1000000.0, maximum=1000000.0)
+    bottom_floor: int = integer()
+    top_floor: int = integer()
+
+
 class GazeboRosElevator(ElevatorPlugin):
     """The same with the floor on ROS's topic `elevator` (ROS 1: `<topic>`), from `<bottom_floor>` to `<top_floor>`."""
 
+    endpoints = (listens("elevator", STRING, named_by=("topic",)),)
+    options = OptionsOf(GazeboRosElevatorOptions)
     filenames = ("libgazebo_ros_elevator.so",)
 
     def open_topic(self, params: Params) -> None:
         """Listens to what floor to go to."""
-        self.listen(params.text("topic", "") or "elevator", STRING, self._on_floor)
-        self._bottom = params.integer("bottom_floor") if params.has("bottom_floor") else None
-        self._top = params.integer("top_floor") if params.has("top_floor") else None
+        self.listen(self.options.topic or "elevator", STRING, self._on_floor)
+        self._bottom = self.options.bottom_floor if params.has("bottom_floor") else None
+        self._top = self.options.top_floor if params.has("top_floor") else None
         if self._bottom is not None and self._top is not None and self._top < self._bottom:
             message = f"plugin {self.name!r}: <top_floor> {self._top} is below <bottom_floor> {self._bottom}"
             params.diagnostics.warning("SK-PLUGIN-135", f"{message}; it never moves", self.where)

@@ -9,8 +9,10 @@ import numpy as np
 
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.endpoints import listens
 from simkit.plugins.lookups import find_named_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, choice, text
 from simkit.pose import Vector, quat_rotate
 
 if TYPE_CHECKING:
@@ -20,6 +22,15 @@ if TYPE_CHECKING:
 WRENCH: Final = "geometry_msgs/msg/Wrench"
 
 
+class GazeboRosForceOptions(Options):
+    """Options of `GazeboRosForce`."""
+
+    body_name: str = text(element="bodyName", required=True)
+    topic_name: str = text(element="topicName", required=True)
+    link_name: str = text(required=True)
+    force_frame: str = choice(("world", "link"), "world")
+
+
 class GazeboRosForce(ModelPlugin):
     """Pushes a link at its centre of mass with the wrench of the last message, at every step.
 
@@ -27,14 +38,16 @@ class GazeboRosForce(ModelPlugin):
     `<bodyName>` and `<topicName>`, always in the world's axes.
     """
 
+    endpoints = (listens("gazebo_ros_force", WRENCH, named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosForceOptions)
     filenames = ("libgazebo_ros_force.so",)
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         is_ros_1 = params.has("bodyName") or params.has("topicName")
         self._scoped = find_named_link(scene, "bodyName" if is_ros_1 else "link_name", params)
-        self._topic = params.text("topicName", required=True) if is_ros_1 else "gazebo_ros_force"
-        self._turns = params.choice("force_frame", ("world", "link"), "world") == "link"
+        self._topic = self.options.topic_name if is_ros_1 else "gazebo_ros_force"
+        self._turns = self.options.force_frame == "link"
 
     def load(self, parent: Any, params: Params) -> None:
         self.once = OneTimeWarnings(self)

@@ -11,7 +11,9 @@ import numpy as np
 from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import find_joint, find_link
+from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Vector
 from simkit.runtime.handles.joint_mechanics import transmitted_wrench
@@ -22,6 +24,20 @@ if TYPE_CHECKING:
 
 TYPE = "geometry_msgs/msg/WrenchStamped"
 _BODY = int(mujoco.mjtObj.mjOBJ_BODY)
+
+
+class GazeboRosFtSensorOptions(Options):
+    """Options of `GazeboRosFtSensor`."""
+
+    joint_name_ros_1: str = text(element="jointName", required=True)
+    topic_name: str = text(element="topicName", required=True)
+    update_rate_ros_1: float = number(0.0, "Hz", element="updateRate", minimum=0.0)
+    update_rate: float = number(0.0, "Hz", minimum=0.0)
+    gaussian_noise_ros_1: float = number(0.0, element="gaussianNoise", minimum=0.0, maximum=1e100)
+    gaussian_noise: float = number(0.0, minimum=0.0, maximum=1e100)
+    body_name: str = text()
+    frame_name: str = text("world")
+    joint_name: str = text(required=True)
 
 
 class GazeboRosFtSensor(ModelPlugin):
@@ -36,6 +52,8 @@ class GazeboRosFtSensor(ModelPlugin):
         reads_contacts: what rests on something that never moves must not sleep, or it would weigh nothing.
     """
 
+    endpoints = (publishes("wrench", TYPE, named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosFtSensorOptions)
     filenames = ("libgazebo_ros_ft_sensor.so",)
     reads_contacts: ClassVar[bool] = True
 
@@ -44,15 +62,15 @@ class GazeboRosFtSensor(ModelPlugin):
         joint_name, rate, noise = ("joint_name", "update_rate", "gaussian_noise")
         if is_old:
             joint_name, rate, noise = ("jointName", "updateRate", "gaussianNoise")
-        self._topic = params.text("topicName", required=True) if is_old else "wrench"
+        self._topic = self.options.topic_name if is_old else "wrench"
         self.after_step_rate = params.number(rate, 0.0, minimum=0)
         self._deviation = params.number(noise, 0.0, minimum=0, maximum=LARGEST)
         self._joint = self._link = ""
-        body = "" if is_old else params.text("body_name", "")
+        body = "" if is_old else self.options.body_name
         if body:
             link = find_link(scene, body, params)
             self._link = link.scoped if link is not None else ""
-            self._frame = params.text("frame_name", "world")
+            self._frame = self.options.frame_name
             return
         name = params.text(joint_name, required=True)
         if not name:

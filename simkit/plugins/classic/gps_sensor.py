@@ -7,10 +7,19 @@ from typing import Any
 
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import read_frame
+from simkit.plugins.options import Options, OptionsOf, text
 
 _KINDS = ("gps", "navsat")
 _BACKWARDS = -0.999  # cosine of a heading of 180 degrees, or nearly
+
+
+class GazeboRosGpsSensorOptions(Options):
+    """Options of `GazeboRosGpsSensor`."""
+
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosGpsSensor(SensorPlugin):
@@ -19,6 +28,11 @@ class GazeboRosGpsSensor(SensorPlugin):
     In the link's frame or `<frame_name>`.
     """
 
+    endpoints = (
+        publishes("~/out", "sensor_msgs/msg/NavSatFix"),
+        publishes("~/vel", "geometry_msgs/msg/Vector3Stamped"),
+    )
+    options = OptionsOf(GazeboRosGpsSensorOptions)
     filenames = ("libgazebo_ros_gps_sensor.so",)
 
     def load(self, parent: Any, params: Params) -> None:

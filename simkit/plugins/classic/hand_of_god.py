@@ -14,6 +14,7 @@ from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.lookups import find_named_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import IDENTITY, Pose
 
@@ -25,6 +26,17 @@ _WORLD: Final = "world"
 _FARTHEST: Final = 1e9  # [m]
 
 
+class GazeboRosHandOfGodOptions(Options):
+    """Options of `GazeboRosHandOfGod`."""
+
+    link_name_ros_1: str = text(element="linkName", required=True)
+    frame_id_ros_1: str = text("world", element="frameId")
+    link_name: str = text(required=True)
+    frame_id: str = text("world")
+    kl: float = number(200.0, minimum=0.0, maximum=1000000000.0)
+    ka: float = number(200.0, minimum=0.0, maximum=1000000000.0)
+
+
 class GazeboRosHandOfGod(ModelPlugin):
     """Draws a link, which it takes the weight of, to the frame `<frame_id>_desired` that others tell on `/tf`.
 
@@ -33,6 +45,7 @@ class GazeboRosHandOfGod(ModelPlugin):
     `/tf` as `<frame_id>_actual`. Frames may hang on others, up to `world`. ROS 1: `<linkName>`, `<frameId>`.
     """
 
+    options = OptionsOf(GazeboRosHandOfGodOptions)
     filenames = ("libgazebo_ros_hand_of_god.so",)
     drives = True
 

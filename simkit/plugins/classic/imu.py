@@ -10,7 +10,9 @@ import numpy as np
 from simkit import msgs
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.lookups import find_named_link
+from simkit.plugins.options import Options, OptionsOf, number, text, vector3, without_effect
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 
 if TYPE_CHECKING:
@@ -19,6 +21,20 @@ if TYPE_CHECKING:
 
 TYPE = "sensor_msgs/msg/Imu"
 _DEFAULT = "/default_imu"  # of topic and service both
+
+
+class GazeboRosImuOptions(Options):
+    """Options of `GazeboRosImu`."""
+
+    body_name: str = text(element="bodyName", required=True)
+    topic_name: str = text(_DEFAULT, element="topicName")
+    service_name: str = text(_DEFAULT, element="serviceName")
+    frame_name: str = text(element="frameName")
+    gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=LARGEST)
+    rpy_offset: tuple[float, float, float] = vector3(unit="rad", element="rpyOffset")
+    update_rate: float = number(0.0, "Hz", element="updateRate", minimum=0)
+    always_on: bool = without_effect(element="alwaysOn")
+    xyz_offset: tuple[float, float, float] = vector3(unit="m", element="xyzOffset")
 
 
 class GazeboRosImu(ModelPlugin):
@@ -32,18 +48,23 @@ class GazeboRosImu(ModelPlugin):
     `<serviceName>` (`/default_imu`) calibrates: there is nothing to do.
     """
 
+    endpoints = (
+        publishes("/default_imu", TYPE, named_by=("topicName",)),
+        offers("/default_imu", "std_srvs/srv/Empty", named_by=("serviceName",)),
+    )
+    options = OptionsOf(GazeboRosImuOptions)
     filenames = ("libgazebo_ros_imu.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._body = find_named_link(scene, "bodyName", params)
-        self._topic = params.text("topicName", _DEFAULT)
-        self._service = params.text("serviceName", _DEFAULT)
-        self._frame = params.text("frameName", "").strip("/") or self._body.rsplit("::", 1)[-1]
-        self._deviation = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
-        self._turn = quat_from_rpy(*params.vector3("rpyOffset", (0.0, 0.0, 0.0)))
-        self.after_step_rate = params.number("updateRate", 0.0, minimum=0)
+        self._topic = self.options.topic_name
+        self._service = self.options.service_name
+        self._frame = self.options.frame_name.strip("/") or self._body.rsplit("::", 1)[-1]
+        self._deviation = self.options.gaussian_noise
+        self._turn = quat_from_rpy(*self.options.rpy_offset)
+        self.after_step_rate = self.options.update_rate
         params.child("alwaysOn")
-        if any(params.vector3("xyzOffset", (0.0, 0.0, 0.0))):
+        if any(self.options.xyz_offset):
             message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"
             params.diagnostics.note("SK-SENSOR-072", message, params.block("xyzOffset").where)
         self._is_gazebos = builder.world.gazebo_quirks

@@ -6,9 +6,25 @@ from typing import Any
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import private_topic, read_frame
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text, vector3
 
 _WORLD = (1.0, 0.0, 0.0, 0.0)
+
+
+class GazeboRosImuSensorOptions(Options):
+    """Options of `GazeboRosImuSensor`."""
+
+    topic_name: str = text(element="topicName")
+    initial_orientation_as_reference_ros_1: bool = boolean(element="initialOrientationAsReference")
+    body_name: str = text(element="bodyName")
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
+    gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=LARGEST)
+    rpy_offset: tuple[float, float, float] = vector3(unit="rad", element="rpyOffset")
+    xyz_offset: tuple[float, float, float] = vector3(unit="m", element="xyzOffset")
+    update_rate_hz: float = number(0.0, "Hz", element="updateRateHZ", minimum=0)
 
 
 class GazeboRosImuSensor(SensorPlugin):
@@ -19,13 +35,15 @@ class GazeboRosImuSensor(SensorPlugin):
     turns the orientation, and `<updateRateHZ>`, which may slow the sensor down.
     """
 
+    endpoints = (publishes("~/out", "sensor_msgs/msg/Imu", named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosImuSensorOptions)
     filenames = ("libgazebo_ros_imu_sensor.so",)
 
     def load(self, parent: Any, params: Params) -> None:
         topic = private_topic(self, "out", "topicName")
-        old = params.boolean("initialOrientationAsReference", False)
+        old = self.options.initial_orientation_as_reference_ros_1
         from_start = params.boolean("initial_orientation_as_reference", old)
-        body = params.text("bodyName", "")
+        body = self.options.body_name
         if not hasattr(parent, "set_orientation_reference"):
             self.refuse(parent, "imu")
             return
@@ -37,17 +55,17 @@ class GazeboRosImuSensor(SensorPlugin):
         self._read_ros_1(parent, params)
 
     def _read_ros_1(self, imu: Any, params: Params) -> None:
-        stddev = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
+        stddev = self.options.gaussian_noise
         if stddev:
             imu.add_white_noise(stddev)
-        turn = params.vector3("rpyOffset", (0.0, 0.0, 0.0))
+        turn = self.options.rpy_offset
         if any(turn):
             imu.rotate_orientation(turn)
-        if any(params.vector3("xyzOffset", (0.0, 0.0, 0.0))):
+        if any(self.options.xyz_offset):
             where = params.block("xyzOffset").where
             message = f"plugin {self.name!r}: <xyzOffset> changes no reading, as in Gazebo"
             hint = "the sensor's <pose> puts it elsewhere on its link"
             params.diagnostics.note("SK-SENSOR-072", message, where, hint)
-        rate = params.number("updateRateHZ", 0.0, minimum=0)
+        rate = self.options.update_rate_hz
         if rate and not 0 < imu.update_rate <= rate:
             imu.set_rate(rate)

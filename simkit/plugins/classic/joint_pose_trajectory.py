@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.errors import InputError
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import listens
 from simkit.plugins.joints.joint_axis import suggest_names
 from simkit.plugins.joints.joint_trajectory import nanoseconds
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, choice, number, text
 
 if TYPE_CHECKING:
     from simkit.runtime import Joint, Link, Model
@@ -18,6 +20,16 @@ if TYPE_CHECKING:
 TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
 _WORLD: Final = frozenset({"", "world", "map"})
 _NEVER: Final = 1e18  # [ns]
+
+
+class GazeboRosJointPoseTrajectoryOptions(Options):
+    """Options of `GazeboRosJointPoseTrajectory`."""
+
+    topic_name: str = text("set_joint_trajectory", element="topicName")
+    service_name: str = text(element="serviceName")
+    update_rate_ros_1: float = number(0.0, "Hz", element="updateRate", minimum=0.0)
+    update_rate: float = number(100.0, "Hz", minimum=0.0)
+    point_times: str = choice(("chained", "from_start"), "chained")
 
 
 class GazeboRosJointPoseTrajectory(ModelPlugin):
@@ -32,6 +44,8 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
     physics stands still meanwhile, here it goes on.
     """
 
+    endpoints = (listens("set_joint_trajectory", TRAJECTORY, named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosJointPoseTrajectoryOptions)
     filenames = ("libgazebo_ros_joint_pose_trajectory.so",)
     drives = True
 
@@ -41,11 +55,11 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
         is_ros_1 = any(params.has(name) for name in ("topicName", "serviceName", "updateRate", "robotNamespace"))
         if is_ros_1:
             self._say_ros_1(params)
-            rate, topic = 0.0, params.text("topicName", "set_joint_trajectory")
+            rate, topic = 0.0, self.options.topic_name
         else:
-            rate, topic = params.number("update_rate", 100.0, minimum=0.0), "set_joint_trajectory"
+            rate, topic = self.options.update_rate, "set_joint_trajectory"
         self._period = round(min(1e9 / rate, _NEVER)) if rate > 0.0 else 0
-        self._is_chained = params.choice("point_times", ("chained", "from_start"), "chained") == "chained"
+        self._is_chained = self.options.point_times == "chained"
         self._points: list[tuple[tuple[float, ...], int]] = []
         self._names: tuple[str, ...] = ()
         self._of, self._fixed = parent.scoped, ""
@@ -54,8 +68,8 @@ class GazeboRosJointPoseTrajectory(ModelPlugin):
             self.listen(topic, TRAJECTORY, self._on_trajectory)
 
     def _say_ros_1(self, params: Params) -> None:
-        params.number("updateRate", 0.0, minimum=0.0)  # read by Gazebo, and used for nothing
-        params.text("serviceName", "")  # of a service that Gazebo is built without
+        _ = self.options.update_rate_ros_1  # read by Gazebo, and used for nothing
+        _ = self.options.service_name  # of a service that Gazebo is built without
         message = f"plugin {self.name!r}: the physics goes on while a trajectory plays; Gazebo on ROS 1 stops it"
         params.diagnostics.note("SK-PLUGIN-046", message, self.where)
 

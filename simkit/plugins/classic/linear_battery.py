@@ -8,10 +8,24 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.battery import Battery, BatteryConsumer, Cell
 from simkit.plugins.lookups import find_named_link, read_required_name
+from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class ClassicLinearBatteryOptions(Options):
+    """Options of `ClassicLinearBattery`."""
+
+    link_name: str = text(required=True)
+    battery_name: str = text(required=True)
+    capacity: float = number(minimum=1e-12, required=True)
+    initial_charge: float = number(0.0, minimum=0.0)
+    open_circuit_voltage_constant_coef: float = number(0.0)
+    open_circuit_voltage_linear_coef: float = number(0.0)
+    resistance: float = number(0.0, minimum=0.0)
+    smooth_current_tau: float = number(0.0, minimum=0.0)
 
 
 class ClassicLinearBattery(Battery):
@@ -20,16 +34,17 @@ class ClassicLinearBattery(Battery):
     In Classic only other plugins can ask how it is. Here its state is published as gz's battery's is.
     """
 
+    options = OptionsOf(ClassicLinearBatteryOptions)
     filenames = ("libLinearBatteryPlugin.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         find_named_link(scene, "link_name", params)
         self.battery = read_required_name(params, "battery_name")
-        capacity = params.number("capacity", required=True, minimum=1e-12) or 1.0
-        charge = params.number("initial_charge", 0.0, minimum=0.0)
+        capacity = self.options.capacity or 1.0
+        charge = self.options.initial_charge
         constant, linear = (params.number(f"open_circuit_voltage_{n}_coef", 0.0) for n in ("constant", "linear"))
-        resistance = params.number("resistance", 0.0, minimum=0.0)
-        tau = params.number("smooth_current_tau", 0.0, minimum=0.0)
+        resistance = self.options.resistance
+        tau = self.options.smooth_current_tau
         voltage = constant + linear * (1.0 - charge / capacity)
         self.cell = Cell(constant, linear, capacity, resistance, tau, voltage, charge)
 
@@ -38,9 +53,17 @@ class ClassicLinearBattery(Battery):
         self.open_state(parent.name)
 
 
+class LinearBatteryConsumerOptions(Options):
+    """Options of `LinearBatteryConsumer`."""
+
+    link_name: str = text(required=True)
+    battery_name: str = text(required=True)
+
+
 class LinearBatteryConsumer(BatteryConsumer):
     """Draws a power from a battery of its model, Classic's or gz's."""
 
+    options = OptionsOf(LinearBatteryConsumerOptions)
     filenames = ("libLinearBatteryConsumerPlugin.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:

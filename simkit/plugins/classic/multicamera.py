@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from simkit.params import Params
-from simkit.plugins.base import SensorPlugin
-from simkit.plugins.classic.camera import connect_stereo, connect_trigger
-from simkit.plugins.classic.camera_settings import CameraNames
+from simkit.plugins.classic.camera import TriggeredCameraOptions, connect_stereo, connect_trigger
+from simkit.plugins.classic.camera_settings import CameraNames, CameraPlugin
+from simkit.plugins.options import OptionsOf
 
 
-class GazeboRosMultiCamera(SensorPlugin):
+class GazeboRosMultiCamera(CameraPlugin):
     """Publishes the cameras below `<cameraName>/left` and `<cameraName>/right`, others below their own name.
 
     What is left and right is in the cameras' names. `<hackBaseline>` [m] stands in the right one's projection matrix,
@@ -24,9 +24,10 @@ class GazeboRosMultiCamera(SensorPlugin):
             self.refuse(parent, "multicamera")
 
 
-class GazeboRosTriggeredMultiCamera(SensorPlugin):
+class GazeboRosTriggeredMultiCamera(CameraPlugin):
     """The same, with pictures after a message on `<triggerTopicName>` (`image_trigger`) below `<cameraName>`."""
 
+    options = OptionsOf(TriggeredCameraOptions)
     filenames = ("libgazebo_ros_triggered_multicamera.so",)
 
     def load(self, parent: Any, params: Params) -> None:
@@ -37,7 +38,7 @@ class GazeboRosTriggeredMultiCamera(SensorPlugin):
             connect_trigger(self, parent, names)
 
 
-def connect_multicamera(plugin: SensorPlugin, sensor: Any) -> CameraNames | None:
+def connect_multicamera(plugin: CameraPlugin, sensor: Any) -> CameraNames | None:
     """Names the topics; None where the sensor is no multicamera."""
     if not hasattr(sensor, "eyes"):
         return None

@@ -12,8 +12,10 @@ from simkit.diagnostics import did_you_mean
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import find_named_link
 from simkit.plugins.on_demand import count_instants, publish_while_subscribed
+from simkit.plugins.options import Options, OptionsOf, number, text, vector3, without_effect
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
@@ -23,6 +25,28 @@ if TYPE_CHECKING:
 
 _ROS_1 = ("robotNamespace", "bodyName", "topicName", "frameName", "gaussianNoise", "updateRate")
 _INERTIAL = {"world", "map"}
+
+
+class GazeboRosP3DOptions(Options):
+    """Options of `GazeboRosP3D`."""
+
+    body_name_ros_1: str = text(element="bodyName", required=True)
+    topic_name: str = text(element="topicName", required=True)
+    frame_name_ros_1: str = text("world", element="frameName")
+    gaussian_noise_ros_1: float = number(0.0, element="gaussianNoise", minimum=0.0, maximum=1e100)
+    update_rate_ros_1: float = number(0.0, "Hz", element="updateRate", minimum=0.0)
+    frame_name: str = text("world")
+    always_on_ros_1: bool = without_effect(element="alwaysOn")
+    always_on: bool = without_effect()
+    gaussian_noise: float = number(0.0, minimum=0.0, maximum=1e100)
+    update_rate: float = number(0.0, "Hz", minimum=0.0)
+    xyz_offset_ros_1: tuple[float, float, float] = vector3(unit="m", element="xyzOffset")
+    xyz_offsets: tuple[float, float, float] = vector3(unit="m")
+    xyz_offset: tuple[float, float, float] = vector3(unit="m", instead="xyz_offsets")
+    rpy_offset_ros_1: tuple[float, float, float] = vector3(unit="rad", element="rpyOffset")
+    rpy_offsets: tuple[float, float, float] = vector3(unit="rad")
+    rpy_offset: tuple[float, float, float] = vector3(unit="rad", instead="rpy_offsets")
+    body_name: str = text(required=True)
 
 
 class GazeboRosP3D(ModelPlugin):
@@ -38,16 +62,18 @@ class GazeboRosP3D(ModelPlugin):
     wrong way and leaves out what the turning adds; here the twist is how the pose changes.
     """
 
+    endpoints = (publishes("odom", ODOMETRY, named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosP3DOptions)
     filenames = ("libgazebo_ros_p3d.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         is_old = is_ros_1(params, _ROS_1)
         if is_old:
-            body, frame = "bodyName", params.text("frameName", "world")
-            self._topic = params.text("topicName", required=True)
+            body, frame = "bodyName", self.options.frame_name_ros_1
+            self._topic = self.options.topic_name
             deviation, rate = "gaussianNoise", "updateRate"
         else:
-            body, frame = "body_name", params.text("frame_name", "world")
+            body, frame = "body_name", self.options.frame_name
             self._topic = "odom"
             deviation, rate = "gaussian_noise", "update_rate"
         params.child("alwaysOn" if is_old else "always_on")

@@ -23,7 +23,9 @@ from simkit.plugins.drives.odometry import (
     planar_covariance,
     transforms,
 )
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, boolean, number, text
 from simkit.plugins.ros_names import is_ros_1
 from simkit.pose import Pose, Vector, quat_from_rpy
 
@@ -44,7 +46,7 @@ _ROS_1 = (
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class DriveSettings:
     """The plugin's parameters: rates Hz (0: every step); `timeout` [s] is for ever where it is infinite."""
 
     command_topic: str
@@ -61,24 +63,39 @@ class Options:
     is_level: bool
 
 
-def read_options(params: Params) -> Options:
+class PlanarMoveOptions(Options):
+    """Options in the spelling of ROS 2."""
+
+    covariance_x: float = number(1e-5, minimum=0)
+    covariance_y: float = number(1e-5, minimum=0)
+    covariance_yaw: float = number(1e-3, minimum=0)
+    odometry_frame: str = text("odom")
+    robot_base_frame: str = text("base_footprint")
+    update_rate: float = number(20.0, "Hz", minimum=0)
+    publish_rate: float = number(20.0, "Hz", minimum=0)
+    publish_odom: bool = boolean(True)
+    publish_odom_tf: bool = boolean(True)
+
+
+def read_options(params: Params) -> DriveSettings:
     """Reads either spelling; ROS 1's is taken where one of its names occurs and there is no `<ros>` block."""
+    given = PlanarMoveOptions(params)
     if is_ros_1(params, _ROS_1):
         return _read_ros_1(params)
     variances = (
-        params.number("covariance_x", 1e-5, minimum=0),
-        params.number("covariance_y", 1e-5, minimum=0),
-        params.number("covariance_yaw", 1e-3, minimum=0),
+        given.covariance_x,
+        given.covariance_y,
+        given.covariance_yaw,
     )
-    return Options(
+    return DriveSettings(
         command_topic="cmd_vel",
         odometry_topic="odom",
-        odometry_frame=params.text("odometry_frame", "odom"),
-        base_frame=params.text("robot_base_frame", "base_footprint"),
-        update_rate=params.number("update_rate", 20.0, minimum=0),
-        publish_rate=params.number("publish_rate", 20.0, minimum=0),
-        publish_odom=params.boolean("publish_odom", True),
-        publish_odom_tf=params.boolean("publish_odom_tf", True),
+        odometry_frame=given.odometry_frame,
+        base_frame=given.robot_base_frame,
+        update_rate=given.update_rate,
+        publish_rate=given.publish_rate,
+        publish_odom=given.publish_odom,
+        publish_odom_tf=given.publish_odom_tf,
         timeout=math.inf,
         covariance=planar_covariance(*variances),
         twist_covariance=planar_covariance(*variances),
@@ -86,15 +103,27 @@ def read_options(params: Params) -> Options:
     )
 
 
-def _read_ros_1(params: Params) -> Options:
-    rate = params.number("odometryRate", 20.0, minimum=0)
+class PlanarMoveRos1Options(Options):
+    """Options in the spelling of ROS 1."""
+
+    odometry_rate: float = number(20.0, "Hz", element="odometryRate", minimum=0)
+    cmd_timeout: float = number(-1.0, "s", element="cmdTimeout")
+    command_topic: str = text("cmd_vel", element="commandTopic")
+    odometry_topic: str = text("odom", element="odometryTopic")
+    odometry_frame: str = text("odom", element="odometryFrame")
+    robot_base_frame: str = text("base_footprint", element="robotBaseFrame")
+
+
+def _read_ros_1(params: Params) -> DriveSettings:
+    given = PlanarMoveRos1Options(params)
+    rate = given.odometry_rate
     # a negative timeout is none, and so is one that is absent
-    timeout = params.number("cmdTimeout", -1.0)
-    return Options(
-        command_topic=params.text("commandTopic", "cmd_vel"),
-        odometry_topic=params.text("odometryTopic", "odom"),
-        odometry_frame=params.text("odometryFrame", "odom"),
-        base_frame=params.text("robotBaseFrame", "base_footprint"),
+    timeout = given.cmd_timeout
+    return DriveSettings(
+        command_topic=given.command_topic,
+        odometry_topic=given.odometry_topic,
+        odometry_frame=given.odometry_frame,
+        base_frame=given.robot_base_frame,
         update_rate=0.0,
         publish_rate=rate,
         publish_odom=rate > 0,
@@ -119,6 +148,12 @@ class GazeboRosPlanarMove(ModelPlugin):
     at every step, and commands are taken at that rate.
     """
 
+    endpoints = (
+        listens("cmd_vel", *COMMAND_TYPES, named_by=("commandTopic",)),
+        publishes("odom", ODOMETRY, named_by=("odometryTopic",)),
+        publishes("/tf", TRANSFORMS),
+    )
+    option_types = (PlanarMoveOptions, PlanarMoveRos1Options)
     filenames = ("libgazebo_ros_planar_move.so",)
     drives = True
 

@@ -7,7 +7,21 @@ from typing import Any
 from simkit.params import Params
 from simkit.plugins.base import SensorPlugin
 from simkit.plugins.classic.ray_sensor import RADIATION
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import read_frame
+from simkit.plugins.options import Options, OptionsOf, choice, number, text
+
+
+class GazeboRosRangeOptions(Options):
+    """Options of `GazeboRosRange`."""
+
+    topic_name: str = text("range", element="topicName")
+    radiation: str = choice(tuple(RADIATION), "ultrasound")
+    fov: float = number(0.05, minimum=0, maximum=1e6)
+    gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=1e6)
+    update_rate: float = number(0.0, "Hz", element="updateRate", minimum=0)
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosRange(SensorPlugin):
@@ -17,14 +31,16 @@ class GazeboRosRange(SensorPlugin):
     `<updateRate>` [Hz] holds where it is lower than the sensor's own.
     """
 
+    endpoints = (publishes("range", "sensor_msgs/msg/Range", named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosRangeOptions)
     filenames = ("libgazebo_ros_range.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        topic = self.ros.topic(params.text("topicName", "range"))
-        radiation = RADIATION[params.choice("radiation", tuple(RADIATION), "ultrasound")]
-        view = params.number("fov", 0.05, minimum=0, maximum=1e6)
-        stddev = params.number("gaussianNoise", 0.0, minimum=0, maximum=1e6)
-        rate = params.number("updateRate", 0.0, minimum=0)
+        topic = self.ros.topic(self.options.topic_name)
+        radiation = RADIATION[self.options.radiation]
+        view = self.options.fov
+        stddev = self.options.gaussian_noise
+        rate = self.options.update_rate
         if not hasattr(parent, "range_noise"):
             self.refuse(parent, "ray")
             return

@@ -7,7 +7,9 @@ from typing import Any
 
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import SensorPlugin
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import private_topic, read_frame
+from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text
 
 _OUTPUTS = {
     "sensor_msgs/LaserScan": "scan",
@@ -18,6 +20,17 @@ _OUTPUTS = {
 RADIATION = {"ultrasound": 0, "infrared": 1}  # of a Range
 
 
+class GazeboRosRaySensorOptions(Options):
+    """Options of `GazeboRosRaySensor`."""
+
+    output_type: str = choice(tuple(_OUTPUTS), "sensor_msgs/PointCloud2")
+    radiation_type: str = choice(tuple(RADIATION), "infrared")
+    min_intensity: float = number(0.0)
+    topic_name: str = text(element="topicName")
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
+
+
 class GazeboRosRaySensor(SensorPlugin):
     """Publishes its lidar on `~/out` (after `<remapping>`), in the link's frame or `<frame_name>`.
 
@@ -25,23 +38,55 @@ class GazeboRosRaySensor(SensorPlugin):
     `<min_intensity>`. `<radiation_type>` (ultrasound or infrared) goes into Range messages.
     """
 
+    endpoints = (
+        publishes(
+            "~/out",
+            "sensor_msgs/msg/LaserScan",
+            "sensor_msgs/msg/PointCloud2",
+            "sensor_msgs/msg/PointCloud",
+            "sensor_msgs/msg/Range",
+            named_by=("topicName",),
+        ),
+    )
+    options = OptionsOf(GazeboRosRaySensorOptions)
     filenames = ("libgazebo_ros_ray_sensor.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        output = _OUTPUTS[params.choice("output_type", tuple(_OUTPUTS), "sensor_msgs/PointCloud2")]
-        radiation = RADIATION[params.choice("radiation_type", tuple(RADIATION), "infrared")]
-        least = params.number("min_intensity", 0.0)
+        output = _OUTPUTS[self.options.output_type]
+        radiation = RADIATION[self.options.radiation_type]
+        least = self.options.min_intensity
         topic = private_topic(self, "out", "topicName")
         _connect(self, parent, {output: topic}, least, radiation)
+
+
+class GazeboRosLaserOptions(Options):
+    """Options of `GazeboRosLaser`."""
+
+    topic_name: str = text(element="topicName")
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosLaser(SensorPlugin):
     """ROS 1: a LaserScan on `<topicName>` (`/world`), in the link's frame or `<frameName>`."""
 
+    endpoints = (publishes("/world", "sensor_msgs/msg/LaserScan", named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosLaserOptions)
     filenames = ("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
 
     def load(self, parent: Any, params: Params) -> None:
         _connect(self, parent, {"scan": _named_topic(self)}, 0.0, RADIATION["infrared"])
+
+
+class GazeboRosBlockLaserOptions(Options):
+    """Options of `GazeboRosBlockLaser`."""
+
+    gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=LARGEST)
+    hokuyo_min_intensity: float = number(0.0, element="hokuyoMinIntensity")
+    update_rate: float = number(0.0, "Hz", element="updateRate")
+    topic_name: str = text(element="topicName")
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
 
 
 class GazeboRosBlockLaser(SensorPlugin):
@@ -52,10 +97,12 @@ class GazeboRosBlockLaser(SensorPlugin):
     `<updateRate>` change nothing, as in Gazebo.
     """
 
+    endpoints = (publishes("/world", "sensor_msgs/msg/PointCloud", named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosBlockLaserOptions)
     filenames = ("libgazebo_ros_block_laser.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        noise = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
+        noise = self.options.gaussian_noise
         for name in ("hokuyoMinIntensity", "updateRate"):
             params.number(name, 0.0)
             if params.has(name):
@@ -75,6 +122,19 @@ def _named_topic(plugin: SensorPlugin) -> str:
     return plugin.ros.topic(topic or "/world")
 
 
+class GazeboRosVelodyneLaserOptions(Options):
+    """Options of `GazeboRosVelodyneLaser`."""
+
+    min_range: float = number(0.0, minimum=0)
+    max_range: float = number(math.inf, finite=False)
+    organize_cloud: bool = boolean()
+    min_intensity: float = number(-math.inf, finite=False)
+    gaussian_noise: float = number(0.0, element="gaussianNoise", minimum=0, maximum=LARGEST)
+    topic_name: str = text(element="topicName")
+    frame_name: str = text()
+    frame_name_ros_1: str = text(element="frameName")
+
+
 class GazeboRosVelodyneLaser(SensorPlugin):
     """A PointCloud2 with x, y, z, intensity and ring, on `~/out` (after `<remapping>`; or `<topicName>`).
 
@@ -82,13 +142,15 @@ class GazeboRosVelodyneLaser(SensorPlugin):
     `<organize_cloud>` every ray has its place. `<gaussianNoise>`, a standard deviation [m], is added to the sensor's.
     """
 
+    endpoints = (publishes("~/out", "sensor_msgs/msg/PointCloud2", named_by=("topicName",)),)
+    options = OptionsOf(GazeboRosVelodyneLaserOptions)
     filenames = ("libgazebo_ros_velodyne_laser.so", "libgazebo_ros_velodyne_gpu_laser.so")
 
     def load(self, parent: Any, params: Params) -> None:
-        limits = params.number("min_range", 0.0, minimum=0), params.number("max_range", math.inf, finite=False)
-        keeps_order = params.boolean("organize_cloud", False)
-        least = params.number("min_intensity", -math.inf)
-        noise = params.number("gaussianNoise", 0.0, minimum=0, maximum=LARGEST)
+        limits = self.options.min_range, self.options.max_range
+        keeps_order = self.options.organize_cloud
+        least = self.options.min_intensity
+        noise = self.options.gaussian_noise
         topic = private_topic(self, "out", "topicName")
         if _connect(self, parent, {"velodyne": topic}, least, RADIATION["infrared"]):
             parent.cloud_range, parent.keeps_order = limits, keeps_order

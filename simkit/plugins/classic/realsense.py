@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.classic import camera_settings
+from simkit.plugins.endpoints import publishes
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 
 _STREAMS = {"color": "color", "infrared1": "ired1", "infrared2": "ired2", "depth": "depth"}
 """What the parameters of a stream begin with -> how its sensor's name ends."""
@@ -20,6 +23,30 @@ _CUTOFF_MAX = 5.0  # [m] where the file says nothing
 _SENSORS_OWN = "a stream comes at its sensor's <update_rate>, as with the plugin itself"
 
 
+class RealSenseOptions(Options):
+    """Options of `RealSense`."""
+
+    prefix: str = text()
+    range_min_depth: float = number(0.0, element="rangeMinDepth", minimum=0.0, maximum=1e30)
+    range_max_depth: float = number(math.inf, element="rangeMaxDepth", minimum=0.0, finite=False)
+    point_cloud: bool = boolean(element="pointCloud")
+    point_cloud_topic_name: str = text("points", element="pointCloudTopicName")
+    point_cloud_cutoff: float = number(0.0, element="pointCloudCutoff", minimum=0.0, maximum=1e30)
+    point_cloud_cutoff_max: float = number(_CUTOFF_MAX, element="pointCloudCutoffMax", minimum=0.0, finite=False)
+    color_topic_name: str = text(element="colorTopicName")
+    color_camera_info_topic_name: str = text(element="colorCameraInfoTopicName")
+    color_opticalframe_name: str = text(element="colorOpticalframeName")
+    infrared1_topic_name: str = text(element="infrared1TopicName")
+    infrared1_camera_info_topic_name: str = text(element="infrared1CameraInfoTopicName")
+    infrared1_opticalframe_name: str = text(element="infrared1OpticalframeName")
+    infrared2_topic_name: str = text(element="infrared2TopicName")
+    infrared2_camera_info_topic_name: str = text(element="infrared2CameraInfoTopicName")
+    infrared2_opticalframe_name: str = text(element="infrared2OpticalframeName")
+    depth_topic_name: str = text(element="depthTopicName")
+    depth_camera_info_topic_name: str = text(element="depthCameraInfoTopicName")
+    depth_opticalframe_name: str = text(element="depthOpticalframeName")
+
+
 class RealSense(ModelPlugin):
     """On a model whose sensors are named `<prefix>color`, `<prefix>depth`, `<prefix>ired1` and `<prefix>ired2`.
 
@@ -29,11 +56,27 @@ class RealSense(ModelPlugin):
     `<prefix>/<pointCloudTopicName>`, NaN outside `<pointCloudCutoff>` to `<pointCloudCutoffMax>` [m].
     """
 
+    endpoints = (
+        publishes("{prefix}/color/image_raw", "sensor_msgs/msg/Image", named_by=("colorTopicName",)),
+        publishes("{prefix}/color/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("colorCameraInfoTopicName",)),
+        publishes("{prefix}/infra1/image_raw", "sensor_msgs/msg/Image", named_by=("infrared1TopicName",)),
+        publishes(
+            "{prefix}/infra1/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("infrared1CameraInfoTopicName",)
+        ),
+        publishes("{prefix}/infra2/image_raw", "sensor_msgs/msg/Image", named_by=("infrared2TopicName",)),
+        publishes(
+            "{prefix}/infra2/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("infrared2CameraInfoTopicName",)
+        ),
+        publishes("{prefix}/depth/image_raw", "sensor_msgs/msg/Image", named_by=("depthTopicName",)),
+        publishes("{prefix}/depth/camera_info", "sensor_msgs/msg/CameraInfo", named_by=("depthCameraInfoTopicName",)),
+        publishes("{prefix}/points", "sensor_msgs/msg/PointCloud2", named_by=("pointCloudTopicName",)),
+    )
+    options = OptionsOf(RealSenseOptions)
     filenames = ("librealsense_gazebo_plugin.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        prefix = params.text("prefix", "")
-        near, far = camera_settings.read_depths(params, "rangeMinDepth", "rangeMaxDepth", 0.0)
+        prefix = self.options.prefix
+        near, far = camera_settings.read_depths(self.options, "range_min_depth", "range_max_depth")
         cloud = self._read_cloud(params)
         for stream, ending in _STREAMS.items():
             topic = self._below(prefix, params.text(f"{stream}TopicName", "") or _TOPICS[stream])
@@ -56,10 +99,10 @@ class RealSense(ModelPlugin):
 
     def _read_cloud(self, params: Params) -> tuple[str, float, float]:
         """Topic, nearest and farthest depth [m] of the cloud; without a topic there is none."""
-        is_wanted = params.boolean("pointCloud", False)
-        topic = params.text("pointCloudTopicName", "points")
-        names = "pointCloudCutoff", "pointCloudCutoffMax"
-        return topic if is_wanted else "", *camera_settings.read_depths(params, *names, 0.0, _CUTOFF_MAX)
+        is_wanted = self.options.point_cloud
+        topic = self.options.point_cloud_topic_name
+        depths = camera_settings.read_depths(self.options, "point_cloud_cutoff", "point_cloud_cutoff_max")
+        return topic if is_wanted else "", *depths
 
     def _publish_depth(
         self, sensor: Any, prefix: str, topics: tuple[str, str], cloud: tuple[str, float, float]

@@ -3,8 +3,32 @@
 from __future__ import annotations
 
 from simkit.params import Params
-from simkit.plugins.classic.diff_drive import GazeboRosDiffDrive, Options, Pair
-from simkit.plugins.drives.odometry_noise import read_odometry_noise
+from simkit.plugins.classic.diff_drive import CommonDiffDriveOptions, DriveSettings, GazeboRosDiffDrive, Pair
+from simkit.plugins.drives.odometry import COMMAND_TYPES
+from simkit.plugins.drives.odometry_noise import odometry_noise
+from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.options import boolean, number, text
+
+
+class SkidSteerOptions(CommonDiffDriveOptions):
+    """Options of `GazeboRosSkidSteerDrive`."""
+
+    wheel_separation: float = number(0.4, "m", element="wheelSeparation", minimum=1e-6)
+    wheel_diameter: float = number(0.15, "m", element="wheelDiameter", minimum=1e-6)
+    left_front_joint: str = text("left_front_joint", element="leftFrontJoint")
+    left_rear_joint: str = text("left_rear_joint", element="leftRearJoint")
+    right_front_joint: str = text("right_front_joint", element="rightFrontJoint")
+    right_rear_joint: str = text("right_rear_joint", element="rightRearJoint")
+    update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
+    torque: float = number(5.0, "N·m", minimum=0)
+    command_topic: str = text("cmd_vel", element="commandTopic")
+    odometry_topic: str = text("odom", element="odometryTopic")
+    odometry_frame: str = text("odom", element="odometryFrame")
+    robot_base_frame: str = text("base_footprint", element="robotBaseFrame")
+    broadcast_tf: bool = boolean(element="broadcastTF")
+    covariance_x: float = number(1e-4, minimum=0)
+    covariance_y: float = number(1e-4, minimum=0)
+    covariance_yaw: float = number(1e-2, minimum=0)
 
 
 class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
@@ -14,35 +38,35 @@ class GazeboRosSkidSteerDrive(GazeboRosDiffDrive):
     whole. With `<broadcastTF>` the pose goes out on `/tf` too, height and all. The last command holds until the next.
     """
 
+    endpoints = (
+        listens("cmd_vel", *COMMAND_TYPES, named_by=("commandTopic",)),
+        publishes("odom", "nav_msgs/msg/Odometry", named_by=("odometryTopic",)),
+        publishes("/tf", "tf2_msgs/msg/TFMessage"),
+        publishes("ground_truth/odom", "nav_msgs/msg/Odometry"),
+    )
+    option_types = (SkidSteerOptions,)
     filenames = ("libgazebo_ros_skid_steer_drive.so",)
     is_level = True
 
-    def read(self, params: Params) -> Options:
-        separation = params.number("wheelSeparation", 0.4, minimum=1e-6)
-        radius = params.number("wheelDiameter", 0.15, minimum=1e-6) / 2
-        left, right = (
-            [params.text(f"{side}{end}Joint", f"{side}_{end.lower()}_joint") for end in ("Front", "Rear")]
-            for side in ("left", "right")
-        )
-        return Options(
-            update_rate=params.number("updateRate", 100.0, minimum=0),
+    def read(self, params: Params) -> DriveSettings:
+        given = SkidSteerOptions(params)
+        left, right = (given.left_front_joint, given.left_rear_joint), (given.right_front_joint, given.right_rear_joint)
+        separation, radius = given.wheel_separation, given.wheel_diameter / 2
+        return DriveSettings(
+            update_rate=given.update_rate,
             pairs=tuple(Pair(a, b, separation, radius) for a, b in zip(left, right, strict=True)),
-            max_torque=params.number("torque", 5.0, minimum=0),
+            max_torque=given.torque,
             max_acceleration=0.0,
-            command_topic=params.text("commandTopic", "cmd_vel"),
-            odometry_topic=params.text("odometryTopic", "odom"),
-            odometry_frame=params.text("odometryFrame", "odom"),
-            base_frame=params.text("robotBaseFrame", "base_footprint"),
+            command_topic=given.command_topic,
+            odometry_topic=given.odometry_topic,
+            odometry_frame=given.odometry_frame,
+            base_frame=given.robot_base_frame,
             from_encoders=False,
             publish_odom=True,
-            publish_odom_tf=params.boolean("broadcastTF", False),
+            publish_odom_tf=given.broadcast_tf,
             publish_wheel_tf=False,
             publish_wheel_joint_state=False,
-            publish_ground_truth=params.boolean("publish_ground_truth", False),
-            covariance=(
-                params.number("covariance_x", 1e-4, minimum=0),
-                params.number("covariance_y", 1e-4, minimum=0),
-                params.number("covariance_yaw", 1e-2, minimum=0),
-            ),
-            noise=read_odometry_noise(params),
+            publish_ground_truth=given.publish_ground_truth,
+            covariance=(given.covariance_x, given.covariance_y, given.covariance_yaw),
+            noise=odometry_noise(given.odometry_noise),
         )

@@ -13,7 +13,9 @@ from simkit import msgs
 from simkit.diagnostics import NOWHERE
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import find_light, find_link
+from simkit.plugins.options import Options, OptionsOf, block, boolean, choice, number, text, vector3
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate, quat_to_matrix
 from simkit.sensors.environment import solar_irradiance
 from simkit.sensors.environment.solar_irradiance import SolarReading, SolarView
@@ -25,6 +27,36 @@ if TYPE_CHECKING:
 
 IMU = "sensor_msgs/msg/Imu"
 _NONE = np.zeros(9)
+
+
+class SolarSensorPanelOptions(Options):
+    """The `<panel>` block."""
+
+    area: float = number(minimum=0.0, maximum=1e100, required=True)
+    efficiency: float = number(minimum=0.0, maximum=1.0, required=True)
+    normal: tuple[float, float, float] = vector3((0.0, 0.0, 1.0))
+
+
+class SolarSensorOptions(Options):
+    """Options of `SolarSensor`."""
+
+    frame_name: str = text()
+    body_name: str = text()
+    xyz_offsets: tuple[float, float, float] = vector3(unit="m")
+    xyz_offset: tuple[float, float, float] = vector3(unit="m")
+    rpy_offsets: tuple[float, float, float] = vector3(unit="rad")
+    rpy_offset: tuple[float, float, float] = vector3(unit="rad")
+    gaussian_noise: float = number(0.0, minimum=0, maximum=LARGEST)
+    angular_noise: float = number(0.0, minimum=0, maximum=LARGEST)
+    normal: tuple[float, float, float] = vector3((0.0, 0.0, 1.0))
+    irradiance: str = text()
+    panel: SolarSensorPanelOptions = block(SolarSensorPanelOptions)
+    shadow: bool = boolean()
+    towards: str = choice(("direction", "position"), "position")
+    falloff: str = choice(("none", "inverse_square", "attenuation"), "none")
+    field_of_view: float = number(6.283185307179586, minimum=0.0, maximum=6.283185308179586)
+    update_rate: float = number(0.0, "Hz", minimum=0)
+    light_name: str = text()
 
 
 class SolarSensor(ModelPlugin):
@@ -46,20 +78,28 @@ class SolarSensor(ModelPlugin):
     parallel.
     """
 
+    endpoints = (
+        publishes("sunloin_imu", IMU),
+        publishes("sunloin_imu/valid", "std_msgs/msg/Bool"),
+        publishes("sunloin_imu/irradiance", "std_msgs/msg/Float64"),
+        publishes("sunloin_imu/power", "std_msgs/msg/Float64"),
+        publishes("sunloin_imu/shadow", "std_msgs/msg/String"),
+    )
+    options = OptionsOf(SolarSensorOptions)
     filenames = ("libsolar_sensor.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        frame, body = params.text("frame_name", ""), params.text("body_name", "")
+        frame, body = self.options.frame_name, self.options.body_name
         wanted = body or frame
         link = find_link(scene, wanted, params) if wanted else None
         self._link_name = link.scoped if link else scene.canonical_link
         self._frame = frame or self._link_name.rsplit("::", 1)[-1]
         self._xyz = _offset(params, "xyz_offset")
         self._rpy = _offset(params, "rpy_offset")
-        self._noise = params.number("gaussian_noise", 0.0, minimum=0, maximum=LARGEST)
-        self._angular = params.number("angular_noise", 0.0, minimum=0, maximum=LARGEST)
+        self._noise = self.options.gaussian_noise
+        self._angular = self.options.angular_noise
         self._options = solar_irradiance.read_solar_options(params, "position")
-        self.after_step_rate = params.number("update_rate", 0.0, minimum=0)
+        self.after_step_rate = self.options.update_rate
 
     def load(self, parent: Any, params: Params) -> None:
         self._light = _find_light(self.sim, params)

@@ -8,6 +8,13 @@ from simkit.params import Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.classic.server_services import broadcast_states, offer_table, property_services, state_services
 from simkit.plugins.classic.state_services import STATES_RATE
+from simkit.plugins.options import Options, OptionsOf, number
+
+
+class GazeboRosStateOptions(Options):
+    """Options of `GazeboRosState`."""
+
+    update_rate: float = number(STATES_RATE, "Hz", minimum=0.0)
 
 
 class GazeboRosState(WorldPlugin):
@@ -16,10 +23,11 @@ class GazeboRosState(WorldPlugin):
     All in its own `<ros><namespace>`. `<update_rate>` [Hz] is 100 where it is not given; of 0 it is every step.
     """
 
+    options = OptionsOf(GazeboRosStateOptions)
     filenames = ("libgazebo_ros_state.so",)
 
     def load(self, parent: Any, params: Params) -> None:
-        rate = params.number("update_rate", STATES_RATE, minimum=0.0)
+        rate = self.options.update_rate
         offer_table("", self.sim, state_services(self.sim), named=self.ros.topic)
         models, links = self.ros.topic("model_states"), self.ros.topic("link_states")
         broadcast_states(self.sim, models, links, rate, is_aside=False)

@@ -6,11 +6,23 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.diagnostics import did_you_mean
 from simkit.params import Params
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.gz.touch import TouchTimer
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class ClassicTouchPluginOptions(Options):
+    """Options of `ClassicTouchPlugin`."""
+
+    target: str = text(required=True)
+    time: float = number(None, "s", minimum=0.0, maximum=1000000000.0, required=True)
+    namespace: str = text(required=True)
+    enabled: bool = boolean()
+    sensor: str = text(required=True)
 
 
 class ClassicTouchPlugin(TouchTimer):
@@ -20,13 +32,18 @@ class ClassicTouchPlugin(TouchTimer):
     `/<namespace>/enable` has it look, 0 has it rest; 1 on `/<namespace>/touched` says that it is done.
     """
 
+    endpoints = (
+        publishes("{namespace}/touched", "std_msgs/msg/Int32"),
+        listens("{namespace}/enable", "std_msgs/msg/Int32"),
+    )
+    options = OptionsOf(ClassicTouchPluginOptions)
     filenames = ("libTouchPlugin.so",)
     message_type: ClassVar[str] = "std_msgs/msg/Int32"
     is_exclusive: ClassVar[bool] = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._read_common(scene, params, builder)
-        params.text("sensor", required=True)
+        _ = self.options.sensor
         sensors = {s.scoped: s.name for s in scene.all_sensors() if s.kind == "contact"}
         self._sensors: tuple[str, ...] = ()
         for element in params.all("sensor"):

@@ -15,8 +15,10 @@ from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, command_of
 from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
 from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import find_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, integer, number, text, texts
 from simkit.pose import IDENTITY
 from simkit.runtime.contact.belt import Belt, BeltMotion
 from simkit.scene import Cylinder, SceneJoint, SceneLink
@@ -37,6 +39,11 @@ class _TrackedVehicle(ModelPlugin):
     `/<robot_namespace>/cmd_vel_twist` one that turns right, as Gazebo's own topic does. The last command holds.
     """
 
+    endpoints = (
+        listens("/{model}/cmd_vel", *COMMAND_TYPES),
+        listens("/{model}/cmd_vel_twist", *COMMAND_TYPES),
+        publishes("/{model}/tracks_speed", _SPEEDS),
+    )
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
@@ -80,24 +87,43 @@ class _TrackedVehicle(ModelPlugin):
         self.sim.physics.changed_model()
 
 
+class SimpleTrackedVehiclePluginOptions(Options):
+    """Options of `SimpleTrackedVehiclePlugin`."""
+
+    robot_namespace: str = text("{model}")
+    steering_efficiency: float = number(0.5, minimum=1e-06)
+    tracks_separation: float = number(0.4, "m", minimum=1e-06)
+    max_linear_speed: float = number(1.0, minimum=1e-06)
+    max_angular_speed: float = number(1.0, minimum=0.0)
+    track_mu: float = number(minimum=0.0)
+    track_mu2: float = number(minimum=0.0)
+    collide_without_contact_bitmask: int = integer(1)
+    body: str = text(required=True)
+    left_track: str = text(required=True)
+    left_flipper: tuple[str, ...] = texts()
+    right_track: str = text(required=True)
+    right_flipper: tuple[str, ...] = texts()
+
+
 class SimpleTrackedVehiclePlugin(_TrackedVehicle):
     """Tracks whose surface runs: `<left_track>` and `<right_track>`, with flippers on either side.
 
     In a turn the surfaces' way is bent to circles round the point that the vehicle is to turn about.
     """
 
+    options = OptionsOf(SimpleTrackedVehiclePluginOptions)
     filenames = ("libSimpleTrackedVehiclePlugin.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         super().prepare(scene, params, builder)
-        params.integer("collide_without_contact_bitmask", 1)  # a way round ODE's categories
+        _ = self.options.collide_without_contact_bitmask  # a way round ODE's categories
         body = self._link("body", scene, params)
         self._body = "" if body is None else body.scoped
         self._tracks: list[tuple[SceneLink, int]] = []
-        for number, side in enumerate(_SIDES):
+        for index, side in enumerate(_SIDES):
             found = [self._link(f"{side}_track", scene, params)]
             found += [find_link(scene, one.value, one) for one in params.all(f"{side}_flipper")]
-            self._tracks += [(link, number) for link in found if link is not None]
+            self._tracks += [(link, index) for link in found if link is not None]
         for link, _ in self._tracks:
             report_missing_collisions(link, params)
 
@@ -171,17 +197,33 @@ class SimpleTrackedVehiclePlugin(_TrackedVehicle):
             self.sim.physics.changed_surface()
 
 
+class WheelTrackedVehiclePluginOptions(Options):
+    """Options of `WheelTrackedVehiclePlugin`."""
+
+    robot_namespace: str = text("{model}")
+    steering_efficiency: float = number(0.5, minimum=1e-06)
+    tracks_separation: float = number(0.4, "m", minimum=1e-06)
+    max_linear_speed: float = number(1.0, minimum=1e-06)
+    max_angular_speed: float = number(1.0, minimum=0.0)
+    track_mu: float = number(minimum=0.0)
+    track_mu2: float = number(minimum=0.0)
+    max_torque: float = number(5.0, "N·m", minimum=0)
+    left_joint: tuple[str, ...] = texts(required=True)
+    right_joint: tuple[str, ...] = texts(required=True)
+
+
 class WheelTrackedVehiclePlugin(_TrackedVehicle):
     """Tracks made of wheels: `<left_joint>` and `<right_joint>`, any number of each, driven at the track's speed.
 
     A wheel's radius is that of its cylinder, else of its sphere.
     """
 
+    options = OptionsOf(WheelTrackedVehiclePluginOptions)
     filenames = ("libWheelTrackedVehiclePlugin.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         super().prepare(scene, params, builder)
-        torque = params.number("max_torque", 5.0, minimum=0)
+        torque = self.options.max_torque
         named = {f"{side} wheel": [one.value for one in params.all(f"{side}_joint")] for side in _SIDES}
         for side in _SIDES:
             if not named[f"{side} wheel"]:
@@ -190,13 +232,13 @@ class WheelTrackedVehiclePlugin(_TrackedVehicle):
         links = {link.scoped: link for link in scene.all_links()}
         self._links: list[SceneLink] = []
         self._servos: list[tuple[Any, int, float]] = []
-        for number, joints in enumerate(wheels.values()):
+        for index, joints in enumerate(wheels.values()):
             for joint in joints:
                 link = links[joint.child_link]
                 radius = self._radius(link, joint, params)
                 servo = builder.add_velocity_servo(joint.scoped, max_effort=torque, owner=self.name)
                 self._links.append(link)
-                self._servos.append((servo, number, radius))
+                self._servos.append((servo, index, radius))
         given = [mu for mu in self._asked if mu is not None]
         self._mu = min(given) if given else None
         if len(set(given)) > 1:

@@ -26,7 +26,9 @@ from simkit.plugins.drives.odometry import (
 )
 from simkit.plugins.drives.steering import find_drive_joint
 from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, boolean, choice, integer, number, text
 from simkit.plugins.ros_names import is_ros_1
 
 if TYPE_CHECKING:
@@ -44,7 +46,7 @@ _COVARIANCE = (1e-5, 1e-5, 1e-3)
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class DriveSettings:
     """The plugin's parameters.
 
     Attributes:
@@ -74,73 +76,126 @@ class Options:
     told: DriveOutputOptions
 
 
-def read_options(params: Params) -> Options:
+class TricycleOptions(Options):
+    """Options in the spelling of ROS 2."""
+
+    max_wheel_acceleration: float = number(0.0, "m/s²", minimum=0)
+    publish_odom: bool = boolean()
+    steering_joint: str = text("front_steering_joint")
+    actuated_wheel_joint: str = text("front_wheel_joint")
+    encoder_wheel_left_joint: str = text("left_wheel_joint")
+    encoder_wheel_right_joint: str = text("right_wheel_joint")
+    actuated_wheel_diameter: float = number(0.15, "m", minimum=1e-6)
+    encoder_wheel_diameter: float = number(0.15, "m", minimum=1e-6)
+    wheel_separation: float = number(0.5, "m", minimum=1e-6)
+    max_wheel_deceleration: float = number(minimum=0, instead="max_wheel_acceleration")
+    max_wheel_speed_tolerance: float = number(0.01, minimum=0)
+    max_steering_speed: float = number(0.0, minimum=0)
+    max_steering_angle_tolerance: float = number(0.01, "rad", minimum=0)
+    max_wheel_torque: float = number(0.15, "N·m", minimum=0)
+    update_rate: float = number(100.0, "Hz", minimum=0)
+    odometry_source: int = integer(1, minimum=0, maximum=1)
+    odometry_frame: str = text("odom")
+    robot_base_frame: str = text("base_link")
+    publish_wheel_tf: bool = boolean()
+    publish_wheel_joint_state: bool = boolean()
+
+
+def read_options(params: Params) -> DriveSettings:
     """Reads either spelling."""
+    given = TricycleOptions(params)
     if is_ros_1(params, _ROS_1):
         return _read_ros_1(params)
-    acceleration = params.number("max_wheel_acceleration", 0.0, minimum=0)
-    odometry = params.boolean("publish_odom", False)
-    return Options(
+    acceleration = given.max_wheel_acceleration
+    odometry = given.publish_odom
+    return DriveSettings(
         joints=(
-            params.text("steering_joint", "front_steering_joint"),
-            params.text("actuated_wheel_joint", "front_wheel_joint"),
-            params.text("encoder_wheel_left_joint", "left_wheel_joint"),
-            params.text("encoder_wheel_right_joint", "right_wheel_joint"),
+            given.steering_joint,
+            given.actuated_wheel_joint,
+            given.encoder_wheel_left_joint,
+            given.encoder_wheel_right_joint,
         ),
-        driven_radius=params.number("actuated_wheel_diameter", 0.15, minimum=1e-6) / 2,
-        encoder_radius=params.number("encoder_wheel_diameter", 0.15, minimum=1e-6) / 2,
-        separation=params.number("wheel_separation", 0.5, minimum=1e-6),
+        driven_radius=given.actuated_wheel_diameter / 2,
+        encoder_radius=given.encoder_wheel_diameter / 2,
+        separation=given.wheel_separation,
         acceleration=acceleration,
-        deceleration=params.number("max_wheel_deceleration", acceleration, minimum=0),
-        speed_tolerance=params.number("max_wheel_speed_tolerance", 0.01, minimum=0),
-        steering_speed=params.number("max_steering_speed", 0.0, minimum=0),
-        angle_tolerance=params.number("max_steering_angle_tolerance", 0.01, minimum=0),
-        torque=params.number("max_wheel_torque", 0.15, minimum=0),
-        rate=params.number("update_rate", 100.0, minimum=0),
-        from_encoders=params.integer("odometry_source", 1, minimum=0, maximum=1) == 0,
+        deceleration=given.max_wheel_deceleration,
+        speed_tolerance=given.max_wheel_speed_tolerance,
+        steering_speed=given.max_steering_speed,
+        angle_tolerance=given.max_steering_angle_tolerance,
+        torque=given.max_wheel_torque,
+        rate=given.update_rate,
+        from_encoders=given.odometry_source == 0,
         command_topic="cmd_vel",
         told=DriveOutputOptions(
             odometry_topic="odom",
-            odometry_frame=params.text("odometry_frame", "odom"),
-            base_frame=params.text("robot_base_frame", "base_link"),
+            odometry_frame=given.odometry_frame,
+            base_frame=given.robot_base_frame,
             odometry=odometry,
             odometry_tf=odometry,
-            wheel_tf=params.boolean("publish_wheel_tf", False),
-            joint_states=params.boolean("publish_wheel_joint_state", False),
+            wheel_tf=given.publish_wheel_tf,
+            joint_states=given.publish_wheel_joint_state,
             covariance=_COVARIANCE,
         ),
     )
 
 
-def _read_ros_1(params: Params) -> Options:
-    acceleration = params.number("wheelAcceleration", 0.0, minimum=0)
-    return Options(
+class TricycleRos1Options(Options):
+    """Options in the spelling of ROS 1."""
+
+    wheel_acceleration: float = number(0.0, "m/s²", element="wheelAcceleration", minimum=0)
+    steering_joint: str = text("front_steering_joint", element="steeringJoint")
+    actuated_wheel_joint: str = text("front_wheel_joint", element="actuatedWheelJoint")
+    encoder_wheel_left_joint: str = text("left_wheel_joint", element="encoderWheelLeftJoint")
+    encoder_wheel_right_joint: str = text("right_wheel_joint", element="encoderWheelRightJoint")
+    actuated_wheel_diameter: float = number(0.15, "m", element="actuatedWheelDiameter", minimum=1e-6)
+    encoder_wheel_diameter: float = number(0.15, "m", element="encoderWheelDiameter", minimum=1e-6)
+    encoder_wheel_separation: float = number(0.5, "m", element="encoderWheelSeparation", minimum=1e-6)
+    wheel_deceleration: float = number(element="wheelDeceleration", minimum=0, instead="wheel_acceleration")
+    wheel_speed_tolerance: float = number(0.01, element="wheelSpeedTolerance", minimum=0)
+    steering_speed: float = number(0.0, element="steeringSpeed", minimum=0)
+    steering_angle_tolerance: float = number(0.01, "rad", element="steeringAngleTolerance", minimum=0)
+    wheel_torque: float = number(5.0, "N·m", element="wheelTorque", minimum=0)
+    update_rate: float = number(100.0, "Hz", element="updateRate", minimum=0)
+    odometry_source: str = choice(("world", "encoder"), "world", element="odometrySource")
+    command_topic: str = text("cmd_vel", element="commandTopic")
+    odometry_topic: str = text("odom", element="odometryTopic")
+    odometry_frame: str = text("odom", element="odometryFrame")
+    robot_base_frame: str = text("base_link", element="robotBaseFrame")
+    publish_wheel_tf: bool = boolean(element="publishWheelTF")
+    publish_wheel_joint_state: bool = boolean(element="publishWheelJointState")
+
+
+def _read_ros_1(params: Params) -> DriveSettings:
+    given = TricycleRos1Options(params)
+    acceleration = given.wheel_acceleration
+    return DriveSettings(
         joints=(
-            params.text("steeringJoint", "front_steering_joint"),
-            params.text("actuatedWheelJoint", "front_wheel_joint"),
-            params.text("encoderWheelLeftJoint", "left_wheel_joint"),
-            params.text("encoderWheelRightJoint", "right_wheel_joint"),
+            given.steering_joint,
+            given.actuated_wheel_joint,
+            given.encoder_wheel_left_joint,
+            given.encoder_wheel_right_joint,
         ),
-        driven_radius=params.number("actuatedWheelDiameter", 0.15, minimum=1e-6) / 2,
-        encoder_radius=params.number("encoderWheelDiameter", 0.15, minimum=1e-6) / 2,
-        separation=params.number("encoderWheelSeparation", 0.5, minimum=1e-6),
+        driven_radius=given.actuated_wheel_diameter / 2,
+        encoder_radius=given.encoder_wheel_diameter / 2,
+        separation=given.encoder_wheel_separation,
         acceleration=acceleration,
-        deceleration=params.number("wheelDeceleration", acceleration, minimum=0),
-        speed_tolerance=params.number("wheelSpeedTolerance", 0.01, minimum=0),
-        steering_speed=params.number("steeringSpeed", 0.0, minimum=0),
-        angle_tolerance=params.number("steeringAngleTolerance", 0.01, minimum=0),
-        torque=params.number("wheelTorque", 5.0, minimum=0),
-        rate=params.number("updateRate", 100.0, minimum=0),
-        from_encoders=params.choice("odometrySource", ("world", "encoder"), "world") == "encoder",
-        command_topic=params.text("commandTopic", "cmd_vel"),
+        deceleration=given.wheel_deceleration,
+        speed_tolerance=given.wheel_speed_tolerance,
+        steering_speed=given.steering_speed,
+        angle_tolerance=given.steering_angle_tolerance,
+        torque=given.wheel_torque,
+        rate=given.update_rate,
+        from_encoders=given.odometry_source == "encoder",
+        command_topic=given.command_topic,
         told=DriveOutputOptions(
-            odometry_topic=params.text("odometryTopic", "odom"),
-            odometry_frame=params.text("odometryFrame", "odom"),
-            base_frame=params.text("robotBaseFrame", "base_link"),
+            odometry_topic=given.odometry_topic,
+            odometry_frame=given.odometry_frame,
+            base_frame=given.robot_base_frame,
             odometry=True,
             odometry_tf=True,
-            wheel_tf=params.boolean("publishWheelTF", False),
-            joint_states=params.boolean("publishWheelJointState", False),
+            wheel_tf=given.publish_wheel_tf,
+            joint_states=given.publish_wheel_joint_state,
             covariance=_COVARIANCE,
         ),
     )
@@ -149,6 +204,13 @@ def _read_ros_1(params: Params) -> Options:
 class GazeboRosTricycleDrive(ModelPlugin):
     """Steers and drives one wheel from `cmd_vel`; odometry by the world's truth or by two wheels without a drive."""
 
+    endpoints = (
+        listens("cmd_vel", *COMMAND_TYPES, named_by=("commandTopic",)),
+        publishes("odom", "nav_msgs/msg/Odometry", named_by=("odometryTopic",)),
+        publishes("/tf", "tf2_msgs/msg/TFMessage"),
+        publishes("joint_states", "sensor_msgs/msg/JointState"),
+    )
+    option_types = (TricycleOptions, TricycleRos1Options)
     filenames = ("libgazebo_ros_tricycle_drive.so",)
     drives = True
 

@@ -12,6 +12,7 @@ from simkit.diagnostics import Where
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_joint
+from simkit.plugins.options import Options, OptionsOf, block, blocks, number, text, texts
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
@@ -24,6 +25,33 @@ _NOISE: Final = 0.02
 _GAINS: Final = ("p", "i", "d", "i_max", "i_min")
 
 
+class UnderactuatedFingerPidGainsOptions(Options):
+    """The `<pid_gains>` block."""
+
+    p: float = number(0.0)
+    i: float = number(0.0)
+    d: float = number(0.0)
+    i_max: float = number(0.0)
+    i_min: float = number(0.0)
+
+
+class UnderactuatedFingerVirtualJointOptions(Options):
+    """The `<virtualJoint>` block."""
+
+    name: tuple[str, ...] = texts(required=True)
+    scale_factor: float = number(1.0, required=True)
+    pid_gains: UnderactuatedFingerPidGainsOptions = block(UnderactuatedFingerPidGainsOptions)
+
+
+class UnderactuatedFingerOptions(Options):
+    """Options of `UnderactuatedFinger`."""
+
+    actuated_joint: str = text(element="actuatedJoint", required=True)
+    virtual_joint: tuple[UnderactuatedFingerVirtualJointOptions, ...] = blocks(
+        UnderactuatedFingerVirtualJointOptions, element="virtualJoint"
+    )
+
+
 class UnderactuatedFinger(ModelPlugin):
     """Keeps each `<virtualJoint>` at the position of `<actuatedJoint>` over its `<scale_factor>`, within its limits.
 
@@ -32,11 +60,12 @@ class UnderactuatedFinger(ModelPlugin):
     they belong at once, whatever they touch, and here a servo brings them there within their effort limit.
     """
 
+    options = OptionsOf(UnderactuatedFingerOptions)
     filenames = ("libgazebo_underactuated_finger.so",)
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        params.text("actuatedJoint", required=True)
+        _ = self.options.actuated_joint
         motor = params.child("actuatedJoint")
         found = None if motor is None else _of_one_axis(scene, motor)
         self._motor = "" if found is None else found.scoped

@@ -11,8 +11,10 @@ import numpy.typing as npt
 from simkit import msgs
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.endpoints import offers, publishes
 from simkit.plugins.lookups import find_link, find_named_link
 from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.options import Options, OptionsOf, number, text, texts
 from simkit.plugins.ros_names import is_ros_1
 from simkit.runtime.engine.physics import STALE
 
@@ -27,6 +29,19 @@ _ROS_1: Final = ("bodyName", "topicName", "maxForce", "maxDistance", "minDistanc
 _RATE: Final = 80.0  # [Hz]
 
 
+class GazeboRosVacuumGripperOptions(Options):
+    """Options of `GazeboRosVacuumGripper`."""
+
+    body_name: str = text(element="bodyName", required=True)
+    topic_name: str = text(element="topicName", required=True)
+    max_force: float = number(None, "N", element="maxForce", minimum=0.0)
+    max_distance_ros_1: float = number(0.05, "m", element="maxDistance", minimum=0.0)
+    min_distance: float = number(None, "m", element="minDistance", minimum=0.0)
+    link_name: str = text(required=True)
+    max_distance: float = number(0.05, "m", minimum=0.0)
+    fixed: tuple[str, ...] = texts()
+
+
 class GazeboRosVacuumGripper(ModelPlugin):
     """While it is on, holds every link whose origin comes within `<max_distance>` of a gripper link's origin.
 
@@ -39,6 +54,13 @@ class GazeboRosVacuumGripper(ModelPlugin):
     where it is; here it is held by a joint, as things are held by suction.
     """
 
+    endpoints = (
+        publishes("grasping", BOOL, named_by=("topicName",)),
+        offers("on", EMPTY),
+        offers("off", EMPTY),
+        offers("switch", SET_BOOL),
+    )
+    options = OptionsOf(GazeboRosVacuumGripperOptions)
     filenames = ("libgazebo_ros_vacuum_gripper.so",)
     _services: tuple[str, ...] = ()
 
@@ -48,8 +70,8 @@ class GazeboRosVacuumGripper(ModelPlugin):
         fixed: list[str] = []
         if self._is_ros_1:
             self._grippers = [find_named_link(scene, "bodyName", params)]
-            self._topic, self._rate = params.text("topicName", required=True), 0.0
-            self._reach = params.number("maxDistance", 0.05, minimum=0.0)
+            self._topic, self._rate = self.options.topic_name, 0.0
+            self._reach = self.options.max_distance_ros_1
             for name in ("maxForce", "minDistance"):
                 if params.has(name):
                     params.number(name, minimum=0.0)
@@ -58,10 +80,10 @@ class GazeboRosVacuumGripper(ModelPlugin):
         else:
             named = params.all("link_name") if params.has("link_name") else []
             if not named:
-                params.text("link_name", required=True)
+                _ = self.options.link_name
             found = [find_link(scene, one.value, one) for one in named]
             self._grippers = [link.scoped for link in found if link is not None]
-            self._reach = params.number("max_distance", 0.05, minimum=0.0)
+            self._reach = self.options.max_distance
             fixed = [one.value for one in params.all("fixed")]
         self._fixed = frozenset(fixed)
         self._own = scene.scoped.split("::")[0]

@@ -11,13 +11,24 @@ import numpy as np
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.lookups import find_named_link
 from simkit.plugins.on_demand import count_instants, publish_while_subscribed
+from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.pose import Pose, Vector, quat_conjugate, quat_from_rpy, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class GazeboWorldOdometryOptions(Options):
+    """Options of `GazeboWorldOdometry`."""
+
+    frame_name: str = text("world", element="frameName")
+    body_name: str = text(element="bodyName", required=True)
+    topic_name: str = text("ft_data", element="topicName")
+    update_rate: float = number(1000.0, "Hz", element="updateRate", minimum=0)
 
 
 class GazeboWorldOdometry(ModelPlugin):
@@ -29,14 +40,16 @@ class GazeboWorldOdometry(ModelPlugin):
     `gaussian_noise` lets it walk: the standard deviation of each step of x and y [m] and of the yaw [rad].
     """
 
+    endpoints = (publishes("ft_data", ODOMETRY, named_by=("topicName",)),)
+    options = OptionsOf(GazeboWorldOdometryOptions)
     filenames = ("libgazebo_world_odometry.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._frame = params.text("frameName", "world")
+        self._frame = self.options.frame_name
         element = "bodyName" if params.has("bodyName") or not params.has("frameName") else "frameName"
         self._body = find_named_link(scene, element, params)
-        self._topic = params.text("topicName", "ft_data")  # Gazebo's default
-        self._rate = params.number("updateRate", 1000.0, minimum=0)
+        self._topic = self.options.topic_name  # Gazebo's default
+        self._rate = self.options.update_rate
 
     def load(self, parent: Any, params: Params) -> None:
         self._link = self.sim.link(self._body)

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from simkit.params import Params
 from simkit.plugins.drives.odometry import UNKNOWN, BodyTwist, DeadReckoning
+from simkit.plugins.options import Options, number
 from simkit.pose import Pose, Vector, quat_from_rpy, quat_multiply
 
 _PLANAR = np.ix_((0, 1, 5), (0, 1, 5))
@@ -41,17 +41,26 @@ class OdometryNoise:
     resolution: float = 0.0
 
 
-def read_odometry_noise(params: Params) -> OdometryNoise | None:
+class OdometryNoiseOptions(Options):
+    """The `<odometry_noise>` block."""
+
+    counts_per_revolution: float = number(1.0, minimum=1)
+    wheel_variance: float = number(0.0, minimum=0, maximum=1e3)
+    left_radius_error: float = number(0.0, minimum=-_FAR, maximum=_FAR)
+    right_radius_error: float = number(0.0, minimum=-_FAR, maximum=_FAR)
+    separation_error: float = number(0.0, minimum=-_FAR, maximum=_FAR)
+
+
+def odometry_noise(options: OdometryNoiseOptions) -> OdometryNoise | None:
     """The drive's `<odometry_noise>`, or None where it has none."""
-    block = params.child("odometry_noise")
-    if block is None:
+    if not options.is_given:
         return None
-    counts = block.number("counts_per_revolution", 1.0, minimum=1) if block.has("counts_per_revolution") else math.inf
+    counts = options.counts_per_revolution if options.params.has("counts_per_revolution") else math.inf
     return OdometryNoise(
-        wheel_variance=block.number("wheel_variance", 0.0, minimum=0, maximum=1e3),
-        left_radius_error=block.number("left_radius_error", 0.0, minimum=-_FAR, maximum=_FAR),
-        right_radius_error=block.number("right_radius_error", 0.0, minimum=-_FAR, maximum=_FAR),
-        separation_error=block.number("separation_error", 0.0, minimum=-_FAR, maximum=_FAR),
+        wheel_variance=options.wheel_variance,
+        left_radius_error=options.left_radius_error,
+        right_radius_error=options.right_radius_error,
+        separation_error=options.separation_error,
         resolution=2 * math.pi / counts,
     )
 

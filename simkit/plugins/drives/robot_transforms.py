@@ -11,6 +11,7 @@ from simkit.plugins.base import ModelPlugin, WorldPlugin
 from simkit.plugins.drives.entity_poses import EntityPoses, PosedEntity, transforms_message
 from simkit.plugins.drives.odometry import TRANSFORMS, transforms
 from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.options import Options, OptionsOf, number
 from simkit.pose import Pose
 
 if TYPE_CHECKING:
@@ -102,6 +103,12 @@ class StaticTransforms(WorldPlugin):
                 yield frame, optical, turned
 
 
+class RobotStatePublisherOptions(Options):
+    """Options of `RobotStatePublisher`."""
+
+    publish_frequency: float = number(20.0, "Hz", minimum=1e-3)
+
+
 class RobotStatePublisher(ModelPlugin):
     """Publishes on `/tf`, `<publish_frequency>` (20) times a second, each link that a joint moves in its parent link.
 
@@ -109,11 +116,12 @@ class RobotStatePublisher(ModelPlugin):
     makes them in ROS, `robot_state_publisher`, is a node of its own that is started beside Gazebo.
     """
 
+    options = OptionsOf(RobotStatePublisherOptions)
     filenames = ("libsimkit_robot_state_publisher.so",)
     names = ("simkit::RobotStatePublisher",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._rate = params.number("publish_frequency", 20.0, minimum=1e-3)
+        self._rate = self.options.publish_frequency
 
     def load(self, parent: Model, params: Params) -> None:
         self._robot = parent

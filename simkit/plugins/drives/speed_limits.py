@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from simkit.params import Params
+from simkit.plugins.options import Options, number
+
+_QUANTITIES = ("velocity", "acceleration", "jerk")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,24 +39,56 @@ class SpeedLimiter:
         return _clamp(reached, self.velocity)
 
 
-def speed_limits(params: Params) -> tuple[SpeedLimiter, SpeedLimiter]:
-    """Of the linear and the angular speed: `<max_linear_velocity>` and the like; for both directions `<max_velocity>`.
+class SpeedLimitOptions(Options):
+    """Bounds of the linear and the angular speed of a drive; `<max_velocity>` and its like are for both.
 
     A lower bound is not positive and an upper one not negative, so that a drive can stand still.
     """
 
-    def read(side: str, quantity: str) -> list[float]:
-        endless, least, most = (-math.inf, None, 0.0) if side == "min" else (math.inf, 0.0, None)
+    min_velocity: float = number(-math.inf, maximum=0.0, finite=False)
+    min_linear_velocity: float = number(-math.inf, "m/s", maximum=0.0, finite=False, instead="min_velocity")
+    min_angular_velocity: float = number(-math.inf, "rad/s", maximum=0.0, finite=False, instead="min_velocity")
+    max_velocity: float = number(math.inf, minimum=0.0, finite=False)
+    max_linear_velocity: float = number(math.inf, "m/s", minimum=0.0, finite=False, instead="max_velocity")
+    max_angular_velocity: float = number(math.inf, "rad/s", minimum=0.0, finite=False, instead="max_velocity")
+    min_acceleration: float = number(-math.inf, maximum=0.0, finite=False)
+    min_linear_acceleration: float = number(-math.inf, "m/s²", maximum=0.0, finite=False, instead="min_acceleration")
+    min_angular_acceleration: float = number(-math.inf, "rad/s²", maximum=0.0, finite=False, instead="min_acceleration")
+    max_acceleration: float = number(math.inf, minimum=0.0, finite=False)
+    max_linear_acceleration: float = number(math.inf, "m/s²", minimum=0.0, finite=False, instead="max_acceleration")
+    max_angular_acceleration: float = number(math.inf, "rad/s²", minimum=0.0, finite=False, instead="max_acceleration")
+    min_jerk: float = number(-math.inf, "m/s³", maximum=0.0, finite=False)
+    min_linear_jerk: float = number(-math.inf, "m/s³", maximum=0.0, finite=False, instead="min_jerk")
+    min_angular_jerk: float = number(-math.inf, "rad/s³", maximum=0.0, finite=False, instead="min_jerk")
+    max_jerk: float = number(math.inf, "m/s³", minimum=0.0, finite=False)
+    max_linear_jerk: float = number(math.inf, "m/s³", minimum=0.0, finite=False, instead="max_jerk")
+    max_angular_jerk: float = number(math.inf, "rad/s³", minimum=0.0, finite=False, instead="max_jerk")
 
-        def bound(name: str, default: float) -> float:
-            return params.number(name, default, minimum=least, maximum=most, finite=False)
 
-        general = bound(f"{side}_{quantity}", endless)
-        return [bound(f"{side}_{direction}_{quantity}", general) for direction in ("linear", "angular")]
+class LimiterOptions(Options):
+    """Bounds of one speed; without one there is none."""
 
-    pairs = [list(zip(read("min", q), read("max", q), strict=True)) for q in ("velocity", "acceleration", "jerk")]
-    linear, angular = (SpeedLimiter(*bounds) for bounds in zip(*pairs, strict=True))
+    min_velocity: float = number(-math.inf, maximum=0.0, finite=False)
+    max_velocity: float = number(math.inf, minimum=0.0, finite=False)
+    min_acceleration: float = number(-math.inf, maximum=0.0, finite=False)
+    max_acceleration: float = number(math.inf, minimum=0.0, finite=False)
+    min_jerk: float = number(-math.inf, "m/s³", maximum=0.0, finite=False)
+    max_jerk: float = number(math.inf, "m/s³", minimum=0.0, finite=False)
+
+
+def speed_limits(options: SpeedLimitOptions) -> tuple[SpeedLimiter, SpeedLimiter]:
+    """Limiters of the linear and the angular speed."""
+    linear, angular = (
+        SpeedLimiter(*((bounds[f"min_{way}_{q}"], bounds[f"max_{way}_{q}"]) for q in _QUANTITIES))
+        for bounds in [{name: getattr(options, name) for name in SpeedLimitOptions.fields()}]
+        for way in ("linear", "angular")
+    )
     return linear, angular
+
+
+def speed_limiter(options: LimiterOptions) -> SpeedLimiter:
+    """The limiter of one speed."""
+    return SpeedLimiter(*((getattr(options, f"min_{q}"), getattr(options, f"max_{q}")) for q in _QUANTITIES))
 
 
 def _clamp(value: float, bounds: tuple[float, float]) -> float:

@@ -15,8 +15,10 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import find_link
 from simkit.plugins.on_demand import publish_while_subscribed
+from simkit.plugins.options import Options, OptionsOf, blocks, number, text
 from simkit.pose import quat_conjugate, quat_rotate
 from simkit.runtime.contact.anisotropic_friction import SlippingWheel
 from simkit.scene import Cylinder, SceneJoint, SceneLink, SceneModel, Sphere
@@ -49,6 +51,38 @@ class Wheel:
     longitudinal: float
 
 
+_MOST = 1e6
+
+
+class WheelOptions(Options):
+    """A `<wheel>` block."""
+
+    link_name: str = text(element="@link_name")
+    slip_compliance_lateral: float = number(0.0, minimum=0, maximum=_MOST)
+    slip_compliance_longitudinal: float = number(0.0, minimum=0, maximum=_MOST)
+    wheel_normal_force: float = number(None, "N", required=True, minimum=1e-6)
+    wheel_radius: float = number(1.0, "m", minimum=1e-6)
+
+
+class WheelSlipOptions(Options):
+    """Options of the plugins that let wheels slip."""
+
+    wheels: tuple[WheelOptions, ...] = blocks(WheelOptions, element="wheel")
+
+
+class RosWheelSlipOptions(WheelSlipOptions):
+    """Options of `GazeboRosWheelSlip`."""
+
+    wheel_spin_tolerance: float = number(1e-3, "m/s", minimum=0)
+    publisher_update_rate: float = number(100.0, "Hz")
+    slip_compliance_unitless_lateral: float = number(
+        -1.0, is_live=True, description="lateral slip compliance of every wheel; negative leaves them"
+    )
+    slip_compliance_unitless_longitudinal: float = number(
+        -1.0, is_live=True, description="longitudinal slip compliance of every wheel; negative leaves them"
+    )
+
+
 class WheelSlipBase(ModelPlugin):
     """Lets the contacts of wheels slip with the force on them; the compliances are live parameters.
 
@@ -56,20 +90,22 @@ class WheelSlipBase(ModelPlugin):
     `slip_compliance_unitless_longitudinal/<link>` of the plugin's node; `/world/<world>/wheel_slip` sets them too.
     """
 
+    options = OptionsOf(WheelSlipOptions)
     lets_sleep = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        blocks = params.all("wheel")
-        if not blocks:
+        if not self.options.wheels:
             params.text("wheel", required=True)
         self.wheels: list[Wheel] = []
         taken: set[str] = set()
-        for block in blocks:
-            wheel = _read_wheel(scene, block)
+        for options in self.options.wheels:
+            wheel = _read_wheel(scene, options)
             if wheel is None:
                 continue
             if wheel.contact.link in taken:
-                block.error("SK-PLUGIN-092", f"link {wheel.name!r} has a <wheel> already; there is one for each")
+                options.params.error(
+                    "SK-PLUGIN-092", f"link {wheel.name!r} has a <wheel> already; there is one for each"
+                )
                 continue
             taken.add(wheel.contact.link)
             self.wheels.append(wheel)
@@ -95,16 +131,12 @@ class WheelSlipBase(ModelPlugin):
         ]
 
 
-_MOST = 1e6
-
-
-def _read_wheel(scene: SceneModel, block: Params) -> Wheel | None:
+def _read_wheel(scene: SceneModel, options: WheelOptions) -> Wheel | None:
     """One `<wheel>`; None after an error."""
-    lateral = block.number("slip_compliance_lateral", 0.0, minimum=0, maximum=_MOST)
-    longitudinal = block.number("slip_compliance_longitudinal", 0.0, minimum=0, maximum=_MOST)
-    force = block.number("wheel_normal_force", required=True, minimum=1e-6)
-    radius = block.number("wheel_radius", 1.0, minimum=1e-6) if block.has("wheel_radius") else 0.0
-    name = block.attribute("link_name")
+    block, lateral, longitudinal = options.params, options.slip_compliance_lateral, options.slip_compliance_longitudinal
+    force = options.wheel_normal_force
+    radius = options.wheel_radius if block.has("wheel_radius") else 0.0
+    name = options.link_name
     if not name:
         block.error("SK-PARAM-001", "<wheel> has no link_name; it is the link of the wheel")
         return None
@@ -203,12 +235,13 @@ class GazeboRosWheelSlip(_ClassicWheelSlip):
     the parameters `slip_compliance_unitless_lateral` and `slip_compliance_unitless_longitudinal` all wheels are set.
     """
 
+    options = OptionsOf(RosWheelSlipOptions)
     filenames = ("libgazebo_ros_wheel_slip.so",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         super().prepare(scene, params, builder)
-        self._tolerance = params.number("wheel_spin_tolerance", 1e-3, minimum=0)
-        self._rate = params.number("publisher_update_rate", 100.0)
+        self._tolerance = self.options.wheel_spin_tolerance
+        self._rate = self.options.publisher_update_rate
 
     def load(self, parent: Any, params: Params) -> None:
         super().load(parent, params)
@@ -243,6 +276,11 @@ class ClassicWheelSlip(_ClassicWheelSlip):
     they are text).
     """
 
+    endpoints = (
+        listens("/{model}/wheel_slip/lateral_compliance", *_NUMBERS),
+        listens("/{model}/wheel_slip/longitudinal_compliance", *_NUMBERS),
+        publishes("/{model}/wheel_slip/{link}", _VECTOR),
+    )
     filenames = ("libWheelSlipPlugin.so",)
 
     def load(self, parent: Any, params: Params) -> None:

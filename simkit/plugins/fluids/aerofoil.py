@@ -13,9 +13,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from simkit.params import Params
+from simkit.plugins.options import Options, boolean, number, text, vector3
 
 Triple = tuple[float, float, float]
 SLOWEST: Final = 0.01
@@ -128,54 +129,75 @@ class Aerofoil:
         return math.remainder(alpha, math.pi) if abs(alpha) > math.pi / 2 else alpha
 
 
-def read_aerofoil(params: Params, *, has_moment: bool = True) -> Aerofoil:
-    """A plugin's aerofoil; what is wrong is reported.
+_MOST = 1e9
 
-    Args:
-        params: the plugin's.
-        has_moment: whether it makes a pitching moment (Classic's makes none).
-    """
 
-    def line(name: str, slope: float, beyond: float) -> CoefficientLine:
-        return CoefficientLine(_bounded(params, name, slope), _bounded(params, f"{name}_stall", beyond))
+class AerofoilOptions(Options):
+    """A wing's options."""
 
-    forward, upward = (_direction(params, n, d) for n, d in (("forward", (1.0, 0, 0)), ("upward", (0, 0, 1.0))))
-    is_radial = params.boolean("radial_symmetry", False)
+    link_name: str = text(None, required=True)
+    forward: tuple[float, float, float] = vector3((1.0, 0.0, 0.0))
+    upward: tuple[float, float, float] = vector3((0.0, 0.0, 1.0))
+    radial_symmetry: bool = boolean()
+    cma: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+    cma_stall: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+    cla: float = number(1.0, minimum=-_MOST, maximum=_MOST)
+    cla_stall: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+    cda: float = number(0.01, minimum=-_MOST, maximum=_MOST)
+    cda_stall: float = number(1.0, minimum=-_MOST, maximum=_MOST)
+    alpha_stall: float = number(math.pi / 2, "rad", minimum=0)
+    a0: float = number(0.0, "rad", minimum=-_MOST, maximum=_MOST)
+    air_density: float = number(1.2041, "kg/m³", minimum=0, maximum=_MOST)
+    area: float = number(1.0, "m²", minimum=0, maximum=_MOST)
+    cp: tuple[float, float, float] = vector3(unit="m")
+    control_joint_rad_to_cl: float = number(4.0, minimum=-_MOST, maximum=_MOST)
+    control_joint_name: str = text()
+
+
+class MomentAerofoilOptions(AerofoilOptions):
+    """The same of a wing that makes a pitching moment."""
+
+    reversible: bool = boolean()
+    cm_delta: float = number(0.0, minimum=-_MOST, maximum=_MOST)
+
+
+def read_aerofoil(options: AerofoilOptions) -> Aerofoil:
+    """A plugin's aerofoil; what is wrong is reported."""
+    params, with_moment = options.params, options if isinstance(options, MomentAerofoilOptions) else None
+    forward = _direction(params, "forward", options.forward, AerofoilOptions.forward)
+    upward = _direction(params, "upward", options.upward, AerofoilOptions.upward)
+    is_radial = options.radial_symmetry
     across = _cross(forward, upward)
     if not is_radial and _dot(across, across) < 1e-12:
         params.error("SK-PLUGIN-110", "<forward> and <upward> point along one line; lift has no direction")
         upward = _any_across(forward)
-    moment = line("cma", 0.0, 0.0)
-    if not has_moment and (moment.slope or moment.beyond):
+    moment = CoefficientLine(options.cma, options.cma_stall)
+    if not with_moment and (moment.slope or moment.beyond):
         message = "<cma> and <cma_stall> have no effect: Gazebo Classic's wing makes no pitching moment"
         params.diagnostics.warning("SK-PLUGIN-111", message, params.where)
     return Aerofoil(
-        lift=line("cla", 1.0, 0.0),
-        drag=line("cda", 0.01, 1.0),
-        moment=moment if has_moment else CoefficientLine(0.0, 0.0),
-        stall=params.number("alpha_stall", math.pi / 2, minimum=0),
-        zero=_bounded(params, "a0", 0.0),
-        density=params.number("air_density", 1.2041, minimum=0, maximum=1e9),
-        area=params.number("area", 1.0, minimum=0, maximum=1e9),
-        centre=params.vector3("cp", _ZERO),
+        lift=CoefficientLine(options.cla, options.cla_stall),
+        drag=CoefficientLine(options.cda, options.cda_stall),
+        moment=moment if with_moment else CoefficientLine(0.0, 0.0),
+        stall=options.alpha_stall,
+        zero=options.a0,
+        density=options.air_density,
+        area=options.area,
+        centre=options.cp,
         forward=forward,
         upward=upward,
         is_radial=is_radial,
-        is_reversible=params.boolean("reversible", False) if has_moment else True,
-        lift_by_joint=_bounded(params, "control_joint_rad_to_cl", 4.0),
-        moment_by_joint=_bounded(params, "cm_delta", 0.0) if has_moment else 0.0,
+        is_reversible=with_moment.reversible if with_moment else True,
+        lift_by_joint=options.control_joint_rad_to_cl,
+        moment_by_joint=with_moment.cm_delta if with_moment else 0.0,
     )
 
 
-def _bounded(params: Params, name: str, default: float) -> float:
-    return params.number(name, default, minimum=-1e9, maximum=1e9)
-
-
-def _direction(params: Params, name: str, default: Triple) -> Triple:
-    found = params.vector3(name, default)
+def _direction(params: Params, name: str, found: Triple, default: Any) -> Triple:
     if not any(found):
         params.error("SK-PARAM-002", f"found <{name}>0 0 0</{name}>, allowed is a direction")
-        return default
+        fallback: Triple = default.default
+        return fallback
     return unit(found)
 
 

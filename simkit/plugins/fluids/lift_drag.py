@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
-from simkit.plugins.fluids.aerofoil import Triple, read_aerofoil
+from simkit.plugins.fluids.aerofoil import AerofoilOptions, MomentAerofoilOptions, Triple, read_aerofoil
 from simkit.plugins.fluids.link_forces import moving_data
 from simkit.plugins.lookups import find_axis_joint, find_named_link
+from simkit.plugins.options import OptionsOf
 from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
@@ -20,16 +21,15 @@ class LiftDragBase(ModelPlugin):
     """Lift, drag and moment on one link, by its motion through the air and by the angle of a control joint.
 
     Attributes:
-        has_moment: whether it makes a pitching moment, and knows a stream from behind.
         is_about_mass: whether the centre of pressure is seen from the centre of mass instead of the link's origin.
     """
 
-    has_moment: ClassVar[bool] = True
+    options = OptionsOf(AerofoilOptions)
     is_about_mass: ClassVar[bool] = False
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._scoped = find_named_link(scene, "link_name", params)
-        self._aerofoil = read_aerofoil(params, has_moment=self.has_moment)
+        self._aerofoil = read_aerofoil(self.options)
         self._centre = self._aerofoil.centre
         if self.is_about_mass:
             link = next((link for link in scene.all_links() if link.scoped == self._scoped), None)
@@ -38,7 +38,7 @@ class LiftDragBase(ModelPlugin):
             self._centre = (x, y, z)
         self._joint_name = ""
         if params.has("control_joint_name"):
-            joint = find_axis_joint(scene, params.text("control_joint_name"), params.block("control_joint_name"))
+            joint = find_axis_joint(scene, self.options.control_joint_name, params.block("control_joint_name"))
             self._joint_name = "" if joint is None else joint.scoped
 
     def load(self, parent: Any, params: Params) -> None:
@@ -104,6 +104,7 @@ class LiftDrag(LiftDragBase):
     nothing.
     """
 
+    options = OptionsOf(MomentAerofoilOptions)
     filenames = ("gz-sim-lift-drag-system",)
     names = ("gz::sim::systems::LiftDrag",)
 
@@ -115,5 +116,4 @@ class LiftDragPlugin(LiftDragBase):
     """
 
     filenames = ("libLiftDragPlugin.so",)
-    has_moment = False
     is_about_mass = True

@@ -11,10 +11,12 @@ import numpy as np
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
+from simkit.plugins.endpoints import listens, offers
 from simkit.plugins.fluids.link_forces import PushedLinks, moving_data
-from simkit.plugins.fluids.wind_field import WindField, read_field
-from simkit.plugins.fluids.wind_gusts import WindTarget, read_gusts
+from simkit.plugins.fluids.wind_field import WindField, WindFieldOptions, read_field
+from simkit.plugins.fluids.wind_gusts import GustOptions, WindTarget, read_gusts
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import OptionsOf, block
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -27,6 +29,12 @@ _FEW: Final = 8  # links, up to which plain numbers are faster than arrays
 Velocity = tuple[float, float, float]
 
 
+class WindEffectsOptions(GustOptions):
+    """Options of `WindEffects`."""
+
+    force_approximation_scaling_factor: WindFieldOptions = block(WindFieldOptions)
+
+
 class WindPluginBase(WorldPlugin):
     """Makes the world's wind rise, turn, swell and flutter, and pushes the links with `<enable_wind>` by it.
 
@@ -34,11 +42,16 @@ class WindPluginBase(WorldPlugin):
     sets the wind that is asked for, `/world/<world>/wind_info` tells it.
     """
 
+    endpoints = (
+        listens("/world/{world}/wind", WIND, VECTOR),
+        offers("/world/{world}/wind_info", INFO),
+    )
+    options = OptionsOf(GustOptions)
     has_field = True
 
     def load(self, parent: Simulation, params: Params) -> None:
         self.once = OneTimeWarnings(self)
-        self._gusts = read_gusts(params, self.period)
+        self._gusts = read_gusts(self.options, self.period)
         self._field = WindField(everywhere=1.0)
         if self.has_field:
             self._field = read_field(params, parent.world.gazebo_quirks)
@@ -158,6 +171,7 @@ class WindEffects(WindPluginBase):
     `<force_approximation_scaling_factor>` [1/s] is a number, or a sum of polynomials by `<when>`.
     """
 
+    options = OptionsOf(WindEffectsOptions)
     filenames = ("gz-sim-wind-effects-system",)
     names = ("gz::sim::systems::WindEffects",)
 

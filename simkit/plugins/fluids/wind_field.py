@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.params import Params
+from simkit.plugins.options import Options, blocks, number, vector
 from simkit.pose import Vector
 
 Four = tuple[float, float, float, float]
@@ -108,6 +109,21 @@ class WindField:
         return 0.0 if self.pieces else self.everywhere
 
 
+class FieldPieceOptions(Options):
+    """A sum of polynomials: k · (p(x) + q(y) + r(z))."""
+
+    k: float = number(1.0, minimum=-1e9, maximum=1e9)
+    px: tuple[float, ...] = vector(_ZERO)
+    qy: tuple[float, ...] = vector(_ZERO)
+    rz: tuple[float, ...] = vector(_ZERO)
+
+
+class WindFieldOptions(FieldPieceOptions):
+    """The `<force_approximation_scaling_factor>` block."""
+
+    when: tuple[FieldPieceOptions, ...] = blocks(FieldPieceOptions)
+
+
 def read_field(params: Params, quirks: bool) -> WindField:
     """A plugin's `<force_approximation_scaling_factor>`; what is wrong is reported.
 
@@ -122,27 +138,24 @@ def read_field(params: Params, quirks: bool) -> WindField:
     if not block.children:
         value = params.number(name, 1.0, minimum=0, maximum=1e9)
         return WindField(everywhere=value * value if quirks else value)
-    whens = block.all("when")
-    field = WindField(tuple(_piece(when) for when in whens) if whens else (_piece(block, is_bounded=False),))
-    for piece, element in zip(field.pieces, whens or [block], strict=True):
+    options = WindFieldOptions(block)
+    whens: tuple[FieldPieceOptions, ...] = options.when
+    field = WindField(tuple(_piece(when) for when in whens) if whens else (_piece(options, is_bounded=False),))
+    for piece, one in zip(field.pieces, whens or (options,), strict=True):
         if piece.least < -1e-9:
-            text = f"found <{element.name}> that comes down to {piece.least:g}, allowed is {_ALLOWED}"
-            element.error("SK-PARAM-002", text)
+            text = f"found <{one.params.name}> that comes down to {piece.least:g}, allowed is {_ALLOWED}"
+            one.params.error("SK-PARAM-002", text)
     return field
 
 
-def _piece(block: Params, is_bounded: bool = True) -> FieldPiece:
+def _piece(options: FieldPieceOptions, is_bounded: bool = True) -> FieldPiece:
+    block = options.params
     x, y, z = (_interval(block, axis) if is_bounded else Interval() for axis in "xyz")
     if not block.children:
         value = _number_of(block)
         return FieldPiece((x, y, z), value, _ONE)
-    p, q, r = (_four_coefficients(block, name) for name in _AXES)
-    return FieldPiece((x, y, z), block.number("k", 1.0, minimum=-1e9, maximum=1e9), (p, q, r))
-
-
-def _four_coefficients(block: Params, name: str) -> Four:
-    a, b, c, d = block.vector(name, 4, _ZERO)
-    return a, b, c, d
+    p, q, r = ((a, b, c, d) for a, b, c, d in (options.px, options.qy, options.rz))
+    return FieldPiece((x, y, z), options.k, (p, q, r))
 
 
 def _number_of(block: Params) -> float:

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from simkit.params import LARGEST, Params
+from simkit.params import LARGEST
+from simkit.plugins.options import Options, block, number, text, without_effect
 
 Velocity = tuple[float, float, float]
 _BACK = 360.0  # degrees
@@ -145,47 +146,99 @@ class Gusts:
         return strength * math.cos(heading), strength * math.sin(heading), fluttered(self.rising, rising, 2)
 
 
-def read_gusts(params: Params, step: float) -> Gusts:
+class WindNoiseOptions(Options):
+    """A `<noise>` block."""
+
+    type_attribute: str = text(element="@type")
+    type: str = text("none")
+    dynamic_bias_stddev: bool = without_effect()
+    dynamic_bias_correlation_time: bool = without_effect()
+    mean: float = number(0.0, minimum=-LARGEST, maximum=LARGEST)
+    stddev: float = number(0.0, minimum=0, maximum=LARGEST)
+    bias_mean: float = number(0.0, minimum=-LARGEST, maximum=LARGEST)
+    bias_stddev: float = number(0.0, minimum=0, maximum=LARGEST)
+    precision: float = number(0.0, minimum=0, maximum=LARGEST)
+
+
+class _SineOptions(Options):
+    """The period of a `<sin>` block."""
+
+    period: float = number(1.0, "s", minimum=1e-6)
+
+
+class StrengthSineOptions(_SineOptions):
+    """The `<sin>` block of a strength."""
+
+    amplitude_percent: float = number(0.0, minimum=-1e6, maximum=1e6)
+
+
+class HeadingSineOptions(_SineOptions):
+    """The `<sin>` block of a heading."""
+
+    amplitude: float = number(0.0, "deg", minimum=-1e6, maximum=1e6)
+
+
+class VerticalWindOptions(Options):
+    """The `<vertical>` block."""
+
+    time_for_rise: float = number(1.0, "s", minimum=1e-6)
+    noise: WindNoiseOptions = block(WindNoiseOptions)
+
+
+class WindStrengthOptions(VerticalWindOptions):
+    """The `<magnitude>` block."""
+
+    sin: StrengthSineOptions = block(StrengthSineOptions)
+
+
+class WindHeadingOptions(VerticalWindOptions):
+    """The `<direction>` block."""
+
+    sin: HeadingSineOptions = block(HeadingSineOptions)
+
+
+class HorizontalWindOptions(Options):
+    """The `<horizontal>` block."""
+
+    magnitude: WindStrengthOptions = block(WindStrengthOptions)
+    direction: WindHeadingOptions = block(WindHeadingOptions)
+
+
+class GustOptions(Options):
+    """How a world's wind changes."""
+
+    horizontal: HorizontalWindOptions = block(HorizontalWindOptions)
+    vertical: VerticalWindOptions = block(VerticalWindOptions)
+
+
+def read_gusts(options: GustOptions, step: float) -> Gusts:
     """The `<horizontal>` and `<vertical>` of a wind plugin; what is wrong is reported."""
-    ground = params.block("horizontal")
+    strength, heading, vertical = options.horizontal.magnitude, options.horizontal.direction, options.vertical
     return Gusts(
-        strength=_read_response(ground.block("magnitude"), "amplitude_percent"),
-        heading=_read_response(ground.block("direction"), "amplitude"),
-        rising=_read_response(params.block("vertical"), ""),
+        strength=WindResponse(
+            strength.time_for_rise, strength.sin.amplitude_percent, strength.sin.period, _read_noise(strength.noise)
+        ),
+        heading=WindResponse(
+            heading.time_for_rise, heading.sin.amplitude, heading.sin.period, _read_noise(heading.noise)
+        ),
+        rising=WindResponse(vertical.time_for_rise, 0.0, 1.0, _read_noise(vertical.noise)),
         step=step,
     )
 
 
-def _read_response(block: Params, swing: str) -> WindResponse:
-    wave = block.block("sin") if swing else Params(where=block.where, diagnostics=block.diagnostics)
-    return WindResponse(
-        rise=block.number("time_for_rise", 1.0, minimum=1e-6),
-        swing=wave.number(swing, 0.0, minimum=-1e6, maximum=1e6) if swing else 0.0,
-        period=wave.number("period", 1.0, minimum=1e-6),
-        flutter=_read_noise(block),
-    )
-
-
-def _read_noise(block: Params) -> WindNoise | None:
-    noise = block.child("noise")
-    if noise is None:
+def _read_noise(options: WindNoiseOptions) -> WindNoise | None:
+    if not options.is_given:
         return None
-    kinds = ("gaussian", "gaussian_quantized", "none")
-    kind = noise.attribute("type") or (noise.text("type", "none") if noise.has("type") else "none")
+    noise, kinds = options.params, ("gaussian", "gaussian_quantized", "none")
+    kind = options.type_attribute or options.type
     if kind not in kinds:
         noise.error("SK-PARAM-002", f"found noise of type {kind!r}, allowed is {', '.join(kinds)}")
     if kind not in kinds[:2]:
         noise.mark_all_read()
         return None
     for name in ("dynamic_bias_stddev", "dynamic_bias_correlation_time"):
-        if noise.has(name):
-            block_of = noise.block(name)
+        if getattr(options, name):
             message = f"<{name}> has no effect on wind, in Gazebo neither; <time_for_rise> and <sin> make it slow"
-            noise.diagnostics.warning("SK-PLUGIN-111", message, block_of.where)
-    return WindNoise(
-        mean=noise.number("mean", 0.0, minimum=-LARGEST, maximum=LARGEST),
-        stddev=noise.number("stddev", 0.0, minimum=0, maximum=LARGEST),
-        bias_mean=noise.number("bias_mean", 0.0, minimum=-LARGEST, maximum=LARGEST),
-        bias_stddev=noise.number("bias_stddev", 0.0, minimum=0, maximum=LARGEST),
-        precision=noise.number("precision", 0.0, minimum=0, maximum=LARGEST) if kind == kinds[1] else 0.0,
-    )
+            noise.diagnostics.warning("SK-PLUGIN-111", message, noise.block(name).where)
+    precision = options.precision if kind == kinds[1] else 0.0
+    return WindNoise(options.mean, options.stddev, options.bias_mean, options.bias_stddev, precision)

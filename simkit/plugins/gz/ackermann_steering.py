@@ -16,11 +16,13 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
-from simkit.plugins.drives.speed_limits import speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
 from simkit.plugins.drives.steering import AckermannOdometry, find_drive_joint, joint_angles, steering_angles
 from simkit.plugins.drives.wheel_joints import find_wheels
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import OptionsOf, boolean, integer, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -28,6 +30,33 @@ if TYPE_CHECKING:
 
 _STRAIGHT = 1e-3  # rate of turning [rad/s] below which gz drives straight on
 _SIDES = ("left", "right")
+
+
+class AckermannSteeringOptions(SpeedLimitOptions):
+    """Options of `AckermannSteering`."""
+
+    steering_only: bool = boolean()
+    wheel_base: float = number(1.0, "m", minimum=1e-6)
+    wheel_separation: float = number(1.0, "m", minimum=1e-6)
+    steering_limit: float = number(0.5, minimum=1e-6, maximum=math.pi / 2)
+    left_steering_joint: tuple[str, ...] = texts(required=True)
+    right_steering_joint: tuple[str, ...] = texts(required=True)
+    kingpin_width: float = number(0.8, "m", minimum=1e-6)
+    wheel_radius: float = number(0.2, "m", minimum=1e-6)
+    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
+    left_joint: tuple[str, ...] = texts(required=True)
+    right_joint: tuple[str, ...] = texts(required=True)
+    steer_i_min: float = number(0.0)
+    steer_i_max: float = number(0.0)
+    steer_cmd_min: float = number(-1000.0)
+    steer_cmd_max: float = number(1000.0)
+    steer_cmd_offset: float = number(0.0)
+    use_actuator_msg: bool = boolean()
+    actuator_number: int = integer(0, minimum=0)
+    sub_topic: str = text()
+    topic: str = text()
+    odom_topic: str = text()
+    tf_topic: str = text()
 
 
 class AckermannSteering(ModelPlugin):
@@ -38,16 +67,24 @@ class AckermannSteering(ModelPlugin):
     starts at zero, in the middle of the rear axle.
     """
 
+    endpoints = (
+        listens("/model/{model}/cmd_vel", *COMMAND_TYPES, named_by=("topic",)),
+        listens("/model/{model}/steer_angle", "std_msgs/msg/Float64", "std_msgs/msg/Float32", named_by=("topic",)),
+        listens("/actuators", "actuator_msgs/msg/Actuators", named_by=("topic",)),
+        publishes("/model/{model}/odometry", ODOMETRY, named_by=("odom_topic",)),
+        publishes("/model/{model}/tf", TRANSFORMS, named_by=("tf_topic",)),
+    )
+    options = OptionsOf(AckermannSteeringOptions)
     filenames = ("gz-sim-ackermann-steering-system",)
     drives = True
     names = ("gz::sim::systems::AckermannSteering",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._only = params.boolean("steering_only", False)
-        self._base = params.number("wheel_base", 1.0, minimum=1e-6)
-        self._separation = params.number("wheel_separation", 1.0, minimum=1e-6)
-        self._limit = params.number("steering_limit", 0.5, minimum=1e-6, maximum=math.pi / 2)
-        self._limits = speed_limits(params)
+        self._only = self.options.steering_only
+        self._base = self.options.wheel_base
+        self._separation = self.options.wheel_separation
+        self._limit = self.options.steering_limit
+        self._limits = speed_limits(self.options)
         self._canonical = scene.canonical_link
         self._steering = [self._prepare_steering(f"{side}_steering_joint", scene, params, builder) for side in _SIDES]
         self._width = self._radius = 1.0
@@ -55,10 +92,10 @@ class AckermannSteering(ModelPlugin):
         self._motors: list[list[Any]] = [[], []]
         self.after_step_rate = NEVER
         if not self._only:
-            self._width = params.number("kingpin_width", 0.8, minimum=1e-6)
-            self._radius = params.number("wheel_radius", 0.2, minimum=1e-6)
+            self._width = self.options.kingpin_width
+            self._radius = self.options.wheel_radius
             # gz publishes at every step where the frequency is zero
-            self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
+            self.after_step_rate = self.options.odom_publish_frequency
             self._prepare_wheels(scene, params, builder)
 
     def _prepare_steering(
@@ -113,18 +150,18 @@ class AckermannSteering(ModelPlugin):
     def _read_rest_of_gains(self, params: Params) -> None:
         """Of gz's controller, which begins anew at every step: i and d are further proportional parts."""
         i, d = (params.number(f"steer_{name}_gain", 0.0, minimum=0) for name in "id")
-        least, most = params.number("steer_i_min", 0.0), params.number("steer_i_max", 0.0)
+        least, most = self.options.steer_i_min, self.options.steer_i_max
         self._integral, self._slope = (i, least, most), d
-        self._bounds = params.number("steer_cmd_min", -1000.0), params.number("steer_cmd_max", 1000.0)
-        self._offset = params.number("steer_cmd_offset", 0.0)
+        self._bounds = self.options.steer_cmd_min, self.options.steer_cmd_max
+        self._offset = self.options.steer_cmd_offset
 
     def _listen(self, model: str, params: Params) -> None:
-        by_message = params.boolean("use_actuator_msg", False)
-        self._number = params.integer("actuator_number", 0, minimum=0)
+        by_message = self.options.use_actuator_msg
+        self._number = self.options.actuator_number
         topic = "/actuators" if by_message else f"/model/{model}/steer_angle"
         if not self._only:
             topic = f"/model/{model}/cmd_vel"
-        if params.text("sub_topic", ""):
+        if self.options.sub_topic:
             topic = f"/model/{model}{read_topic(params, 'sub_topic', '')}"
         topic = read_topic(params, "topic", topic)
         if not self._only:

@@ -8,13 +8,21 @@ from typing import TYPE_CHECKING, Any
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import listens
 from simkit.plugins.joints.joint_axis import JointAxis, find_joints
 from simkit.plugins.joints.joint_commands import DOUBLE
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class ApplyJointForceOptions(Options):
+    """Options of `ApplyJointForce`."""
+
+    joint_name: tuple[str, ...] = texts(required=True)
 
 
 class ApplyJointForce(ModelPlugin):
@@ -24,6 +32,8 @@ class ApplyJointForce(ModelPlugin):
     have set for the step; what comes after it and sets an effort of its own takes its place, as in gz.
     """
 
+    endpoints = (listens("/model/{model}/joint/{joint_name}/cmd_force", DOUBLE),)
+    options = OptionsOf(ApplyJointForceOptions)
     filenames = ("gz-sim-apply-joint-force-system",)
     names = ("gz::sim::systems::ApplyJointForce",)
     drives = True

@@ -13,6 +13,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
 from simkit.plugins.lookups import read_required_name, read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, blocks, boolean, choice, text, vector3
 from simkit.plugins.world.entities import RequestRefused, entity_of
 from simkit.pose import Vector
 
@@ -35,6 +36,25 @@ class _Wrench:
     torque: tuple[float, float, float]
 
 
+class ApplyLinkWrenchPersistentOptions(Options):
+    """The `<persistent>` block."""
+
+    entity_name: str = text(required=True)
+    entity_type: str = choice(("model", "link"), "link")
+    force: tuple[float, float, float] = vector3(unit="N")
+    torque: tuple[float, float, float] = vector3(unit="N·m")
+
+
+class ApplyLinkWrenchOptions(Options):
+    """Options of `ApplyLinkWrench`."""
+
+    verbose: bool = boolean(True)
+    persistent: tuple[ApplyLinkWrenchPersistentOptions, ...] = blocks(ApplyLinkWrenchPersistentOptions)
+    topic: str = text()
+    topic_persistent: str = text()
+    topic_clear: str = text()
+
+
 class ApplyLinkWrench(WorldPlugin):
     """Pushes links at their centre of mass, or models at their canonical link's, in the world frame.
 
@@ -43,12 +63,13 @@ class ApplyLinkWrench(WorldPlugin):
     that is not there is waited for. Messages name an entity, or give its id.
     """
 
+    options = OptionsOf(ApplyLinkWrenchOptions)
     filenames = ("gz-sim-apply-link-wrench-system",)
     names = ("gz::sim::systems::ApplyLinkWrench",)
 
     def load(self, parent: Simulation, params: Params) -> None:
         self.once = OneTimeWarnings(self)
-        self._verbose = params.boolean("verbose", True)
+        self._verbose = self.options.verbose
         self._persistent = [w for e in params.all("persistent") if (w := self._read(e)) is not None]
         self._stand()
         base = f"/world/{parent.world.name}/wrench"

@@ -11,6 +11,7 @@ from simkit.plugins.base import WorldPlugin
 from simkit.plugins.fluids.buoyant_force import Fluid
 from simkit.plugins.fluids.collision_volumes import Hull
 from simkit.plugins.fluids.floating_links import BuoyancyBase
+from simkit.plugins.options import Options, OptionsOf, block, blocks, number, texts
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -19,12 +20,35 @@ WATER: Final = 1000.0
 """[kg/m³]"""
 
 
+class BuoyancyDensityChangeOptions(Options):
+    """The `<density_change>` block."""
+
+    above_depth: float = number(minimum=-1000000000.0, maximum=1000000000.0, required=True)
+    density: float = number(minimum=0.0, maximum=1000000000.0, required=True)
+
+
+class BuoyancyGradedBuoyancyOptions(Options):
+    """The `<graded_buoyancy>` block."""
+
+    density_change: tuple[BuoyancyDensityChangeOptions, ...] = blocks(BuoyancyDensityChangeOptions)
+    default_density: float = number(1000.0, minimum=0.0, maximum=1000000000.0)
+
+
+class BuoyancyOptions(Options):
+    """Options of `Buoyancy`."""
+
+    graded_buoyancy: BuoyancyGradedBuoyancyOptions = block(BuoyancyGradedBuoyancyOptions)
+    uniform_fluid_density: float = number(1000.0, minimum=0.0, maximum=1000000000.0)
+    enable: tuple[str, ...] = texts()
+
+
 class Buoyancy(BuoyancyBase, WorldPlugin):
     """The whole world lies in a fluid or in level layers of several; every link floats by its collisions' volume.
 
     `<enable>` names the models and links that do, where not all should.
     """
 
+    options = OptionsOf(BuoyancyOptions)
     filenames = ("gz-sim-buoyancy-system",)
     names = ("gz::sim::systems::Buoyancy",)
 

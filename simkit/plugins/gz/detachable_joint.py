@@ -9,7 +9,9 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import find_named_link, read_required_name, read_topic
+from simkit.plugins.options import Options, OptionsOf, boolean, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -19,6 +21,20 @@ EMPTY: Final = "std_msgs/msg/Empty"
 STRING: Final = "std_msgs/msg/String"
 
 
+class DetachableJointOptions(Options):
+    """Options of `DetachableJoint`."""
+
+    parent_link: str = text(required=True)
+    child_model: str = text(required=True)
+    child_link: str = text(required=True)
+    initial_attach: bool = boolean(True)
+    suppress_child_warning: bool = boolean()
+    topic: str = text()
+    detach_topic: str = text()
+    output_topic: str = text()
+    attach_topic: str = text()
+
+
 class DetachableJoint(ModelPlugin):
     """Holds a link of another model on a link of this one until a message lets it go; another message holds it again.
 
@@ -26,6 +42,12 @@ class DetachableJoint(ModelPlugin):
     is told on the output topic, "attached" or "detached".
     """
 
+    endpoints = (
+        listens("/model/{model}/detachable_joint/detach", EMPTY, named_by=("detach_topic", "topic")),
+        listens("/model/{model}/detachable_joint/attach", EMPTY, named_by=("attach_topic",)),
+        publishes("/model/{child_model}/detachable_joint/state", STRING, named_by=("output_topic",)),
+    )
+    options = OptionsOf(DetachableJointOptions)
     filenames = ("gz-sim-detachable-joint-system",)
     names = ("gz::sim::systems::DetachableJoint",)
 
@@ -34,8 +56,8 @@ class DetachableJoint(ModelPlugin):
         self._parent = find_named_link(scene, "parent_link", params)
         self._child_model = read_required_name(params, "child_model")
         self._child_link = read_required_name(params, "child_link")
-        self._wanted = params.boolean("initial_attach", True)
-        self._quiet = params.boolean("suppress_child_warning", False)
+        self._wanted = self.options.initial_attach
+        self._quiet = self.options.suppress_child_warning
         taken = {name for record in builder.records.values() for name in record.equalities}
         base = f"{scene.scoped}#detachable"
         self._weld = next(name for k in range(len(taken) + 1) if (name := f"{base}{k}") not in taken)
@@ -68,7 +90,7 @@ class DetachableJoint(ModelPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         own = f"/model/{parent.name}/detachable_joint"
-        old = params.text("topic", "")
+        old = self.options.topic
         detach = read_topic(params, "detach_topic" if params.has("detach_topic") else "topic", f"{own}/detach")
         if old and valid_topic(old) != detach:
             params.diagnostics.warning(

@@ -26,11 +26,12 @@ from simkit.plugins.drives.odometry import (
     transforms,
     wheel_angles,
 )
-from simkit.plugins.drives.odometry_noise import NoisyOdometry, read_odometry_noise
-from simkit.plugins.drives.speed_limits import speed_limits
+from simkit.plugins.drives.odometry_noise import NoisyOdometry, OdometryNoiseOptions, odometry_noise
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import OptionsOf, block, boolean, number, text, texts
 from simkit.pose import Vector
 
 _NS = 1_000_000_000
@@ -38,6 +39,21 @@ _NS = 1_000_000_000
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class DiffDriveOptions(SpeedLimitOptions):
+    """Options of `DiffDrive`."""
+
+    wheel_separation: float = number(1.0, "m", minimum=1e-6)
+    wheel_radius: float = number(0.2, "m", minimum=1e-6)
+    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
+    left_joint: tuple[str, ...] = texts(required=True)
+    right_joint: tuple[str, ...] = texts(required=True)
+    odometry_noise: OdometryNoiseOptions = block(OdometryNoiseOptions)
+    topic: str = text()
+    odom_topic: str = text()
+    tf_topic: str = text()
+    publish_ground_truth: bool = boolean()
 
 
 class DiffDrive(ModelPlugin):
@@ -49,17 +65,18 @@ class DiffDrive(ModelPlugin):
     covariance.
     """
 
+    options = OptionsOf(DiffDriveOptions)
     filenames = ("gz-sim-diff-drive-system",)
     drives = True
     names = ("gz::sim::systems::DiffDrive",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._separation = params.number("wheel_separation", 1.0, minimum=1e-6)
-        self._radius = params.number("wheel_radius", 0.2, minimum=1e-6)
-        self._limits = speed_limits(params)
+        self._separation = self.options.wheel_separation
+        self._radius = self.options.wheel_radius
+        self._limits = speed_limits(self.options)
         self._canonical = scene.canonical_link
         # gz publishes at every step where the frequency is zero
-        self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
+        self.after_step_rate = self.options.odom_publish_frequency
         named = [params.all("left_joint"), params.all("right_joint")]
         for name, found in zip(("left_joint", "right_joint"), named, strict=True):
             if not found:
@@ -85,7 +102,7 @@ class DiffDrive(ModelPlugin):
         self._settled = True
         self._enabled = True
         self._odometry = WheelOdometry(self._radius, self._separation, self.period)
-        noise = read_odometry_noise(params)
+        noise = odometry_noise(self.options.odometry_noise)
         self._erring: NoisyOdometry | None = None
         if noise is not None:
             stream = self.random("odometry_noise", 2)
@@ -95,7 +112,7 @@ class DiffDrive(ModelPlugin):
         self.listen(valid_topic(f"/model/{model}/enable"), "std_msgs/msg/Bool", self._on_enable)
         self._odom = self.advertise(read_topic(params, "odom_topic", f"/model/{model}/odometry"), ODOMETRY)
         self._tf = self.advertise(read_topic(params, "tf_topic", f"/model/{model}/tf"), TRANSFORMS)
-        truth = params.boolean("publish_ground_truth", False)
+        truth = self.options.publish_ground_truth
         self._truth = self.advertise(valid_topic(f"/model/{model}/ground_truth/odom"), ODOMETRY) if truth else None
 
     # ------------------------------------------------------------------ commands

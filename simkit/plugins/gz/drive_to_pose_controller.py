@@ -35,15 +35,18 @@ class DriveToPoseController(ModelPlugin):
 
     def load(self, parent: Any, params: Params) -> None:
         self.once = OneTimeWarnings(self)
-        number = self.declare
-        says = "speed ahead [m/s] for each metre that is left"
-        self._linear_gain = number("linear_p_gain", 1.0, minimum=0.0, description=says)
-        says = "turning [rad/s] for each radian that is left"
-        self._angular_gain = number("angular_p_gain", 2.0, minimum=0.0, description=says)
-        says = "how near the place is near enough [m]"
-        self._near = number("linear_deviation", 0.1, minimum=0.0, description=says)
-        says = "how near a direction is near enough [rad]"
-        self._straight = number("angular_deviation", 0.05, minimum=0.0, description=says)
+        self._linear_gain = self.declare(
+            "linear_p_gain", 1.0, minimum=0.0, description="speed ahead [m/s] for each metre that is left"
+        )
+        self._angular_gain = self.declare(
+            "angular_p_gain", 2.0, minimum=0.0, description="turning [rad/s] for each radian that is left"
+        )
+        self._near = self.declare(
+            "linear_deviation", 0.1, minimum=0.0, description="how near the place is near enough [m]"
+        )
+        self._straight = self.declare(
+            "angular_deviation", 0.05, minimum=0.0, description="how near a direction is near enough [rad]"
+        )
         self._target: Planar | None = None
         self._place: Planar | None = None
         self._pose: Any = None

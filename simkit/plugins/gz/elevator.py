@@ -10,10 +10,12 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis
 from simkit.plugins.lookups import find_axis_joint, find_link, read_topic
 from simkit.plugins.on_demand import publish_while_subscribed
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -32,6 +34,19 @@ _FREE: Final = 0.005
 """[m] that a range may be short of the lidar's largest while the doorway is free."""
 
 
+class ElevatorOptions(Options):
+    """Options of `Elevator`."""
+
+    update_rate: float = number(10.0, "Hz", minimum=0.0)
+    state_publish_rate: float = number(5.0, "Hz", minimum=0.0)
+    open_door_wait_duration: float = number(5.0, "s", minimum=0.0, maximum=1e9)
+    floor_link_prefix: str = text("floor_")
+    door_joint_prefix: str = text("door_")
+    cabin_joint: str = text("lift")
+    state_topic: str = text()
+    cmd_topic: str = text()
+
+
 class Elevator(ModelPlugin):
     """Takes the cabin to the floor that comes on `<cmd_topic>`, opens its door there, waits, and closes it.
 
@@ -42,16 +57,22 @@ class Elevator(ModelPlugin):
     it lies on it; one that comes before is kept until then. The floor next to the cabin is told on `<state_topic>`.
     """
 
+    endpoints = (
+        publishes("/model/{model}/joint/{joint}/0/cmd_pos", DOUBLE),
+        publishes("/model/{model}/state", INT, named_by=("state_topic",)),
+        listens("/model/{model}/cmd", INT, named_by=("cmd_topic",)),
+    )
+    options = OptionsOf(ElevatorOptions)
     filenames = ("gz-sim-elevator-system",)
     names = ("gz::sim::systems::Elevator",)
     drives = True
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._update_rate = params.number("update_rate", 10.0, minimum=0.0)
-        self._state_rate = params.number("state_publish_rate", 5.0, minimum=0.0)
-        self._wait_ns = round(params.number("open_door_wait_duration", 5.0, minimum=0.0, maximum=1e9) * 1e9)
-        floor, door = params.text("floor_link_prefix", "floor_"), params.text("door_joint_prefix", "door_")
-        cabin = params.text("cabin_joint", "lift")
+        self._update_rate = self.options.update_rate
+        self._state_rate = self.options.state_publish_rate
+        self._wait_ns = round(self.options.open_door_wait_duration * 1e9)
+        floor, door = self.options.floor_link_prefix, self.options.door_joint_prefix
+        cabin = self.options.cabin_joint
         lift = find_axis_joint(scene, cabin, params.child("cabin_joint") or params)
         self._cabin = "" if lift is None else lift.scoped
         pattern = re.compile(re.escape(floor) + r"\d+")

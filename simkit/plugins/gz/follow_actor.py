@@ -14,6 +14,7 @@ from simkit.plugins.actors.skin import SkinRig
 from simkit.plugins.actors.walk_cycle import Gait
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import read_required_name
+from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.runtime.engine.physics import STALE
 
 if TYPE_CHECKING:
@@ -22,6 +23,17 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 _RATE: Final = 50.0  # [Hz]
+
+
+class FollowActorOptions(Options):
+    """Options of `FollowActor`."""
+
+    target: str = text(required=True)
+    velocity: float = number(0.8, minimum=0.0, maximum=1e6)
+    min_distance: float = number(1.2, "m", minimum=0.0)
+    max_distance: float = number(4.0, "m", minimum=0.0)
+    animation_x_vel: float = number(2.0, minimum=0.0, maximum=1e6)
+    animation: str = text()
 
 
 class FollowActor(ModelPlugin):
@@ -34,17 +46,18 @@ class FollowActor(ModelPlugin):
     target that is not there is waited for.
     """
 
+    options = OptionsOf(FollowActorOptions)
     filenames = ("gz-sim-follow-actor-system",)
     names = ("gz::sim::systems::FollowActor",)
     scenery_rate = _RATE
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._target = read_required_name(params, "target")
-        self._velocity = params.number("velocity", 0.8, minimum=0.0, maximum=1e6)
-        self._least = params.number("min_distance", 1.2, minimum=0.0)
-        self._most = params.number("max_distance", 4.0, minimum=0.0)
-        self._seconds = params.number("animation_x_vel", 2.0, minimum=0.0, maximum=1e6)
-        self._animation = params.text("animation", "")
+        self._velocity = self.options.velocity
+        self._least = self.options.min_distance
+        self._most = self.options.max_distance
+        self._seconds = self.options.animation_x_vel
+        self._animation = self.options.animation
         cast = scene.moved_by
         if not isinstance(cast, AnimatedActor):
             message = f"plugin {self.name!r} is for an actor, {scene.scoped!r} is a model"

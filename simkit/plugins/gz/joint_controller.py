@@ -6,12 +6,22 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
-from simkit.plugins.joints.joint_commands import GAINS, JointCommander
+from simkit.plugins.endpoints import listens
+from simkit.plugins.joints.joint_commands import GAINS, JointCommander, JointCommandOptions
 from simkit.plugins.joints.pid import Pid, declare_pid
+from simkit.plugins.options import OptionsOf, boolean, number
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class JointControllerOptions(JointCommandOptions):
+    """Options of `JointController`."""
+
+    initial_velocity: float = number(0.0, "rad/s or m/s")
+    use_force_commands: bool = boolean()
+    disable_braking: bool = boolean()
 
 
 class JointController(JointCommander):
@@ -24,6 +34,11 @@ class JointController(JointCommander):
     PID are live parameters.
     """
 
+    endpoints = (
+        listens("/model/{model}/joint/{joint_name}/cmd_vel", "std_msgs/msg/Float64", named_by=("topic", "sub_topic")),
+        listens("/actuators", "actuator_msgs/msg/Actuators", named_by=("topic", "sub_topic")),
+    )
+    options = OptionsOf(JointControllerOptions)
     filenames = ("gz-sim-joint-controller-system",)
     names = ("gz::sim::systems::JointController",)
     actuator_field = "velocity"
@@ -35,8 +50,8 @@ class JointController(JointCommander):
 
     def load(self, parent: Any, params: Params) -> None:
         super().load(parent, params)
-        self._by_velocity = not params.boolean("use_force_commands", False)
-        self._coasts = params.boolean("disable_braking", False)
+        self._by_velocity = not self.options.use_force_commands
+        self._coasts = self.options.disable_braking
         if self._by_velocity:
             self.say_gains_are_unused(params, (*GAINS, "disable_braking"), "without <use_force_commands>")
         else:

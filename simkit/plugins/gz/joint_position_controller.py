@@ -5,12 +5,22 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
-from simkit.plugins.joints.joint_commands import GAINS, JointCommander
+from simkit.plugins.endpoints import listens
+from simkit.plugins.joints.joint_commands import GAINS, JointCommander, JointCommandOptions
 from simkit.plugins.joints.pid import Pid, declare_pid
+from simkit.plugins.options import OptionsOf, boolean, integer, number
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class JointPositionControllerOptions(JointCommandOptions):
+    """Options of `JointPositionController`."""
+
+    joint_index: int = integer(0, minimum=0)
+    initial_position: float = number(0.0, "rad or m")
+    use_velocity_commands: bool = boolean()
 
 
 class JointPositionController(JointCommander):
@@ -23,19 +33,28 @@ class JointPositionController(JointCommander):
     `<joint_index>` is the axis of a joint that has several. The numbers of the PID are live parameters.
     """
 
+    endpoints = (
+        listens(
+            "/model/{model}/joint/{joint_name}/{joint_index}/cmd_pos",
+            "std_msgs/msg/Float64",
+            named_by=("topic", "sub_topic"),
+        ),
+        listens("/actuators", "actuator_msgs/msg/Actuators", named_by=("topic", "sub_topic")),
+    )
+    options = OptionsOf(JointPositionControllerOptions)
     filenames = ("gz-sim-joint-position-controller-system",)
     names = ("gz::sim::systems::JointPositionController",)
     actuator_field = "position"
     target_element = "initial_position"
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        self._index = params.integer("joint_index", 0, minimum=0)
+        self._index = self.options.joint_index
         super().prepare(scene, params, builder)
         self.own_topic = f"joint/{self._first}/{self._index}/cmd_pos"
 
     def load(self, parent: Any, params: Params) -> None:
         super().load(parent, params)
-        self._by_velocity = params.boolean("use_velocity_commands", False)
+        self._by_velocity = self.options.use_velocity_commands
         self._fastest: Any = None
         if not self._by_velocity:
             self._pid = declare_pid(self, Pid(1.0, 0.1, 0.01, 1.0, -1.0, 1000.0, -1000.0), self._present_pid)

@@ -10,6 +10,7 @@ from simkit import msgs
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.joints.joint_axis import JointAxis, has_axis, suggest_names
 from simkit.plugins.joints.joint_commands import ControlledJoints
 from simkit.plugins.joints.joint_trajectory import (
@@ -25,6 +26,7 @@ from simkit.plugins.joints.joint_trajectory import (
 from simkit.plugins.joints.pid import FIELDS, Pid, declare_pid
 from simkit.plugins.lookups import find_joint, read_numbers
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, choice, numbers, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -49,6 +51,32 @@ class _Axis:
     path: JointPath | None = None
 
 
+class JointTrajectoryControllerOptions(Options):
+    """Options of `JointTrajectoryController`."""
+
+    joint_name: tuple[str, ...] = texts()
+    position_p_gain: tuple[float, ...] = numbers()
+    position_i_gain: tuple[float, ...] = numbers()
+    position_d_gain: tuple[float, ...] = numbers()
+    position_i_max: tuple[float, ...] = numbers()
+    position_i_min: tuple[float, ...] = numbers()
+    position_cmd_max: tuple[float, ...] = numbers()
+    position_cmd_min: tuple[float, ...] = numbers()
+    position_cmd_offset: tuple[float, ...] = numbers()
+    velocity_p_gain: tuple[float, ...] = numbers()
+    velocity_i_gain: tuple[float, ...] = numbers()
+    velocity_d_gain: tuple[float, ...] = numbers()
+    velocity_i_max: tuple[float, ...] = numbers()
+    velocity_i_min: tuple[float, ...] = numbers()
+    velocity_cmd_max: tuple[float, ...] = numbers()
+    velocity_cmd_min: tuple[float, ...] = numbers()
+    velocity_cmd_offset: tuple[float, ...] = numbers()
+    initial_position: tuple[float, ...] = numbers()
+    use_header_start_time_attribute: str = text(element="@use_header_start_time")
+    interpolation: str = choice(INTERPOLATIONS, "none")
+    topic: str = text()
+
+
 class JointTrajectoryController(ControlledJoints, ModelPlugin):
     """Follows a `JointTrajectory` with a PID on position, a PID on velocity, and efforts, which add up.
 
@@ -64,6 +92,11 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
     for each joint in that order, and are live parameters (`<joint>.position_p_gain`).
     """
 
+    endpoints = (
+        listens("/model/{model}/joint_trajectory", TRAJECTORY, named_by=("topic",)),
+        publishes("/model/{model}/joint_trajectory_progress", PROGRESS, named_by=("topic",)),
+    )
+    options = OptionsOf(JointTrajectoryControllerOptions)
     filenames = ("gz-sim-joint-trajectory-controller-system",)
     names = ("gz::sim::systems::JointTrajectoryController",)
     drives = True
@@ -100,8 +133,8 @@ class JointTrajectoryController(ControlledJoints, ModelPlugin):
         self._axes = self._read_axes(params)
         attribute = params.attribute("use_header_start_time")  # gz looks for it there, its manual has an element
         self._by_header = params.boolean("use_header_start_time", attribute.lower() in ("true", "1"))
-        self._rule: Any = params.choice("interpolation", INTERPOLATIONS, "none")
-        topic = valid_topic(params.text("topic", "") or f"/model/{parent.name}/joint_trajectory")
+        self._rule: Any = self.options.interpolation
+        topic = valid_topic(self.options.topic or f"/model/{parent.name}/joint_trajectory")
         self.listen(topic, TRAJECTORY, self._on_trajectory)
         self._progress = self.advertise(f"{topic}_progress", PROGRESS)
         self._is_ready = False

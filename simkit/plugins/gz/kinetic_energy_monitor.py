@@ -12,6 +12,7 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.lookups import find_named_link, read_topic
 from simkit.plugins.on_demand import watch_while_subscribed
+from simkit.plugins.options import Options, OptionsOf, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -22,18 +23,27 @@ DOUBLE: Final = "std_msgs/msg/Float64"
 _BODY: Final = int(mujoco.mjtObj.mjOBJ_BODY)  # at its centre of mass, along the axes of its inertia
 
 
+class KineticEnergyMonitorOptions(Options):
+    """Options of `KineticEnergyMonitor`."""
+
+    link_name: str = text(required=True)
+    kinetic_energy_threshold: float = number(7.0, minimum=0.0)
+    topic: str = text()
+
+
 class KineticEnergyMonitor(ModelPlugin):
     """Tells how much kinetic energy [J] a link lost within one step, where that is more than a threshold.
 
     The energy is that of the link's own mass and inertia, moving and turning: m v²/2 + ω·Iω/2.
     """
 
+    options = OptionsOf(KineticEnergyMonitorOptions)
     filenames = ("gz-sim-kinetic-energy-monitor-system",)
     names = ("gz::sim::systems::KineticEnergyMonitor",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._scoped = find_named_link(scene, "link_name", params)
-        self._threshold = params.number("kinetic_energy_threshold", 7.0, minimum=0.0)
+        self._threshold = self.options.kinetic_energy_threshold
 
     def load(self, parent: Any, params: Params) -> None:
         self._lost = self.advertise(read_topic(params, "topic", f"/model/{parent.name}/kinetic_energy"), DOUBLE)

@@ -6,10 +6,17 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
+from simkit.plugins.options import Options, OptionsOf, integer
 from simkit.runtime.handles.visual_properties import MAX_LABEL
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
+
+
+class LabelOptions(Options):
+    """Options of `Label`."""
+
+    label: int = integer(minimum=0, maximum=MAX_LABEL, required=True)
 
 
 class Label(Plugin):
@@ -19,6 +26,7 @@ class Label(Plugin):
     later counts.
     """
 
+    options = OptionsOf(LabelOptions)
     parent_kind = ("model", "visual")
     lets_sleep = True
     gives_labels: ClassVar[bool] = True
@@ -26,7 +34,7 @@ class Label(Plugin):
     names = ("gz::sim::systems::Label",)
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
-        self._label = params.integer("label", required=True, minimum=0, maximum=MAX_LABEL)
+        self._label = self.options.label
         self._is_lost = self.scoped != scene.scoped
         if self._is_lost:
             message = f"plugin {self.name!r} labels a model or a visual, it hangs on {self.scoped!r}; it has no effect"

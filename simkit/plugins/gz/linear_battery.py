@@ -10,8 +10,10 @@ import numpy as np
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.battery import Battery, Cell
+from simkit.plugins.endpoints import listens, offers, publishes
 from simkit.plugins.gz.sensors import SensorsSystem
 from simkit.plugins.lookups import read_required_name
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -25,6 +27,25 @@ _RENDERED: Final = ("camera", "depth", "gpu_", "segmentation", "boundingbox", "t
 _LEAST_EFFORT: Final = 1e-9  # [N·m or N]
 
 
+class LinearBatteryOptions(Options):
+    """Options of `LinearBattery`."""
+
+    battery_name: str = text(required=True)
+    voltage: float = number(minimum=0.0, required=True)
+    capacity: float = number(minimum=1e-12, required=True)
+    smooth_current_tau: float = number(1.0)
+    open_circuit_voltage_constant_coef: float = number(0.0)
+    open_circuit_voltage_linear_coef: float = number(0.0)
+    resistance: float = number(0.0, minimum=0.0)
+    start_draining: bool = boolean()
+    enable_recharge: bool = boolean()
+    invert_current_sign: bool = boolean()
+    fix_issue_225: bool = boolean()
+    recharge_by_topic: str = text()
+    power_draining_topic: tuple[str, ...] = texts()
+    stop_power_draining_topic: tuple[str, ...] = texts()
+
+
 class LinearBattery(Battery):
     """A battery that a load drains and a charger fills; empty, it lets go of the joints of its model.
 
@@ -32,40 +53,48 @@ class LinearBattery(Battery):
     or from the start. Its state is on `/model/<model>/battery/<battery>/state` at 50 Hz.
     """
 
+    endpoints = (
+        publishes("/model/{model}/battery/{battery_name}/state", "sensor_msgs/msg/BatteryState"),
+        listens("/model/{model}/battery/{battery_name}/recharge/start", BOOL),
+        listens("/model/{model}/battery/{battery_name}/recharge/stop", BOOL),
+        offers("/model/{model}/battery/{battery_name}/recharge/start", SET_BOOL),
+        offers("/model/{model}/battery/{battery_name}/recharge/stop", SET_BOOL),
+    )
+    options = OptionsOf(LinearBatteryOptions)
     filenames = ("gz-sim-linearbatteryplugin-system", "gz-sim-linear-battery-plugin-system")
     names = ("gz::sim::systems::LinearBatteryPlugin",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self.battery = read_required_name(params, "battery_name")
-        self.cell = self._read_cell(params, params.number("voltage", required=True, minimum=0.0))
+        self.cell = self._read_cell(params, self.options.voltage)
         self._joints = tuple(joint.scoped for joint in scene.all_joints() if joint.axes or joint.type == "ball")
-        self.is_drained = params.boolean("start_draining", False)
-        recharges = params.boolean("enable_recharge", False)
+        self.is_drained = self.options.start_draining
+        recharges = self.options.enable_recharge
         hours = params.number("charging_time", 0.0, required=recharges, minimum=1e-9 if recharges else 0.0)
         self._charger = self.cell.capacity / hours if recharges and hours else None
-        self.sign = -1.0 if params.boolean("invert_current_sign", False) else 1.0
-        self.percent = 100.0 if params.boolean("fix_issue_225", False) else 1.0
+        self.sign = -1.0 if self.options.invert_current_sign else 1.0
+        self.percent = 100.0 if self.options.fix_issue_225 else 1.0
         if self.percent == 1.0 and builder.world.gazebo_quirks:
             self.cell.remember()
 
     def _read_cell(self, params: Params, voltage: float) -> Cell:
-        capacity = params.number("capacity", required=True, minimum=1e-12)
+        capacity = self.options.capacity
         charge = params.number("initial_charge", capacity)
         kept = max(0.0, min(capacity, charge))
         if kept != charge:
             allowed = f"is not from 0 to {capacity:g}"
             self._warn(params, f"<initial_charge> {charge:g} {allowed}, {kept:g} is used", "initial_charge")
-        tau = params.number("smooth_current_tau", 1.0)
+        tau = self.options.smooth_current_tau
         if tau <= 0.0:
             what = f"<smooth_current_tau> {tau:g} is not above 0, 1 is used, as in Gazebo"
             self._warn(params, what, "smooth_current_tau")
             tau = 1.0
-        constant = params.number("open_circuit_voltage_constant_coef", 0.0)
-        linear = params.number("open_circuit_voltage_linear_coef", 0.0)
+        constant = self.options.open_circuit_voltage_constant_coef
+        linear = self.options.open_circuit_voltage_linear_coef
         if capacity and abs(constant + linear * (1.0 - kept / capacity)) < 1e-3:
             hint = "give <open_circuit_voltage_constant_coef>: the voltage of the full battery"
             self._warn(params, "the open-circuit voltage is 0, so that nothing can be drawn", hint=hint)
-        resistance = params.number("resistance", 0.0, minimum=0.0)
+        resistance = self.options.resistance
         return Cell(constant, linear, capacity or 1.0, resistance, tau, voltage, kept)
 
     def _warn(self, params: Params, what: str, element: str = "", hint: str = "") -> None:
@@ -81,7 +110,7 @@ class LinearBattery(Battery):
         base = self.open_state(parent.name)
         if self._charger is not None and base:
             self._offer_recharge(base, by_topic=params.has("recharge_by_topic"))
-        params.text("recharge_by_topic", "")
+        _ = self.options.recharge_by_topic
         self._supply(parent.scene)
         for element in params.all("power_draining_topic"):
             self.subscribe(valid_topic(element.value), self._on_drain, keep=1)

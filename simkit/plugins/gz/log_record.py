@@ -13,7 +13,9 @@ from simkit.errors import SimkitError
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, WorldPlugin
+from simkit.plugins.endpoints import publishes
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 
 if TYPE_CHECKING:
@@ -39,22 +41,38 @@ class _Log:
         return self
 
 
+class LogRecordOptions(Options):
+    """Options of `LogRecord`."""
+
+    record_path: str = text()
+    record_period: float = number(0.0, "s", minimum=0.0)
+    record_topic: tuple[str, ...] = texts()
+    record_resources: bool = boolean()
+    compress: bool = boolean()
+    compress_path: str = text()
+
+
 class LogRecord(WorldPlugin):
     """Records the run to `<record_path>/state.mcap`: the world's SDF, where its links are, and `<record_topic>`s.
 
     The file is begun with the first step; one that is there is written over, as in gz.
     """
 
+    endpoints = (
+        publishes("/{record_path}/sdf", STRING),
+        publishes("/world/{world}/changed_state", TRANSFORMS),
+    )
+    options = OptionsOf(LogRecordOptions)
     names = ("gz::sim::systems::LogRecord",)  # its file holds LogPlayback too
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
         self._path = self._read_path(params)
-        self._period = params.number("record_period", 0.0, minimum=0.0)
+        self._period = self.options.record_period
         self._plain, self._patterns = self._read_topics(params)
         self._report_unused(params)
 
     def _read_path(self, params: Params) -> Path | None:
-        written = params.text("record_path", "")
+        written = self.options.record_path
         if not written:
             message = f"plugin {self.name!r} has no <record_path>; nothing is recorded"
             hint = "name a folder below the working directory, or use `simkit run --record OUT.mcap`"
@@ -86,11 +104,11 @@ class LogRecord(WorldPlugin):
 
     def _report_unused(self, params: Params) -> None:
         unused = []
-        if params.boolean("record_resources", False):
+        if self.options.record_resources:
             unused.append("<record_resources>: meshes stay where they are")
-        if params.boolean("compress", False):
+        if self.options.compress:
             unused.append("<compress>: a bag is compressed as it is written")
-        if params.text("compress_path", ""):
+        if self.options.compress_path:
             unused.append("<compress_path>: there is one file, in <record_path>")
         if unused:
             message = f"plugin {self.name!r} does without {'; '.join(unused)}"

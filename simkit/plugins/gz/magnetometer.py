@@ -6,11 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
+from simkit.plugins.options import Options, OptionsOf, boolean
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
 
 SWITCHES = ("use_units_gauss", "use_earth_frame_ned")
+
+
+class MagnetometerSystemOptions(Options):
+    """Options of `MagnetometerSystem`."""
+
+    use_units_gauss: bool = boolean(True)
+    use_earth_frame_ned: bool = boolean(True)
 
 
 class MagnetometerSystem(Plugin):
@@ -20,6 +28,7 @@ class MagnetometerSystem(Plugin):
     the Earth's field; here they count where they are written (and in a world with `<gazebo_quirks>`).
     """
 
+    options = OptionsOf(MagnetometerSystemOptions)
     parent_kind = "any"
     filenames = ("gz-sim-magnetometer-system",)
     names = ("gz::sim::systems::Magnetometer",)

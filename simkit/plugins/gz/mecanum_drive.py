@@ -15,11 +15,12 @@ from simkit.compiler.contact_friction import has_directional_friction
 from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.drives.odometry import COMMAND_TYPES, ODOMETRY, TRANSFORMS, odometry_message, transforms
-from simkit.plugins.drives.speed_limits import speed_limits
+from simkit.plugins.drives.speed_limits import SpeedLimitOptions, speed_limits
 from simkit.plugins.drives.steering import Motion, TravelOdometry, joint_angles
 from simkit.plugins.drives.wheel_joints import find_wheels
 from simkit.plugins.lookups import read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import OptionsOf, number, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -54,6 +55,22 @@ class MecanumOdometry(TravelOdometry):
         return ahead, left, turn / self._arm
 
 
+class MecanumDriveOptions(SpeedLimitOptions):
+    """Options of `MecanumDrive`."""
+
+    wheel_separation: float = number(1.0, "m", minimum=1e-6)
+    wheelbase: float = number(1.0, "m", minimum=1e-6)
+    wheel_radius: float = number(0.2, "m", minimum=1e-6)
+    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
+    front_left_joint: tuple[str, ...] = texts(required=True)
+    front_right_joint: tuple[str, ...] = texts(required=True)
+    back_left_joint: tuple[str, ...] = texts(required=True)
+    back_right_joint: tuple[str, ...] = texts(required=True)
+    topic: str = text()
+    odom_topic: str = text()
+    tf_topic: str = text()
+
+
 class MecanumDrive(ModelPlugin):
     """Drives four wheels with rollers from `/model/<model>/cmd_vel`: ahead, sideways and round.
 
@@ -61,18 +78,19 @@ class MecanumDrive(ModelPlugin):
     the middle of the wheels; its twist is the mean over the last ten steps.
     """
 
+    options = OptionsOf(MecanumDriveOptions)
     filenames = ("gz-sim-mecanum-drive-system",)
     drives = True
     names = ("gz::sim::systems::MecanumDrive",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        separation = params.number("wheel_separation", 1.0, minimum=1e-6)
-        self._arm = (separation + params.number("wheelbase", 1.0, minimum=1e-6)) / 2
-        self._radius = params.number("wheel_radius", 0.2, minimum=1e-6)
-        self._limits = speed_limits(params)
+        separation = self.options.wheel_separation
+        self._arm = (separation + self.options.wheelbase) / 2
+        self._radius = self.options.wheel_radius
+        self._limits = speed_limits(self.options)
         self._canonical = scene.canonical_link
         # gz publishes at every step where the frequency is zero
-        self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
+        self.after_step_rate = self.options.odom_publish_frequency
         named: dict[str, list[str]] = {}
         for place in _PLACES:
             elements = params.all(f"{place}_joint")

@@ -21,11 +21,25 @@ from simkit.plugins.drives.odometry import (
     transforms,
 )
 from simkit.plugins.lookups import read_topic
+from simkit.plugins.options import Options, OptionsOf, integer, number, text, vector3
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_from_rpy, quat_multiply, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
+
+
+class OdometryPublisherOptions(Options):
+    """Options of `OdometryPublisher`."""
+
+    dimensions: int = integer(2)
+    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
+    rpy_offset: tuple[float, float, float] = vector3(unit="rad")
+    xyz_offset: tuple[float, float, float] = vector3(unit="m")
+    gaussian_noise: float = number(0.0, minimum=0.0, maximum=LARGEST)
+    odom_covariance_topic: str = text()
+    odom_topic: str = text()
+    tf_topic: str = text()
 
 
 class OdometryPublisher(ModelPlugin):
@@ -37,20 +51,21 @@ class OdometryPublisher(ModelPlugin):
     covariance. The twist is the mean over the last ten steps, as Gazebo's is: 4.5 steps late.
     """
 
+    options = OptionsOf(OdometryPublisherOptions)
     filenames = ("gz-sim-odometry-publisher-system",)
     names = ("gz::sim::systems::OdometryPublisher",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
         self._canonical = scene.canonical_link
-        self._dimensions = params.integer("dimensions", 2)
+        self._dimensions = self.options.dimensions
         if self._dimensions not in (2, 3):
             element = params.child("dimensions") or params
             element.error("SK-PARAM-002", f"found <dimensions>{self._dimensions}</dimensions>, allowed is 2 or 3")
         # gz publishes at every step where the frequency is zero
-        self.after_step_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
-        turn = quat_from_rpy(*params.vector3("rpy_offset", (0.0, 0.0, 0.0)))
-        self._offset = Pose(params.vector3("xyz_offset", (0.0, 0.0, 0.0)), turn)
-        self._noise = params.number("gaussian_noise", 0.0, minimum=0.0, maximum=LARGEST)
+        self.after_step_rate = self.options.odom_publish_frequency
+        turn = quat_from_rpy(*self.options.rpy_offset)
+        self._offset = Pose(self.options.xyz_offset, turn)
+        self._noise = self.options.gaussian_noise
 
     def load(self, parent: Any, params: Params) -> None:
         own = f"/model/{parent.name}"

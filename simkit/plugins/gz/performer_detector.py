@@ -12,6 +12,7 @@ from simkit.plugins.base import ModelPlugin, WorldPlugin
 from simkit.plugins.gz_python.msgs.message import MESSAGE_CLASSES, Message
 from simkit.plugins.lookups import read_required_name, read_topic
 from simkit.plugins.on_demand import watch_while_subscribed
+from simkit.plugins.options import Options, OptionsOf, block, blocks, pose, text, texts, vector3
 from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
@@ -34,9 +35,37 @@ class Performer:
     half: tuple[float, float, float]
 
 
+class PerformersBoxOptions(Options):
+    """The `<box>` block."""
+
+    size: tuple[float, float, float] = vector3(required=True)
+
+
+class PerformersGeometryOptions(Options):
+    """The `<geometry>` block."""
+
+    box: PerformersBoxOptions = block(PerformersBoxOptions)
+
+
+class PerformersPerformerOptions(Options):
+    """The `<performer>` block."""
+
+    name: str = text(element="@name")
+    ref: str = text(required=True)
+    geometry: PerformersGeometryOptions = block(PerformersGeometryOptions)
+
+
+class PerformersOptions(Options):
+    """Options of `Performers`."""
+
+    performer: tuple[PerformersPerformerOptions, ...] = blocks(PerformersPerformerOptions)
+    level: tuple[str, ...] = texts()
+
+
 class Performers(WorldPlugin):
     """gz's `<plugin name="gz::sim">`: which models are performers. Levels are not simulated: all is always loaded."""
 
+    options = OptionsOf(PerformersOptions)
     names = ("gz::sim", "ignition::gazebo")
     lets_sleep = True
 
@@ -65,12 +94,41 @@ class Performers(WorldPlugin):
         """Nothing to do."""
 
 
+class PerformerDetectorBoxOptions(Options):
+    """The `<box>` block."""
+
+    size: tuple[float, float, float] = vector3(required=True)
+
+
+class PerformerDetectorGeometryOptions(Options):
+    """The `<geometry>` block."""
+
+    box: PerformerDetectorBoxOptions = block(PerformerDetectorBoxOptions)
+
+
+class PerformerDetectorHeaderDataOptions(Options):
+    """The `<header_data>` block."""
+
+    key: str = text()
+    value: str = text()
+
+
+class PerformerDetectorOptions(Options):
+    """Options of `PerformerDetector`."""
+
+    geometry: PerformerDetectorGeometryOptions = block(PerformerDetectorGeometryOptions)
+    pose: Pose = pose()
+    header_data: tuple[PerformerDetectorHeaderDataOptions, ...] = blocks(PerformerDetectorHeaderDataOptions)
+    topic: str = text()
+
+
 class PerformerDetector(ModelPlugin):
     """Says when a performer's box comes into the box of this model, and when it leaves it.
 
     Both boxes stay along the axes of the world, as in gz, however their models turn.
     """
 
+    options = OptionsOf(PerformerDetectorOptions)
     filenames = ("gz-sim-performer-detector-system",)
     names = ("gz::sim::systems::PerformerDetector",)
 
@@ -80,7 +138,7 @@ class PerformerDetector(ModelPlugin):
         if box.has("size") and min(size) <= 0.0:
             box.error("SK-PARAM-002", f"found a <box> of {size}, allowed are lengths above 0")
         self._half = size[0] / 2, size[1] / 2, size[2] / 2
-        self._offset = params.pose("pose").position
+        self._offset = self.options.pose.position
         self._is_centred = not self._offset.any()
         self._data = [pair for element in params.all("header_data") if (pair := self._read_data(element)) is not None]
 
@@ -114,11 +172,11 @@ class PerformerDetector(ModelPlugin):
         """Tells who came and who went."""
         there = self._found()
         names = tuple(name for name, _, is_inside in there if is_inside)
-        for name, pose, is_inside in there:
+        for name, place, is_inside in there:
             if is_inside != (name in self._inside):
                 kept = tuple(one for one in self._inside if one != name)
                 self._inside = (*kept, name) if is_inside else kept
-                self._tell(name, pose, is_inside)
+                self._tell(name, place, is_inside)
         self._inside = tuple(name for name in self._inside if name in names)  # without those that were removed
 
     def _performers(self) -> tuple[Performer, ...]:

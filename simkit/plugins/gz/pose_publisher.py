@@ -19,6 +19,8 @@ from simkit.plugins.drives.entity_poses import (
     transforms_message,
 )
 from simkit.plugins.drives.odometry import TRANSFORMS
+from simkit.plugins.endpoints import publishes
+from simkit.plugins.options import Options, OptionsOf, boolean, choice, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -35,6 +37,21 @@ _TYPES: Final = (
 """What a bridge may make of one gz pose."""
 
 
+class PosePublisherOptions(Options):
+    """Options of `PosePublisher`."""
+
+    publish_nested_model_pose: bool = boolean()
+    publish_link_pose: bool = boolean(True)
+    publish_visual_pose: bool = boolean()
+    publish_collision_pose: bool = boolean()
+    publish_sensor_pose: bool = boolean()
+    use_pose_vector_msg: bool = boolean()
+    pose_type: str = choice(_TYPES, STAMPED)
+    static_publisher: bool = boolean()
+    update_frequency: float = number(-1.0, "Hz")
+    topic: str = text()
+
+
 class PosePublisher(ModelPlugin):
     """Tells on `/model/<model>/pose` where the parts of its model are, each in the frame of what it is part of.
 
@@ -49,28 +66,33 @@ class PosePublisher(ModelPlugin):
     mean every step.
     """
 
+    endpoints = (
+        publishes("/model/{model}/pose", TRANSFORMS, STAMPED, named_by=("topic",)),
+        publishes("/model/{model}/pose_static", TRANSFORMS, STAMPED, named_by=("topic",)),
+    )
+    options = OptionsOf(PosePublisherOptions)
     filenames = ("gz-sim-pose-publisher-system",)
     names = ("gz::sim::systems::PosePublisher",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        nested = params.boolean("publish_nested_model_pose", False)
+        nested = self.options.publish_nested_model_pose
         self._wants = {
-            "link": params.boolean("publish_link_pose", True),
-            "visual": params.boolean("publish_visual_pose", False),
-            "collision": params.boolean("publish_collision_pose", False),
-            "sensor": params.boolean("publish_sensor_pose", False),
+            "link": self.options.publish_link_pose,
+            "visual": self.options.publish_visual_pose,
+            "collision": self.options.publish_collision_pose,
+            "sensor": self.options.publish_sensor_pose,
             "nested": nested,
             "model": params.boolean("publish_model_pose", nested),
         }
-        self._is_vector = params.boolean("use_pose_vector_msg", False)
-        self._type = params.choice("pose_type", _TYPES, STAMPED)
-        self._has_static = params.boolean("static_publisher", False)
-        self._rate = max(0.0, params.number("update_frequency", -1.0))
+        self._is_vector = self.options.use_pose_vector_msg
+        self._type = self.options.pose_type
+        self._has_static = self.options.static_publisher
+        self._rate = max(0.0, self.options.update_frequency)
         self._static_rate = self._rate
         if self._has_static:
             self._static_rate = max(0.0, params.number("static_update_frequency", self._rate))
         path = "".join(f"/model/{name}" for name in scene.scoped.split("::"))
-        self._topic = valid_topic(params.text("topic", "") or f"{path}/pose")
+        self._topic = valid_topic(self.options.topic or f"{path}/pose")
         self.after_step_rate = _common_rate(self._rate, self._static_rate)
 
     def load(self, parent: Model, params: Params) -> None:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 from simkit.params import Params
 from simkit.plugins.gz.gz_system import HOOKS, GzSystem, line_of
 from simkit.plugins.gz_python import import_hook
+from simkit.plugins.options import Options, OptionsOf, text
 from simkit.plugins.plugin_names import ENTRY_POINT_GROUP
 
 if TYPE_CHECKING:
@@ -28,6 +29,12 @@ SHADOW: Final = "SIMKIT_SHADOW_GZ"
 _NAME: Final = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*\Z")
 
 
+class PythonSystemLoaderOptions(Options):
+    """Options of `PythonSystemLoader`."""
+
+    module_name: str = text(required=True)
+
+
 class PythonSystemLoader(GzSystem):
     """Finds `<module_name>` in the folders that the user allows, and hangs what its `get_system()` gives on the entity.
 
@@ -36,11 +43,12 @@ class PythonSystemLoader(GzSystem):
     modules go before installed ones.
     """
 
+    options = OptionsOf(PythonSystemLoaderOptions)
     filenames = ("gz-sim-python-system-loader-system",)
     names = ("gz::sim::systems::PythonSystemLoader",)
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
-        self._module_name = params.text("module_name", required=True)
+        self._module_name = self.options.module_name
         asked = os.environ.get(SHADOW, "") not in ("", "0")
         self.shadow = params.boolean("shadow_gz", asked)
         self._module: types.ModuleType | None = None

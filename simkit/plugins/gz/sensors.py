@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin
+from simkit.plugins.options import Options, OptionsOf, boolean, vector
 from simkit.scene import Scene, SceneModel, ScenePlugin, SceneWorld, Surroundings
 from simkit.scene.model import Colour
 
@@ -18,6 +19,14 @@ _COLOURS = {"background_color": "background", "ambient_light": "ambient"}
 """Parameter -> the colour of the scene that it stands for."""
 
 
+class SensorsSystemOptions(Options):
+    """Options of `SensorsSystem`."""
+
+    disable_on_drained_battery: bool = boolean()
+    background_color: tuple[float, ...] = vector(None, size=4)
+    ambient_light: tuple[float, ...] = vector(None, size=4)
+
+
 class SensorsSystem(Plugin):
     """Tells cameras the colours of background and ambient light, in place of the scene's; the rest simkit does anyway.
 
@@ -26,6 +35,7 @@ class SensorsSystem(Plugin):
     The colours are taken by `with_sensors_colours`, before anything is built.
     """
 
+    options = OptionsOf(SensorsSystemOptions)
     parent_kind = "any"
     lets_sleep = True
     filenames = ("gz-sim-sensors-system",)
@@ -34,7 +44,7 @@ class SensorsSystem(Plugin):
 
     def prepare(self, scene: Any, params: Params, builder: SpecBuilder) -> None:
         given = {child.name for child in params.children} - {"disable_on_drained_battery"}
-        self.stops_without_power = params.boolean("disable_on_drained_battery", False)
+        self.stops_without_power = self.options.disable_on_drained_battery
         params.mark_all_read()
         used: list[str] = []
         beaten: list[str] = []

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from simkit.params import Params
 from simkit.plugins.base import Plugin, SensorPlugin
+from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.runtime.handles.visual_properties import HeatSignature, Temperature
 from simkit.scene import Atmosphere, SceneModel, SceneVisual
 
@@ -18,12 +19,22 @@ if TYPE_CHECKING:
 _WITHOUT_EFFECT = "SK-SENSOR-141"
 
 
+class ThermalOptions(Options):
+    """Options of `Thermal`."""
+
+    heat_signature: str = text()
+    temperature: float = number(None, "K")
+    min_temp: float = number(None, "K")
+    max_temp: float = number(None, "K")
+
+
 class Thermal(Plugin):
     """Gives its visual a temperature [K], or a picture of temperatures.
 
     On a model or a link, where it does nothing in Gazebo, it counts for every visual there that has none of its own.
     """
 
+    options = OptionsOf(ThermalOptions)
     parent_kind = ("visual", "model")
     lets_sleep = True
     filenames = ("gz-sim-thermal-system",)
@@ -111,9 +122,18 @@ def _sorted_range(given: tuple[float | None, float | None], sim: Simulation) -> 
     return min(low, high), max(low, high)
 
 
+class ThermalSensorOptions(Options):
+    """Options of `ThermalSensor`."""
+
+    resolution: float = number()
+    min_temp: float = number(0.0, "K", finite=False)
+    max_temp: float = number(math.inf, "K", finite=False)
+
+
 class ThermalSensor(SensorPlugin):
     """Sets the range [K] and the resolution [K] of a thermal camera."""
 
+    options = OptionsOf(ThermalSensorOptions)
     filenames = ("gz-sim-thermal-sensor-system",)
     names = ("gz::sim::systems::ThermalSensor",)
 
@@ -123,8 +143,8 @@ class ThermalSensor(SensorPlugin):
             params.mark_all_read()
             return
         resolution = self._resolution(params)
-        low = params.number("min_temp", 0.0, finite=False)
-        high = params.number("max_temp", math.inf, finite=False)
+        low = self.options.min_temp
+        high = self.options.max_temp
         if low > high:
             message = f"found <min_temp> {low:g} above <max_temp> {high:g}: all temperatures are shown, as in Gazebo"
             params.diagnostics.warning(_WITHOUT_EFFECT, message, params.block("min_temp").where)
@@ -134,7 +154,7 @@ class ThermalSensor(SensorPlugin):
     def _resolution(self, params: Params) -> float | None:
         if not params.has("resolution"):
             return None
-        found = params.number("resolution")
+        found = self.options.resolution
         if found > 0:
             return found
         message = f"found <resolution> {found:g}, allowed is a number above 0: the default is used, as in Gazebo"

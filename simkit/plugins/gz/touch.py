@@ -10,7 +10,9 @@ from simkit.diagnostics import did_you_mean
 from simkit.msgs.topics import valid_topic
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
+from simkit.plugins.endpoints import listens, offers, publishes
 from simkit.plugins.lookups import read_required_name
+from simkit.plugins.options import Options, OptionsOf, boolean, number, text, texts
 from simkit.runtime.contact.collision_contacts import Bools, collision_table, find_contacts
 
 if TYPE_CHECKING:
@@ -114,6 +116,17 @@ class TouchTimer(ModelPlugin):
             self.sim.reschedule()
 
 
+class TouchPluginOptions(Options):
+    """Options of `TouchPlugin`."""
+
+    target: str = text(required=True)
+    time: float = number(None, "s", minimum=0.0, maximum=1000000000.0, required=True)
+    namespace: str = text(required=True)
+    enabled: bool = boolean()
+    collision: tuple[str, ...] = texts()
+    create_contact_sensor_for_collision: bool = boolean()
+
+
 class TouchPlugin(TouchTimer):
     """Says once that its model has touched a target for a while without a break, then rests until it is enabled again.
 
@@ -122,6 +135,12 @@ class TouchPlugin(TouchTimer):
     `<target>`. Other things may be touched meanwhile, as in gz.
     """
 
+    endpoints = (
+        publishes("{namespace}/touched", BOOL),
+        listens("{namespace}/enable", BOOL),
+        offers("{namespace}/enable", SET_BOOL),
+    )
+    options = OptionsOf(TouchPluginOptions)
     filenames = ("gz-sim-touchplugin-system",)
     names = ("gz::sim::systems::TouchPlugin",)
 
@@ -129,7 +148,7 @@ class TouchPlugin(TouchTimer):
         self._read_common(scene, params, builder)
         collisions = [c for link in scene.links for c in link.collisions]
         self._named = self._find(collisions, scene, params)
-        self._may_create = params.boolean("create_contact_sensor_for_collision", False)
+        self._may_create = self.options.create_contact_sensor_for_collision
 
     def _find(self, collisions: list[SceneCollision], scene: SceneModel, params: Params) -> tuple[str, ...]:
         """Scoped names of the collisions that `<collision>` names."""

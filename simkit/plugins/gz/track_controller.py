@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.drives.odometry import ODOMETRY, BodyTwist, odometry_message
-from simkit.plugins.drives.speed_limits import SpeedLimiter
+from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import belt_of, needs_direction, report_missing_collisions
+from simkit.plugins.endpoints import listens, publishes
 from simkit.plugins.lookups import find_link, read_topic
 from simkit.plugins.on_demand import publish_while_subscribed
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import OptionsOf, boolean, number, text, vector3
 from simkit.pose import Pose
 from simkit.runtime.contact.belt import Belt, BeltMotion
 
@@ -21,9 +23,21 @@ if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
     from simkit.scene import SceneModel
 
-_BOUNDS = ("velocity", "acceleration", "jerk")
 SPEED = "std_msgs/msg/Float64"
 CENTRE = ("geometry_msgs/msg/Vector3", "geometry_msgs/msg/Point")
+
+
+class TrackControllerOptions(LimiterOptions):
+    """Options of `TrackController`."""
+
+    link: str = text(required=True)
+    track_orientation: tuple[float, float, float] = vector3()
+    max_command_age: float = number(math.inf, minimum=0, finite=False)
+    odometry_publish_frequency: float = number(50.0, "Hz", minimum=0)
+    debug: bool = boolean()
+    velocity_topic: str = text()
+    center_of_rotation_topic: str = text()
+    odometry_topic: str = text()
 
 
 class TrackController(ModelPlugin):
@@ -36,22 +50,30 @@ class TrackController(ModelPlugin):
     `/model/<model>/link/<link>/odometry`.
     """
 
+    endpoints = (
+        listens("/model/{model}/link/{link}/track_cmd_vel", SPEED, named_by=("velocity_topic",)),
+        listens(
+            "/model/{model}/link/{link}/track_cmd_center_of_rotation", *CENTRE, named_by=("center_of_rotation_topic",)
+        ),
+        publishes("/model/{model}/link/{link}/odometry", ODOMETRY, named_by=("odometry_topic",)),
+    )
+    options = OptionsOf(TrackControllerOptions)
     filenames = ("gz-sim-track-controller-system",)
     names = ("gz::sim::systems::TrackController",)
 
     def prepare(self, scene: SceneModel, params: Params, builder: SpecBuilder) -> None:
-        name = params.text("link", required=True)
+        name = self.options.link
         named = params.child("link")
         link = None if named is None or not name else find_link(scene, name, named)
         self._link, self._name = ("", name) if link is None else (link.scoped, name)
         self._is_directed = link is not None and needs_direction(link)
         if link is not None and named is not None:
             report_missing_collisions(link, named)
-        self._track = Pose.from_rpy(0.0, 0.0, 0.0, *params.vector3("track_orientation", (0.0, 0.0, 0.0)))
-        self._limiter = read_limiter(params)
-        self._patience = params.number("max_command_age", math.inf, minimum=0, finite=False)
-        self._odometry_rate = params.number("odometry_publish_frequency", 50.0, minimum=0)
-        if params.boolean("debug", False):
+        self._track = Pose.from_rpy(0.0, 0.0, 0.0, *self.options.track_orientation)
+        self._limiter = speed_limiter(self.options)
+        self._patience = self.options.max_command_age
+        self._odometry_rate = self.options.odometry_publish_frequency
+        if self.options.debug:
             params.diagnostics.note("SK-PLUGIN-100", "<debug> of a track draws nothing here", params.where)
 
     def load(self, parent: Any, params: Params) -> None:
@@ -134,18 +156,3 @@ class TrackController(ModelPlugin):
         """How far the belt has run [m], and how fast it does [m/s]."""
         pose, twist = Pose((self._way(self.sim.tick), 0.0, 0.0)), BodyTwist((self._speed, 0.0, 0.0))
         self._odometry.publish_later(partial(odometry_message, self.sim.time_ns, "", "", pose, twist))
-
-
-def read_limiter(params: Params) -> SpeedLimiter:
-    """Bounds of a speed: `<min_velocity>`, `<max_acceleration>` and the like; without one there is none.
-
-    A lower bound is not positive and an upper one not negative, so that it can stand still.
-    """
-    pairs = [
-        (
-            params.number(f"min_{quantity}", -math.inf, maximum=0.0, finite=False),
-            params.number(f"max_{quantity}", math.inf, minimum=0.0, finite=False),
-        )
-        for quantity in _BOUNDS
-    ]
-    return SpeedLimiter(*pairs)

@@ -18,11 +18,14 @@ from simkit.plugins.drives.odometry import (
     odometry_message,
     transforms,
 )
+from simkit.plugins.drives.speed_limits import LimiterOptions, speed_limiter
 from simkit.plugins.drives.tracks import TrackOdometry
-from simkit.plugins.gz.track_controller import CENTRE, SPEED, read_limiter
+from simkit.plugins.endpoints import listens, publishes
+from simkit.plugins.gz.track_controller import CENTRE, SPEED
 from simkit.plugins.lookups import find_link, find_named_link, read_topic
 from simkit.plugins.on_demand import publish_while_subscribed
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, block, blocks, boolean, number, text
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -42,6 +45,41 @@ class _Track:
     centre_topic: str
 
 
+class TrackedVehicleLeftTrackOptions(Options):
+    """The `<left_track>` block."""
+
+    link: str = text(required=True)
+    velocity_topic: str = text()
+    center_of_rotation_topic: str = text()
+
+
+class TrackedVehicleRightTrackOptions(Options):
+    """The `<right_track>` block."""
+
+    link: str = text(required=True)
+    velocity_topic: str = text()
+    center_of_rotation_topic: str = text()
+
+
+class TrackedVehicleOptions(Options):
+    """Options of `TrackedVehicle`."""
+
+    body_link: str = text(required=True)
+    left_track: tuple[TrackedVehicleLeftTrackOptions, ...] = blocks(TrackedVehicleLeftTrackOptions)
+    right_track: tuple[TrackedVehicleRightTrackOptions, ...] = blocks(TrackedVehicleRightTrackOptions)
+    tracks_separation: float = number(1.0, "m", minimum=1e-6)
+    steering_efficiency: float = number(0.5, minimum=1e-6)
+    tracks_height: float = number(0.2, "m", minimum=1e-6)
+    linear_velocity: LimiterOptions = block(LimiterOptions)
+    angular_velocity: LimiterOptions = block(LimiterOptions)
+    odom_publish_frequency: float = number(50.0, "Hz", minimum=0)
+    debug: bool = boolean()
+    topic: str = text()
+    steering_efficiency_topic: str = text()
+    odom_topic: str = text()
+    tf_topic: str = text()
+
+
 class TrackedVehicle(ModelPlugin):
     """Drives tracks, each with a `TrackController` of its own, from `/model/<model>/cmd_vel`.
 
@@ -50,6 +88,23 @@ class TrackedVehicle(ModelPlugin):
     vehicle is to turn. Odometry on `/model/<model>/odometry` is what wheels at these speeds would say.
     """
 
+    endpoints = (
+        publishes(
+            "/model/{model}/link/{link}/track_cmd_vel",
+            SPEED,
+            named_by=("left_track/velocity_topic", "right_track/velocity_topic"),
+        ),
+        publishes(
+            "/model/{model}/link/{link}/track_cmd_center_of_rotation",
+            "geometry_msgs/msg/Vector3",
+            named_by=("left_track/center_of_rotation_topic", "right_track/center_of_rotation_topic"),
+        ),
+        listens("/model/{model}/cmd_vel", *COMMAND_TYPES, named_by=("topic",)),
+        listens("/model/{model}/steering_efficiency", SPEED, named_by=("steering_efficiency_topic",)),
+        publishes("/model/{model}/odometry", ODOMETRY, named_by=("odom_topic",)),
+        publishes("/model/{model}/tf", TRANSFORMS, named_by=("tf_topic",)),
+    )
+    options = OptionsOf(TrackedVehicleOptions)
     filenames = ("gz-sim-tracked-vehicle-system",)
     names = ("gz::sim::systems::TrackedVehicle",)
     drives = True
@@ -58,12 +113,12 @@ class TrackedVehicle(ModelPlugin):
         own = params.has("body_link")
         self._body = find_named_link(scene, "body_link", params) if own else scene.canonical_link
         self._sides = [self._read_side(f"{side}_track", scene, params) for side in _SIDES]
-        self._separation = params.number("tracks_separation", 1.0, minimum=1e-6)
-        self._efficiency = params.number("steering_efficiency", 0.5, minimum=1e-6)
-        params.number("tracks_height", 0.2, minimum=1e-6)  # gz's odometry divides by it and multiplies again
-        self._limiters = [read_limiter(params.block(name)) for name in ("linear_velocity", "angular_velocity")]
-        self._odometry_rate = params.number("odom_publish_frequency", 50.0, minimum=0)
-        if params.boolean("debug", False):
+        self._separation = self.options.tracks_separation
+        self._efficiency = self.options.steering_efficiency
+        _ = self.options.tracks_height  # gz's odometry divides by it and multiplies again
+        self._limiters = [speed_limiter(self.options.linear_velocity), speed_limiter(self.options.angular_velocity)]
+        self._odometry_rate = self.options.odom_publish_frequency
+        if self.options.debug:
             params.diagnostics.note("SK-PLUGIN-100", "<debug> of a tracked vehicle draws nothing here", params.where)
 
     def _read_side(self, element: str, scene: SceneModel, params: Params) -> list[_Track]:

@@ -9,6 +9,7 @@ from simkit.params import Params
 from simkit.plugins.base import NEVER, ModelPlugin
 from simkit.plugins.lookups import find_named_link, read_topic
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, block, boolean, number, text, vector
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -25,6 +26,41 @@ _STRAIGHT: Final = math.radians(0.1)
 """Bearing at which `<zero_vel_on_bearing_reached>` stops the turning."""
 
 
+class TrajectoryFollowerWaypointsOptions(Options):
+    """The `<waypoints>` block."""
+
+    waypoint: tuple[float, ...] = vector(None, size=2)
+
+
+class TrajectoryFollowerCircleOptions(Options):
+    """The `<circle>` block."""
+
+    radius: float = number(0.0, "m", minimum=0.0, maximum=1000000000.0)
+
+
+class TrajectoryFollowerLineOptions(Options):
+    """The `<line>` block."""
+
+    direction: float = number(0.0)
+    length: float = number(0.0, "m", minimum=-1000000000.0, maximum=1000000000.0)
+
+
+class TrajectoryFollowerOptions(Options):
+    """Options of `TrajectoryFollower`."""
+
+    link_name: str = text(required=True)
+    waypoints: TrajectoryFollowerWaypointsOptions = block(TrajectoryFollowerWaypointsOptions)
+    circle: TrajectoryFollowerCircleOptions = block(TrajectoryFollowerCircleOptions)
+    line: TrajectoryFollowerLineOptions = block(TrajectoryFollowerLineOptions)
+    loop: bool = boolean()
+    force: float = number(60.0, "N")
+    torque: float = number(50.0, "N·m")
+    range_tolerance: float = number(0.5, minimum=0.0)
+    bearing_tolerance: float = number(2.0, minimum=0.0, maximum=180.0)
+    zero_vel_on_bearing_reached: bool = boolean()
+    topic: str = text()
+
+
 class TrajectoryFollower(ModelPlugin):
     """Pushes a link from waypoint to waypoint in the plane, by one force and one torque.
 
@@ -37,6 +73,7 @@ class TrajectoryFollower(ModelPlugin):
     gz pushes along the axes of `<inertial><pose>`; here it is the link's own, the same unless that pose is turned.
     """
 
+    options = OptionsOf(TrajectoryFollowerOptions)
     filenames = ("gz-sim-trajectory-follower-system",)
     names = ("gz::sim::systems::TrajectoryFollower",)
     drives = True
@@ -45,12 +82,12 @@ class TrajectoryFollower(ModelPlugin):
         self._scoped = find_named_link(scene, "link_name", params)
         start = next((one.pose_world for one in scene.all_links() if one.scoped == self._scoped), scene.pose_world)
         self._points = _waypoints(params, start, self.name)
-        self._loops = params.boolean("loop", False)
-        self._force = params.number("force", 60.0)
-        self._torque = params.number("torque", 50.0)
-        self._near = params.number("range_tolerance", 0.5, minimum=0.0)
-        self._ahead = math.radians(params.number("bearing_tolerance", 2.0, minimum=0.0, maximum=180.0))
-        self._stops_turning = params.boolean("zero_vel_on_bearing_reached", False)
+        self._loops = self.options.loop
+        self._force = self.options.force
+        self._torque = self.options.torque
+        self._near = self.options.range_tolerance
+        self._ahead = math.radians(self.options.bearing_tolerance)
+        self._stops_turning = self.options.zero_vel_on_bearing_reached
 
     def load(self, parent: Any, params: Params) -> None:
         self.once = OneTimeWarnings(self)

@@ -18,6 +18,7 @@ from simkit.plugins.gz_python.msgs.message_matcher import TOLERANCE, MessageMatc
 from simkit.plugins.gz_python.msgs.ros_conversion import SERVICE_REQUEST_TYPES, call_service, from_ros, to_ros, twins_of
 from simkit.plugins.gz_python.msgs.text_format import parse_message
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, blocks, integer, text
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -43,6 +44,48 @@ class _Request:
     answer: type[Message]
 
 
+class TriggeredPublisherOutputOptions(Options):
+    """The `<output>` block."""
+
+    type_: str = text(element="@type")
+    topic: str = text(element="@topic")
+
+
+class TriggeredPublisherServiceOptions(Options):
+    """The `<service>` block."""
+
+    name: str = text(element="@name")
+    req_msg: str = text(element="@reqMsg")
+    timeout: str = text(element="@timeout")
+    req_type: str = text(element="@reqType")
+    rep_type: str = text(element="@repType")
+
+
+class TriggeredPublisherMatchOptions(Options):
+    """The `<match>` block."""
+
+    field: str = text(element="@field")
+    logic_type: str = text("positive", element="@logic_type")
+    tol: str = text("1e-08", element="@tol")
+
+
+class TriggeredPublisherInputOptions(Options):
+    """The `<input>` block."""
+
+    type_: str = text(element="@type")
+    topic: str = text(element="@topic")
+    match: tuple[TriggeredPublisherMatchOptions, ...] = blocks(TriggeredPublisherMatchOptions)
+
+
+class TriggeredPublisherOptions(Options):
+    """Options of `TriggeredPublisher`."""
+
+    delay_ms: int = integer(0, maximum=10**12)
+    output: tuple[TriggeredPublisherOutputOptions, ...] = blocks(TriggeredPublisherOutputOptions)
+    service: tuple[TriggeredPublisherServiceOptions, ...] = blocks(TriggeredPublisherServiceOptions)
+    input: str = text(required=True)
+
+
 class TriggeredPublisher(WorldPlugin):
     """Publishes messages, and calls services, whenever a message comes that meets every `<match>`.
 
@@ -50,6 +93,7 @@ class TriggeredPublisher(WorldPlugin):
     what answers it goes out at once, or at the first step at or after `<delay_ms>` of simulated time.
     """
 
+    options = OptionsOf(TriggeredPublisherOptions)
     filenames = ("gz-sim-triggered-publisher-system",)
     names = ("gz::sim::systems::TriggeredPublisher",)
 
@@ -57,14 +101,14 @@ class TriggeredPublisher(WorldPlugin):
         self.once = OneTimeWarnings(self)
         self._due: deque[int] = deque()  # [ns]
         self.before_step_rate = NEVER
-        self._delay = max(0, params.integer("delay_ms", 0, maximum=10**12)) * _MS
+        self._delay = max(0, self.options.delay_ms) * _MS
         self._outputs = [out for element in params.all("output") if (out := self._read_output(element)) is not None]
         self._requests = [r for element in params.all("service") if (r := self._read_request(element)) is not None]
         if not params.all("output") and not params.all("service"):
             params.error("SK-PARAM-001", f"plugin {self.name!r} needs an <output> or a <service>")
         inputs = params.all("input")
         if not inputs:
-            params.text("input", required=True)
+            _ = self.options.input
         for extra in inputs[1:]:
             message = f"plugin {self.name!r} takes one <input>; another is not used"
             params.diagnostics.warning("SK-PLUGIN-124", message, extra.where, "a plugin for each input")

@@ -14,6 +14,7 @@ from simkit.plugins.drives.kinematic_motion import KinematicMotion, KinematicMov
 from simkit.plugins.drives.odometry import COMMAND_TYPES
 from simkit.plugins.lookups import find_link
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import Options, OptionsOf, text, texts
 
 if TYPE_CHECKING:
     from simkit.compiler import SpecBuilder
@@ -21,6 +22,13 @@ if TYPE_CHECKING:
     from simkit.scene import SceneModel
 
 Motion = tuple[Triple, Triple]
+
+
+class VelocityControlOptions(Options):
+    """Options of `VelocityControl`."""
+
+    topic: str = text()
+    link_name: tuple[str, ...] = texts()
 
 
 class VelocityControl(ModelPlugin):
@@ -32,6 +40,7 @@ class VelocityControl(ModelPlugin):
     and all that joints tie it to are moved with that.
     """
 
+    options = OptionsOf(VelocityControlOptions)
     filenames = ("gz-sim-velocity-control-system",)
     names = ("gz::sim::systems::VelocityControl",)
     drives = True
@@ -42,7 +51,7 @@ class VelocityControl(ModelPlugin):
             _float_triple(params.vector3("initial_linear", zero)),
             _float_triple(params.vector3("initial_angular", zero)),
         )
-        self._topic = params.text("topic", "")
+        self._topic = self.options.topic
         found = [(element.value, find_link(scene, element.value, params)) for element in params.all("link_name")]
         self._link_names = {name: link.scoped for name, link in found if link is not None}
         self._links = {link.scoped: link.pose_world for link in scene.all_links()}

@@ -11,9 +11,10 @@ from simkit.params import Params
 from simkit.plugins.base import ModelPlugin
 from simkit.plugins.joints.joint_axis import JointAxis, find_joints
 from simkit.plugins.joints.kinematic_trees import KinematicTrees
-from simkit.plugins.joints.pid import FIELDS, Pid
+from simkit.plugins.joints.pid import FIELDS, Pid, PidOptions
 from simkit.plugins.joints.velocity_servo import VelocityServo
 from simkit.plugins.one_time_warnings import OneTimeWarnings
+from simkit.plugins.options import OptionsOf, boolean, integer, text, texts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,6 +65,16 @@ class ControlledJoints:
         )
 
 
+class JointCommandOptions(PidOptions):
+    """Options that all systems which command joints have."""
+
+    joint_names: tuple[str, ...] = texts(element="joint_name", required=True)
+    use_actuator_msg: bool = boolean()
+    actuator_number: int = integer(0, minimum=0)
+    sub_topic: str = text()
+    topic: str = text()
+
+
 class JointCommander(ControlledJoints, ModelPlugin):
     """Base of the systems that bring one or more joints to a commanded value, that of the first for all.
 
@@ -75,6 +86,7 @@ class JointCommander(ControlledJoints, ModelPlugin):
         target_element: element that holds the first target.
     """
 
+    options = OptionsOf(JointCommandOptions)
     drives = True
     own_topic: str = ""
     actuator_field: ClassVar[str]
@@ -112,18 +124,18 @@ class JointCommander(ControlledJoints, ModelPlugin):
     def _listen(self, parent: Any, params: Params) -> None:
         """Opens the topic that commands come on, by gz's rules: `<topic>`, else `<sub_topic>`, else its own."""
         self._number = -1
-        if params.boolean("use_actuator_msg", False):
+        if self.options.use_actuator_msg:
             if params.has("actuator_number"):
-                self._number = params.integer("actuator_number", 0, minimum=0)
+                self._number = self.options.actuator_number
             else:
                 message = "<use_actuator_msg> needs <actuator_number>; commands are taken as single numbers"
                 self.once.warn("SK-PLUGIN-042", "number", message)
         else:
-            params.integer("actuator_number", 0, minimum=0)
+            _ = self.options.actuator_number
         own = f"/model/{parent.name}"
         topic = "/actuators" if self._number >= 0 else f"{own}/{self.own_topic}"
-        inner = params.text("sub_topic", "")
-        topic = params.text("topic", "") or (f"{own}/{inner}" if inner else topic)
+        inner = self.options.sub_topic
+        topic = self.options.topic or (f"{own}/{inner}" if inner else topic)
         if self._number >= 0:
             self.listen(valid_topic(topic), ACTUATORS, self._on_actuators)
         else:

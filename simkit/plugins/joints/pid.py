@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from simkit.plugins.options import Options, number
+
 if TYPE_CHECKING:
     from simkit.plugins.base import Plugin
 
@@ -22,16 +24,36 @@ FIELDS: Final[Mapping[str, str]] = {
 }
 """Element of gz's joint systems -> attribute of `Pid`."""
 
-_MEANINGS: Final[Mapping[str, str]] = {
-    "p_gain": "proportional gain: effort [N·m or N] per error",
-    "i_gain": "integral gain: effort [N·m or N] per error and second",
-    "d_gain": "derivative gain: effort [N·m or N] per error's rate",
-    "i_max": "upper bound of the integral's part of the effort [N·m or N]; no bound where it is below i_min",
-    "i_min": "lower bound of the integral's part of the effort [N·m or N]",
-    "cmd_max": "upper bound of the effort [N·m or N]; no bound where it is below cmd_min",
-    "cmd_min": "lower bound of the effort [N·m or N]",
-    "cmd_offset": "added to the effort [N·m or N]",
-}
+_EFFORT: Final = "N·m or N"
+
+
+class PidOptions(Options):
+    """The numbers of a PID that gives an effort, as live parameters."""
+
+    p_gain: float = number(1.0, _EFFORT, is_live=True, description="proportional gain: effort [N·m or N] per error")
+    i_gain: float = number(
+        0.0, _EFFORT, is_live=True, description="integral gain: effort [N·m or N] per error and second"
+    )
+    d_gain: float = number(
+        0.0, _EFFORT, is_live=True, description="derivative gain: effort [N·m or N] per error's rate"
+    )
+    i_max: float = number(
+        1.0,
+        _EFFORT,
+        is_live=True,
+        description="upper bound of the integral's part of the effort [N·m or N]; no bound where it is below i_min",
+    )
+    i_min: float = number(
+        -1.0, _EFFORT, is_live=True, description="lower bound of the integral's part of the effort [N·m or N]"
+    )
+    cmd_max: float = number(
+        1000.0,
+        _EFFORT,
+        is_live=True,
+        description="upper bound of the effort [N·m or N]; no bound where it is below cmd_min",
+    )
+    cmd_min: float = number(-1000.0, _EFFORT, is_live=True, description="lower bound of the effort [N·m or N]")
+    cmd_offset: float = number(0.0, _EFFORT, is_live=True, description="added to the effort [N·m or N]")
 
 
 @dataclass(slots=True)
@@ -162,7 +184,7 @@ def declare_pid(
         parameter = plugin.declare(
             prefix + name,
             float(getattr(first, attribute)),
-            description=_MEANINGS[name],
+            description=PidOptions.fields()[name].description,
             element=(elements or {}).get(name, prefix + name),
             on_change=take,
         )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from simkit.params import LARGEST, Params
 from simkit.plugins.base import WorldPlugin
 from simkit.plugins.lookups import find_light
+from simkit.plugins.options import Options, OptionsOf, number, text
 from simkit.plugins.world.sun_position import Site, SunPath, clear_sky
 from simkit.pose import Pose
 from simkit.scene import Atmosphere
@@ -29,6 +30,22 @@ _INSTALL = "pip install 'simkit-robotics[sun]'"
 _DATE = "a date and time such as 2024-06-21T10:30:00Z (UTC where no offset is given)"
 
 
+class SunOptions(Options):
+    """Options of `Sun`."""
+
+    start: str = text()
+    time_scale: float = number(1.0, minimum=0, maximum=_FASTEST)
+    update_rate: float = number(10.0, "Hz", minimum=0)
+    latitude_deg: float = number(0.0, "deg", minimum=-90.0, maximum=90.0)
+    longitude_deg: float = number(0.0, "deg", minimum=-360.0, maximum=360.0)
+    elevation: float = number(0.0, minimum=-500.0, maximum=11000.0)
+    heading_deg: float = number(0.0, minimum=-360.0, maximum=360.0)
+    pressure: float = number("{pressure}", minimum=0.0, maximum=1000000.0)
+    temperature: float = number(285.15, "K", minimum=1.0, maximum=1000.0)
+    irradiance: str = text("clear_sky")
+    light_name: str = text()
+
+
 class Sun(WorldPlugin):
     """Moves a directional light as the sun moves: its pose, its direction, whether it shines, and its irradiance.
 
@@ -41,13 +58,14 @@ class Sun(WorldPlugin):
     light moves; whatever measures the light has the sun of its own time, exactly.
     """
 
+    options = OptionsOf(SunOptions)
     names = ("simkit::Sun",)
     filenames = ("simkit-sun",)
 
     def prepare(self, scene: SceneWorld, params: Params, builder: SpecBuilder) -> None:
         self._start = _start(params)
-        self._scale = params.number("time_scale", 1.0, minimum=0, maximum=_FASTEST)
-        self.before_step_rate = params.number("update_rate", 10.0, minimum=0)
+        self._scale = self.options.time_scale
+        self.before_step_rate = self.options.update_rate
         self._site = _site(params, scene.spherical_coordinates)
         self._irradiance = _irradiance(params)
         self._path: SunPath | None = None

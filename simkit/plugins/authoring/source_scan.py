@@ -1,0 +1,385 @@
+"""Find what a class's source reads from `Params` and which topics and services it opens, where it says so literally.
+
+The source is parsed and nothing of it runs. Methods of the class and of those above it are looked through, and the
+functions of their modules that they call. A name that only a run knows appears as `{hole}`.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import inspect
+import sys
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from types import FunctionType, ModuleType
+from typing import Any, Final
+
+from simkit.plugins.authoring.parameter_units import unit_of
+from simkit.plugins.authoring.plugin_facts import Facts, Parameter, Service, Topic, merged, merged_topics
+from simkit.plugins.base import Plugin
+from simkit.plugins.options import Options
+
+_READERS: Final = {
+    **{name: name for name in ("text", "number", "integer", "boolean", "vector", "pose", "choice")},
+    "vector3": "vector",
+    "child": "",
+    "block": "",
+    "all": "",
+    "has": "",
+    "each": "",
+    "attribute": "text",
+    # how systems of gz read
+    "find_element": "",
+    "get_element": "",
+    "has_element": "",
+    "get_string": "text",
+    "get_bool": "boolean",
+    **dict.fromkeys(("get_int", "get_uint", "get_uint64"), "integer"),
+    **dict.fromkeys(("get_double", "get_float", "get_angle"), "number"),
+    **dict.fromkeys(("get_vector2d", "get_vector2i", "get_vector3d", "get_quaterniond", "get_color"), "vector"),
+    "get_pose": "pose",
+}
+_ARGUMENTS: Final = {
+    "vector": ("size", "default", "required"),
+    "choice": ("allowed", "default", "required"),
+    "number": ("default", "required", "minimum", "maximum"),
+    "integer": ("default", "required", "minimum", "maximum"),
+}
+_INNER: Final = {"child", "block", "all", "find_element", "get_element"}
+_DEEPEST: Final = 12
+
+
+@dataclass
+class _Function:
+    """A function's syntax, its module, its lines, and what its local names and the class's attributes are set to."""
+
+    node: ast.FunctionDef
+    module: ModuleType
+    lines: list[str]
+    names: dict[str, ast.expr] = field(default_factory=dict)
+
+    @property
+    def blocks(self) -> frozenset[str]:
+        """Names of the plugin's parameters: that of `load`'s or `configure`'s argument too."""
+        arguments = [argument.arg for argument in self.node.args.args]
+        is_hook = self.node.name in ("load", "prepare", "configure")
+        return frozenset(
+            ("params", "sdf", *(arguments[-1:] if self.node.name == "load" else arguments[:3] if is_hook else ()))
+        )
+
+
+def scan(cls: type[Any], parent: str) -> Facts:
+    """What the source of a class reads and opens.
+
+    Args:
+        cls: the class.
+        parent: what a plugin of it hangs on, for the names of topics.
+    """
+    return _Scan(parent).run([cls, *(c for c in cls.__mro__[1:] if c not in Plugin.__mro__)])
+
+
+def scan_function(function: Any) -> Facts:
+    """What a function reads."""
+    return _Scan("model").run([function]) if isinstance(function, FunctionType) else Facts()
+
+
+class _Scan:
+    """One look through a class.
+
+    Args:
+        parent: the kind of entity that `parent` stands for.
+    """
+
+    def __init__(self, parent: str) -> None:
+        self._parent = parent
+        self._parameters: list[Parameter] = []
+        self._topics: list[Topic] = []
+        self._services: list[Service] = []
+        self._attributes: dict[str, ast.expr] = {}
+        self._function: _Function
+
+    def run(self, starts: list[Any]) -> Facts:
+        functions: dict[Any, _Function] = {}
+        waiting = [f for start in starts for f in (_methods(start) if inspect.isclass(start) else [start])]
+        while waiting:
+            function = waiting.pop(0)
+            found = None if function in functions else _parsed(function)
+            if found is not None:
+                functions[function] = found
+                waiting += _named_functions(found)
+        for found in functions.values():
+            for name, value in _assignments(found.node):
+                (self._attributes if name.startswith("self.") else found.names).setdefault(name, value)
+        for found in functions.values():
+            self._function = found
+            for node in ast.walk(found.node):
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                    self._call(node, node.func)
+        return Facts(merged(self._parameters), merged_topics(self._topics), tuple(dict.fromkeys(self._services)))
+
+    def _call(self, node: ast.Call, method: ast.Attribute) -> None:
+        name = method.attr
+        named = {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
+        if name in _READERS and (node.args or "name" in named):
+            self._read(node, method, named)
+        elif name == "declare" and node.args:
+            self._declare(node, named)
+        elif name in ("advertise", "listen") and len(node.args) > 1:
+            topic, elements = self._topic(node.args[0])
+            types = self._value(node.args[1])
+            kinds = tuple(map(str, types)) if isinstance(types, (tuple, list)) else (_shown(types),)
+            self._topics.append(Topic(topic, kinds, name == "advertise", "latched" in named, elements))
+        elif name in ("offer", "act") and len(node.args) > 1:
+            service, elements = self._topic(node.args[0])
+            self._services.append(Service(service, _shown(self._value(node.args[1])), elements, name == "act"))
+
+    # ------------------------------------------------------------------ parameters
+
+    def _read(self, node: ast.Call, method: ast.Attribute, named: dict[str, ast.expr]) -> None:
+        value = self._value(node.args[0] if node.args else named["name"])
+        above = self._path(method.value)
+        if not isinstance(value, str) or above is None or not value or "{" in value:
+            return
+        path = (*above, f"@{value}" if method.attr == "attribute" else value)
+        kind = _READERS[method.attr]
+        order = ("default",) if method.attr == "vector3" else _ARGUMENTS.get(kind, ("default", "required"))
+        told = {name: self._value(arg) for name, arg in zip(order, node.args[1:], strict=False)}
+        told |= {name: self._value(arg) for name, arg in named.items() if name != "name"}
+        default, instead = told.get("default"), self._instead(node.args[1:2])
+        line = self._function.lines[node.lineno - 1] if node.lineno <= len(self._function.lines) else ""
+        size = 3 if method.attr == "vector3" else told.get("size")
+        choices = told.get("allowed", ())
+        self._parameters.append(
+            Parameter(
+                path,
+                kind,
+                None if default is None else _plain(default),
+                instead,
+                told.get("required") is True,
+                _bound(told.get("minimum")),
+                _bound(told.get("maximum")),
+                tuple(map(_shown, choices)) if isinstance(choices, (tuple, list)) else (),
+                size if isinstance(size, int) else None,
+                repeated=method.attr in ("all", "each"),
+                unit=unit_of(path[-1], kind, "", line),
+            )
+        )
+
+    def _declare(self, node: ast.Call, named: dict[str, ast.expr]) -> None:
+        element = self._value(named.get("element", node.args[0]))
+        default = self._value(node.args[1]) if len(node.args) > 1 else None
+        if not isinstance(element, str) or element.startswith("{"):
+            return
+        kinds = ((bool, "boolean"), (int, "integer"), (float, "number"), (tuple, "vector"), (str, "text"))
+        kind = next((kind for type_, kind in kinds if isinstance(default, type_)), "number")
+        told = {name: self._value(value) for name, value in named.items()}
+        says, choices = _shown(told.get("description", "")), told.get("choices", ())
+        known = tuple(map(_shown, choices)) if isinstance(choices, (tuple, list)) else ()
+        self._parameters.append(
+            Parameter(
+                (element,),
+                "choice" if known and kind == "text" else kind,
+                None if default is None else _plain(default),
+                minimum=_bound(told.get("minimum")),
+                maximum=_bound(told.get("maximum")),
+                choices=known,
+                size=len(default) if isinstance(default, tuple) else None,
+                live=True,
+                says=says,
+                unit=unit_of(element, kind, says),
+            )
+        )
+
+    def _path(self, node: ast.expr, depth: int = 0) -> tuple[str, ...] | None:
+        """The elements above what a block reads: none for the plugin's own; None where it is no block."""
+        if (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Attribute)
+            and node.func.attr in _INNER
+            and node.args
+        ):
+            inner, above = self._value(node.args[0]), self._path(node.func.value, depth + 1)
+            return None if above is None or not isinstance(inner, str) else (*above, inner)
+        assigned = self._assigned(node)
+        if assigned is not None and depth < _DEEPEST:
+            return self._path(assigned, depth + 1)
+        name = node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+        return () if name in self._function.blocks else None
+
+    def _instead(self, args: list[ast.expr]) -> tuple[str, ...]:
+        """The element whose value is another's default."""
+        for arg in args:
+            node = self._assigned(arg) or arg
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _READERS:
+                value = self._value(node.args[0]) if node.args else None
+                return (value,) if isinstance(value, str) else ()
+        return ()
+
+    # ------------------------------------------------------------------ topics
+
+    def _topic(self, node: ast.expr, depth: int = 0) -> tuple[str, tuple[str, ...]]:
+        """A topic's name, and the elements that change it."""
+        if depth > _DEEPEST:
+            return "{topic}", ()
+        if isinstance(node, ast.BoolOp):
+            return self._first_topic(node.values, depth)
+        if isinstance(node, ast.IfExp):
+            return self._first_topic([node.body, node.orelse], depth)
+        if isinstance(node, ast.Call):
+            name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            if name == "read_topic" and len(node.args) > 2:
+                topic, elements = self._topic(node.args[2], depth + 1)
+                return topic, (_shown(self._value(node.args[1])), *elements)
+            if name == "private_topic" and len(node.args) > 2:
+                return f"~/{_shown(self._value(node.args[1]))}", (_shown(self._value(node.args[2])),)
+            if name == "text" and node.args:
+                default = self._topic(node.args[1], depth + 1)[0] if len(node.args) > 1 else ""
+                return default, (_shown(self._value(node.args[0])),)
+            if node.args and name in ("valid_topic", "topic", "str"):
+                return self._topic(node.args[0], depth + 1)
+        assigned = self._assigned(node)
+        if assigned is not None:
+            return self._topic(assigned, depth + 1)
+        return _shown(self._value(node)), ()
+
+    def _first_topic(self, nodes: list[ast.expr], depth: int) -> tuple[str, tuple[str, ...]]:
+        found = [self._topic(node, depth + 1) for node in nodes]
+        named = next((name for name, _ in found if name and not name.startswith("{")), found[0][0])
+        return named, tuple(dict.fromkeys(element for _, elements in found for element in elements))
+
+    # ------------------------------------------------------------------ values
+
+    def _assigned(self, node: ast.expr) -> ast.expr | None:
+        if isinstance(node, ast.Name):
+            return self._function.names.get(node.id)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+            return self._attributes.get(f"self.{node.attr}")
+        return None
+
+    def _value(self, node: ast.expr, depth: int = 0) -> Any:
+        """The value of an expression; a text with a hole where only a run knows it."""
+        if isinstance(node, ast.JoinedStr):
+            parts = [part.value if isinstance(part, ast.FormattedValue) else part for part in node.values]
+            return "".join(_shown(self._value(part, depth + 1)) for part in parts)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            left, right = self._value(node.left, depth + 1), self._value(node.right, depth + 1)
+            if isinstance(left, str) or isinstance(right, str):
+                return _shown(left) + _shown(right)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+            own = self._attributes.get(f"self.{node.attr}")
+            if own is not None and depth < _DEEPEST:
+                return self._value(own, depth + 1)
+        if isinstance(node, ast.Name) and node.id in self._function.names and depth < _DEEPEST:
+            return self._value(self._function.names[node.id], depth + 1)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _READERS:
+            return self._value(node.args[1], depth + 1) if len(node.args) > 1 else _hole(node)
+        known = _constant(node, self._function.module)
+        return self._noun(node) if known is None and not _is_none(node) else known
+
+    def _noun(self, node: ast.expr) -> str:
+        if isinstance(node, ast.Attribute) and node.attr in ("name", "scoped"):
+            owner = node.value
+            word = owner.attr if isinstance(owner, ast.Attribute) else getattr(owner, "id", "name")
+            return "{" + (self._parent if word in ("parent", "self") else word.strip("_")) + "}"
+        return _hole(node)
+
+
+def _is_own(module: str) -> bool:
+    """Whether a module is simkit's, whose plugins declare what their helpers read."""
+    return module.startswith("simkit.")
+
+
+def _methods(cls: type[Any]) -> list[FunctionType]:
+    found = (getattr(f, "__func__", getattr(f, "fget", f)) for f in vars(cls).values())
+    return [f for f in found if isinstance(f, FunctionType)]
+
+
+@functools.cache
+def _source(function: FunctionType) -> tuple[ast.FunctionDef, list[str]] | None:
+    try:
+        text = textwrap.dedent(inspect.getsource(function))
+        node = ast.parse(text).body[0]
+    except (OSError, TypeError, SyntaxError, IndexError):
+        return None
+    return (node, text.splitlines()) if isinstance(node, ast.FunctionDef) else None
+
+
+def _parsed(function: FunctionType) -> _Function | None:
+    found, module = _source(function), sys.modules.get(function.__module__)
+    return None if found is None or module is None else _Function(found[0], module, found[1])
+
+
+def _named_functions(function: _Function) -> Iterator[FunctionType]:
+    """The functions, and the methods of classes, of its own module that a function calls by name."""
+    for node in ast.walk(function.node):
+        if isinstance(node, ast.Call):
+            target = _constant(node.func, function.module)
+            if getattr(target, "__module__", "") != function.module.__name__ or _is_own(function.module.__name__):
+                continue
+            if isinstance(target, FunctionType):
+                yield target
+            elif inspect.isclass(target) and not issubclass(target, (Plugin, Options)):
+                yield from _methods(target)
+
+
+def _assignments(node: ast.FunctionDef) -> Iterator[tuple[str, ast.expr]]:
+    """What each local name and attribute is first set to."""
+    for inner in ast.walk(node):
+        targets = inner.targets if isinstance(inner, ast.Assign) else []
+        targets = [inner.target] if isinstance(inner, (ast.AnnAssign, ast.NamedExpr)) and inner.value else targets
+        if isinstance(inner, (ast.For, ast.comprehension)) and isinstance(inner.iter, ast.Call):
+            yield ast.unparse(inner.target), inner.iter
+        for target in targets:
+            pairs = [(target, inner.value)]
+            if isinstance(target, ast.Tuple) and isinstance(inner.value, ast.Tuple):
+                pairs = list(zip(target.elts, inner.value.elts, strict=False))
+            for name, value in pairs:
+                if isinstance(name, (ast.Name, ast.Attribute)):
+                    yield ast.unparse(name), value
+
+
+def _constant(node: ast.expr, module: ModuleType) -> Any:
+    """The value of an expression of literals and of names of the module; None where it is none."""
+    match node:
+        case ast.Constant(value=value):
+            return value
+        case ast.Name(id=name):
+            return getattr(module, name, None)
+        case ast.Attribute(value=ast.Name(id=owner), attr=name):
+            found = getattr(module, owner, None)
+            return getattr(found, name, None) if isinstance(found, ModuleType) or inspect.isclass(found) else None
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            inner = _constant(operand, module)
+            return -inner if isinstance(inner, (int, float)) else None
+        case ast.Tuple(elts=items) | ast.List(elts=items):
+            values = tuple(_constant(item, module) for item in items)
+            return None if None in values else values
+        case ast.Call(func=ast.Name(id="tuple" | "list" | "sorted"), args=[only]):
+            inner = _constant(only, module)
+            return None if inner is None else tuple(inner)
+    return None
+
+
+def _is_none(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and node.value is None
+
+
+def _hole(node: ast.expr) -> str:
+    while isinstance(node, (ast.Call, ast.Subscript)):
+        node = node.func if isinstance(node, ast.Call) else node.value
+    word = node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "…")
+    return "{" + word.strip("_").rsplit("_", 1)[-1] + "}"
+
+
+def _shown(value: Any) -> str:
+    return value if isinstance(value, str) else str(value)
+
+
+def _plain(value: Any) -> Any:
+    return value if isinstance(value, (bool, int, float, str, tuple)) else str(value)
+
+
+def _bound(value: Any) -> float | None:
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None

@@ -1,0 +1,312 @@
+"""Options of a plugin: a class whose fields say which element each is read from, its default, unit and bounds.
+
+    class BeltOptions(Options):
+        speed: float = number(0.5, "m/s", minimum=0.0)
+        is_reversed: bool = boolean(element="reverse")
+
+    class Belt(ModelPlugin):
+        options = OptionsOf(BeltOptions)
+
+        def load(self, parent, params):
+            self._speed = self.options.speed
+
+A field is read from the file when it is first used, and once: an element that a plugin does not need stays unread and
+is reported. `simkit plugin info` shows the fields, and the report of an element that nobody read suggests their names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any, Generic, Literal, TypeVar, overload
+
+from simkit.params import Params
+from simkit.pose import IDENTITY, Pose
+
+OptionKind = Literal["number", "integer", "boolean", "text", "vector", "pose", "choice", "block", ""]
+OptionsKind = TypeVar("OptionsKind", bound="Options")
+OptionsKind_co = TypeVar("OptionsKind_co", bound="Options", covariant=True)
+
+
+class Options:
+    """Options in one block of a file.
+
+    Args:
+        params: the block.
+
+    Attributes:
+        is_given: whether the file has the block.
+    """
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.is_given = True
+        self._values: dict[str, Any] = {}
+
+    @classmethod
+    def fields(cls) -> dict[str, Option]:
+        """The options by the names of their fields, those of base classes first."""
+        return {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items() if isinstance(v, Option)}
+
+    @classmethod
+    def element_names(cls) -> Iterator[str]:
+        """Names of all elements that are read, those within blocks too."""
+        for option in cls.fields().values():
+            yield option.element
+            if option.options is not None:
+                yield from option.options.element_names()
+
+    def __deepcopy__(self, memo: dict[int, object]) -> Options:
+        return self
+
+
+class Option:
+    """One element that a plugin reads; a field of a class of options.
+
+    Attributes:
+        kind: type of its value; empty where the element is known and has no effect.
+        element: its name in the file, `@name` for an attribute; that of the field unless given.
+        default: value where the file says nothing; of one that the code computes, how it is shown.
+        unit: SI unit; empty where it has none.
+        minimum, maximum: bounds of a number.
+        finite: whether a number must be finite.
+        choices: the words allowed.
+        size: how many numbers a vector has.
+        required: whether the file must have it.
+        repeated: whether every element of that name counts.
+        instead: field whose value is the default.
+        options: class of the options in a block.
+        is_live: whether it is a live parameter, which `Plugin.declare` reads.
+        description: what it is, where its name does not tell.
+    """
+
+    def __init__(
+        self,
+        kind: OptionKind,
+        element: str = "",
+        default: Any = None,
+        unit: str = "",
+        *,
+        minimum: float | None = None,
+        maximum: float | None = None,
+        finite: bool = True,
+        choices: Sequence[str] = (),
+        size: int | None = None,
+        required: bool = False,
+        repeated: bool = False,
+        instead: str = "",
+        options: type[Options] | None = None,
+        is_live: bool = False,
+        description: str = "",
+    ) -> None:
+        self.kind, self.element, self.default, self.unit = kind, element, default, unit
+        self.minimum, self.maximum, self.finite, self.choices = minimum, maximum, finite, tuple(choices)
+        self.size, self.required, self.repeated, self.instead = size, required, repeated, instead
+        self.options, self.is_live, self.description = options, is_live, description
+        self.name = element
+
+    def __set_name__(self, owner: type[Options], name: str) -> None:
+        self.name, self.element = name, self.element or name
+
+    def __get__(self, options: Options | None, owner: type[Options]) -> Any:
+        if options is None:
+            return self
+        if self.name not in options._values:
+            default = getattr(options, self.instead) if self.instead else self.default
+            options._values[self.name] = self._read(options.params, default)
+        return options._values[self.name]
+
+    def _read(self, params: Params, default: Any) -> Any:
+        name, required = self.element, self.required
+        if self.options is not None:
+            if self.repeated:
+                return tuple(self.options(block) for block in params.all(name))
+            inside = self.options(params.block(name))
+            inside.is_given = any(child.name == name for child in params.children)
+            return inside
+        if name.startswith("@"):
+            return params.attribute(name[1:], default)
+        if self.repeated:
+            if self.kind == "number":
+                return tuple(one.number(name, minimum=self.minimum, maximum=self.maximum) for one in params.each(name))
+            found = params.all(name)
+            if required and not found:
+                params.text(name, required=True)
+            return tuple(element.value for element in found)
+        match self.kind:
+            case "number":
+                return params.number(name, default, required, self.minimum, self.maximum, self.finite)
+            case "integer":
+                low, high = (None if bound is None else int(bound) for bound in (self.minimum, self.maximum))
+                return params.integer(name, default, required, low, high)
+            case "boolean":
+                return params.boolean(name, default, required)
+            case "text":
+                return params.text(name, default, required)
+            case "vector":
+                return params.vector(name, self.size or len(default), default, required)
+            case "pose":
+                return params.pose(name, default)
+            case "choice":
+                return params.choice(name, self.choices, default, required)
+        return params.child(name) is not None
+
+
+class OptionsOf(Generic[OptionsKind_co]):
+    """The options of a plugin, read from its parameters; an attribute of its class.
+
+    Args:
+        kind: their class.
+    """
+
+    def __init__(self, kind: type[OptionsKind_co]) -> None:
+        self.kind = kind
+
+    @overload
+    def __get__(self, plugin: None, owner: type[Any]) -> OptionsOf[OptionsKind_co]: ...
+
+    @overload
+    def __get__(self, plugin: Any, owner: type[Any]) -> OptionsKind_co: ...
+
+    def __get__(self, plugin: Any, owner: type[Any]) -> OptionsOf[OptionsKind_co] | OptionsKind_co:
+        if plugin is None:
+            return self
+        made = vars(plugin).setdefault("_read_options", {})
+        found = made.get(self.kind)
+        if found is None or found.params is not plugin.params:
+            found = made[self.kind] = self.kind(plugin.params)
+        known: OptionsKind_co = found
+        return known
+
+
+def option_types_of(cls: type[Any]) -> list[type[Options]]:
+    """The classes of options that a plugin class declares, those of its bases first."""
+    attributes = {name: v for c in reversed(cls.__mro__) for name, v in vars(c).items()}
+    declared = (v.kind for v in attributes.values() if isinstance(v, OptionsOf))
+    return list(dict.fromkeys((*declared, *getattr(cls, "option_types", ()))))
+
+
+def number(
+    default: float | None = None,
+    unit: str = "",
+    *,
+    element: str = "",
+    minimum: float | None = None,
+    maximum: float | None = None,
+    finite: bool = True,
+    required: bool = False,
+    instead: str = "",
+    is_live: bool = False,
+    description: str = "",
+) -> float:
+    """A number."""
+    bounds: dict[str, Any] = {"minimum": minimum, "maximum": maximum, "finite": finite}
+    more: dict[str, Any] = {"required": required, "instead": instead, "is_live": is_live, "description": description}
+    option: Any = Option("number", element, default, unit, **bounds, **more)
+    found: float = option
+    return found
+
+
+def numbers(
+    unit: str = "", *, element: str = "", minimum: float | None = None, maximum: float | None = None
+) -> tuple[float, ...]:
+    """The number in each element of that name."""
+    bounds: dict[str, Any] = {"minimum": minimum, "maximum": maximum}
+    option: Any = Option("number", element, None, unit, **bounds, repeated=True)
+    found: tuple[float, ...] = option
+    return found
+
+
+def integer(
+    default: int | None = None,
+    *,
+    element: str = "",
+    minimum: int | None = None,
+    maximum: int | None = None,
+    required: bool = False,
+) -> int:
+    """A whole number."""
+    option: Any = Option("integer", element, default, minimum=minimum, maximum=maximum, required=required)
+    found: int = option
+    return found
+
+
+def boolean(default: bool = False, *, element: str = "", instead: str = "") -> bool:
+    """True or false."""
+    option: Any = Option("boolean", element, default, instead=instead)
+    found: bool = option
+    return found
+
+
+def text(default: str | None = "", *, element: str = "", required: bool = False, instead: str = "") -> str:
+    """A text."""
+    option: Any = Option("text", element, default, required=required, instead=instead)
+    found: str = option
+    return found
+
+
+def texts(*, element: str = "", required: bool = False) -> tuple[str, ...]:
+    """The text of each element of that name."""
+    option: Any = Option("text", element, required=required, repeated=True)
+    found: tuple[str, ...] = option
+    return found
+
+
+def choice(allowed: Sequence[str], default: str | None = None, *, element: str = "", required: bool = False) -> str:
+    """One of a few words."""
+    option: Any = Option("choice", element, default, choices=tuple(allowed), required=required)
+    found: str = option
+    return found
+
+
+def vector(
+    default: Sequence[float] | None, unit: str = "", *, element: str = "", size: int = 0, required: bool = False
+) -> tuple[float, ...]:
+    """Several numbers."""
+    count = size or len(default or ())
+    start = None if default is None else tuple(float(value) for value in default)
+    option: Any = Option("vector", element, start, unit, size=count, required=required)
+    found: tuple[float, ...] = option
+    return found
+
+
+def vector3(
+    default: Sequence[float] = (0.0, 0.0, 0.0),
+    unit: str = "",
+    *,
+    element: str = "",
+    required: bool = False,
+    instead: str = "",
+) -> tuple[float, float, float]:
+    """Three numbers."""
+    x, y, z = map(float, default)
+    option: Any = Option("vector", element, (x, y, z), unit, size=3, required=required, instead=instead)
+    found: tuple[float, float, float] = option
+    return found
+
+
+def pose(default: Pose = IDENTITY, *, element: str = "") -> Pose:
+    """A pose: `x y z roll pitch yaw` [m, rad]."""
+    option: Any = Option("pose", element, default, "m, rad")
+    found: Pose = option
+    return found
+
+
+def block(options: type[OptionsKind], *, element: str = "") -> OptionsKind:
+    """The options within an element, at their defaults where it is absent."""
+    option: Any = Option("block", element, options=options)
+    found: OptionsKind = option
+    return found
+
+
+def blocks(options: type[OptionsKind], *, element: str = "") -> tuple[OptionsKind, ...]:
+    """The options within each element of that name."""
+    option: Any = Option("block", element, options=options, repeated=True)
+    found: tuple[OptionsKind, ...] = option
+    return found
+
+
+def without_effect(*, element: str = "") -> bool:
+    """An element that is known and changes nothing; true where the file has it."""
+    option: Any = Option("", element)
+    found: bool = option
+    return found
