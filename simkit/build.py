@@ -151,8 +151,8 @@ def load(
     movable = frozenset(m.name for m in world.models if m.moved_by is not None)
     structure = WorldStructure(builder, compiled, {m.name: m for m in world.models}, movable, parts)
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
-    simulation.write_sdf = _sdf_of
-    simulation.render_thread = usable_cores() > 1 if render_thread is None else render_thread
+    simulation.control.write_sdf = _sdf_of
+    simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
     simulation.origin = {
         "source": source, "seed": seed, "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths),
         "plugins": tuple(plugins), "base": base, "xacro_args": dict(xacro_args or {}), "overrides": tuple(overrides),

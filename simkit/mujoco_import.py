@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import mujoco as mujoco
 
 
 def import_mujoco() -> None:
@@ -33,3 +37,13 @@ def import_mujoco() -> None:
 
 def ignore_warning(_text: str) -> None:
     """Drops it."""
+
+
+def __getattr__(name: str) -> Any:
+    """Gives `mujoco` to whoever imports it from here, so that its first import is the one above."""
+    if name != "mujoco":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import_mujoco()
+    import mujoco
+
+    return mujoco

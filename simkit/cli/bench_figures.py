@@ -16,7 +16,6 @@ from simkit import build
 from simkit.cli.bench_bare_mujoco import BareCamera, BareEngine, HandWrittenLoop, cast_bare_scan
 from simkit.plugins import WorldPlugin
 from simkit.runtime.engine.scheduler import Phase
-from simkit.runtime.engine.step_loop import guarded_hook
 from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.rays.lidar import Lidar
 
@@ -114,7 +113,7 @@ def _step_figures(load: Callable[..., Any], rounds: int) -> Iterator[Figure]:
         yield compare_stepping(sim, rounds)
     plugin = EveryStepPlugin()
     with load(plugin) as sim:
-        _schedule_only(sim, None, guarded_hook(sim, plugin, "after_step"), "after")
+        _schedule_only(sim, None, sim.engine.faults.task(plugin, "after_step"), "after")
         yield _compare_step(sim, rounds, "step, only a Python plugin after each", 1.20)
     with load() as sim:
         imu = next((s for s in sim.sensors.values() if s.kind == "imu" and s.topic), None)

@@ -1,6 +1,6 @@
 """Scenes into MuJoCo models: the one place where the physics engine's model is built."""
 
-import simkit.mujoco_loaded  # noqa: F401  (before any module imports MuJoCo by itself)
+from simkit.mujoco_import import mujoco  # noqa: F401, I001  (before any module imports MuJoCo by itself)
 from simkit.compiler import geom_groups
 from simkit.compiler.lights import drawn_position
 from simkit.compiler.name_map import ActuatorRef, Follower, GeomOwner, JointBinding, LightBinding, LinkBinding, NameMap

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.diagnostics import Diagnostics, Where
-from simkit.pose import Pose
+from simkit.pose import IDENTITY, Pose
 from simkit.scene import SceneLight, SceneWorld
 
 FARTHEST: Final = 100.0
@@ -26,6 +26,7 @@ _EVERYWHERE: Final = 180.0  # the cutoff at which OpenGL's spot is a point light
 _FINEST, _COARSEST, _SQUARES = 0.1, 1.0, 200  # [m], [m], along a plane
 _MOST_QUADS: Final = 20_000  # of all boxes
 _LEAST_SLICES, _MOST_SLICES = 4, 16  # along an edge of a box; the renderer's own are 4
+_DRAWN_FIELDS: Final = ("diffuse", "specular", "attenuation", "range", "cutoff", "exponent", "castshadow")
 _SPOT: Final = (math.radians(30.0), math.radians(40.0))  # the renderers' own cone where a file gives none
 
 
@@ -62,6 +63,14 @@ def add_light(body: Any, light: SceneLight, pose: Pose, shadows: bool) -> None:
         made.cutoff = _EVERYWHERE
     if light.type == "spot":
         made.cutoff, made.exponent = spot_parameters(light)
+
+
+def drawn_fields(light: SceneLight, shadows: bool) -> dict[str, Any]:
+    """Return the fields of MuJoCo's light that a description decides, without its place, direction and state."""
+    spec = mujoco.MjSpec()
+    add_light(spec.worldbody, light, IDENTITY, shadows)
+    drawn = spec.worldbody.lights[0]
+    return {field: np.array(getattr(drawn, field)) for field in _DRAWN_FIELDS}
 
 
 def report_light(light: SceneLight, world: SceneWorld, diagnostics: Diagnostics) -> None:

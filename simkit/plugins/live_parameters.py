@@ -56,7 +56,7 @@ def declare_at(
     table.add(parameter)
     if is_new:
         with plugin.sim.bus.owned_by(plugin):
-            offer_parameter_services(plugin.sim, node)
+            offer_parameter_services(plugin.sim.communication.services, plugin.sim.communication.live_parameters, node)
     return parameter
 
 

@@ -1,6 +1,12 @@
-"""The running simulation: clock, loop, topics, random streams, snapshots, handles."""
+"""The running simulation.
 
-import simkit.mujoco_loaded  # noqa: F401  (before any module imports MuJoCo by itself)
+What enters: a compiled world with its sensors and plugins, and what users and plugins command while it runs. What
+leaves: the state at every tick, messages, snapshots and diagnostics. What never: files of any format, kinds of sensors
+and plugins by name, and sockets. `contact` is below `engine`, that is below `communication` and `handles`, and
+`simulation.py` puts them together.
+"""
+
+from simkit.mujoco_import import mujoco  # noqa: F401  (before any module imports MuJoCo by itself)
 from simkit.runtime.communication.topic_bus import Publisher, Subscription
 from simkit.runtime.engine.snapshot import Snapshot
 from simkit.runtime.engine.world_structure import SensorsAndPlugins, WorldStructure

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from simkit.errors import InputError, SimkitError
-from simkit.runtime.engine.snapshot import Snapshot, restore_snapshot, take_snapshot
-from simkit.runtime.engine.step_loop import guarded_hook
+from simkit.runtime.engine.snapshot import Snapshot
 from simkit.runtime.engine.world_structure import SensorsAndPlugins, WorldStructure
 
 if TYPE_CHECKING:
@@ -44,35 +43,36 @@ def replace_plugin(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
         StructureChanged: `prepare` asks for servos or sites that are not there, or leaves some out.
         LoadError, PluginError: the new one cannot be loaded. In all cases the old one is at work as before.
     """
-    before = take_snapshot(sim)
-    nodes = {node: dict(found) for node, found in sim.parameter_table._parameters.items()}
+    snapshots = sim.contents.spawner.snapshots
+    before = snapshots.take()
+    nodes = {node: dict(found) for node, found in sim.communication.live_parameters._parameters.items()}
     try:
         _prepare(sim, old, new, scene)
         new.sim = sim
-        restore_snapshot(sim, _swap_in_snapshot(before, old, new, new.get_state()))
+        snapshots.restore(_swap_in_snapshot(before, old, new, new.get_state()))
         _load(sim, new)
         loaded, first = new.get_state(), _parameter_values(sim, new)
         had = next(state for plugin, state in before.plugins if plugin is old)
         state = _carried_state(new, loaded, had, _loaded_state(sim, old))
         _take_over_parameters(sim, old, new)
-        values = sim.parameter_table.get_state()
-        restore_snapshot(sim, _swap_in_snapshot(before, old, new, state))
-        sim.parameter_table.set_state(values)
+        values = sim.communication.live_parameters.get_state()
+        snapshots.restore(_swap_in_snapshot(before, old, new, state))
+        sim.communication.live_parameters.set_state(values)
     except Exception:
         close_endpoints(sim, new)
-        sim.parameter_table._parameters = nodes
-        restore_snapshot(sim, before)
-        sim.reschedule()
+        sim.communication.live_parameters._parameters = nodes
+        snapshots.restore(before)
+        sim.engine.reschedule()
         raise
     _hand_over_goals(sim, old, new)
-    if sim.faults.is_disabled(old):
+    if sim.engine.faults.is_disabled(old):
         _restore_servo_gains(sim, new)
     close_endpoints(sim, old)
     sim._loaded = _add_parameter_values(sim, _swap_in_snapshot(sim._loaded, old, new, loaded), first)
-    loaded_plugins = sim._population.loaded_plugins
+    loaded_plugins = sim.contents.spawner.loaded_plugins
     loaded_plugins[:] = [plugin for plugin in loaded_plugins if plugin is not old]
-    sim.reschedule()
-    guarded_hook(sim, old, "close")()
+    sim.engine.reschedule()
+    sim.engine.faults.task(old, "close")(0)
 
 
 def _prepare(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
@@ -80,7 +80,7 @@ def _prepare(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
         if old._actuators:
             raise IncompatiblePlugin(f"{new.name!r} does not drive {_list_actuators(old._actuators)} any more")
         return
-    builder = _CompiledBuilder(sim.structure.builder, old)
+    builder = _CompiledBuilder(sim.engine.structure.builder, old)
     new.prepare(scene, new.params, builder)
     new.params.diagnostics.raise_if_errors()
     if builder.left:
@@ -89,9 +89,9 @@ def _prepare(sim: Simulation, old: Any, new: Any, scene: Any) -> None:
 
 
 def _load(sim: Simulation, new: Any) -> None:
-    parents = {id(plugin): parent for part in sim.structure.parts.values() for plugin, parent in part.plugins}
-    with sim.bus.owned_by(new):
-        sim._population._load_plugin(new, parents[id(new)](sim))
+    parents = {id(plugin): parent for part in sim.engine.structure.parts.values() for plugin, parent in part.plugins}
+    with sim.communication.bus.owned_by(new):
+        sim.contents.spawner.load_plugin(new, parents[id(new)](sim))
     new.params.diagnostics.raise_if_errors()
 
 
@@ -227,9 +227,9 @@ def _is_equal(one: Any, other: Any) -> bool:
 
 def close_endpoints(sim: Simulation, owner: Any) -> None:
     """Takes every topic, service, action, parameter and subscription of a plugin away for good."""
-    sim.forget([owner])
-    for audience in list(sim.bus._audiences.values()):
-        for reader in [reader for reader in audience.readers if _is_callback_of(reader.callback, owner)]:
+    sim.communication.forget([owner])
+    for reader in sim.communication.bus.subscriptions():
+        if _is_callback_of(reader.callback, owner):
             reader.close()
 
 
@@ -249,32 +249,33 @@ def _take_over_parameters(sim: Simulation, old: Any, new: Any) -> None:
 
     The old one's may be hidden behind new ones of the same name; the first snapshot has them.
     """
-    first = {p: value for handle, state in sim._loaded.handles if handle is sim.parameter_table for p, value in state}
+    table = sim.communication.live_parameters
+    first = {p: value for part, state in sim._loaded.handles if part is table for p, value in state}
     changed = {p.name: p.value for p, value in first.items() if p.owner is old and not _is_equal(p.value, value)}
-    for parameter, _ in sim.parameter_table.get_state():
+    for parameter, _ in table.get_state():
         if parameter.owner is new and parameter.name in changed:
             try:
                 parameter.take(parameter.checked(changed[parameter.name]))
             except SimkitError as error:
-                sim.log.warning("%s is not taken over: %s", parameter.name, error)
+                sim.engine.log.warning("%s is not taken over: %s", parameter.name, error)
 
 
 def _parameter_values(sim: Simulation, plugin: Any) -> tuple[tuple[Any, Any], ...]:
     """A plugin's live parameters with their values."""
-    return tuple((p, value) for p, value in sim.parameter_table.get_state() if p.owner is plugin)
+    return tuple((p, value) for p, value in sim.communication.live_parameters.get_state() if p.owner is plugin)
 
 
 def _add_parameter_values(sim: Simulation, snapshot: Snapshot, values: tuple[tuple[Any, Any], ...]) -> Snapshot:
     """A snapshot that has these parameters as well."""
-    table = sim.parameter_table
+    table = sim.communication.live_parameters
     handles = [(h, (*state, *values)) if h is table else (h, state) for h, state in snapshot.handles]
     return replace(snapshot, handles=handles)
 
 
 def _hand_over_goals(sim: Simulation, old: Any, new: Any) -> None:
     """Goals that are being worked on go on with the new plugin's action of the same name, or are aborted."""
-    actions = {a.name: a for opened in sim.action_table._actions.values() for a in opened if a.owner is new}
-    for goal in [g for g in sim.action_table._goals if g._action.owner is old and not g.is_done]:
+    actions = {a.name: a for opened in sim.communication.actions._actions.values() for a in opened if a.owner is new}
+    for goal in [g for g in sim.communication.actions._goals if g._action.owner is old and not g.is_done]:
         if goal._action.name in actions:
             goal._action = actions[goal._action.name]
         else:
@@ -284,6 +285,6 @@ def _hand_over_goals(sim: Simulation, old: Any, new: Any) -> None:
 def _restore_servo_gains(sim: Simulation, plugin: Any) -> None:
     """Gives the servos of a plugin that was left out their strength back."""
     if plugin._actuators:
-        indices = [sim.names.actuator(ref) for ref in plugin._actuators]
+        indices = [sim.engine.names.actuator(ref) for ref in plugin._actuators]
         for field in ("actuator_gainprm", "actuator_biasprm"):
-            sim.touch(field)[indices] = sim.original(field)[indices]
+            sim.engine.touch(field)[indices] = sim.engine.original(field)[indices]

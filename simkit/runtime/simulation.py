@@ -1,55 +1,55 @@
-"""A running simulation: the one loop in the house."""
+"""A running simulation: what a user steps, reads and talks to."""
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-from simkit.diagnostics import Diagnostic, Diagnostics
 from simkit.errors import InputError, SimulationDiverged
+from simkit.pose import Pose, Vector
+from simkit.runtime.communication.action_server import GoalHandle
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
-from simkit.runtime.contact.anisotropic_friction import AnisotropicFriction
-from simkit.runtime.contact.speculative_contacts import FastBodyWarnings
+from simkit.runtime.communication.service_server import Service, ServiceHandler
+from simkit.runtime.communication.topic_bus import Callback, CallbackErrorPolicy, Subscription, TopicBus
 from simkit.runtime.engine.clock import Clock
-from simkit.runtime.engine.engine_access import EngineAccess
-from simkit.runtime.engine.external_forces import PersistentWrenches, Wind
-from simkit.runtime.engine.physics import Physics
-from simkit.runtime.engine.plugin_faults import PluginErrorPolicy, PluginFaults, add_driver_hints
-from simkit.runtime.engine.random_streams import RandomStreams
-from simkit.runtime.engine.scheduler import Scheduler
-from simkit.runtime.engine.snapshot import Snapshot, promise_snapshot, restore_snapshot, take_snapshot
-from simkit.runtime.engine.step_loop import StepLoop, guarded_hook
+from simkit.runtime.engine.engine import Engine
+from simkit.runtime.engine.plugin_faults import PluginErrorPolicy, add_driver_hints
+from simkit.runtime.engine.snapshot import Snapshot, Stateful
 from simkit.runtime.engine.step_tasks import fill_schedule
-from simkit.runtime.engine.velocity_servos import VelocityServos
-from simkit.runtime.engine.world_structure import WorldStructure
-from simkit.runtime.handles.entity_handles import EntityHandles
 from simkit.runtime.handles.joint import Joint
-from simkit.runtime.handles.visual_properties import Labels, Temperatures
-from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker, Spawner
+from simkit.runtime.handles.light import Light
+from simkit.runtime.handles.link import Link
+from simkit.runtime.handles.model import Model
+from simkit.runtime.old_names import OldNames
+from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker
 from simkit.runtime.world_contents import WorldContents
 from simkit.runtime.world_control import WorldControl
-from simkit.scene import SceneWorld
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from simkit.diagnostics import Diagnostic, Diagnostics
+    from simkit.runtime.communication.journal import Journal
+    from simkit.runtime.engine.scheduler import Scheduler
+    from simkit.runtime.engine.world_structure import WorldStructure
+    from simkit.scene import SceneWorld
 
 
-class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
+class Simulation(OldNames):
     """A loaded world. Made by `simkit.load`; also a context manager.
 
     Everything read shows the state at `time`.
 
     Attributes:
-        labels: what segmentation and bounding box cameras call things, by scoped name of a model or a visual.
-        temperatures: what thermal cameras see, by scoped name of a model, a link or a visual.
-        wind: how the air moves.
-        faults: what becomes of plugins that raise, and which of them are left out.
-        render_thread: whether pictures of cameras are drawn beside the physics where nobody waits for them; to be
-            changed at any time, for it changes no message.
+        engine: physics, step loop, servos, random streams, plugin faults.
+        communication: topics, services, actions and live parameters.
+        contents: models, links, joints, sensors and plugins, and how they are added and removed.
+        control: pause, gravity, collisions, geographic origin, reset of models.
         origin: how it was loaded: `simkit.load`'s arguments by name, and `folder`, where that was; None of what was
             made otherwise.
     """
 
-    render_thread = False
     origin: Mapping[str, Any] | None = None
 
     def __init__(
@@ -62,32 +62,19 @@ class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
         make_parts: SensorsAndPluginsMaker,
         on_error: PluginErrorPolicy | None = None,
     ) -> None:
-        self.world = world
-        self.log = logging.getLogger("simkit")
-        self.clock = Clock(world.physics.max_step_size)
-        self._diagnostics = diagnostics
-        self.open_interfaces(self)
-        self.faults = PluginFaults(self, on_error)
-        self.streams = RandomStreams(seed)
-        self.seed = seed
-        self.originals: dict[str, Any] = {}
-        self._exact_limits: list[Joint] = []
-        self._standing = PersistentWrenches(self)
-        self.wind = Wind(world)
-        self._closed = False
-        self.open_world(self)
-        self.physics = Physics(structure.compiled.model, structure.compiled.data, self.clock, world.physics.sleep)
-        self._loop = StepLoop(self.physics, self.bus, self._fill)
-        self.velocity_servos = VelocityServos(self)
-        self.entities = EntityHandles(self, world)
-        self.labels = Labels(self)
-        self.temperatures = Temperatures(self)
-        self.friction = AnisotropicFriction(self.physics, self.reports)
-        self.fast_body_reports = FastBodyWarnings(self.reports, self.timestep)
-        self._population = Spawner(self, load_model, make_parts)
-        self._population.adopt(structure)
-        self._population.start(list(structure.parts.values()), diagnostics)
-        self.reschedule()
+        clock = Clock(world.physics.max_step_size)
+        bus = TopicBus(diagnostics, lambda: self.time)
+        self.engine = Engine(world, structure, clock, seed, diagnostics, bus, self._fill, on_error)
+        self.communication = Communication(bus, self.engine)
+        self.engine.faults.interfaces = self.communication
+        self.contents = WorldContents(self, self.engine, self.communication, self._stateful, load_model, make_parts)
+        self.control = WorldControl(
+            self.engine, self.communication, self.contents.handles, self._advance, self._loaded_state
+        )
+        spawner = self.contents.spawner
+        spawner.adopt(structure)
+        spawner.start(list(structure.parts.values()), diagnostics)
+        self.engine.reschedule()
         self._loaded = self.snapshot()
 
     # ------------------------------------------------------------------ time
@@ -95,32 +82,22 @@ class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
     @property
     def tick(self) -> int:
         """Steps done."""
-        return self.physics.tick
-
-    @property
-    def steps(self) -> int:
-        """Steps made since it was loaded, those among them that a reset or a restore has undone."""
-        return self.physics.tick - self._loop.jumped
+        return self.engine.physics.tick
 
     @property
     def time(self) -> float:
         """Simulated time [s]."""
-        return self.clock.time(self.physics.tick)
+        return self.engine.time
 
     @property
     def time_ns(self) -> int:
         """Simulated time [ns]."""
-        return self.clock.time_ns(self.physics.tick)
+        return self.engine.time_ns
 
     @property
     def timestep(self) -> float:
         """Length of a step [s]."""
-        return self.clock.timestep
-
-    @property
-    def is_stepping(self) -> bool:
-        """Whether a step is under way: this is asked by a hook or a callback."""
-        return self._loop.is_running
+        return self.engine.clock.timestep
 
     # ------------------------------------------------------------------ advancing
 
@@ -142,29 +119,25 @@ class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
         """
         if not duration >= 0:
             raise ValueError(f"duration must be a number of seconds that is not negative, got {duration}")
-        self._advance(self.tick + self.clock.ticks(duration))
+        self._advance(self.tick + self.engine.clock.ticks(duration))
 
     def run_until(self, condition: Callable[[Simulation], bool], timeout: float) -> bool:
         """Steps until `condition(sim)`, asked after every step, holds; False when `timeout` [s] passed before."""
-        for _ in range(self.clock.ticks(timeout)):
+        for _ in range(self.engine.clock.ticks(timeout)):
             self.step()
             if condition(self):
                 return True
         return False
 
-    def jump(self, ticks: int) -> None:
-        """Told by a reset or a restore how much further, or back, it takes the run."""
-        self._loop.jump(ticks)
-
     def _advance(self, target: int, *, is_served: bool = False) -> None:
-        self._check_open()
-        journal = self.bus.journal
+        self.engine.check_open()
+        journal = self._journal
         if journal is not None:
             journal.before_steps()
         try:
-            self._loop.advance(target, is_served=is_served)
+            self.engine.loop.advance(target, is_served=is_served)
         except SimulationDiverged as error:
-            add_driver_hints(self, error)
+            add_driver_hints(self.engine.structure.all_plugins(), error)
             raise
         finally:
             if journal is not None:
@@ -175,20 +148,15 @@ class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
     @journaled
     def reset(self, seed: int | None = None) -> None:
         """Back to t = 0 and to what was loaded: physics, plugins, sensors, random streams (optionally re-seeded)."""
-        self._check_loaded()
-        if seed is not None:
-            self.seed = seed
-        self._loop.break_promises()
-        self.bus.settle()
-        self.streams.reseed(self.seed)
-        restore_snapshot(self, self._loaded)
-        self.halt()  # a run that is served looks anew at how far it is to go
-        self.reschedule()
-        self.forget_gone()
-        for sensor in self.structure.all_sensors():
+        loaded, engine = self._loaded_state(), self.engine
+        engine.loop.drop_deferred()
+        self.communication.bus.settle()
+        engine.streams.reseed(engine.streams.seed if seed is None else seed)
+        self._restore(loaded)
+        for sensor in engine.structure.all_sensors():
             sensor.reset()
-        for plugin in self.structure.all_plugins():
-            guarded_hook(self, plugin, "reset")()
+        for plugin in engine.structure.all_plugins():
+            engine.faults.task(plugin, "reset")(0)
 
     @journaled
     def snapshot(self) -> Snapshot:
@@ -196,11 +164,12 @@ class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
 
         Asked for by a hook or a callback it is that of the end of the step under way, and complete from then on.
         """
-        self._check_open()
-        if not self.is_stepping:
-            return take_snapshot(self)
-        snapshot, keep = promise_snapshot(self)
-        self._loop.promise(keep)
+        self.engine.check_open()
+        snapshots = self.contents.spawner.snapshots
+        if not self.engine.is_stepping:
+            return snapshots.take()
+        snapshot, keep = snapshots.promise()
+        self.engine.loop.defer(keep)
         return snapshot
 
     @journaled
@@ -210,74 +179,218 @@ class Simulation(Communication, WorldControl, WorldContents, EngineAccess):
         Raises:
             ValueError: the snapshot is of another simulation, or was asked for within a step that has not ended.
         """
-        self._check_open()
+        engine = self.engine
+        engine.check_open()
         if snapshot.owner is not self:
             raise ValueError("the snapshot is of another simulation; each goes back to its own only")
         if not snapshot.is_complete:
             raise ValueError("the snapshot was asked for within a step that has not ended; restore it after that step")
-        self._loop.break_promises()
-        if snapshot.seed != self.seed:
-            self.bus.settle()
-            self.seed = snapshot.seed
-            self.streams.reseed(self.seed)
-        restore_snapshot(self, snapshot)
-        self.halt()
-        self.reschedule()
-        self.forget_gone()
+        engine.loop.drop_deferred()
+        if snapshot.seed != engine.streams.seed:
+            self.communication.bus.settle()
+            engine.streams.reseed(snapshot.seed)
+        self._restore(snapshot)
 
-    # ------------------------------------------------------------------ what was found
+    def _restore(self, snapshot: Snapshot) -> None:
+        self.contents.spawner.snapshots.restore(snapshot)
+        self.engine.loop.halt()  # a run that is served looks anew at how far it is to go
+        self.engine.reschedule()
+        self.contents.spawner.forget_gone()
+
+    def _stateful(self) -> list[Stateful]:
+        """Every part with a state besides sensors and plugins, in the order in which they are restored."""
+        engine, communication, control, handles = self.engine, self.communication, self.control, self.contents.handles
+        return [
+            *handles.stateful(),
+            *(engine.faults, communication.live_parameters, communication.actions),
+            *(control.pausing, control.origin, engine.velocity_servos),
+            *handles.tables["model"].values(),
+        ]
+
+    def _loaded_state(self) -> Snapshot:
+        self.engine.check_open()
+        if "_loaded" not in vars(self):
+            raise InputError("the world is still being loaded, there is nothing yet to go back to", "SK-CORE-004")
+        return self._loaded
+
+    # ------------------------------------------------------------------ what is in the world
+
+    @property
+    def models(self) -> dict[str, Model]:
+        """Top-level models by name."""
+        return self.contents.models
+
+    def model(self, name: str) -> Model:
+        """A model by scoped name; KeyError names the closest."""
+        return self.contents.handles.model(name)
+
+    def link(self, name: str) -> Link:
+        """A link by scoped name; KeyError names the closest."""
+        return self.contents.handles.link(name)
+
+    def joint(self, name: str) -> Joint:
+        """A joint by scoped name; KeyError names the closest."""
+        return self.contents.handles.joint(name)
+
+    def sensor(self, name: str) -> Any:
+        """A sensor by scoped name; KeyError names the closest."""
+        return self.contents.handles.find("sensor", name)
+
+    def light(self, name: str) -> Light:
+        """A light by scoped name; KeyError names the closest."""
+        return self.contents.handles.light(name)
+
+    def spawn(self, source: Any, name: str | None = None, pose: Pose | None = None) -> Model:
+        """Adds a model while time goes on; everything else keeps its state and its handles.
+
+        Args:
+            source: a file, XML text, or the bare name of a model.
+            name: instead of the file's own.
+            pose: of the model frame in the world, instead of the file's own.
+
+        Raises:
+            LoadError: the source has errors, or the name is taken.
+            InputError: no model can have this name.
+        """
+        return self.contents.spawn_all([(source, name, pose)])[0]
+
+    def remove(self, name: str) -> None:
+        """Takes a top-level model away while time goes on."""
+        self.contents.remove(name)
+
+    @property
+    def gravity(self) -> Vector:
+        """Acceleration that everything feels [m/s²], world frame, shape (3,); settable at any time."""
+        return self.control.gravity
+
+    @gravity.setter
+    def gravity(self, value: Sequence[float] | Vector) -> None:
+        self.control.gravity = value
+
+    # ------------------------------------------------------------------ topics, services, actions
+
+    def publish(self, topic: str, message: Any) -> None:
+        """Sends a message object, or a dict of its fields; inputs get it before the next step.
+
+        Raises:
+            MessageError: unknown topic, or fields that do not fit.
+        """
+        self.engine.check_open()
+        self.communication.bus.publish(topic, message)
+
+    def subscribe(
+        self,
+        topic: str,
+        callback: Callback | None = None,
+        keep: int | None = None,
+        on_error: CallbackErrorPolicy = "stop",
+    ) -> Subscription:
+        """Receives a topic, before or after its publisher exists.
+
+        Args:
+            topic: absolute, or taken as such.
+            callback: called with each message.
+            keep: how many messages are kept, the newest; a million where nothing is said.
+            on_error: what becomes of a callback that raises: "stop" stops the run with a SubscriberError, "drop" closes
+                the subscription with a warning, and the run goes on.
+        """
+        return self.communication.bus.subscribe(topic, callback, keep, on_error)
+
+    def topics(self) -> dict[str, str]:
+        """Topic -> ROS type name."""
+        return self.communication.bus.topics()
+
+    def call(self, service: str, request: Any = None) -> Any:
+        """The response of a service; what it did is done when this returns.
+
+        Args:
+            service: absolute, or taken as such.
+            request: a message, a dict of its fields, or None for all zero.
+
+        Raises:
+            ServiceError: there is no such service; names the closest.
+            MessageError: the request does not fit.
+            PluginError: the service of a plugin raised.
+        """
+        self.engine.check_open()
+        return self.communication.services.call(service, request)
+
+    def offer(self, service: str, type_name: str, handler: ServiceHandler) -> Service:
+        """Opens a service of a type such as `std_srvs/srv/Trigger`.
+
+        Args:
+            service: absolute, or taken as such.
+            type_name: its type.
+            handler: given the request, gives the response: a message, a dict of its fields, or None for all zero.
+
+        Raises:
+            ServiceError: there is one of that name.
+            MessageError: an unknown type.
+        """
+        return self.communication.services.offer(service, type_name, handler)
+
+    def send_goal(
+        self,
+        action: str,
+        goal: Any = None,
+        on_feedback: Callable[[Any], None] | None = None,
+        on_done: Callable[[GoalHandle], None] | None = None,
+    ) -> GoalHandle:
+        """Sends a goal; the plugin has it before the next step.
+
+        Args:
+            action: absolute, or taken as such.
+            goal: a message, a dict of its fields, or None for all zero.
+            on_feedback: called with each feedback message.
+            on_done: called with the handle once the goal has ended.
+
+        Raises:
+            ActionError: there is no such action; names the closest.
+            MessageError: the goal does not fit.
+        """
+        self.engine.check_open()
+        return self.communication.actions.send(action, goal, on_feedback, on_done)
+
+    @property
+    def _journal(self) -> Journal | None:
+        return self.communication.bus.journal
+
+    # ------------------------------------------------------------------ what was found, and MuJoCo's objects
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
         """What loading approximated or ignored."""
-        return list(self._diagnostics)
+        return list(self.engine.reports)
 
     @property
-    def reports(self) -> Diagnostics:
-        """The collection behind `diagnostics`, for parts that have something to report while running."""
-        return self._diagnostics
-
-    # ------------------------------------------------------------------ schedule
+    def mj_model(self) -> mujoco.MjModel:
+        """The `mujoco.MjModel`; a new object after a spawn or a removal."""
+        return self.engine.physics.model
 
     @property
-    def scheduler(self) -> Scheduler:
-        """Who is due when."""
-        return self._loop.scheduler
-
-    def reschedule(self) -> None:
-        """Takes changed rates, sensors and plugins into account; within a hook, once the tick is dealt with."""
-        self._loop.reschedule()
-
-    def _fill(self, scheduler: Scheduler) -> None:
-        fill_schedule(self, scheduler, self._exact_limits)
-
-    def limit_velocity(self, joint: Joint) -> None:
-        """Holds a joint's velocity limit at every step from now on."""
-        if joint not in self._exact_limits:
-            self._exact_limits.append(joint)
-        self.reschedule()
+    def mj_data(self) -> mujoco.MjData:
+        """The `mujoco.MjData`; a new object after a spawn or a removal."""
+        return self.engine.physics.data
 
     # ------------------------------------------------------------------ the end
 
+    def _fill(self, scheduler: Scheduler) -> None:
+        """Puts every task into the scheduler."""
+        handles = self.contents.handles
+        fill_schedule(self.engine, scheduler, handles.tables["joint"].values(), handles.exact_limits)
+        self.communication.on_demand.fill(scheduler)
+
     def close(self) -> None:
         """Closes plugins and sensors; further calls do nothing."""
-        if self._closed:
+        engine = self.engine
+        if engine.is_closed:
             return
-        first = self._population.close_plugins()
-        for sensor in self.structure.all_sensors():
+        first = self.contents.spawner.close_plugins()
+        for sensor in engine.structure.all_sensors():
             sensor.close()
-        self._closed = True
+        engine.is_closed = True
         if first is not None:
             raise first
-
-    def _check_open(self) -> None:
-        if self._closed:
-            raise InputError("the simulation is closed", "SK-CORE-002")
-
-    def _check_loaded(self) -> None:
-        self._check_open()
-        if "_loaded" not in vars(self):
-            raise InputError("the world is still being loaded, there is nothing yet to go back to", "SK-CORE-004")
 
     def __enter__(self) -> Simulation:
         return self

@@ -12,9 +12,9 @@ from simkit.errors import InputError, LoadError, SimkitError
 from simkit.pose import Pose
 from simkit.runtime import sensor_attachment
 from simkit.runtime.communication.topic_conflicts import report_topic_conflicts
+from simkit.runtime.engine.model_fields import copy_fields_by_name, restore_compiled_fields
 from simkit.runtime.engine.plugin_faults import call_plugin
-from simkit.runtime.engine.snapshot import Snapshot, restore_snapshot, take_snapshot
-from simkit.runtime.engine.step_loop import guarded_hook
+from simkit.runtime.engine.snapshot import Snapshot, Snapshots, Stateful
 from simkit.runtime.engine.world_structure import (
     FROM_SPAWN,
     SensorsAndPlugins,
@@ -22,11 +22,12 @@ from simkit.runtime.engine.world_structure import (
     bodies_kept_awake,
     plugins_in_order,
 )
-from simkit.runtime.handles.entity_handles import copy_fields_by_name, restore_compiled_fields
 from simkit.scene import SceneJoint, SceneModel
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.communication.communication import Communication
+    from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.handles.entity_handles import EntityHandles
 
 ModelLoader = Callable[..., SceneModel]
 SensorsAndPluginsMaker = Callable[..., SensorsAndPlugins]
@@ -35,61 +36,74 @@ SpawnRequest = tuple[Any, str | None, Pose | None]
 
 
 class Spawner:
-    """The structure of the moment, with its sensors and plugins at work.
+    """Adds and removes models while a simulation runs, and puts their sensors and plugins to work.
 
     Args:
-        sim: whose.
+        sim: the simulation, for its sensors and plugins.
+        engine, communication, handles: of the simulation.
+        stateful: gives every part with a state besides sensors and plugins.
         load_model: reads a model to be spawned.
         make_parts: makes the sensors and plugins of a model and prepares a spec for them.
 
     Attributes:
-        structure: what is there now; never changed, only replaced.
+        load_model: reads a model to be spawned.
         loaded_plugins: every plugin that is there, or that a snapshot or a reset may bring back.
+        snapshots: takes and restores the state of the simulation.
     """
 
-    def __init__(self, sim: Simulation, load_model: ModelLoader, make_parts: SensorsAndPluginsMaker) -> None:
-        self._sim, self._load_model, self._make_parts = sim, load_model, make_parts
+    def __init__(
+        self,
+        sim: object,
+        engine: Engine,
+        communication: Communication,
+        handles: EntityHandles,
+        stateful: Callable[[], Sequence[Stateful]],
+        load_model: ModelLoader,
+        make_parts: SensorsAndPluginsMaker,
+    ) -> None:
+        self._sim, self._engine, self._communication, self._handles = sim, engine, communication, handles
+        self.load_model, self._make_parts = load_model, make_parts
+        self.snapshots = Snapshots(sim, engine, stateful, communication.bus.inbox, self.adopt)
         self._attached: set[Any] = set()
         self._spawned = 0
         self._structures: list[weakref.ref[WorldStructure]] = []
         self.loaded_plugins: list[Any] = []
-        self.structure: WorldStructure
 
     def spawn(self, wanted: Sequence[SpawnRequest]) -> list[str]:
         """Adds models, compiled once for all of them; returns their names. Where one fails, all is as before."""
-        sim, old = self._sim, self.structure
-        before, builder, found = take_snapshot(sim), old.builder.copy(), Diagnostics()
+        engine, old = self._engine, self._engine.structure
+        before, builder, found = self.snapshots.take(), old.builder.copy(), Diagnostics()
         models, parts, names = dict(old.models), dict(old.parts), []
         for source, name, pose in wanted:
             scene = source  # a copy of what is there
             if not isinstance(source, SceneModel):
-                scene = self._load_model(source, found, name=name, pose=pose, taken=models)
+                scene = self.load_model(source, found, name=name, pose=pose, taken=models)
             builder.add_model(scene)
             models[scene.name], parts[scene.name] = scene, self._made(scene, builder, found)
             names.append(scene.name)
-        compiled = builder.recompile(old.compiled, sim.mj_data)
+        compiled = builder.recompile(old.compiled, engine.mj_data)
         self.switch(WorldStructure(builder, compiled, models, old.movable, parts))
         self._start_or_restore([parts[name] for name in names], found, before)
         return names
 
     def read(self, source: Any) -> SceneModel:
         """A model as its own file has it, without spawning it. Raises LoadError."""
-        return self._load_model(source, Diagnostics())
+        return self.load_model(source, Diagnostics())
 
     def add_sensor(self, name: str, sensor: str | Mapping[str, Any]) -> str:
         """Fits a sensor to a link or a joint; returns its scoped name. Where it fails, all is as before."""
-        sim, old = self._sim, self.structure
+        engine, old = self._engine, self._engine.structure
         _, owner = sensor_attachment.find_owner(old, name)
         text = sensor_attachment.sensor_model_xml(sensor_attachment.sensor_xml(sensor), isinstance(owner, SceneJoint))
         found = Diagnostics()
-        read = self._load_model(text, found)
+        read = self.load_model(text, found)
         top, shell, scoped = sensor_attachment.build_sensor_model(old, name, read)
-        before = take_snapshot(sim)
+        before = self.snapshots.take()
         builder = old.builder.copy()
         parts = self._made(shell, builder, found)
         if not parts.sensors:
             raise LoadError(tuple(found))
-        compiled = builder.recompile(old.compiled, sim.mj_data)
+        compiled = builder.recompile(old.compiled, engine.mj_data)
         there = old.parts[top]
         joined = SensorsAndPlugins([*there.sensors, *parts.sensors], [*there.plugins, *parts.plugins])
         self.switch(WorldStructure(builder, compiled, old.models, old.movable, {**old.parts, top: joined}))
@@ -117,25 +131,32 @@ class Spawner:
                 sensor.scene.params.report_unread("SK-PARAM-003", f"sensor {sensor.scoped!r}")
             for plugin, _ in parts.plugins:
                 plugin.report_unread()
-        self._sim.reports.extend(found)
+        self._engine.reports.extend(found)
 
     def undo(self, before: Snapshot) -> None:
         """Takes back a change that failed, perhaps within a hook: what waits for the next step goes on waiting."""
-        restore_snapshot(self._sim, before, with_inbox=False)
-        self._sim.reschedule()
-        self._sim.forget_gone()
+        self.snapshots.restore(before, with_inbox=False)
+        self._engine.reschedule()
+        self.forget_gone()
 
     def remove(self, name: str) -> None:
         """Takes a top-level model away."""
-        old = self.structure
+        old = self._engine.structure
         if name not in old.models:
             raise InputError(f"{name!r} is not a top-level model; remove {name.split('::')[0]!r}", "SK-NAME-003")
         builder = old.builder.copy()
         builder.remove_model(name)
-        compiled = builder.recompile(old.compiled, self._sim.mj_data)
+        compiled = builder.recompile(old.compiled, self._engine.mj_data)
         models = {k: v for k, v in old.models.items() if k != name}
         parts = {k: v for k, v in old.parts.items() if k != name}
         self.switch(WorldStructure(builder, compiled, models, old.movable - {name}, parts))
+
+    def forget_gone(self) -> None:
+        """Closes what nothing brings back any more; within a step once that is done, for it may be at work."""
+        if self._engine.is_stepping:
+            self._engine.loop.defer(self.forget)
+        else:
+            self.forget()
 
     def forget(self) -> None:
         """Closes the plugins that nothing brings back any more: they are in no structure that is or that is kept.
@@ -143,8 +164,8 @@ class Spawner:
         Raises:
             PluginError: one of them raised; the others are closed all the same.
         """
-        present = self.structure.all_sensors()
-        if len(self.loaded_plugins) == len(self.structure.all_plugins()) and len(self._attached) == len(present):
+        now = self._engine.structure
+        if len(self.loaded_plugins) == len(now.all_plugins()) and len(self._attached) == len(now.all_sensors()):
             return  # all are there: nothing was taken away
         self._structures = [kept for kept in self._structures if kept() is not None]
         structures = [structure for kept in self._structures if (structure := kept()) is not None]
@@ -155,14 +176,14 @@ class Spawner:
         owners = [*gone, *(self._attached - sensors)]
         self._attached &= sensors
         first = self._close(gone)
-        self._sim.forget(owners)
-        self._sim.entities.forget([scene for structure in structures for scene in structure.models.values()])
+        self._communication.forget(owners)
+        self._handles.forget([scene for structure in structures for scene in structure.models.values()])
         if first is not None:
             raise first
 
     def make_movable(self, name: str) -> bool:
         """Makes the links of a static model bodies that follow their set pose; False where they are already."""
-        old = self.structure
+        old = self._engine.structure
         if name in old.movable:
             return False
         builder = old.builder.copy()
@@ -170,98 +191,100 @@ class Spawner:
         builder.add_model(old.models[name], movable=True)
         for sensor in old.parts[name].sensors:
             sensor.build(builder)
-        compiled = builder.recompile(old.compiled, self._sim.mj_data)
+        compiled = builder.recompile(old.compiled, self._engine.mj_data)
         self.switch(WorldStructure(builder, compiled, old.models, old.movable | {name}, old.parts))
-        for light in self._sim.lights.values():
+        for light in self._handles.tables["light"].values():
             if light.scene.link.startswith(f"{name}::"):
-                self._sim.place_light(light)  # it was drawn in the world's body, and is in its link's own now
+                light.draw()  # it was drawn in the world's body, and is in its link's own now
         return True
 
     def add_weld(self, name: str, parent_link: str, child_link: str) -> None:
         """Adds a weld, let go at first, between two links."""
-        old = self.structure
+        old = self._engine.structure
         builder = old.builder.copy()
         builder.add_weld(name, parent_link, child_link, active=False)
-        compiled = builder.recompile(old.compiled, self._sim.mj_data)
+        compiled = builder.recompile(old.compiled, self._engine.mj_data)
         self.switch(WorldStructure(builder, compiled, old.models, old.movable, old.parts))
 
     def switch(self, structure: WorldStructure) -> None:
         """Goes on with another structure, the changed model fields carried over."""
-        sim = self._sim
-        old_model, fields = sim.mj_model, dict(sim.originals)
+        engine = self._engine
+        old_model, fields = engine.mj_model, dict(engine.originals)
         new = structure.compiled.model
-        sim.originals.clear()
+        engine.originals.clear()
         for field in fields:
-            sim.originals[field] = getattr(new, field).copy()
+            engine.originals[field] = getattr(new, field).copy()
         copy_fields_by_name(old_model, new, fields)
         new.opt.gravity[:] = old_model.opt.gravity
-        for sensor in self.structure.all_sensors():
+        for sensor in engine.structure.all_sensors():
             sensor.take_held()
         self.adopt(structure)
         restore_compiled_fields(old_model, fields)
 
     def adopt(self, structure: WorldStructure) -> None:
         """Binds handles, sensors and topics to a structure."""
-        sim, compiled = self._sim, structure.compiled
+        engine, handles, compiled = self._engine, self._handles, structure.compiled
+        physics = engine.physics
         if not any(kept() is structure for kept in self._structures):
             self._structures.append(weakref.ref(structure))
-        sim.bus.settle()
+        self._communication.bus.settle()
         staying = set(structure.all_sensors())
-        for sensor in self.structure.all_sensors() if self._attached else ():
+        for sensor in engine.structure.all_sensors() if self._attached else ():
             if sensor in self._attached and sensor not in staying:
                 sensor.leave()
-        self.structure = structure
-        sim.physics.rebind(compiled.model, compiled.data)
-        sim.physics.sleep.restrict(bodies_kept_awake(structure))
-        sim.physics.hears_controls = any(n.mjcf for m in structure.models.values() for n in m.all_models())
-        sim.entities.bind(structure)
-        sim.labels.bind(structure)
-        sim.temperatures.bind(structure)
-        sim.friction.bind(compiled, [plugin for part in structure.parts.values() for plugin, _ in part.plugins])
-        sim.fast_body_reports.names = compiled.names
-        sim.physics.fast_bodies.tell = sim.fast_body_reports
-        sim.stand_wrenches(are_applied=True)
-        sim.set_active(sim.faults.living(structure))
+        engine.structure = structure
+        physics.rebind(compiled.model, compiled.data)
+        physics.sleep.restrict(bodies_kept_awake(structure))
+        physics.hears_controls = any(n.mjcf for m in structure.models.values() for n in m.all_models())
+        handles.bind(structure)
+        handles.labels.bind(structure)
+        handles.temperatures.bind(structure)
+        engine.friction.bind(compiled, [plugin for part in structure.parts.values() for plugin, _ in part.plugins])
+        engine.fast_body_warnings.names = compiled.names
+        physics.fast_bodies.tell = engine.fast_body_warnings
+        engine.wrenches.push(are_applied=True)
+        self._communication.set_active(engine.faults.living(structure))
         for sensor in structure.all_sensors():
             if sensor in self._attached:
                 sensor.bind(compiled)
 
     def start(self, parts: list[SensorsAndPlugins], diagnostics: Diagnostics) -> None:
         """Attaches new sensors, then loads new plugins, in document order; raises LoadError where they found errors."""
-        sim = self._sim
-        sim.bus.refuses_clashes = False
+        bus = self._communication.bus
+        bus.refuses_clashes = False
         for part in parts:
             for sensor in part.sensors:
-                with sim.bus.owned_by(sensor):
-                    sensor.attach(sim)
+                with bus.owned_by(sensor):
+                    sensor.attach(self._sim)
                 self._attached.add(sensor)
-                sensor.bind(self.structure.compiled)
+                sensor.bind(self._engine.compiled)
         for plugin, parent_of in plugins_in_order(parts):
-            with sim.bus.owned_by(plugin):
-                self._load_plugin(plugin, parent_of(sim))
+            with bus.owned_by(plugin):
+                self.load_plugin(plugin, parent_of(self._sim))
         new = [*(s for part in parts for s in part.sensors), *(plugin for part in parts for plugin, _ in part.plugins)]
-        report_topic_conflicts(sim.bus, diagnostics, new)
-        sim.bus.refuses_clashes = True
+        report_topic_conflicts(bus.endpoints(), diagnostics, new)
+        bus.refuses_clashes = True
         diagnostics.raise_if_errors()
 
-    def _load_plugin(self, plugin: Any, parent: Any) -> None:
-        sim = self._sim
+    def load_plugin(self, plugin: Any, parent: Any) -> None:
+        """Calls a plugin's `load`, and remembers what it made."""
+        faults = self._engine.faults
         self.loaded_plugins.append(plugin)
         try:
-            plugin._setup(sim, plugin.source)
+            plugin._setup(self._sim, plugin.source)
             if plugin._failed is not None:  # before there was a simulation
                 hook, error = plugin._failed
-                sim.faults.meet(plugin, hook, error)
+                faults.meet(plugin, hook, error)
                 return
             call_plugin(plugin, "load", plugin.load, parent, plugin.params)
         except Exception as error:  # noqa: BLE001 - a plugin may raise anything
-            sim.faults.meet(plugin, "load", error)
+            faults.meet(plugin, "load", error)
             return
         _check_hook_rates(plugin)
         try:
             call_plugin(plugin, "get_state", plugin._remember_loaded)
         except Exception as error:  # noqa: BLE001 - as above
-            sim.faults.meet(plugin, "get_state", error)
+            faults.meet(plugin, "get_state", error)
 
     def close_plugins(self) -> SimkitError | None:
         """Closes every plugin, once; gives the first error that one of them raised."""
@@ -273,7 +296,7 @@ class Spawner:
         first = None
         for plugin in plugins:
             try:
-                guarded_hook(self._sim, plugin, "close")()
+                self._engine.faults.task(plugin, "close")(0)
             except SimkitError as error:
                 first = first or error
         return first

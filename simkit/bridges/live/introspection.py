@@ -23,7 +23,7 @@ def topic_list(sim: Simulation, clients: Collection[ClientConnection]) -> list[J
     found: dict[str, JsonObject] = {}
     for topic in listed:
         found[topic] = {"name": topic, "types": [], "publishers": [], "subscribers": []}
-    for topic, end, types, what in sim.bus.ends():
+    for topic, end, types, what in sim.bus.endpoints():
         if topic not in found or not end.active:
             continue
         row, who = found[topic], names.endpoint_node(end)

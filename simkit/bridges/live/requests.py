@@ -175,7 +175,7 @@ def subscribe(request: Request) -> object:
         request.peer, number, topic, request.arg("depth", int)
     )
     request.server.feeds.add(subscribed)
-    types = (types[0] for _, end, types, _ in request.sim.bus.ends(topic) if end.active)
+    types = (types[0] for _, end, types, _ in request.sim.bus.endpoints(topic) if end.active)
     return {"topic": topic, "type": next(types, None)}
 
 
@@ -190,7 +190,7 @@ def unsubscribe(request: Request) -> object:
 
 def advertise(request: Request) -> object:
     number, topic, bus = request.new_number(request.peer.publishers), request.topic(), request.sim.bus
-    taken = [t for _, end, types, _ in bus.ends(topic) if end.active for t in types]
+    taken = [t for _, end, types, _ in bus.endpoints(topic) if end.active for t in types]
     if request.args.get("type") is None and not taken:
         raise RequestRefused(f"there is no topic {topic!r} yet, so that its type has to be given")
     type_name = msgs.full_name(taken[0] if request.args.get("type") is None else request.arg("type", str))

@@ -60,7 +60,7 @@ def find_target(sim: Simulation, wanted: str = "") -> TeleopTarget:
         InputError: SK-CLI-051 nobody takes velocities there, or several do.
     """
     takers: dict[str, Any] = {}
-    for topic, end, types, does in sim.bus.ends():
+    for topic, end, types, does in sim.bus.endpoints():
         if does == "takes" and end.active and any(one in TWISTS for one in types):
             takers.setdefault(topic, end.owner)
     if wanted:
@@ -279,7 +279,7 @@ class Teleop:
 
     def _takes_stamped(self) -> bool:
         """Check whether the first subscriber of velocities takes TwistStamped first or alone."""
-        ends = self._sim.bus.ends(self.target.topic)
+        ends = self._sim.bus.endpoints(self.target.topic)
         taken: list[str] = [one for _, end, types, does in ends if does == "takes" and end.active for one in types]
         return next((one for one in taken if one in TWISTS), "") == TWISTS[1]
 

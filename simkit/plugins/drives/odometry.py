@@ -163,7 +163,7 @@ class WheelOdometry:
 
 def wheel_angles(left: Joint, right: Joint) -> tuple[float, float]:
     """Of two joints with one axis [rad]: cheaper than their positions, for every step."""
-    qpos = left._sim.physics.data.qpos
+    qpos = left._physics.data.qpos
     return qpos.item(left._one_qpos), qpos.item(right._one_qpos)
 
 

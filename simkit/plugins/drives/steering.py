@@ -85,7 +85,7 @@ class TravelOdometry(abc.ABC):
 
 def joint_angles(joints: Sequence[Joint]) -> tuple[float, ...]:
     """Of joints with one axis [rad]: cheaper than their positions, for every step."""
-    qpos: Any = joints[0]._sim.physics.data.qpos
+    qpos: Any = joints[0]._physics.data.qpos
     return tuple(qpos.item(joint._one_qpos) for joint in joints)
 
 

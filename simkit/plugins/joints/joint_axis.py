@@ -77,7 +77,7 @@ class JointAxis:
         self.push(effort + float(self._pending()[self.index]))
 
     def _pending(self) -> Any:
-        applied = self.joint._sim.mj_data.qfrc_applied
+        applied = self.joint._physics.data.qfrc_applied
         return np.array([applied[dof] for dof in self.joint.mj_dofs])
 
     def __deepcopy__(self, memo: dict[int, Any]) -> JointAxis:

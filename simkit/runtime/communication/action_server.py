@@ -21,7 +21,8 @@ from simkit.runtime.communication.subscription import callback_name
 from simkit.runtime.communication.topic_bus import absolute_name
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.communication.topic_bus import TopicBus
+    from simkit.runtime.engine.engine import Engine
 
 
 class GoalStatus(enum.IntEnum):
@@ -79,7 +80,7 @@ class GoalHandle:
 
     def cancel(self) -> None:
         """Asks for it to be called off; the plugin hears of it before the next step, and may go on."""
-        bus = self._action.sim.bus
+        bus = self._action.bus
         if bus.journal is None:
             bus.enqueue(lambda: self._action.ask_to_cancel(self))
             return
@@ -129,7 +130,7 @@ class GoalHandle:
         except Exception as error:
             if isinstance(error, SimkitError) and not isinstance(error, InputError):
                 raise
-            topic, now = f"{self._action.name}/_action/{part}", self._action.sim.time
+            topic, now = f"{self._action.name}/_action/{part}", self._action.engine.time
             raise SubscriberError(topic, callback_name(callback), now, repr(error)) from error
 
     def _made(self, value: Any, part: str) -> Any:
@@ -155,13 +156,14 @@ class Action:
 
     def __init__(
         self,
-        sim: Simulation,
+        bus: TopicBus,
+        engine: Engine,
         name: str,
         type_name: str,
         on_goal: Callable[[GoalHandle], None],
         on_cancel: Callable[[GoalHandle], bool | None] | None,
     ) -> None:
-        self.sim, self.name, self.type_name, self.owner = sim, name, type_name, sim.bus._owner
+        self.bus, self.engine, self.name, self.type_name, self.owner = bus, engine, name, type_name, bus.owner
         self.active = True
         self._on_goal, self._on_cancel = on_goal, on_cancel
 
@@ -188,24 +190,29 @@ class Action:
     def _guarded(self, call: Callable[[GoalHandle], Any], goal: GoalHandle) -> Any:
         owner, hook = self.owner, f"action {self.name}"
         if hasattr(owner, "on_error"):
-            return self.sim.faults.guard(owner, hook, call)(goal)
+            return self.engine.faults.guard(owner, hook, call)(goal)
         try:
             return call(goal)
         except SimkitError:
             raise
         except Exception as error:
             name, where = getattr(owner, "name", "") or self.name, str(getattr(owner, "where", ""))
-            raise PluginError(name, hook, self.sim.time, where, repr(error)) from error
+            raise PluginError(name, hook, self.engine.time, where, repr(error)) from error
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Action:
         return self
 
 
 class ActionTable:
-    """All actions of a simulation, and the goals that were sent."""
+    """All actions of a simulation, and the goals that were sent.
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    Args:
+        bus: goals reach the plugins among its commands.
+        engine: calls plugins.
+    """
+
+    def __init__(self, bus: TopicBus, engine: Engine) -> None:
+        self._bus, self._engine = bus, engine
         self._actions: dict[str, list[Action]] = {}
         self._goals: list[GoalHandle] = []
         self._sent = 0
@@ -228,10 +235,10 @@ class ActionTable:
             msgs.full_name(f"{type_name}_Goal")
         if self._find(name) is not None:
             raise ActionError(f"there is an action {name!r} already")
-        if self._sim.bus.journal is not None:
-            with self._sim.bus.journal.passing("act", {"action": name}):
+        if self._bus.journal is not None:
+            with self._bus.journal.passing("act", {"action": name}):
                 pass
-        action = Action(self._sim, name, type_name, on_goal, on_cancel)
+        action = Action(self._bus, self._engine, name, type_name, on_goal, on_cancel)
         self._actions.setdefault(name, []).append(action)
         return action
 
@@ -269,7 +276,7 @@ class ActionTable:
         request = msgs.from_dict([wanted], goal or {}) if goal is None or isinstance(goal, Mapping) else goal
         if msgs.type_name(request) != wanted:
             raise MessageError(f"{name!r} takes {wanted}, got {msgs.type_name(request)}")
-        journal = self._sim.bus.journal
+        journal = self._bus.journal
         if journal is None:
             return self._send(action, request, on_feedback, on_done)
         on_feedback, on_done = journal.outside(on_feedback), journal.outside(on_done)
@@ -285,11 +292,11 @@ class ActionTable:
         on_done: Callable[[GoalHandle], None] | None,
     ) -> GoalHandle:
         self._sent += 1
-        handle = GoalHandle(action, self._sent, request, self._sim.time_ns)
+        handle = GoalHandle(action, self._sent, request, self._engine.time_ns)
         handle._on_feedback, handle._on_done = on_feedback, on_done
         self._goals = [g for g in self._goals if not g.is_done]
         self._goals.append(handle)
-        self._sim.bus.enqueue(lambda: action.offer(handle))
+        self._bus.enqueue(lambda: action.offer(handle))
         return handle
 
     def set_active(self, owners: Sequence[object]) -> None:

@@ -19,7 +19,7 @@ class CommandQueue(dict[int, QueuedCommand]):
     are calls, which are never dropped.
 
     Args:
-        on_full: called with a topic when the first of its messages is dropped.
+        on_full: called with a topic and its depth when the first of its messages is dropped.
 
     Attributes:
         dropped: how many messages were dropped, by topic.
@@ -27,7 +27,7 @@ class CommandQueue(dict[int, QueuedCommand]):
         generation: another number after everything in it was replaced (a reset or a restore).
     """
 
-    def __init__(self, on_full: Callable[[str], None]) -> None:
+    def __init__(self, on_full: Callable[[str, int], None]) -> None:
         super().__init__()
         self._on_full = on_full
         self._of: dict[str, deque[int]] = {}
@@ -55,7 +55,7 @@ class CommandQueue(dict[int, QueuedCommand]):
         before = self.dropped.get(topic, 0)
         self.dropped[topic] = before + 1
         if not before:
-            self._on_full(topic)
+            self._on_full(topic, self.depths.get(topic, QUEUE_DEPTH))
 
     def drain(self) -> list[QueuedCommand]:
         """Takes out all that waits, in the order of arrival."""

@@ -10,10 +10,11 @@ import functools
 import inspect
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
-from typing import Any, ParamSpec, Protocol, TypeVar
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 P = ParamSpec("P")
 R = TypeVar("R")
+S = TypeVar("S", bound="Journaled")
 
 
 class Journal(Protocol):
@@ -44,30 +45,31 @@ class Journal(Protocol):
         ...
 
 
-def journal_of(part: Any) -> Journal | None:
-    """The journal of a simulation, or of one of its tables."""
-    bus = getattr(part, "bus", None)
-    found: Journal | None = (part._sim.bus if bus is None else bus).journal
-    return found
+class Journaled(Protocol):
+    """Part of a simulation whose calls from outside go into a journal."""
+
+    @property
+    def _journal(self) -> Journal | None:
+        """The journal; None where nobody keeps one."""
 
 
-def journaled(method: Callable[P, R]) -> Callable[P, R]:
-    """Has a journal hear of each call of a method of a simulation or of one of its tables."""
+def journaled(method: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
+    """Has a journal hear of each call of a method."""
     signature = inspect.signature(method)
     name = method.__name__.lstrip("_")
 
-    @functools.wraps(method)
-    def through(*args: P.args, **kwargs: P.kwargs) -> R:
-        journal = journal_of(args[0])
+    def call_through(self: S, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        journal = self._journal
         if journal is None:
-            return method(*args, **kwargs)
-        bound = signature.bind(*args, **kwargs)
+            return method(self, *args, **kwargs)
+        bound = signature.bind(self, *args, **kwargs)
         bound.apply_defaults()
-        words = dict(list(bound.arguments.items())[1:])
-        with journal.passing(name, words) as told:
-            result = method(*args, **kwargs)
-            if told is not None:
-                told(result)
+        arguments = dict(list(bound.arguments.items())[1:])
+        with journal.passing(name, arguments) as report:
+            result = method(self, *args, **kwargs)
+            if report is not None:
+                report(result)
             return result
 
-    return through
+    functools.update_wrapper(call_through, method)
+    return call_through

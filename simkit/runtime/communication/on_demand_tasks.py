@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.topic_bus import Publisher
+    from simkit.runtime.communication.publisher import Publisher
+    from simkit.runtime.communication.topic_bus import TopicBus
     from simkit.runtime.engine.scheduler import Phase, Scheduler, Task
-    from simkit.runtime.simulation import Simulation
 
 
 class OnDemandTasks:
@@ -16,10 +16,14 @@ class OnDemandTasks:
 
     A wish is looked at when the schedule is made, and when somebody says that it changed; so a run in which nobody
     wants anything has the schedule of one without them.
+
+    Args:
+        bus: whose readers decide.
+        reschedule: called when what is wanted has changed.
     """
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    def __init__(self, bus: TopicBus, reschedule: Callable[[], None]) -> None:
+        self._bus, self._reschedule = bus, reschedule
         self._tasks: list[tuple[Callable[[], bool], float | None, Task, Phase]] = []
         self._wanted: list[bool] = []
 
@@ -56,7 +60,7 @@ class OnDemandTasks:
         Returns:
             Topic -> publisher.
         """
-        bus = self._sim.bus
+        bus = self._bus
         if is_aside:
             bus.aside.update(topics)
             bus.unlisted.update(() if is_listed else topics)
@@ -72,7 +76,7 @@ class OnDemandTasks:
                         publisher.publish(message)
 
         for topic in topics:
-            bus.on_audience(topic, self.look)
+            bus.on_readers_change(topic, self.look)
         self.add(lambda: any(publisher.wanted for publisher in publishers.values()), rate, publish)
         return publishers
 
@@ -80,7 +84,7 @@ class OnDemandTasks:
         """Says that what is wanted may have changed."""
         wanted = [is_wanted() for is_wanted, _, _, _ in self._tasks]
         if wanted != self._wanted and any(wanted + self._wanted):
-            self._sim.reschedule()
+            self._reschedule()
 
     def fill(self, scheduler: Scheduler) -> None:
         """Schedules what is wanted now."""

@@ -20,7 +20,10 @@ from simkit.errors import ParameterError
 from simkit.runtime.communication.journal import journaled
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.communication.journal import Journal
+    from simkit.runtime.communication.service_server import ServiceTable
+    from simkit.runtime.communication.topic_bus import TopicBus
+    from simkit.runtime.engine.engine import Engine
 
 
 ParameterValue = bool | int | float | str | tuple[float, ...]
@@ -109,12 +112,22 @@ class Parameter(Generic[T]):
 
 
 class ParameterTable:
-    """The parameters of all plugins, by node."""
+    """The parameters of all plugins, by node.
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    Args:
+        bus: changes within a step wait among its commands.
+        engine: tells whether a step is under way.
+    """
+
+    def __init__(self, bus: TopicBus, engine: Engine) -> None:
+        self._bus, self._engine = bus, engine
         # a model that comes under the name of one that is gone, and may come back, has the same node
         self._parameters: dict[str, dict[tuple[int, str], Parameter[Any]]] = {}
+
+    @property
+    def _journal(self) -> Journal | None:
+        """Hears of what comes in from outside; None where nobody does."""
+        return self._bus.journal
 
     def add(self, parameter: Parameter[Any]) -> None:
         """Adds a parameter to its node."""
@@ -157,8 +170,8 @@ class ParameterTable:
         """
         parameter = self.find(node, name)
         checked = parameter.checked(value)
-        if self._sim.is_stepping:
-            self._sim.bus.enqueue(lambda: parameter.take(checked))
+        if self._engine.is_stepping:
+            self._bus.enqueue(lambda: parameter.take(checked))
         else:
             parameter.take(checked)
 
@@ -224,33 +237,35 @@ _VALUE_FIELDS = {
 }
 
 
-def offer_parameter_services(sim: Simulation, node: str) -> None:
+def offer_parameter_services(services: ServiceTable, parameters: ParameterTable, node: str) -> None:
     """Opens the six parameter services of a node."""
-    services: dict[str, Callable[[Any], Any]] = {
+    handlers: dict[str, Callable[[Any], Any]] = {
         "GetParameters": lambda request: {
-            "values": [_value_message(_find_or_none(sim, node, n)) for n in request.names]
+            "values": [_value_message(_find_or_none(parameters, node, n)) for n in request.names]
         },
         "GetParameterTypes": lambda request: {
-            "types": [_value_message(_find_or_none(sim, node, n))["type"] for n in request.names]
+            "types": [_value_message(_find_or_none(parameters, node, n))["type"] for n in request.names]
         },
-        "SetParameters": lambda request: {"results": [_set_parameters(sim, node, [p]) for p in request.parameters]},
-        "SetParametersAtomically": lambda request: {"result": _set_parameters(sim, node, request.parameters)},
-        "ListParameters": lambda request: {"result": {"names": _list_names(sim, node, request.prefixes)}},
+        "SetParameters": lambda request: {
+            "results": [_set_parameters(parameters, node, [p]) for p in request.parameters]
+        },
+        "SetParametersAtomically": lambda request: {"result": _set_parameters(parameters, node, request.parameters)},
+        "ListParameters": lambda request: {"result": {"names": _list_names(parameters, node, request.prefixes)}},
         "DescribeParameters": lambda request: {
-            "descriptors": [_descriptor(_find_or_none(sim, node, n)) for n in request.names]
+            "descriptors": [_descriptor(_find_or_none(parameters, node, n)) for n in request.names]
         },
     }
-    for name, handler in services.items():
+    for name, handler in handlers.items():
         snake = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
-        sim.offer(f"{node}/{snake}", f"rcl_interfaces/srv/{name}", handler)
+        services.offer(f"{node}/{snake}", f"rcl_interfaces/srv/{name}", handler)
 
 
-def _find_or_none(sim: Simulation, node: str, name: str) -> Parameter[Any] | None:
-    return sim.parameter_table.nodes().get(node, {}).get(name)
+def _find_or_none(parameters: ParameterTable, node: str, name: str) -> Parameter[Any] | None:
+    return parameters.nodes().get(node, {}).get(name)
 
 
-def _list_names(sim: Simulation, node: str, prefixes: list[str]) -> list[str]:
-    names = list(sim.parameter_table.nodes().get(node, {}))
+def _list_names(parameters: ParameterTable, node: str, prefixes: list[str]) -> list[str]:
+    names = list(parameters.nodes().get(node, {}))
     return [n for n in names if not prefixes or any(n == p or n.startswith(f"{p}.") for p in prefixes)]
 
 
@@ -263,18 +278,18 @@ def _value_message(parameter: Parameter[Any] | None) -> dict[str, Any]:
     return {"type": kind, _VALUE_FIELDS[kind]: list(value) if isinstance(value, tuple) else value}
 
 
-def _set_parameters(sim: Simulation, node: str, wanted: list[Any]) -> dict[str, Any]:
+def _set_parameters(parameters: ParameterTable, node: str, wanted: list[Any]) -> dict[str, Any]:
     """Changes all of them or none."""
     try:
         checked = []
         for one in wanted:
-            parameter = sim.parameter_table.find(node, one.name)
+            parameter = parameters.find(node, one.name)
             field = _VALUE_FIELDS.get(int(one.value.type))
             checked.append((parameter.name, parameter.checked(getattr(one.value, field) if field else None)))
     except ParameterError as error:
         return {"successful": False, "reason": str(error)}
     for name, value in checked:
-        sim.parameter_table.set(node, name, value)
+        parameters.set(node, name, value)
     return {"successful": True}
 
 

@@ -3,41 +3,71 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from simkit import msgs
 from simkit.runtime.communication.subscription import Callback, LazyMessage
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.topic_bus import TopicBus
+    from simkit.runtime.communication.command_queue import CommandQueue
+    from simkit.runtime.communication.journal import Journal
+    from simkit.runtime.communication.subscription import TopicReaders
+
+
+class PublishingBus(Protocol):
+    """What a publisher asks of the topic bus."""
+
+    journal: Journal | None
+    inbox: CommandQueue
+
+
+class TopicSides(NamedTuple):
+    """Readers and publishers of a topic, as they are at any time."""
+
+    readers: TopicReaders
+    publishers: list[Publisher]
 
 
 class Publisher:
     """One end of a topic; `wanted` says whether somebody reads now.
 
     Attributes:
+        last: the last message of a latched topic.
         pending: publishes what its owner has put off, before anybody looks; None where nothing is ever put off.
     """
 
-    __slots__ = ("_audience", "_bus", "_last", "active", "latched", "owner", "pending", "topic", "type_name")
+    __slots__ = (
+        "_bus",
+        "_publishers",
+        "_readers",
+        "active",
+        "last",
+        "latched",
+        "owner",
+        "pending",
+        "topic",
+        "type_name",
+    )
 
-    def __init__(self, bus: TopicBus, topic: str, type_name: str, latched: bool, owner: object) -> None:
+    def __init__(
+        self, bus: PublishingBus, sides: TopicSides, topic: str, type_name: str, latched: bool, owner: object
+    ) -> None:
         self._bus, self.topic, self.type_name, self.latched, self.owner = bus, topic, type_name, latched, owner
-        self._audience = bus._audience(topic)
-        self._last: Any = None
+        self._readers, self._publishers = sides
+        self.last: Any = None
         self.active = True
         self.pending: Callable[[], None] | None = None
 
     @property
     def wanted(self) -> bool:
-        audience = self._audience
-        return bool(audience.readers) or self.latched or audience.feeds
+        readers = self._readers
+        return bool(readers.readers) or self.latched or readers.feeds
 
     @property
     def is_live(self) -> bool:
         """Whether somebody does something with each message at once."""
-        audience = self._audience
-        return audience.is_called or audience.feeds or self.latched
+        readers = self._readers
+        return readers.is_called or readers.feeds or self.latched
 
     @property
     def patience(self) -> float:
@@ -45,10 +75,10 @@ class Publisher:
 
         That is where somebody is called back or counts what comes, and where others publish on the same topic.
         """
-        audience = self._audience
-        if self.is_live or audience.is_streamed or len(self._bus._publishers[self.topic]) > 1:
+        readers = self._readers
+        if self.is_live or readers.is_streamed or len(self._publishers) > 1:
             return 0
-        return audience.keeps
+        return readers.keeps
 
     def publish(self, message: Any) -> None:
         """Hands a message to every subscriber, now, and to command inputs before the next step.
@@ -62,11 +92,11 @@ class Publisher:
         if type(message) is dict:
             message = msgs.make(self.type_name, **message)
         if self.latched:
-            self._last = message
-        audience = self._audience
-        for receive in audience.receivers:
+            self.last = message
+        readers = self._readers
+        for receive in readers.receivers:
             receive(message)
-        if audience.feeds:
+        if readers.feeds:
             self._bus.inbox.put(self.topic, message)
 
     def publish_later(self, make: Callable[[], Any], work: Any = None) -> LazyMessage | None:
@@ -81,14 +111,14 @@ class Publisher:
         Returns:
             What was handed out instead of the message; None where it was made.
         """
-        if self.latched and not self._audience.readers and not self._audience.feeds:
-            later = self._last = LazyMessage(make, work=work)
+        if self.latched and not self._readers.readers and not self._readers.feeds:
+            later = self.last = LazyMessage(make, work=work)
             return later
         if self.is_live:
             self.publish(make())
             return None
-        later = LazyMessage(make, self._audience.looks_at_all, work)
-        for receive in self._audience.receivers:
+        later = LazyMessage(make, self._readers.looks_at_all, work)
+        for receive in self._readers.receivers:
             receive(later)
         return later
 

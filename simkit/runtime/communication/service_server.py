@@ -19,7 +19,8 @@ from simkit.runtime.communication.topic_bus import absolute_name
 from simkit.runtime.engine.plugin_faults import call_plugin
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.communication.topic_bus import TopicBus
+    from simkit.runtime.engine.engine import Engine
 
 ServiceHandler = Callable[[Any], Any]
 
@@ -47,10 +48,15 @@ class Service:
 
 
 class ServiceTable:
-    """All services of a simulation."""
+    """All services of a simulation.
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    Args:
+        bus: knows who opens what.
+        engine: calls plugins.
+    """
+
+    def __init__(self, bus: TopicBus, engine: Engine) -> None:
+        self._bus, self._engine = bus, engine
         self._services: dict[str, list[Service]] = {}
 
     def offer(self, name: str, type_name: str, handler: ServiceHandler) -> Service:
@@ -66,17 +72,17 @@ class ServiceTable:
         standing = self._find(name)
         if standing is not None and not standing.yields:
             raise ServiceError(f"there is a service {name!r} already, {_describe_owner(standing)}")
-        if self._sim.bus.journal is not None:
-            with self._sim.bus.journal.passing("offer", {"service": name}):
+        if self._bus.journal is not None:
+            with self._bus.journal.passing("offer", {"service": name}):
                 pass
-        service = Service(name, type_name, handler, self._sim.bus._owner)
+        service = Service(name, type_name, handler, self._bus.owner)
         self._services.setdefault(name, []).insert(0, service)
         return service
 
     def offer_by_default(self, name: str, type_name: str, handler: ServiceHandler) -> None:
         """Opens a service that is there as long as nobody else offers one of its name."""
         name = absolute_name(name)
-        service = Service(name, type_name, handler, self._sim.bus._owner)
+        service = Service(name, type_name, handler, self._bus.owner)
         service.yields = True
         self._services.setdefault(name, []).append(service)
 
@@ -114,7 +120,7 @@ class ServiceTable:
         )
         if msgs.type_name(asked) != f"{service.type_name}_Request":
             raise MessageError(f"{name!r} takes {service.type_name}_Request, got {msgs.type_name(asked)}")
-        journal = self._sim.bus.journal
+        journal = self._bus.journal
         if journal is None:
             return self._answer(service, asked)
         with journal.passing("call", {"service": service, "request": asked}):
@@ -144,9 +150,9 @@ class ServiceTable:
                 raise
             name, where = getattr(owner, "name", "") or service.name, str(getattr(owner, "where", ""))
             if hasattr(owner, "on_error"):
-                self._sim.faults.meet(owner, hook, error)
+                self._engine.faults.meet(owner, hook, error)
                 raise ServiceError(f"service {service.name!r} raised, and plugin {name!r} is left out") from error
-            raise PluginError(name, hook, self._sim.time, where, repr(error)) from error
+            raise PluginError(name, hook, self._engine.time, where, repr(error)) from error
 
     def _find(self, name: str) -> Service | None:
         return next((s for s in self._services.get(name, ()) if s.active), None)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 
 if TYPE_CHECKING:
-    from simkit.runtime.communication.topic_bus import TopicBus
+    from simkit.runtime.communication.journal import Journal
 
 Callback = Callable[[Any], None]
 CallbackErrorPolicy = Literal["stop", "drop"]
@@ -48,6 +48,32 @@ class LazyMessage:
             self._message = make()
             self._make = self.work = None
         return self._message
+
+
+class SubscriptionFailures(Protocol):
+    """What becomes of a subscription that fails."""
+
+    def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
+        """Called while an exception of its callback is being handled."""
+
+    def report_full(self, topic: str) -> None:
+        """Called when a subscription that keeps all has had more messages than it can keep."""
+
+
+class SubscribingBus(Protocol):
+    """What a subscription asks of the topic bus."""
+
+    journal: Journal | None
+
+    @property
+    def failures(self) -> SubscriptionFailures:
+        """What becomes of a subscription that fails."""
+
+    def gather(self, topic: str) -> None:
+        """Lets the publishers of a topic hand over what they have put off."""
+
+    def unsubscribe(self, subscription: Subscription) -> None:
+        """Takes a subscription away."""
 
 
 class TopicReaders:
@@ -96,7 +122,7 @@ class Subscription:
 
     def __init__(
         self,
-        bus: TopicBus,
+        bus: SubscribingBus,
         topic: str,
         callback: Callback | None,
         keep: int | None,
@@ -111,7 +137,7 @@ class Subscription:
     def messages(self) -> list[Any]:
         self._bus.gather(self.topic)
         if len(self._messages) == MAX_KEPT_MESSAGES and self.keeps == math.inf:
-            self._bus.report_full(self.topic)
+            self._bus.failures.report_full(self.topic)
         found = [m.get() if type(m) is LazyMessage else m for m in self._messages]
         return [m for m in found if m is not NO_MESSAGE]
 
@@ -137,7 +163,7 @@ class Subscription:
 
     def close(self) -> None:
         """Stops receiving; what was received stays."""
-        self._bus._unsubscribe(self)
+        self._bus.unsubscribe(self)
 
     def _keep_and_call(self, message: Any) -> None:
         self._messages.append(message)
@@ -149,7 +175,7 @@ class Subscription:
                 with journal.called_back(self):
                     self.callback(message)  # type: ignore[misc]  # as above
         except Exception as error:  # noqa: BLE001 - what a user wrote may raise anything
-            self._bus.subscriber_failed(self, error)
+            self._bus.failures.subscriber_failed(self, error)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Subscription:
         return self
@@ -158,7 +184,7 @@ class Subscription:
 class StreamSubscription(Subscription):
     """A subscription that only calls back and keeps nothing (a recorder's)."""
 
-    def __init__(self, bus: TopicBus, topic: str, callback: Callback, takes_later: bool) -> None:
+    def __init__(self, bus: SubscribingBus, topic: str, callback: Callback, takes_later: bool) -> None:
         super().__init__(bus, topic, callback, 0)
         self.receive = callback
         self.is_called = not takes_later

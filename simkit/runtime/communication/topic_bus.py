@@ -8,12 +8,11 @@ from typing import Any
 
 from simkit import msgs
 from simkit.diagnostics import Diagnostics, did_you_mean
-from simkit.errors import InputError, MessageError, PluginError, SimkitError, SimulationDiverged, SubscriberError
-from simkit.runtime.communication.command_queue import QUEUE_DEPTH, CommandQueue
+from simkit.errors import MessageError, SimkitError
+from simkit.runtime.communication.command_queue import CommandQueue
 from simkit.runtime.communication.journal import Journal
-from simkit.runtime.communication.publisher import ExternalPublisher, Listener, Publisher
+from simkit.runtime.communication.publisher import ExternalPublisher, Listener, Publisher, TopicSides
 from simkit.runtime.communication.subscription import (
-    MAX_KEPT_MESSAGES,
     NO_MESSAGE,
     Callback,
     CallbackErrorPolicy,
@@ -21,9 +20,9 @@ from simkit.runtime.communication.subscription import (
     StreamSubscription,
     Subscription,
     TopicReaders,
-    callback_name,
 )
 from simkit.runtime.communication.topic_conflicts import find_conflict
+from simkit.runtime.communication.topic_failures import TopicFailures
 from simkit.runtime.engine.plugin_faults import is_guarded
 
 __all__ = [
@@ -58,34 +57,35 @@ class TopicBus:
         revision: another number after every change of who reads or publishes what.
         aside: topics that nobody takes unasked: recorders and counters leave them out unless they are named.
         unlisted: those of them that are only listed while somebody reads them.
+        failures: what becomes of callbacks that raise, and of messages that are too many.
         journal: hears of what comes in from outside; None where nobody does.
     """
 
     def __init__(self, reports: Diagnostics | None = None, now: Callable[[], float] = lambda: 0.0) -> None:
-        self._reports, self._now = Diagnostics() if reports is None else reports, now
-        self._audiences: dict[str, TopicReaders] = {}
+        self.failures = TopicFailures(Diagnostics() if reports is None else reports, now)
+        self._readers: dict[str, TopicReaders] = {}
         self._publishers: dict[str, list[Publisher]] = {}
         self._listeners: dict[str, list[Listener]] = {}
         self._watchers: list[Callable[[str, str], None]] = []
-        self._owner: object = None
-        self.inbox = CommandQueue(self._report_dropped)
+        self.owner: object = None
+        self.inbox = CommandQueue(self.failures.report_dropped)
         self.refuses_clashes = False
         self.revision = 0
         self.aside: set[str] = set()
         self.unlisted: set[str] = set()
         self.journal: Journal | None = None
-        self._on_audience: dict[str, Callable[[], None]] = {}
+        self._on_change: dict[str, Callable[[], None]] = {}
 
     # ------------------------------------------------------------------ ends
 
     @contextmanager
     def owned_by(self, owner: object) -> Iterator[None]:
         """Whatever opens a topic within belongs to `owner` and is silenced with it."""
-        before, self._owner = self._owner, owner
+        before, self.owner = self.owner, owner
         try:
             yield
         finally:
-            self._owner = before
+            self.owner = before
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> Publisher:
         """Opens a topic for publishing.
@@ -98,12 +98,13 @@ class TopicBus:
         topic = absolute_name(topic)
         self.gather(topic)
         self.revision += 1
-        kind = Publisher if self._owner is not None else ExternalPublisher
-        publisher = kind(self, topic, type_name, latched, self._owner)
+        kind = Publisher if self.owner is not None else ExternalPublisher
+        sides = TopicSides(self._readers_of(topic), self._publishers.setdefault(topic, []))
+        publisher = kind(self, sides, topic, type_name, latched, self.owner)
         self._check_type(topic, publisher)
-        self._publishers.setdefault(topic, []).append(publisher)
+        sides.publishers.append(publisher)
         self._announce(topic, type_name)
-        if self.journal is not None and self._owner is None:
+        if self.journal is not None and self.owner is None:
             with self.journal.passing("advertise", {"publisher": publisher}):
                 pass
         return publisher
@@ -123,12 +124,12 @@ class TopicBus:
             self.inbox.depths[topic] = max(1, depth, self.inbox.depths.get(topic, 0))
         self.gather(topic)
         self.revision += 1
-        listener = Listener(topic, types, callback, self._owner)
+        listener = Listener(topic, types, callback, self.owner)
         self._check_type(topic, listener)
         self._listeners.setdefault(topic, []).append(listener)
-        self._audience(topic).feeds = True
+        self._readers_of(topic).feeds = True
         self._announce(topic, types[0])
-        self._tell_audience(topic)
+        self._report_change(topic)
         return listener
 
     def subscribe(
@@ -174,8 +175,8 @@ class TopicBus:
         table: Mapping[str, list[Any]] = self._publishers if isinstance(end, Publisher) else self._listeners
         if end in table.get(end.topic, []):
             table[end.topic].remove(end)
-        self._audience(end.topic).feeds = bool(self._listeners.get(end.topic))
-        self._tell_audience(end.topic)
+        self._readers_of(end.topic).feeds = bool(self._listeners.get(end.topic))
+        self._report_change(end.topic)
         self._tidy(end.topic)
 
     def set_active(self, owners: Sequence[object]) -> None:
@@ -193,7 +194,7 @@ class TopicBus:
         for end in [end for table in tables for ends in table.values() for end in ends if id(end.owner) in gone]:
             self.close(end)
 
-    def ends(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
+    def endpoints(self, topic: str | None = None) -> Iterator[tuple[str, Publisher | Listener, tuple[str, ...], str]]:
         """Topic, end, its types and what it does ("publishes" or "takes"), of one topic or of all."""
         for name in dict.fromkeys((*self._publishers, *self._listeners)) if topic is None else (topic,):
             for publisher in self._publishers.get(name, ()):
@@ -203,7 +204,7 @@ class TopicBus:
 
     def _check_type(self, topic: str, end: Publisher | Listener) -> None:
         if self.refuses_clashes and end.owner is not None:
-            clash = find_conflict(self, topic, end)
+            clash = find_conflict(self.endpoints(topic), topic, end)
             if clash:
                 raise MessageError(clash)
 
@@ -232,7 +233,7 @@ class TopicBus:
 
     def wanted(self, topic: str) -> bool:
         """Whether somebody subscribes to a topic."""
-        return bool(self._audience(absolute_name(topic)).readers)
+        return bool(self._readers_of(absolute_name(topic)).readers)
 
     def on_topic(self, callback: Callable[[str, str], None]) -> None:
         """Calls `callback(topic, type_name)` for every topic there is and will be."""
@@ -240,13 +241,17 @@ class TopicBus:
         for topic, type_name in self.all_topics().items():
             callback(topic, type_name)
 
-    def on_audience(self, topic: str, callback: Callable[[], None]) -> None:
-        """Calls back whenever who hears a topic has changed."""
-        self._on_audience[topic] = callback
+    def on_readers_change(self, topic: str, callback: Callable[[], None]) -> None:
+        """Calls back whenever the readers of a topic have changed."""
+        self._on_change[topic] = callback
 
-    def _tell_audience(self, topic: str) -> None:
-        if topic in self._on_audience:
-            self._on_audience[topic]()
+    def subscriptions(self) -> list[Subscription]:
+        """All that are open."""
+        return [reader for readers in self._readers.values() for reader in readers.readers]
+
+    def _report_change(self, topic: str) -> None:
+        if topic in self._on_change:
+            self._on_change[topic]()
 
     # ------------------------------------------------------------------ messages
 
@@ -256,14 +261,14 @@ class TopicBus:
             for publisher in publishers:
                 if publisher.pending is not None:
                     publisher.pending()
-        for audience in self._audiences.values():
-            for reader in audience.readers:
+        for readers in self._readers.values():
+            for reader in readers.readers:
                 reader.settle()
 
     def settle_topic(self, topic: str) -> None:
         """The same of one topic."""
         self.gather(topic)
-        for reader in self._audience(topic).readers:
+        for reader in self._readers_of(topic).readers:
             reader.settle()
 
     def gather(self, topic: str) -> None:
@@ -327,90 +332,59 @@ class TopicBus:
                 except SimkitError:
                     raise
                 except Exception as error:
-                    raise self._input_error(listener, error) from error
-
-    # ------------------------------------------------------------------ what goes wrong
+                    raise self.failures.input_error(listener, error) from error
 
     @property
     def dropped(self) -> dict[str, int]:
         """Topic -> how many messages to its inputs were dropped, since too many came for one step."""
         return dict(self.inbox.dropped)
 
-    def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
-        """What becomes of a subscriber that raised, called while that is being handled."""
-        if isinstance(error, (PluginError, SimulationDiverged)) or is_guarded(subscription.callback):
-            raise error
-        topic, name = subscription.topic, callback_name(subscription.callback)
-        if subscription.on_error == "stop":
-            if isinstance(error, SimkitError) and not isinstance(error, InputError):
-                raise error  # else who publishes would be blamed for it
-            raise SubscriberError(topic, name, self._now(), repr(error)) from error
-        subscription.close()
-        message = f"subscriber {name} of {topic!r} raised at t={self._now():.6g} s and hears no more: {error!r}"
-        self._reports.warning("SK-TOPIC-003", message)
-
-    def report_full(self, topic: str) -> None:
-        """Tells that a subscription which keeps all has had more messages than it can keep."""
-        message = f"a subscription to {topic!r} is full: of more than {MAX_KEPT_MESSAGES} messages the newest are there"
-        self._reports.warning("SK-TOPIC-005", message, hint="subscribe with keep=, or close it once it is not needed")
-
-    def _report_dropped(self, topic: str) -> None:
-        depth = self.inbox.depths.get(topic, QUEUE_DEPTH)
-        message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
-        self._reports.warning("SK-TOPIC-004", message, hint="send less often; sim.bus.dropped counts them")
-
-    def _input_error(self, listener: Listener, error: Exception) -> SimkitError:
-        owner, what = listener.owner, f"its callback for {listener.topic!r}"
-        if hasattr(owner, "where"):
-            return PluginError(str(getattr(owner, "name", owner)), what, self._now(), str(owner.where), repr(error))
-        return SubscriberError(listener.topic, callback_name(listener.callback), self._now(), repr(error))
-
     def _listed(self) -> str:
         return "there is " + (", ".join(self.topics()) or "none")
 
     def _deliver(self, topic: str, message: Any) -> None:
         self.gather(topic)
-        audience = self._audience(topic)
-        for receive in audience.receivers:
+        readers = self._readers_of(topic)
+        for receive in readers.receivers:
             receive(message)
-        if audience.feeds:
+        if readers.feeds:
             self.inbox.put(topic, message)
 
-    def _audience(self, topic: str) -> TopicReaders:
-        found = self._audiences.get(topic)
+    def _readers_of(self, topic: str) -> TopicReaders:
+        found = self._readers.get(topic)
         if found is None:
-            found = self._audiences[topic] = TopicReaders()
+            found = self._readers[topic] = TopicReaders()
         return found
 
     def _add_reader(self, subscription: Subscription) -> Subscription:
         topic = subscription.topic
         self.gather(topic)
         self.revision += 1
-        audience = self._audience(topic)
-        audience.readers.append(subscription)
-        audience.count()
+        readers = self._readers_of(topic)
+        readers.readers.append(subscription)
+        readers.count()
         for publisher in self._publishers.get(topic, ()):
-            if publisher.latched and publisher.active and publisher._last is not None:
-                if type(publisher._last) is LazyMessage:
-                    publisher._last = publisher._last.get()
-                subscription.receive(publisher._last)
-        self._tell_audience(topic)
+            if publisher.latched and publisher.active and publisher.last is not None:
+                if type(publisher.last) is LazyMessage:
+                    publisher.last = publisher.last.get()
+                subscription.receive(publisher.last)
+        self._report_change(topic)
         return subscription
 
-    def _unsubscribe(self, subscription: Subscription) -> None:
-        audience = self._audience(subscription.topic)
-        if subscription in audience.readers:
+    def unsubscribe(self, subscription: Subscription) -> None:
+        readers = self._readers_of(subscription.topic)
+        if subscription in readers.readers:
             self.gather(subscription.topic)
             self.revision += 1
-            audience.readers.remove(subscription)
-            audience.count()
-            self._tell_audience(subscription.topic)
+            readers.readers.remove(subscription)
+            readers.count()
+            self._report_change(subscription.topic)
             self._tidy(subscription.topic)
 
     def _tidy(self, topic: str) -> None:
         """Forgets a topic that has no end any more: others come, with other names, for as long as a run goes on."""
-        if not (self._publishers.get(topic) or self._listeners.get(topic) or self._audience(topic).readers):
-            for table in (self._publishers, self._listeners, self._audiences):
+        if not (self._publishers.get(topic) or self._listeners.get(topic) or self._readers_of(topic).readers):
+            for table in (self._publishers, self._listeners, self._readers):
                 table.pop(topic, None)
 
     def _announce(self, topic: str, type_name: str) -> None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from simkit.diagnostics import NOWHERE, Diagnostics, Where
 
-if TYPE_CHECKING:
-    from simkit.runtime.communication.topic_bus import TopicBus
+Side = tuple[str, Any, tuple[str, ...], str]
+"""Topic, publisher or listener, its types and what it does ("publishes" or "takes")."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,26 +33,28 @@ class TopicEndpoint:
     owner: Any
 
 
-def report_topic_conflicts(bus: TopicBus, diagnostics: Diagnostics, newcomers: Iterable[object] | None = None) -> None:
+def report_topic_conflicts(
+    sides: Iterable[Side], diagnostics: Diagnostics, newcomers: Iterable[object] | None = None
+) -> None:
     """Tells of topics that a plugin shares with a plugin or a sensor and that have two types there: ROS knows one.
 
     A plugin that publishes what a sensor publishes too is told of where both types are the same.
 
     Args:
-        bus: with the ends of everything that is at work.
+        sides: publishers and listeners of everything that is at work.
         diagnostics: where it is told.
         newcomers: the plugins and sensors that are new; without them all are.
     """
     new = None if newcomers is None else {id(one) for one in newcomers}
-    for topic, ends in _endpoints_by_topic(bus).items():
+    for topic, ends in _endpoints_by_topic(sides).items():
         if len(ends) > 1:
             _report_conflicts(topic, ends, diagnostics, new)
 
 
-def find_conflict(bus: TopicBus, topic: str, end: Any) -> str:
+def find_conflict(sides: Iterable[Side], topic: str, end: Any) -> str:
     """What is wrong with one more end of a topic; empty where nothing is."""
     new = _endpoint(end, (end.type_name,) if hasattr(end, "type_name") else end.types, "")
-    for _, other, types, does in bus.ends(topic):
+    for _, other, types, does in sides:
         is_others = other.active and other.owner is not None and other.owner is not end.owner
         if is_others and not set(types) & set(new.types):
             old = _endpoint(other, types, does)
@@ -92,9 +94,9 @@ def _describe_use(end: TopicEndpoint) -> str:
     return f"{end.name} {end.does} {' or '.join(end.types)}"
 
 
-def _endpoints_by_topic(bus: TopicBus) -> dict[str, list[TopicEndpoint]]:
+def _endpoints_by_topic(sides: Iterable[Side]) -> dict[str, list[TopicEndpoint]]:
     found: dict[str, list[TopicEndpoint]] = {}
-    for topic, end, types, does in bus.ends():
+    for topic, end, types, does in sides:
         if end.active and end.owner is not None:
             found.setdefault(topic, []).append(_endpoint(end, types, does))
     return found

@@ -44,11 +44,58 @@ class _Callback:
             self._is_busy = False
 
 
-_lock = threading.Lock()
-_callbacks: dict[int, _Callback] = {}
-"""By the address of the data; each is of one thread."""
+class _ControlCallback:
+    """MuJoCo's one callback between velocities and forces, shared by all data of the process."""
 
-_previous: Callable[[int, int], None] | None = None
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._callbacks: dict[int, _Callback] = {}  # by the address of the data; each is of one thread
+        self._previous: Callable[[int, int], None] | None = None
+        self._function = _Control(self._call)
+        self._address = ctypes.cast(self._function, ctypes.c_void_p).value
+
+    def add(self, address: int, callback: _Callback) -> None:
+        """Has a callback called in the forward passes of the data at an address."""
+        with self._lock:
+            if not self._callbacks:
+                self._install()
+            self._callbacks[address] = callback
+
+    def remove(self, address: int) -> None:
+        """Ends it."""
+        with self._lock:
+            del self._callbacks[address]
+            if not self._callbacks:
+                self._uninstall()
+
+    def _call(self, model: int, data: int) -> None:
+        previous, callback = self._previous, self._callbacks.get(data)
+        if previous is not None:
+            previous(model, data)
+        if callback is not None:
+            callback()
+
+    def _install(self) -> None:
+        there = _callback_pointer().value
+        self._previous = None if there is None else _Control(there)
+        _callback_pointer().value = self._address
+
+    def _uninstall(self) -> None:
+        pointer, previous = _callback_pointer(), self._previous
+        if pointer.value == self._address:
+            pointer.value = None if previous is None else ctypes.cast(previous, ctypes.c_void_p).value  # type: ignore[arg-type]
+        self._previous = None
+
+
+@cache
+def _callback_pointer() -> ctypes.c_void_p:
+    """Return the engine's pointer to its callback."""
+    folder = Path(mujoco.__file__).parent
+    library = next(path for pattern in ("libmujoco*", "mujoco.dll") for path in sorted(folder.glob(pattern)))
+    return ctypes.c_void_p.in_dll(ctypes.CDLL(str(library)), "mjcb_control")
+
+
+_CONTROL: Final = _ControlCallback()
 
 
 @contextmanager
@@ -61,52 +108,11 @@ def call_before_forces(data: mujoco.MjData, call: Callable[[], None]) -> Iterato
         data: of the engine; passes of others, on other threads, are left alone.
         call: may change the contacts and the references of constraints of these data.
     """
-    address, mine = int(data._address), _Callback(call)
-    with _lock:
-        if not _callbacks:
-            _install()
-        _callbacks[address] = mine
+    address, mine = int(data._address), _Callback(call)  # type: ignore[attr-defined]  # the stubs leave it out
+    _CONTROL.add(address, mine)
     try:
         yield
     finally:
-        with _lock:
-            del _callbacks[address]
-            if not _callbacks:
-                _uninstall()
+        _CONTROL.remove(address)
     if mine.error is not None:
         raise mine.error
-
-
-def _control(model: int, data: int) -> None:
-    before, call = _previous, _callbacks.get(data)
-    if before is not None:
-        before(model, data)
-    if call is not None:
-        call()
-
-
-_POINTER: Final = _Control(_control)
-_ADDRESS: Final = ctypes.cast(_POINTER, ctypes.c_void_p).value
-
-
-@cache
-def _callback_pointer() -> ctypes.c_void_p:
-    """Return the engine's pointer to its callback."""
-    folder = Path(mujoco.__file__).parent
-    library = next(path for pattern in ("libmujoco*", "mujoco.dll") for path in sorted(folder.glob(pattern)))
-    return ctypes.c_void_p.in_dll(ctypes.CDLL(str(library)), "mjcb_control")
-
-
-def _install() -> None:
-    global _previous
-    there = _callback_pointer().value
-    _previous = None if there is None else _Control(there)
-    _callback_pointer().value = _ADDRESS
-
-
-def _uninstall() -> None:
-    global _previous
-    place = _callback_pointer()
-    if place.value == _ADDRESS:
-        place.value = None if _previous is None else ctypes.cast(_previous, ctypes.c_void_p).value  # type: ignore[arg-type]
-    _previous = None

@@ -10,36 +10,48 @@ import numpy as np
 from simkit.scene import SceneWorld
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.engine_state import EngineState
+    from simkit.runtime.engine.plugin_faults import PluginFaults
 
 
 class PersistentWrenches:
-    """Who pushes which links how; force [N] and torque [N·m], world frame, at the centre of mass."""
+    """Wrenches on links that hold until they are set anew: force [N], torque [N·m], world frame, at the centre of mass.
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    Args:
+        engine: whose links are pushed.
+        faults: tells which plugins are at work; those of others push nothing.
+    """
+
+    def __init__(self, engine: EngineState, faults: PluginFaults) -> None:
+        self._engine, self._faults = engine, faults
         self._by_owner: dict[int, tuple[Any, dict[str, Any]]] = {}
 
-    def set(self, owner: Any, wrenches: Mapping[str, Any], *, are_applied: bool) -> None:
-        """All that the plugin `owner` pushes from now on, by scoped link name."""
+    def set(self, owner: object, wrenches: Mapping[str, Any], *, are_applied: bool = False) -> None:
+        """Sets all wrenches of a plugin; what other plugins set holds too, and nothing of a plugin that is gone.
+
+        Args:
+            owner: the plugin that sets them.
+            wrenches: by scoped link name; a link that is not there is waited for.
+            are_applied: the state has them already (it was restored).
+        """
         self._by_owner[id(owner)] = owner, dict(wrenches)
         if not are_applied:  # while a state is restored, what others push is still that of before
             self.push(are_applied=False)
 
-    def push(self, *, are_applied: bool) -> None:
+    def push(self, *, are_applied: bool = False) -> None:
         """Hands the sums to the physics, for the links and plugins that are there now.
 
         A plugin that went is forgotten: should a restore bring it back, its state brings what it pushes.
         """
-        living = set(map(id, self._sim.faults.living(self._sim.structure)))
+        living = set(map(id, self._faults.living(self._engine.structure)))
         self._by_owner = {key: found for key, found in self._by_owner.items() if key in living}
-        links = self._sim.names.links
+        links = self._engine.names.links
         total: dict[int, Any] = {}
         for _, wrenches in self._by_owner.values():
             for name, wrench in wrenches.items():
                 if name in links and links[name].body > 0:
                     total[links[name].body] = total.get(links[name].body, 0.0) + np.asarray(wrench, float)
-        self._sim.physics.stand(total, are_applied=are_applied)
+        self._engine.physics.stand(total, are_applied=are_applied)
 
 
 Velocity = tuple[float, float, float]

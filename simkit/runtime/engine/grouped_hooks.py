@@ -19,10 +19,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from simkit.runtime.engine.scheduler import Task
-from simkit.runtime.engine.step_loop import guarded_hook
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.plugin_faults import PluginFaults
 
 MIN_GROUP_SIZE = 4
 """So few are as soon called one by one."""
@@ -45,11 +44,11 @@ class PluginGroup:
             yield plugin
 
 
-def hook_tasks(sim: Simulation, plugins: Iterable[Any], hook: str) -> Iterator[tuple[float | None, Task]]:
+def hook_tasks(faults: PluginFaults, plugins: Iterable[Any], hook: str) -> Iterator[tuple[float | None, Task]]:
     """The hooks of these plugins with their rates [Hz], in the order of the document.
 
     Args:
-        sim: whose plugins.
+        faults: calls the plugins.
         plugins: those that are at work.
         hook: `before_step` or `after_step`.
     """
@@ -58,10 +57,10 @@ def hook_tasks(sim: Simulation, plugins: Iterable[Any], hook: str) -> Iterator[t
         if not plugin.has_hook(hook):
             continue
         if run and not (_can_group(run[-1], plugin, hook)):
-            yield from _group_tasks(sim, run, hook)
+            yield from _group_tasks(faults, run, hook)
             run = []
         run.append(plugin)
-    yield from _group_tasks(sim, run, hook)
+    yield from _group_tasks(faults, run, hook)
 
 
 def _can_group(one: Any, other: Any, hook: str) -> bool:
@@ -73,14 +72,14 @@ def _hook_rate(plugin: Any, hook: str) -> float | None:
     return rate
 
 
-def _group_tasks(sim: Simulation, run: list[Any], hook: str) -> Iterator[tuple[float | None, Task]]:
+def _group_tasks(faults: PluginFaults, run: list[Any], hook: str) -> Iterator[tuple[float | None, Task]]:
     together = _group_hook(type(run[0]), hook) if len(run) >= MIN_GROUP_SIZE else None
     # who may be left out when it raises is called by itself
-    if together is None or any(sim.faults.policy(plugin) != "stop" for plugin in run):
+    if together is None or any(faults.policy(plugin) != "stop" for plugin in run):
         for plugin in run:
-            yield _hook_rate(plugin, hook), guarded_hook(sim, plugin, hook)
+            yield _hook_rate(plugin, hook), faults.task(plugin, hook)
     else:
-        yield _hook_rate(run[0], hook), _guard_group(sim, PluginGroup(run), hook, together(run))
+        yield _hook_rate(run[0], hook), _guard_group(faults, PluginGroup(run), hook, together(run))
 
 
 def _group_hook(kind: type, hook: str) -> Callable[[Sequence[Any]], Callable[[PluginGroup], None]] | None:
@@ -94,11 +93,11 @@ def _group_hook(kind: type, hook: str) -> Callable[[Sequence[Any]], Callable[[Pl
     return None
 
 
-def _guard_group(sim: Simulation, rota: PluginGroup, hook: str, run: Callable[[PluginGroup], None]) -> Task:
+def _guard_group(faults: PluginFaults, rota: PluginGroup, hook: str, run: Callable[[PluginGroup], None]) -> Task:
     def task(_: int = 0) -> None:
         try:
             run(rota)
         except Exception as error:  # noqa: BLE001 - what a plugin calls may raise anything
-            sim.faults.meet(rota.turn, hook, error)
+            faults.meet(rota.turn, hook, error)
 
     return task

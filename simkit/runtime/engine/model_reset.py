@@ -2,82 +2,73 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any, Final
 
 import mujoco
 
-from simkit.runtime.engine.physics import STALE
+from simkit.runtime.engine.model_fields import pair_by_name
+from simkit.runtime.engine.physics_state import STALE
 
 if TYPE_CHECKING:
-    from simkit.runtime.engine.snapshot import Snapshot
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.engine.snapshot import Snapshot, Stateful
 
 _JOINT_WIDTHS: Final = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
 _PLACE_FIELDS: Final = ("body_pos", "body_quat")  # of what is fixed or hinged to the world and was moved
 
 
-def reset_models(sim: Simulation, loaded: Snapshot) -> None:
+def reset_models(engine: Engine, models: Collection[Stateful], loaded: Snapshot) -> None:
     """Puts every model back: one that was loaded to its first state, one that was spawned since to where it came.
 
     What was removed stays away. Positions, velocities, controls, welds and the places of static models are set;
     forces that wait for the next step are dropped.
 
     Args:
-        sim: the simulation.
-        loaded: its state at the start.
+        engine: of the simulation.
+        models: handles of the models that are there.
+        loaded: the state at the start.
     """
-    sim.bus.settle()
-    for sensor in sim.structure.all_sensors():
+    for sensor in engine.structure.all_sensors():
         sensor.take_held()
-    model, data = sim.mj_model, sim.mj_data
+    model, data = engine.mj_model, engine.mj_data
     first, first_data = loaded.structure.compiled.model, loaded.data
     for field in _PLACE_FIELDS:
-        if field in sim.originals:
-            sim.touch(field)[:] = sim.original(field)
+        if field in engine.originals:
+            engine.touch(field)[:] = engine.original(field)
     fresh = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = fresh.qpos, 0.0
     data.mocap_pos[:], data.mocap_quat[:] = fresh.mocap_pos, fresh.mocap_quat
     data.ctrl[:], data.eq_active[:] = fresh.ctrl, fresh.eq_active
     data.qacc_warmstart[:] = data.qfrc_applied[:] = 0.0
-    data.xfrc_applied[:] = sim.physics.standing
+    data.xfrc_applied[:] = engine.physics.standing
     _copy_joints(first, first_data, model, data)
     _copy_rows(mujoco.mjtObj.mjOBJ_ACTUATOR, first, first_data.ctrl, model, data.ctrl)
     _copy_activations(first, first_data, model, data)
     _copy_rows(mujoco.mjtObj.mjOBJ_EQUALITY, first, first_data.eq_active, model, data.eq_active)
     _copy_mocap(first, first_data, model, data)
-    sim.velocity_servos.set_state(next(state for part, state in loaded.handles if part is sim.velocity_servos))
-    sim.physics.one_shot = False
-    sim.physics.changed_model()
-    sim.physics.changed(STALE)
+    engine.velocity_servos.set_state(next(state for part, state in loaded.handles if part is engine.velocity_servos))
+    engine.physics.one_shot = False
+    engine.physics.changed_model()
+    engine.physics.changed(STALE)
     for handle, state in loaded.handles:
-        if handle in sim.entities.tables["model"].values():
-            handle._rest = state
+        if handle in models:
+            handle.set_state(state)
     for plugin, state in loaded.plugins:
-        if plugin in sim.structure.all_plugins():
-            sim.faults.take_back(plugin, state)
+        if plugin in engine.structure.all_plugins():
+            engine.faults.take_back(plugin, state)
 
 
-def _pair_by_name(kind: Any, count: int, old: Any, new: Any) -> list[tuple[int, int]]:
-    """(id in the old model, id in the new one) of everything of a kind that both have under one name."""
-    found = []
-    for i in range(count):
-        name = mujoco.mj_id2name(old, kind, i)
-        j = mujoco.mj_name2id(new, kind, name) if name else -1
-        if j >= 0:
-            found.append((i, j))
-    return found
-
-
-def _copy_activations(old: Any, old_data: Any, new: Any, data: mujoco.MjData) -> None:
+def _copy_activations(old: mujoco.MjModel, old_data: mujoco.MjData, new: mujoco.MjModel, data: mujoco.MjData) -> None:
     """Of actuators that were there; that of others belongs to plugins that go on."""
-    for i, j in _pair_by_name(mujoco.mjtObj.mjOBJ_ACTUATOR, old.nu, old, new):
+    for i, j in pair_by_name(mujoco.mjtObj.mjOBJ_ACTUATOR, old.nu, old, new):
         a, b, count = int(old.actuator_actadr[i]), int(new.actuator_actadr[j]), int(old.actuator_actnum[i])
         if count > 0 and count == int(new.actuator_actnum[j]):
             data.act[b : b + count] = old_data.act[a : a + count]
 
 
-def _copy_joints(old: Any, old_data: Any, new: Any, data: mujoco.MjData) -> None:
-    for i, j in _pair_by_name(mujoco.mjtObj.mjOBJ_JOINT, old.njnt, old, new):
+def _copy_joints(old: mujoco.MjModel, old_data: mujoco.MjData, new: mujoco.MjModel, data: mujoco.MjData) -> None:
+    for i, j in pair_by_name(mujoco.mjtObj.mjOBJ_JOINT, old.njnt, old, new):
         wide, free = _JOINT_WIDTHS.get(int(old.jnt_type[i]), (1, 1))
         a, b = int(old.jnt_qposadr[i]), int(new.jnt_qposadr[j])
         data.qpos[b : b + wide] = old_data.qpos[a : a + wide]
@@ -86,12 +77,12 @@ def _copy_joints(old: Any, old_data: Any, new: Any, data: mujoco.MjData) -> None
 
 
 def _copy_rows(kind: Any, old: Any, old_values: Any, new: Any, values: Any) -> None:
-    for i, j in _pair_by_name(kind, len(old_values), old, new):
+    for i, j in pair_by_name(kind, len(old_values), old, new):
         values[j] = old_values[i]
 
 
-def _copy_mocap(old: Any, old_data: Any, new: Any, data: mujoco.MjData) -> None:
-    for i, j in _pair_by_name(mujoco.mjtObj.mjOBJ_BODY, old.nbody, old, new):
+def _copy_mocap(old: mujoco.MjModel, old_data: mujoco.MjData, new: mujoco.MjModel, data: mujoco.MjData) -> None:
+    for i, j in pair_by_name(mujoco.mjtObj.mjOBJ_BODY, old.nbody, old, new):
         a, b = int(old.body_mocapid[i]), int(new.body_mocapid[j])
         if a >= 0 and b >= 0:
             data.mocap_pos[b], data.mocap_quat[b] = old_data.mocap_pos[a], old_data.mocap_quat[a]

@@ -9,14 +9,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.engine import Engine
+
+
+class Advance(Protocol):
+    """Makes the steps up to a tick."""
+
+    def __call__(self, target: int, *, is_served: bool = False) -> None:
+        """Advances to `target`; a run that is served ends earlier where it is told to halt."""
+
+
+class CommandGeneration(Protocol):
+    """Commands that wait for the next step."""
+
+    generation: int
 
 
 class PauseControl:
     """Where a run is to stop.
+
+    Args:
+        engine: that is advanced.
+        advance: makes the steps.
+        commands: another generation of them tells of a restore or a reset.
 
     Attributes:
         until: the tick beyond which it does not go by itself; None where it runs on.
@@ -26,8 +44,8 @@ class PauseControl:
         is_over: whether the run has come to its end, so that `advance` goes no further; no state of the world.
     """
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    def __init__(self, engine: Engine, advance: Advance, commands: CommandGeneration) -> None:
+        self._engine, self._advance, self._commands = engine, advance, commands
         self.until: int | None = None
         self.is_stepping = False
         self.pace: float | None = None
@@ -37,7 +55,7 @@ class PauseControl:
     @property
     def is_paused(self) -> bool:
         """Whether the world stands still."""
-        return self.until is not None and self._sim.tick >= self.until
+        return self.until is not None and self._engine.tick >= self.until
 
     def on_change(self, callback: Callable[[], None]) -> None:
         """Calls back whenever somebody pauses the world, resumes it, or asks for steps."""
@@ -45,7 +63,7 @@ class PauseControl:
 
     def pause(self) -> None:
         """Has the world stand still, once the step under way is done."""
-        self._set(self._sim.tick, is_stepping=False)
+        self._set(self._engine.tick, is_stepping=False)
 
     def resume(self) -> None:
         """Lets the world go on."""
@@ -53,12 +71,12 @@ class PauseControl:
 
     def step(self, count: int) -> None:
         """Has a world that is paused do so many steps, and pause again; more of them add up."""
-        left = self.until - self._sim.tick if self.until is not None and self.is_stepping else 0
-        self._set(self._sim.tick + max(0, left) + count, is_stepping=True)
+        left = self.until - self._engine.tick if self.until is not None and self.is_stepping else 0
+        self._set(self._engine.tick + max(0, left) + count, is_stepping=True)
 
     def run_to(self, time_ns: int) -> None:
         """Has the world go on to the first tick at or after a simulated time [ns], and pause there."""
-        clock = self._sim.clock
+        clock = self._engine.clock
         tick = clock.ticks(time_ns / 1e9)
         while clock.time_ns(tick) < time_ns:
             tick += 1
@@ -68,9 +86,9 @@ class PauseControl:
 
     def catch_up(self) -> None:
         """Goes where the run is to stop, where nobody else will: outside a step, in a world that nobody serves."""
-        sim = self._sim
-        if self.until is not None and not self.is_served and not sim.is_stepping and self.until > sim.tick:
-            sim.step(self.until - sim.tick)
+        engine = self._engine
+        if self.until is not None and not self.is_served and not engine.is_stepping and self.until > engine.tick:
+            self._advance(self.until)
 
     @contextmanager
     def served(self) -> Iterator[None]:
@@ -84,27 +102,27 @@ class PauseControl:
     def end(self) -> None:
         """Has a run that is served end with the step under way."""
         self.is_over = True
-        self._sim.halt()
+        self._engine.loop.halt()
 
     def advance(self, count: int) -> None:
         """Goes on by up to `count` steps, as far as the world is let: what `simkit run` does again and again.
 
         It ends where a hook goes back to another time, which may be the one at which it began.
         """
-        sim = self._sim
-        end, inbox = sim.tick + count, sim.bus.inbox
-        generation = inbox.generation
-        while inbox.generation == generation and not self.is_over:
+        engine = self._engine
+        end, commands = engine.tick + count, self._commands
+        generation = commands.generation
+        while commands.generation == generation and not self.is_over:
             stop = end if self.until is None else min(end, self.until)
-            if sim.tick >= stop:
+            if engine.tick >= stop:
                 return
-            sim.serve(stop)
+            self._advance(stop, is_served=True)
 
     def _set(self, until: int | None, *, is_stepping: bool) -> None:
         if (until, is_stepping) == (self.until, self.is_stepping):
             return
         self.until, self.is_stepping = until, is_stepping
-        self._sim.halt()
+        self._engine.loop.halt()
         for watcher in self._watchers:
             watcher()
 

@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 
 from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged
 
 if TYPE_CHECKING:
+    from simkit.runtime.engine.engine_state import EngineState
     from simkit.runtime.engine.world_structure import WorldStructure
-    from simkit.runtime.simulation import Simulation
 
 
 PluginErrorPolicy = Literal["stop", "disable"]
@@ -42,16 +42,34 @@ class PluginCall:
     line: str
 
 
+class PluginInterfaces(Protocol):
+    """Topics, services, actions and parameters of plugins."""
+
+    def set_active(self, owners: Sequence[object]) -> None:
+        """Leaves only what these plugins and sensors opened in use."""
+
+    def abandon(self, owner: object, reason: str) -> None:
+        """Ends what a plugin is at work on for others."""
+
+
 class PluginFaults:
     """Calls what plugins are made of, and knows which of them are left out.
 
     Args:
-        sim: whose plugins.
+        engine: whose plugins.
+        reschedule: called when a plugin is left out.
         on_error: what the user asked for, which goes over what files and classes say; None leaves it to them.
+
+    Attributes:
+        interfaces: what plugins have opened.
     """
 
-    def __init__(self, sim: Simulation, on_error: PluginErrorPolicy | None = None) -> None:
-        self._sim, self.on_error = sim, on_error
+    interfaces: PluginInterfaces
+
+    def __init__(
+        self, engine: EngineState, reschedule: Callable[[], None], on_error: PluginErrorPolicy | None = None
+    ) -> None:
+        self._engine, self._reschedule, self.on_error = engine, reschedule, on_error
         self._disabled: dict[int, Any] = {}
 
     # ------------------------------------------------------------------ who is at work
@@ -114,7 +132,7 @@ class PluginFaults:
         if isinstance(error, SimkitError) and not isinstance(error, InputError):
             raise error
         if self.policy(plugin) == "stop":
-            raise PluginError(plugin.name, hook, self._sim.time, str(plugin.where), repr(error)) from error
+            raise PluginError(plugin.name, hook, self._engine.time, str(plugin.where), repr(error)) from error
         if (
             isinstance(error, RecursionError)
             and sum(c.plugin is plugin for c in active_plugin_calls(sys._getframe())) > 1
@@ -145,22 +163,24 @@ class PluginFaults:
 
     def disable(self, plugin: Any, hook: str, error: BaseException) -> None:
         """Leaves a plugin out from now on: no hook of it runs, nothing it opened is there, its servos let go."""
-        sim = self._sim
+        engine = self._engine
         if id(plugin) in self._disabled:
             return
         self._disabled[id(plugin)] = plugin
         last = " ".join(traceback.format_exception_only(error)[-1].split())
-        message = f"plugin {plugin.name!r} raised in {hook} at t={sim.time:.6g} s and is left out from then on: {last}"
+        message = (
+            f"plugin {plugin.name!r} raised in {hook} at t={engine.time:.6g} s and is left out from then on: {last}"
+        )
         place = innermost_frame(error.__traceback__)
-        sim.reports.warning("SK-PLUGIN-020", message, plugin.where, f"raised at {place}" if place else "")
-        sim.log.warning("%s: %s (%s)", plugin.where, message, place)
+        engine.reports.warning("SK-PLUGIN-020", message, plugin.where, f"raised at {place}" if place else "")
+        engine.log.warning("%s: %s (%s)", plugin.where, message, place)
         self._apply()
-        sim.action_table.abandon(plugin, f"plugin {plugin.name!r} is left out: {last}")
-        release_servos(sim, plugin)
-        sim.reschedule()
+        self.interfaces.abandon(plugin, f"plugin {plugin.name!r} is left out: {last}")
+        release_servos(engine, plugin)
+        self._reschedule()
 
     def _apply(self) -> None:
-        self._sim.set_active(self.living(self._sim.structure))
+        self.interfaces.set_active(self.living(self._engine.structure))
 
     # ------------------------------------------------------------------ state
 
@@ -177,14 +197,16 @@ class PluginFaults:
             self._apply()
 
 
-def release_servos(sim: Simulation, plugin: Any) -> None:
+def release_servos(engine: EngineState, plugin: Any) -> None:
     """Lets go of the joints that a plugin's servos and motors hold; snapshots and reset bring them back."""
-    there = {name for record in sim.structure.builder.records.values() for name in (r.name for r in record.actuators)}
+    there = {
+        name for record in engine.structure.builder.records.values() for name in (r.name for r in record.actuators)
+    }
     refs = [ref for ref in plugin._actuators if ref.name in there]
     if refs:
-        gains, biases = sim.touch("actuator_gainprm"), sim.touch("actuator_biasprm")
+        gains, biases = engine.touch("actuator_gainprm"), engine.touch("actuator_biasprm")
         for ref in refs:
-            index = sim.names.actuator(ref)
+            index = engine.names.actuator(ref)
             gains[index], biases[index] = 0.0, 0.0
 
 
@@ -232,13 +254,13 @@ def active_plugin_calls(frame: FrameType | None) -> list[PluginCall]:
 _MAX_EXPLANATIONS = 3
 
 
-def add_driver_hints(sim: Simulation, error: SimulationDiverged) -> None:
+def add_driver_hints(plugins: Sequence[object], error: SimulationDiverged) -> None:
     """Adds to the error what plugins have to do with it.
 
     Those are asked that have a method `explain_divergence(name) -> str`: with the joint where it happened, and where
     none of them drives that, with the model.
     """
-    found = _explanations(sim, error.joint) or _explanations(sim, error.joint.split("::")[0])
+    found = _explanations(plugins, error.joint) or _explanations(plugins, error.joint.split("::")[0])
     if found:
         more = "; ".join(found[:_MAX_EXPLANATIONS]) + (
             f"; and {len(found) - _MAX_EXPLANATIONS} more" if len(found) > _MAX_EXPLANATIONS else ""
@@ -247,6 +269,6 @@ def add_driver_hints(sim: Simulation, error: SimulationDiverged) -> None:
         error.args = (f"{error.args[0]}; {more}",)
 
 
-def _explanations(sim: Simulation, name: str) -> list[str]:
-    asked = (getattr(plugin, "explain_divergence", None) for plugin in sim.structure.all_plugins())
+def _explanations(plugins: Sequence[object], name: str) -> list[str]:
+    asked = (getattr(plugin, "explain_divergence", None) for plugin in plugins)
     return [text for explain in asked if explain is not None and (text := explain(name))]

@@ -74,10 +74,14 @@ class RandomStreams:
 
     Args:
         seed: any whole number; its absolute value and sign both count.
+
+    Attributes:
+        seed: the present one.
     """
 
     def __init__(self, seed: int) -> None:
-        self._seed = self._fold(seed)
+        self.seed = seed
+        self._folded_seed = self._fold(seed)
         self._streams: weakref.WeakSet[RandomStream] = weakref.WeakSet()
 
     @staticmethod
@@ -86,16 +90,17 @@ class RandomStreams:
 
     def stream(self, scoped: str, channel: str, width: int = 1) -> RandomStream:
         """The stream of a channel of an entity."""
-        made = RandomStream(self._seed, scoped, channel, width)
+        made = RandomStream(self._folded_seed, scoped, channel, width)
         self._streams.add(made)
         return made
 
     def words(self, scoped: str, channel: str, index: int) -> np.random.Generator:
         """A generator for the bulk numbers (an image's) of one sample."""
-        return RandomStream(self._seed, scoped, channel, 1).generator(index)
+        return RandomStream(self._folded_seed, scoped, channel, 1).generator(index)
 
     def reseed(self, seed: int) -> None:
         """Another seed for every stream there is and will be."""
-        self._seed = self._fold(seed)
+        self.seed = seed
+        self._folded_seed = self._fold(seed)
         for stream in self._streams:
-            stream.reseed(self._seed)
+            stream.reseed(self._folded_seed)

@@ -132,7 +132,7 @@ class Sleep:
         """Trees that a force is applied to."""
         model, data = self._model, self._data
         bodies, dofs = np.flatnonzero(data.xfrc_applied.any(axis=1)), np.flatnonzero(data.qfrc_applied)
-        trees = np.concatenate((model.body_treeid[bodies], model.dof_treeid[dofs]))
+        trees = np.concatenate((model.body_treeid[bodies], model.dof_treeid[dofs])).astype(np.intp)
         return trees[trees >= 0]
 
     def _distance(self, a: Floats, b: Floats) -> Floats:

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import copy
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import mujoco
 
+from simkit.runtime.engine.model_fields import restore_compiled_fields
 from simkit.runtime.engine.physics_state import STALE, StepWindow
-from simkit.runtime.engine.world_structure import WorldStructure
-from simkit.runtime.handles.entity_handles import restore_compiled_fields
-from simkit.runtime.handles.model import Model
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.engine import Engine
+    from simkit.runtime.engine.world_structure import WorldStructure
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,7 @@ class Snapshot:
     fields: dict[str, Any]
     sensors: list[tuple[Any, Any]]
     plugins: list[tuple[Any, Any]]
-    handles: list[tuple[Any, Any]]
+    handles: list[tuple[Stateful, Any]]
     inbox: tuple[tuple[str, Any], ...]
     one_shot: bool
     last_applied: Any
@@ -46,7 +45,7 @@ class Snapshot:
     sleep: tuple[Any, ...] = (False,)
     last_pushed: Any = None
     seed: int = 0
-    owner: Any = None
+    owner: object = None
 
     @property
     def is_complete(self) -> bool:
@@ -60,93 +59,136 @@ class Snapshot:
         return self
 
 
-def promise_snapshot(sim: Simulation) -> tuple[Snapshot, Callable[[], None]]:
-    """A snapshot that is still to be taken, and what takes it."""
-    promised: Snapshot = object.__new__(Snapshot)
-    vars(promised)["owner"] = sim
-    return promised, lambda: vars(promised).update(vars(take_snapshot(sim)))
+class Stateful(Protocol):
+    """Part of a simulation with a state of its own."""
+
+    def get_state(self) -> Any:
+        """Returns the state that a snapshot keeps."""
+
+    def set_state(self, state: Any) -> None:
+        """Goes back to a state from `get_state`."""
 
 
-def take_snapshot(sim: Simulation) -> Snapshot:
-    """The state of a simulation as it is now."""
-    model, structure, physics = sim.mj_model, sim.structure, sim.physics
-    plugins = [(p, sim.faults.state_of(p)) for p in structure.all_plugins()]  # first: it may leave one out
-    data = copy.copy(sim.mj_data)
-    fields = {f: getattr(model, f).copy() for f in sim.originals}
-    fields["gravity"] = model.opt.gravity.copy()
-    return Snapshot(
-        tick=sim.tick,
-        structure=structure,
-        data=data,
-        fields=fields,
-        sensors=[(s, s.get_state()) for s in structure.all_sensors()],
-        plugins=plugins,
-        handles=[(h, h.get_state()) for h in sim.entities.stateful()]
-        + [(part, part.get_state()) for part in (sim.faults, sim.parameter_table, sim.action_table)]
-        + [(part, part.get_state()) for part in (sim.pausing, sim.site, sim.velocity_servos)]
-        + [(m, m._rest) for m in sim.entities.tables["model"].values()],
-        inbox=tuple(sim.bus.inbox.values()),
-        one_shot=physics.one_shot,
-        last_applied=physics.last_applied.copy(),
-        sleep=physics.sleep.get_state(),
-        last_pushed=physics.last_pushed.copy(),
-        window=physics.window,
-        seed=sim.seed,
-        owner=sim,
-    )
+class WaitingCommands(Protocol):
+    """Commands that wait for the next step."""
+
+    def values(self) -> Iterable[tuple[str, Any]]:
+        """Returns them in the order of arrival."""
+
+    def refill(self, entries: Iterable[tuple[str, Any]]) -> None:
+        """Replaces them all."""
 
 
-def restore_snapshot(sim: Simulation, snapshot: Snapshot, *, with_inbox: bool = True) -> None:
-    """Puts a simulation into the state of a snapshot; its schedule is the caller's to make anew.
+class Snapshots:
+    """Takes and restores snapshots of a simulation.
 
     Args:
-        sim: the simulation.
-        snapshot: of it.
-        with_inbox: whether what waits for the next step goes back too; without it, what goes back is only a change
-            that failed, and time goes on.
+        owner: the simulation.
+        engine: its engine.
+        parts: gives every part with a state besides sensors and plugins, in the order in which they are restored.
+        commands: what waits for the next step.
+        adopt: goes on with another structure.
     """
-    if snapshot.structure is not sim.structure:
-        left, originals = sim.mj_model, dict(sim.originals)
-        for sensor in sim.structure.all_sensors() if originals else ():
-            sensor.take_held()
-        sim.originals.clear()
-        sim.adopt(snapshot.structure)
-        restore_compiled_fields(left, originals)
-    model, physics = sim.mj_model, sim.physics
-    for field, original in sim.originals.items():
-        getattr(model, field)[:] = snapshot.fields.get(field, original)
-    for field in snapshot.fields:
-        if field != "gravity" and field not in sim.originals:
-            sim.touch(field)[:] = snapshot.fields[field]
-    model.opt.gravity[:] = snapshot.fields["gravity"]
-    mujoco.mj_copyData(sim.mj_data, model, snapshot.data)
-    sim.jump(snapshot.tick - physics.tick)
-    physics.tick = snapshot.tick
-    physics.changed(STALE)
-    if sim.originals:
-        physics.changed_model()
-    physics.clear_warnings()
-    physics.one_shot = snapshot.one_shot
-    physics.last_applied = snapshot.last_applied.copy()
-    physics.last_pushed = snapshot.last_pushed.copy()
-    physics.shows_applied = True
-    physics.window = snapshot.window
-    physics.sleep.set_state(snapshot.sleep)
-    if with_inbox:
-        sim.bus.inbox.refill(snapshot.inbox)
-    for handle, state in snapshot.handles:
-        if isinstance(handle, Model):
-            handle._rest = state
-        else:
-            handle.set_state(state)
-    for sensor, state in snapshot.sensors:
-        sensor.set_state(state)
-    for plugin, state in snapshot.plugins:
-        sim.faults.take_back(plugin, state)
-    sim.stand_wrenches(are_applied=True)
+
+    def __init__(
+        self,
+        owner: object,
+        engine: Engine,
+        parts: Callable[[], Sequence[Stateful]],
+        commands: WaitingCommands,
+        adopt: Callable[[WorldStructure], None],
+    ) -> None:
+        self._owner, self._engine, self._parts, self._commands = owner, engine, parts, commands
+        self._adopt = adopt
+
+    def promise(self) -> tuple[Snapshot, Callable[[], None]]:
+        """Returns a snapshot that is still to be taken, and what takes it."""
+        promised: Snapshot = object.__new__(Snapshot)
+        vars(promised)["owner"] = self._owner
+        return promised, lambda: vars(promised).update(vars(self.take()))
+
+    def take(self) -> Snapshot:
+        """Returns the state as it is now."""
+        engine = self._engine
+        model, structure, physics = engine.mj_model, engine.structure, engine.physics
+        plugins = [(p, engine.faults.state_of(p)) for p in structure.all_plugins()]  # first: it may leave one out
+        data = copy.copy(physics.data)
+        fields = {f: getattr(model, f).copy() for f in engine.originals}
+        fields["gravity"] = model.opt.gravity.copy()
+        return Snapshot(
+            tick=physics.tick,
+            structure=structure,
+            data=data,
+            fields=fields,
+            sensors=[(s, s.get_state()) for s in structure.all_sensors()],
+            plugins=plugins,
+            handles=[(part, part.get_state()) for part in self._parts()],
+            inbox=tuple(self._commands.values()),
+            one_shot=physics.one_shot,
+            last_applied=physics.last_applied.copy(),
+            sleep=physics.sleep.get_state(),
+            last_pushed=physics.last_pushed.copy(),
+            window=physics.window,
+            seed=engine.streams.seed,
+            owner=self._owner,
+        )
+
+    def restore(self, snapshot: Snapshot, *, with_inbox: bool = True) -> None:
+        """Goes back to a snapshot; the schedule is the caller's to make anew.
+
+        Args:
+            snapshot: of this simulation.
+            with_inbox: whether what waits for the next step goes back too; without it, what goes back is only a change
+                that failed, and time goes on.
+        """
+        engine = self._engine
+        if snapshot.structure is not engine.structure:
+            left, originals = engine.mj_model, dict(engine.originals)
+            for sensor in engine.structure.all_sensors() if originals else ():
+                sensor.take_held()
+            engine.originals.clear()
+            self._adopt(snapshot.structure)
+            restore_compiled_fields(left, originals)
+        model, physics = engine.mj_model, engine.physics
+        for field, original in engine.originals.items():
+            getattr(model, field)[:] = snapshot.fields.get(field, original)
+        for field in snapshot.fields:
+            if field != "gravity" and field not in engine.originals:
+                engine.touch(field)[:] = snapshot.fields[field]
+        model.opt.gravity[:] = snapshot.fields["gravity"]
+        mujoco.mj_copyData(physics.data, model, snapshot.data)
+        engine.loop.jump(snapshot.tick - physics.tick)
+        physics.tick = snapshot.tick
+        physics.changed(STALE)
+        if engine.originals:
+            physics.changed_model()
+        physics.clear_warnings()
+        physics.one_shot = snapshot.one_shot
+        physics.last_applied = snapshot.last_applied.copy()
+        physics.last_pushed = snapshot.last_pushed.copy()
+        physics.shows_applied = True
+        physics.window = snapshot.window
+        physics.sleep.set_state(snapshot.sleep)
+        if with_inbox:
+            self._commands.refill(snapshot.inbox)
+        for part, state in snapshot.handles:
+            part.set_state(state)
+        for sensor, state in snapshot.sensors:
+            sensor.set_state(state)
+        for plugin, state in snapshot.plugins:
+            engine.faults.take_back(plugin, state)
+        engine.wrenches.push(are_applied=True)
 
 
-def state_hash(sim: Any) -> str:
+class HashedSimulation(Protocol):
+    """What a state hash is taken of."""
+
+    @property
+    def mj_data(self) -> mujoco.MjData:
+        """MuJoCo's data."""
+
+
+def state_hash(sim: HashedSimulation) -> str:
     """SHA-256 of positions and velocities, as bits, in hexadecimal."""
     digest = hashlib.sha256()
     digest.update(sim.mj_data.qpos.tobytes())

@@ -5,11 +5,10 @@ from __future__ import annotations
 import atexit
 import threading
 import weakref
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sized
+from typing import Final, Protocol
 
 from simkit.errors import InputError
-from simkit.runtime.communication.topic_bus import TopicBus
 from simkit.runtime.engine.physics import Physics
 from simkit.runtime.engine.scheduler import Scheduler
 
@@ -18,24 +17,35 @@ ScheduleFiller = Callable[[Scheduler], None]
 _LONGEST_WAIT = 5.0  # [s] of wall time, for what runs on other threads at the end of the program
 
 
+class CommandSource(Protocol):
+    """Commands that wait for the next step."""
+
+    @property
+    def inbox(self) -> Sized:
+        """What waits; empty where nothing does."""
+
+    def deliver_inputs(self) -> None:
+        """Hands what waits to its inputs."""
+
+
 class StepLoop:
     """Advances the physics from one due tick to the next.
 
     Args:
         physics: what is advanced.
-        bus: whose queued commands are delivered between two steps.
+        commands: delivered between two steps.
         fill: puts every task into the scheduler, in document order.
     """
 
-    def __init__(self, physics: Physics, bus: TopicBus, fill: ScheduleFiller) -> None:
+    def __init__(self, physics: Physics, commands: CommandSource, fill: ScheduleFiller) -> None:
         self.scheduler = Scheduler(physics.clock)
-        self._physics, self._bus, self._fill = physics, bus, fill
+        self._physics, self._commands, self._fill = physics, commands, fill
         self.jumped = self._target = 0
         self._running = self._is_outdated = self._is_served = self._halts = False
-        self._promises: list[Callable[[], None]] = []
+        self._deferred: list[Callable[[], None]] = []
         self._idle = threading.Event()
         self._idle.set()
-        _loops.add(self)
+        _OPEN_LOOPS.loops.add(self)
 
     @property
     def is_running(self) -> bool:
@@ -48,14 +58,14 @@ class StepLoop:
         if not self._running:
             self._refill()
 
-    def promise(self, call: Callable[[], None]) -> None:
+    def defer(self, call: Callable[[], None]) -> None:
         """Has something done at the end of the step under way, once all that is due at its tick has been done."""
-        self._promises.append(call)
+        self._deferred.append(call)
         self._is_outdated = True
 
-    def break_promises(self) -> None:
+    def drop_deferred(self) -> None:
         """Says that the step under way will not end: the state is set to another one."""
-        self._promises.clear()
+        self._deferred.clear()
 
     def halt(self) -> None:
         """Ends the run with the step under way, where it is one that heeds this."""
@@ -82,7 +92,7 @@ class StepLoop:
             self._run()
         finally:
             self._running = self._is_served = self._halts = False
-            self._promises.clear()
+            self._deferred.clear()
             self._idle.set()
 
     def jump(self, ticks: int) -> None:
@@ -91,8 +101,8 @@ class StepLoop:
         self._target += ticks
 
     def _refill(self) -> None:
-        promises, self._promises = self._promises, []
-        for call in promises:
+        deferred, self._deferred = self._deferred, []
+        for call in deferred:
             call()
         self._is_outdated = False
         self.scheduler.clear()
@@ -100,28 +110,29 @@ class StepLoop:
         self.scheduler.rewind(self._physics.tick)
 
     def _run(self) -> None:
-        physics, bus = self._physics, self._bus
+        physics, commands, program = self._physics, self._commands, _OPEN_LOOPS
         before, sense, after = self.scheduler.before, self.scheduler.sense, self.scheduler.after
         while physics.tick < self._target and not self._halts:
-            _exit_if_ending()
+            if program.ending is not None:
+                program.end_this_thread()
             tick = physics.tick
             stop = min(self._target, before.next, sense.next, after.next)
             has_every = bool(before.every or after.every or sense.every)
-            if has_every and stop - tick > 1 and not bus.inbox:
+            if has_every and stop - tick > 1 and not commands.inbox:
                 self._walk(stop - 1)
                 continue
-            if bus.inbox:
-                bus.deliver_inputs()
+            if commands.inbox:
+                commands.deliver_inputs()
                 if self._is_outdated:  # what an input changes counts from this step on, whatever else is due when
                     self._refill()
                     tick, has_every = physics.tick, bool(before.every or after.every or sense.every)
                     stop = min(self._target, before.next, sense.next, after.next)
-                if bus.inbox:  # what an input sent is taken with the next step
+                if commands.inbox:  # what an input sent is taken with the next step
                     stop = tick + 1
             if before.every or before.next <= tick:
                 for task in before.due(tick):
                     task(tick)
-                if physics.tick == tick and not (self._is_outdated or bus.inbox):
+                if physics.tick == tick and not (self._is_outdated or commands.inbox):
                     # what was due is dealt with: on to what is due next, in one go
                     stop = min(self._target, before.next, sense.next, after.next)
             physics.advance(1 if has_every or self._halts else max(1, stop - tick))
@@ -144,11 +155,12 @@ class StepLoop:
 
     def _walk(self, stop: int) -> None:
         """Up to the tick `stop`, through steps at which only what runs at every step is due."""
-        physics, bus = self._physics, self._bus
+        physics, commands, program = self._physics, self._commands, _OPEN_LOOPS
         before, after = self.scheduler.before.every, [*self.scheduler.sense.every, *self.scheduler.after.every]
         tick = physics.tick
-        while tick < stop and not (self._is_outdated or self._halts or bus.inbox):
-            _exit_if_ending()
+        while tick < stop and not (self._is_outdated or self._halts or commands.inbox):
+            if program.ending is not None:
+                program.end_this_thread()
             for task in before:
                 task(tick)
             physics.single()
@@ -162,32 +174,33 @@ class StepLoop:
             self._refill()
 
 
-_loops: weakref.WeakSet[StepLoop] = weakref.WeakSet()
-_ending: int | None = None
-"""The thread that ends the program, once it does."""
+class _OpenLoops:
+    """Every loop of the process: MuJoCo must not be at work when the interpreter goes away under it.
+
+    Attributes:
+        loops: those that are there.
+        ending: the thread that ends the program, once it does.
+    """
+
+    def __init__(self) -> None:
+        self.loops: weakref.WeakSet[StepLoop] = weakref.WeakSet()
+        self.ending: int | None = None
+
+    def end_this_thread(self) -> None:
+        """Ends the calling thread, without a word, unless it is the one that ends the program."""
+        if self.ending != threading.get_ident():
+            raise SystemExit
 
 
-def _exit_if_ending() -> None:
-    if _ending is not None and _ending != threading.get_ident():
-        raise SystemExit  # ends this thread, without a word
+_OPEN_LOOPS: Final = _OpenLoops()
 
 
 def stop_other_loops() -> None:
-    """Ends the loops of other threads: the engine must not be at work when the interpreter goes away under it."""
-    global _ending
-    _ending = threading.get_ident()
-    for loop in list(_loops):
+    """Ends the loops of other threads."""
+    _OPEN_LOOPS.ending = threading.get_ident()
+    for loop in list(_OPEN_LOOPS.loops):
         if not loop._idle.wait(_LONGEST_WAIT):
             break
 
 
 atexit.register(stop_other_loops)
-
-
-def guarded_hook(sim: Any, plugin: Any, hook: str) -> Callable[..., None]:
-    """A plugin's hook as a task; whatever it raises becomes a PluginError with name, place and time.
-
-    Of a plugin that may be left out (`on_error="disable"`) the run goes on without it (`plugin_faults`).
-    """
-    found: Callable[..., None] = sim.faults.task(plugin, hook)
-    return found

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Collection, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from simkit.runtime.engine import grouped_hooks, sleep, velocity_servos
 from simkit.runtime.engine.scheduler import Scheduler, Task
-from simkit.runtime.handles.joint import Joint
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.engine import Engine
 
 _LIMIT_SHARE = 0.999  # of the sum of squares of velocities over their limits
+_NO_LIMIT = 1e6  # [rad/s or m/s] from which on a limit of the file is none
 _LIMIT_RATE = 100.0  # [Hz] at which a velocity limit of the file is held on a joint that nothing drives
 _CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 _RANGE = "sensor_msgs/msg/Range"
@@ -23,67 +23,86 @@ _BLIND_KINDS = frozenset(  # kinds that do not look around
 )
 
 
-def fill_schedule(sim: Simulation, scheduler: Scheduler, exact_limits: Sequence[Joint]) -> None:
+class LimitedJoint(Protocol):
+    """Joint with a limit of its velocity."""
+
+    @property
+    def mj_dofs(self) -> Sequence[int]:
+        """Indices among MuJoCo's degrees of freedom."""
+
+    @property
+    def least_velocity_limit(self) -> float:
+        """The least limit of its axes [rad/s or m/s]."""
+
+    def clamp_velocity(self, _tick: int = 0) -> None:
+        """Brings the velocity within its limits."""
+
+
+def fill_schedule(
+    engine: Engine, scheduler: Scheduler, joints: Iterable[LimitedJoint], exact_limits: Collection[LimitedJoint]
+) -> None:
     """Fills an empty scheduler.
 
     Args:
+        engine: whose sensors and plugins are scheduled.
+        scheduler: gets the tasks.
+        joints: all that are there.
         exact_limits: joints whose velocity limit is held at every step.
     """
-    resting = sim.physics.sleep
+    resting = engine.physics.sleep
 
     def look_for_rest(_tick: int) -> None:
-        if not sim.physics.sleep.rests:
-            sim.physics.sleep.look(sim.physics.fresh())
+        if not engine.physics.sleep.rests:
+            engine.physics.sleep.look(engine.physics.fresh())
 
     if resting.watches:
         scheduler.every(sleep.RATE, look_for_rest, "after")
     coasting = []
-    for joint in sim.entities.tables["joint"].values():
+    for joint in joints:
         if joint in exact_limits:
             scheduler.every(None, joint.clamp_velocity, "sense")
-        elif _coasts_over_limit(joint):
+        elif joint.mj_dofs and joint.least_velocity_limit < _NO_LIMIT:
             coasting.append(joint)
 
     if coasting:
-        scheduler.every(_LIMIT_RATE, _velocity_limiter(sim, coasting), "sense")
-    if sim.velocity_servos.are_there:  # before any command of the step: the last one had no time to be obeyed
-        scheduler.every(velocity_servos.RATE, sim.velocity_servos.correct, "before")
-    _report_shared_topics(sim)
-    _group_sensors(sim)
-    plugins = [plugin for plugin in sim.structure.all_plugins() if not sim.faults.is_disabled(plugin)]
-    _schedule_scenery(sim, scheduler, plugins)
-    for sensor in sim.structure.all_sensors():
+        scheduler.every(_LIMIT_RATE, _velocity_limiter(engine, coasting), "sense")
+    if engine.velocity_servos.are_there:  # before any command of the step: the last one had no time to be obeyed
+        scheduler.every(velocity_servos.RATE, engine.velocity_servos.correct, "before")
+    _report_shared_topics(engine)
+    _group_sensors(engine)
+    plugins = [plugin for plugin in engine.structure.all_plugins() if not engine.faults.is_disabled(plugin)]
+    _schedule_scenery(engine, scheduler, plugins)
+    for sensor in engine.structure.all_sensors():
         scheduler.on(sensor.timetable(), sensor.sample, "sense")
-    for rate, task in grouped_hooks.hook_tasks(sim, plugins, "before_step"):
+    for rate, task in grouped_hooks.hook_tasks(engine.faults, plugins, "before_step"):
         scheduler.every(rate, task, "before")
     for plugin in plugins:
         if getattr(plugin, "is_gz_system", False):  # every system's update comes after every system's pre_update
-            scheduler.every(None, sim.faults.task(plugin, "update_step"), "before")
-    for rate, task in grouped_hooks.hook_tasks(sim, plugins, "after_step"):
+            scheduler.every(None, engine.faults.task(plugin, "update_step"), "before")
+    for rate, task in grouped_hooks.hook_tasks(engine.faults, plugins, "after_step"):
         scheduler.every(rate, task, "after")
-    sim.on_demand.fill(scheduler)
 
 
-def _schedule_scenery(sim: Simulation, scheduler: Scheduler, plugins: Sequence[Any]) -> None:
+def _schedule_scenery(engine: Engine, scheduler: Scheduler, plugins: Sequence[Any]) -> None:
     """Has what moves by itself put where it is before anything is sensed, and at the ticks at which sensors look."""
     for plugin in plugins:
         if hasattr(plugin, "move_scenery"):
-            task = sim.faults.task(plugin, "move_scenery")
+            task = engine.faults.task(plugin, "move_scenery")
             scheduler.every(plugin.scenery_rate, task, "sense")
-            for sensor in sim.structure.all_sensors():
+            for sensor in engine.structure.all_sensors():
                 if sensor.scene.kind not in _BLIND_KINDS:
                     scheduler.on(sensor.timetable(), task, "sense")
 
 
-def _velocity_limiter(sim: Simulation, joints: Sequence[Joint]) -> Task:
+def _velocity_limiter(engine: Engine, joints: Sequence[LimitedJoint]) -> Task:
     """Holds the velocity limits of joints, as one task: which are beyond them is found in one go."""
-    dofs = np.array([dof for joint in joints for dof in joint._plain_dofs], dtype=np.intp)
-    owners = [joint for joint in joints for _ in joint._plain_dofs]
+    dofs = np.array([dof for joint in joints for dof in joint.mj_dofs], dtype=np.intp)
+    owners = [joint for joint in joints for _ in joint.mj_dofs]
     # of several axes the least; the joint itself looks closer. Whoever sets one makes a new schedule
-    limits = np.array([joint._velocity_limit.min() for joint in owners])
-    shares = np.zeros(sim.mj_model.nv)
+    limits = np.array([joint.least_velocity_limit for joint in owners])
+    shares = np.zeros(engine.mj_model.nv)
     shares[dofs] = 1.0 / np.maximum(limits, 1e-9)
-    physics = sim.physics
+    physics = engine.physics
 
     def hold(tick: int) -> None:
         velocities = physics.data.qvel
@@ -96,19 +115,19 @@ def _velocity_limiter(sim: Simulation, joints: Sequence[Joint]) -> Task:
     return hold
 
 
-def _group_sensors(sim: Simulation) -> None:
+def _group_sensors(engine: Engine) -> None:
     """Has sensors of one kind work together."""
     kinds: dict[type, list[Any]] = {}
-    for sensor in sim.structure.all_sensors():
+    for sensor in engine.structure.all_sensors():
         kinds.setdefault(type(sensor), []).append(sensor)
     for kind, sensors in kinds.items():
         kind.make_batches(sensors)  # type: ignore[attr-defined]
 
 
-def _report_shared_topics(sim: Simulation) -> None:
+def _report_shared_topics(engine: Engine) -> None:
     """Tells of a topic on which sensors publish two messages: whoever reads it gets both in turn."""
     first: dict[str, tuple[str, str]] = {}
-    for sensor in sim.structure.all_sensors():
+    for sensor in engine.structure.all_sensors():
         types = [(topic, sensor._products[product].type_name) for product, topic in sensor._topics.items()]
         told: set[str] = set()
         # what goes with a picture comes last: where the pictures share a topic too, that is enough to say
@@ -120,11 +139,11 @@ def _report_shared_topics(sim: Simulation) -> None:
             if kind == other_kind == _RANGE and other != sensor.scoped:
                 continue  # as ROS has it for a ring of sonars: each message names its sensor's frame
             if kind != _CAMERA_INFO or kind != other_kind or other not in told:
-                _report_shared_topic(sim, sensor, topic, other, {other_kind, kind})
+                _report_shared_topic(engine, sensor, topic, other, {other_kind, kind})
             told.add(other)
 
 
-def _report_shared_topic(sim: Simulation, sensor: Any, topic: str, other: str, kinds: set[str]) -> None:
+def _report_shared_topic(engine: Engine, sensor: Any, topic: str, other: str, kinds: set[str]) -> None:
     """Tells that a sensor and another, perhaps itself, publish messages of these types on one topic."""
     where = sensor.scene.where
     if other == sensor.scoped:
@@ -133,15 +152,10 @@ def _report_shared_topic(sim: Simulation, sensor: Any, topic: str, other: str, k
         message = f"sensors {other!r} and {sensor.scoped!r} publish on one topic, {topic!r}"
     if len(kinds) > 1:
         message = f"{message}: {' and '.join(sorted(kinds))}, and ROS gives a reader one type only"
-        sim.reports.warning("SK-SENSOR-128", message, where, "give each a topic of its own")
+        engine.reports.warning("SK-SENSOR-128", message, where, "give each a topic of its own")
     elif kinds == {_CAMERA_INFO}:
         hint = "a <camera_info_topic> for each, where readers have to tell them apart otherwise than by frame"
-        sim.reports.note("SK-SENSOR-127", message, where, hint)
+        engine.reports.note("SK-SENSOR-127", message, where, hint)
     else:
         own = "camera a name" if other == sensor.scoped else "a <topic>"
-        sim.reports.warning("SK-SENSOR-027", message, where, f"give each {own} of its own, or leave it out")
-
-
-def _coasts_over_limit(joint: Joint) -> bool:
-    """Whether a joint has a velocity limit of the file that no servo keeps."""
-    return joint.dof > 0 and bool((joint._velocity_limit < 1e6).any())
+        engine.reports.warning("SK-SENSOR-027", message, where, f"give each {own} of its own, or leave it out")

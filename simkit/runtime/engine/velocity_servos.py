@@ -34,7 +34,7 @@ from simkit.runtime.engine.physics import CONTROL
 
 if TYPE_CHECKING:
     from simkit.compiler import ActuatorRef
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.engine_state import EngineState
 
 RATE: Final = 50.0
 """[Hz] at which corrections are brought up to date."""
@@ -104,12 +104,12 @@ class VelocityServos:
         servos: state by name of the actuator.
     """
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    def __init__(self, engine: EngineState) -> None:
+        self._engine = engine
         self.servos: dict[str, _ServoState] = {}
-        self._period = max(1.0 / RATE, sim.clock.timestep)
+        self._period = max(1.0 / RATE, engine.clock.timestep)
         # in ticks; after more it begins anew
-        self._longest = math.ceil(min(1.5 * self._period / max(sim.clock.timestep, SHORTEST_STEP), 1e15))
+        self._longest = math.ceil(min(1.5 * self._period / max(engine.clock.timestep, SHORTEST_STEP), 1e15))
         self._model: Any = None
         self._rows: list[_BoundServo] = []
         self._dofs = self._places = np.zeros(0, np.intp)
@@ -125,11 +125,11 @@ class VelocityServos:
         if velocity == 0.0 and servo.command != 0.0:
             servo.correction = 0.0
         servo.command = velocity
-        self._sim.mj_data.ctrl[self._sim.names.actuator(ref)] = velocity + servo.correction
+        self._engine.mj_data.ctrl[self._engine.names.actuator(ref)] = velocity + servo.correction
 
     def is_commanded(self, actuators: Iterable[int]) -> bool:
         """Check whether one of these actuators of the engine has a command other than zero."""
-        controls = self._sim.mj_data.ctrl
+        controls = self._engine.mj_data.ctrl
         commands = {row.index: row.servo.command for row in self._bound()}
         return any(commands.get(int(i), controls[i]) != 0.0 for i in actuators)
 
@@ -137,10 +137,10 @@ class VelocityServos:
 
     def correct(self, tick: int) -> None:
         """Brings the corrections up to date, from the commands and velocities up to now."""
-        rows, sim = self._bound(), self._sim
-        physics, is_changed = sim.physics, False
-        data, timestep = physics.data, sim.clock.timestep
-        if "actuator_gainprm" in sim.originals:
+        rows, engine = self._bound(), self._engine
+        physics, is_changed = engine.physics, False
+        data, timestep = physics.data, engine.clock.timestep
+        if "actuator_gainprm" in engine.originals:
             self._release_slack(rows)
         positions, velocities = data.qpos.take(self._places).tolist(), data.qvel.take(self._dofs).tolist()
         for row, position, velocity in zip(rows, positions, velocities, strict=True):
@@ -159,24 +159,24 @@ class VelocityServos:
 
     def _release_slack(self, rows: Iterable[_BoundServo]) -> None:
         """Forgets the corrections of servos that were let go, as by an empty battery."""
-        sim = self._sim
-        gains = sim.mj_model.actuator_gainprm
+        engine = self._engine
+        gains = engine.mj_model.actuator_gainprm
         for row in rows:
             if row.servo.correction and gains[row.index, 0] == 0.0:
                 row.servo.correction = 0.0
-                sim.mj_data.ctrl[row.index] = row.servo.command
+                engine.mj_data.ctrl[row.index] = row.servo.command
 
     def _bound(self) -> list[_BoundServo]:
         """The servos with their places in the engine's present model."""
-        sim, model = self._sim, self._sim.physics.model
+        engine, model = self._engine, self._engine.physics.model
         if self._model is not model:
             self._model = model
-            records = sim.structure.builder.records.values()
+            records = engine.structure.builder.records.values()
             refs = [r for record in records for r in record.actuators if r.kind == "velocity" and r.kv is None]
             self.servos = {ref.name: self.servos.get(ref.name) or _ServoState() for ref in refs}
-            indices = [sim.names.actuator(ref) for ref in refs]
+            indices = [engine.names.actuator(ref) for ref in refs]
             # once, as compiled: after a restore they are the same, whatever was written to since
-            traits = sim.names.shared("velocity servos", lambda: servo_traits(model, refs, sim.originals))
+            traits = engine.names.shared("velocity servos", lambda: servo_traits(model, refs, engine.originals))
             joints = model.actuator_trnid[indices, 0]
             self._dofs, self._places = (a[joints].astype(np.intp) for a in (model.jnt_dofadr, model.jnt_qposadr))
             places = zip(refs, indices, traits, strict=True)

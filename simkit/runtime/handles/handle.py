@@ -8,7 +8,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.handles.entity_handles import EntityHandles
 
 
 class Handle:
@@ -19,8 +19,8 @@ class Handle:
         scoped: from the world down, joined with `::`.
     """
 
-    def __init__(self, sim: Simulation, name: str, scoped: str) -> None:
-        self._sim = sim
+    def __init__(self, handles: EntityHandles, name: str, scoped: str) -> None:
+        self._handles, self._engine, self._physics = handles, handles.engine, handles.engine.physics
         self.name, self.scoped = name, scoped
         self._there = True
 

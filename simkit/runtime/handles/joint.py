@@ -11,7 +11,7 @@ import numpy as np
 
 from simkit.errors import InputError
 from simkit.pose import Pose, Vector, quat_conjugate, quat_rotate
-from simkit.runtime.engine.physics import CONTROL, STALE, VELOCITY
+from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles.handle import Handle
 from simkit.runtime.handles.joint_mechanics import (
     ball_quaternion,
@@ -26,7 +26,7 @@ from simkit.runtime.handles.joint_mechanics import (
 )
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneJoint
 
 JointValue = float | Vector
@@ -39,8 +39,8 @@ class Joint(Handle):
         type: the file's joint type.
     """
 
-    def __init__(self, sim: Simulation, scene: SceneJoint) -> None:
-        super().__init__(sim, scene.name, scene.scoped)
+    def __init__(self, handles: EntityHandles, scene: SceneJoint) -> None:
+        super().__init__(handles, scene.name, scene.scoped)
         self.scene, self.type = scene, scene.type
         axes = scene.axes or ()
         self._effort_limit = np.array([a.effort for a in axes] or [math.inf])
@@ -57,7 +57,7 @@ class Joint(Handle):
         self._is_floating = self.type == "floating"
         self._one_qpos = int(self._qpos[0]) if len(self._qpos) == len(self._dofs) == 1 else -1
         self._one_dof = int(self._dofs[0]) if len(self._dofs) == 1 else -1
-        self._body = int(self._sim.mj_model.dof_bodyid[self._dofs[0]]) if len(self._dofs) else 0
+        self._body = int(self._physics.model.dof_bodyid[self._dofs[0]]) if len(self._dofs) else 0
 
     # ------------------------------------------------------------------ readings
 
@@ -69,7 +69,7 @@ class Joint(Handle):
     @property
     def mj_dofs(self) -> tuple[int, ...]:
         """Indices among MuJoCo's degrees of freedom."""
-        return tuple(int(d) for d in self._dofs)
+        return tuple(self._plain_dofs)
 
     @property
     def position(self) -> JointValue:
@@ -78,7 +78,7 @@ class Joint(Handle):
         A rotation vector (3,) for a ball joint; x, y and angle for a planar one; x y z qw qx qy qz for a floating one.
         """
         self._check()
-        qpos = self._sim.mj_data.qpos
+        qpos = self._physics.data.qpos
         if self._one_qpos >= 0:
             return float(qpos[self._one_qpos])
         if self._is_ball:
@@ -86,7 +86,7 @@ class Joint(Handle):
             mujoco.mju_quat2Vel(out, ball_quaternion(self._binding, self._ball_quat()), 1.0)
             return out
         if self._is_floating:
-            pose = relative_pose(self._sim, self._binding)
+            pose = relative_pose(self._engine, self._binding)
             return np.concatenate([pose.position, pose.quaternion])
         return np.array(qpos[self._qpos])
 
@@ -98,18 +98,18 @@ class Joint(Handle):
         child's joint frame (3).
         """
         self._check()
-        qvel = self._sim.mj_data.qvel
+        qvel = self._physics.data.qvel
         if self._one_dof >= 0:
             return float(qvel[self._one_dof])
         if self._is_floating:
-            return relative_velocity(self._sim, self._binding)
+            return relative_velocity(self._engine, self._binding)
         return self._to_joint(np.array(qvel[self._dofs]))
 
     @property
     def effort(self) -> JointValue:
         """Sum of what is applied by commands and actuators [N·m or N], within the effort limit."""
         self._check()
-        physics = self._sim.physics
+        physics = self._physics
         data = physics.fresh()
         pending = data.qfrc_applied if physics.one_shot else physics.last_applied
         if self._one_dof >= 0:
@@ -126,7 +126,7 @@ class Joint(Handle):
         All that passes through the joint, what its motor, spring, damper and friction give along its axes included.
         """
         self._check()
-        physics = self._sim.physics
+        physics = self._physics
         binding = self._binding
         body = binding.moved_body
         if not body:
@@ -134,11 +134,11 @@ class Joint(Handle):
         # the engine computes no forces for a sleeper; a copy that is awake has those of rest
         is_asleep = physics.sleep.is_asleep(body, physics.fresh())
         data = physics.data_of(physics.hold()) if is_asleep else physics.fresh_accelerations()
-        child = self._sim.names.links.get(self.scene.child_link)
+        child = self._engine.names.links.get(self.scene.child_link)
         frame = binding.pose_child
         if child is not None:
             frame = Pose(data.xpos[child.body], data.xquat[child.body]) @ child.offset @ frame
-        force, torque = transmitted_wrench(self._sim.mj_model, data, binding, frame.position)
+        force, torque = transmitted_wrench(self._physics.model, data, binding, frame.position)
         back = quat_conjugate(frame.quaternion)
         return quat_rotate(back, force), quat_rotate(back, torque)
 
@@ -151,10 +151,10 @@ class Joint(Handle):
         """
         self._check()
         self._check_settable()
-        qpos = self._sim.mj_data.qpos
+        qpos = self._physics.data.qpos
         values = self._shaped(position, 7 if self._is_floating else self.dof)
         if self._is_floating:
-            set_relative_pose(self._sim, self._binding, Pose(values[:3], values[3:]))
+            set_relative_pose(self._engine, self._binding, Pose(values[:3], values[3:]))
         elif self._is_ball:
             quat = np.array((1.0, 0.0, 0.0, 0.0))
             mujoco.mju_quatIntegrate(quat, values, 1.0)
@@ -163,9 +163,9 @@ class Joint(Handle):
         else:
             qpos[self._qpos] = values
         for f in self._binding.followers:
-            qpos[f.qpos] = self._sim.mj_model.qpos0[f.qpos] + f.offset + f.ratio * values[f.axis]
-        update_loop_joints(self._sim)
-        self._sim.physics.changed_body(STALE, self._body)
+            qpos[f.qpos] = self._physics.model.qpos0[f.qpos] + f.offset + f.ratio * values[f.axis]
+        update_loop_joints(self._engine)
+        self._physics.changed_body(STALE, self._body)
 
     def set_velocity(self, velocity: float | Sequence[float] | Vector) -> None:
         """Gives the joint a velocity, once. Raises InputError for a joint that closes a loop."""
@@ -173,20 +173,20 @@ class Joint(Handle):
         self._check_settable()
         values = self._shaped(velocity, self.dof)
         if self._is_floating:
-            set_relative_velocity(self._sim, self._binding, values)
+            set_relative_velocity(self._engine, self._binding, values)
         else:
-            self._sim.mj_data.qvel[self._dofs] = self._from_joint(values)
+            self._physics.data.qvel[self._dofs] = self._from_joint(values)
         for follower in self._binding.followers:
-            self._sim.mj_data.qvel[follower.dof] = follower.ratio * values[follower.axis]
-        update_loop_joints(self._sim)
-        self._sim.physics.changed_body(VELOCITY, self._body)
+            self._physics.data.qvel[follower.dof] = follower.ratio * values[follower.axis]
+        update_loop_joints(self._engine)
+        self._physics.changed_body(VELOCITY, self._body)
 
     def set_effort(self, effort: float | Sequence[float] | Vector) -> None:
         """Applies an effort in the next step only, clipped to the effort limit; InputError for a floating joint."""
         self._check()
         if self._is_floating:
             raise InputError(f"joint {self.scoped!r} is floating; Link.apply_wrench pushes its child", "SK-JOINT-012")
-        physics = self._sim.physics
+        physics = self._physics
         if self._one_dof >= 0 and isinstance(effort, float) and math.isfinite(effort):
             most = self._effort_limit.item(0)
             physics.data.qfrc_applied[self._one_dof] = max(-most, min(most, effort))
@@ -234,17 +234,26 @@ class Joint(Handle):
     @velocity_limit.setter
     def velocity_limit(self, value: float) -> None:
         self._velocity_limit[:] = value
-        self._sim.limit_velocity(self)
+        self._handles.limit_velocity(self)
+
+    @property
+    def least_velocity_limit(self) -> float:
+        """The least limit of its axes [rad/s or m/s]."""
+        return float(self._velocity_limit.min())
+
+    def axis_velocity_limit(self, axis: int) -> float:
+        """The limit of one of its axes [rad/s or m/s]."""
+        return float(self._velocity_limit[axis])
 
     def clamp_velocity(self, _tick: int = 0) -> None:
         """Brings the velocity within its limit."""
         # plain numbers: this is asked often, of every joint with a limit
-        qvel, limits = self._sim.physics.data.qvel, self._velocity_limit.tolist()
+        qvel, limits = self._physics.data.qvel, self._velocity_limit.tolist()
         for i, dof in enumerate(self._plain_dofs):
             velocity, limit = qvel.item(dof), limits[min(i, len(limits) - 1)]
             if abs(velocity) > limit:
                 qvel[dof] = math.copysign(limit, velocity)
-                self._sim.physics.changed_body(VELOCITY, self._body)
+                self._physics.changed_body(VELOCITY, self._body)
 
     def get_state(self) -> tuple[Vector, Vector]:
         """The limits that were set, for a snapshot."""
@@ -285,20 +294,20 @@ class Joint(Handle):
 
     def _ball_quat(self) -> Vector:
         start = int(self._qpos[0])
-        return np.array(self._sim.mj_data.qpos[start : start + 4])
+        return np.array(self._physics.data.qpos[start : start + 4])
 
     def _range(self, side: int) -> JointValue:
-        model = self._sim.mj_model
+        model = self._physics.model
         ends = (-math.inf, math.inf)
         values = [float(model.jnt_range[j][side]) if model.jnt_limited[j] else ends[side] for j in self._ids]
         return values[0] if len(values) == 1 else np.array(values)
 
     def _set_range(self, side: int, value: float) -> None:
         self._check()
-        ranges, limited = self._sim.touch("jnt_range"), self._sim.touch("jnt_limited")
+        ranges, limited = self._engine.touch("jnt_range"), self._engine.touch("jnt_limited")
         for j in self._ids:
             if not limited[j]:
                 ranges[j] = (-1e10, 1e10)
             ranges[j, side] = min(max(value, -1e10), 1e10)
             limited[j] = 1
-        self._sim.physics.changed(STALE)
+        self._physics.changed(STALE)

@@ -8,11 +8,11 @@ import mujoco
 import numpy as np
 
 from simkit.compiler import JointBinding
-from simkit.pose import Pose, Vector, quat_conjugate, quat_multiply, quat_rotate
-from simkit.runtime.engine.physics import STALE
+from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_multiply, quat_rotate
+from simkit.runtime.engine.physics_state import STALE
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.engine.engine_state import EngineState
 
 
 _XBODY: Final = int(mujoco.mjtObj.mjOBJ_XBODY)
@@ -50,7 +50,7 @@ def ball_rotation(binding: JointBinding, stored: Vector) -> Vector:
 # ------------------------------------------------------------------ readings of any data
 
 
-def joint_position(binding: JointBinding, data: Any) -> Vector:
+def joint_position(binding: JointBinding, data: mujoco.MjData) -> Vector:
     """Position [rad or m] of a joint that binds its links, one number per degree of freedom; of given data.
 
     A ball joint's is a rotation vector.
@@ -62,7 +62,7 @@ def joint_position(binding: JointBinding, data: Any) -> Vector:
     return np.array(data.qpos[list(binding.qpos)])
 
 
-def joint_velocity(binding: JointBinding, data: Any) -> Vector:
+def joint_velocity(binding: JointBinding, data: mujoco.MjData) -> Vector:
     """Velocity [rad/s or m/s] of such a joint; a ball joint's is in the child's joint frame."""
     velocity = np.array(data.qvel[list(binding.dofs)])
     if binding.type == "ball" and binding.qpos:
@@ -74,65 +74,72 @@ def joint_velocity(binding: JointBinding, data: Any) -> Vector:
 # ------------------------------------------------------------------ floating joints
 
 
-def _joint_frames(sim: Simulation, binding: JointBinding) -> tuple[Pose, Pose]:
+def _link_pose(engine: EngineState, scoped: str) -> Pose:
+    """World pose of a link's frame."""
+    binding, data = engine.names.link(scoped), engine.physics.fresh()
+    pose = Pose(data.xpos[binding.body], data.xquat[binding.body])
+    return pose if binding.offset == IDENTITY else pose @ binding.offset
+
+
+def _joint_frames(engine: EngineState, binding: JointBinding) -> tuple[Pose, Pose]:
     """World poses of the parent-side and the child-side frame."""
     found = []
     for link, frame in (
         (binding.scene.parent_link, binding.pose_parent),
         (binding.scene.child_link, binding.pose_child),
     ):
-        found.append(frame if link not in sim.names.links else sim.link(link).pose @ frame)
+        found.append(frame if link not in engine.names.links else _link_pose(engine, link) @ frame)
     return found[0], found[1]
 
 
-def relative_pose(sim: Simulation, binding: JointBinding) -> Pose:
+def relative_pose(engine: EngineState, binding: JointBinding) -> Pose:
     """The child-side frame in the parent-side frame."""
-    parent, child = _joint_frames(sim, binding)
+    parent, child = _joint_frames(engine, binding)
     return parent.inverse() @ child
 
 
-def set_relative_pose(sim: Simulation, binding: JointBinding, pose: Pose) -> None:
+def set_relative_pose(engine: EngineState, binding: JointBinding, pose: Pose) -> None:
     """Moves the free link of a floating joint so that the child-side frame stands there."""
-    parent, child = _joint_frames(sim, binding)
+    parent, child = _joint_frames(engine, binding)
     if binding.is_reversed:
         target = child @ pose.inverse() @ binding.pose_parent.inverse()
     else:
         target = parent @ pose @ binding.pose_child.inverse()
-    start, qpos = sim.names.link(binding.free).root_joint_qpos, sim.mj_data.qpos
+    start, qpos = engine.names.link(binding.free).root_joint_qpos, engine.mj_data.qpos
     qpos[start : start + 3], qpos[start + 3 : start + 7] = target.position, target.quaternion
 
 
-def _point_velocity(sim: Simulation, link: str, point: Vector) -> tuple[Vector, Vector]:
+def _point_velocity(engine: EngineState, link: str, point: Vector) -> tuple[Vector, Vector]:
     """Linear velocity of a point that moves with a link, and the link's angular velocity; world frame."""
-    if link not in sim.names.links:
+    if link not in engine.names.links:
         return np.zeros(3), np.zeros(3)
-    body, out, data = sim.names.link(link).body, np.zeros(6), sim.physics.fresh()
+    body, out, data = engine.names.link(link).body, np.zeros(6), engine.physics.fresh()
     if not body:
         return np.zeros(3), np.zeros(3)
-    mujoco.mj_objectVelocity(sim.mj_model, data, _XBODY, body, out, 0)
+    mujoco.mj_objectVelocity(engine.mj_model, data, _XBODY, body, out, 0)
     return out[3:] + np.cross(out[:3], point - data.xpos[body]), out[:3]
 
 
-def relative_velocity(sim: Simulation, binding: JointBinding) -> Vector:
+def relative_velocity(engine: EngineState, binding: JointBinding) -> Vector:
     """Of the child-side origin in the parent-side frame [m/s], then the turning in the child-side frame [rad/s]."""
-    parent, child = _joint_frames(sim, binding)
-    v_parent, w_parent = _point_velocity(sim, binding.scene.parent_link, child.position)
-    v_child, w_child = _point_velocity(sim, binding.scene.child_link, child.position)
+    parent, child = _joint_frames(engine, binding)
+    v_parent, w_parent = _point_velocity(engine, binding.scene.parent_link, child.position)
+    v_child, w_child = _point_velocity(engine, binding.scene.child_link, child.position)
     linear = quat_rotate(quat_conjugate(parent.quaternion), v_child - v_parent)
     angular = quat_rotate(quat_conjugate(child.quaternion), w_child - w_parent)
     return np.concatenate([linear, angular])
 
 
-def set_relative_velocity(sim: Simulation, binding: JointBinding, velocity: Vector) -> None:
+def set_relative_velocity(engine: EngineState, binding: JointBinding, velocity: Vector) -> None:
     """Gives the free link of a floating joint the velocity that makes `relative_velocity` this one."""
-    parent, child = _joint_frames(sim, binding)
+    parent, child = _joint_frames(engine, binding)
     linear, angular = quat_rotate(parent.quaternion, velocity[:3]), quat_rotate(child.quaternion, velocity[3:])
     sign = -1.0 if binding.is_reversed else 1.0
     other = binding.scene.child_link if binding.is_reversed else binding.scene.parent_link
-    v_other, w_other = _point_velocity(sim, other, child.position)
-    free = sim.names.link(binding.free)
-    data, dof = sim.mj_data, free.root_joint_dof
-    pose = sim.link(binding.free).pose
+    v_other, w_other = _point_velocity(engine, other, child.position)
+    free = engine.names.link(binding.free)
+    data, dof = engine.mj_data, free.root_joint_dof
+    pose = _link_pose(engine, binding.free)
     turning = w_other + sign * angular
     data.qvel[dof : dof + 3] = v_other + sign * linear + np.cross(turning, pose.position - child.position)
     data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(pose.quaternion), turning)
@@ -141,38 +148,40 @@ def set_relative_velocity(sim: Simulation, binding: JointBinding, velocity: Vect
 # ------------------------------------------------------------------ loops
 
 
-def update_loop_joints(sim: Simulation) -> None:
+def update_loop_joints(engine: EngineState) -> None:
     """After joints were set: puts the twin of every loop joint where its link is now, and lets it move like it.
 
     The joint's own motions are all that the twin has, so where the new state tears a loop open, the twin comes as near
     as it can (least squares, Gauss–Newton from where it is).
     """
-    loops = [b for b in sim.names.joints.values() if b.is_loop and b.dofs]
+    loops = [b for b in engine.names.joints.values() if b.is_loop and b.dofs]
     if not loops:
         return
-    model, data = sim.mj_model, sim.mj_data
+    model, data = engine.mj_model, engine.mj_data
     change = np.zeros(model.nv)
     for _ in range(_MAX_ITERATIONS):
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         change[:] = 0.0
         for binding in loops:
-            dofs, columns, spread = _loop_jacobian(sim, binding)
-            change[dofs] += spread @ np.linalg.lstsq(columns, _loop_error(sim, binding), rcond=None)[0]
+            dofs, columns, spread = _loop_jacobian(engine, binding)
+            change[dofs] += spread @ np.linalg.lstsq(columns, _loop_error(engine, binding), rcond=None)[0]
         mujoco.mj_integratePos(model, data.qpos, change, 1.0)
         if float(np.abs(change).max()) < _LOOP_TOLERANCE:
             break
     for binding in loops:
-        dofs, columns, spread = _loop_jacobian(sim, binding)
+        dofs, columns, spread = _loop_jacobian(engine, binding)
         data.qvel[dofs] = 0.0
-        wanted = _body_velocity(sim, sim.names.link(binding.carried).body) - _body_velocity(sim, binding.moved_body)
+        wanted = _body_velocity(engine, engine.names.link(binding.carried).body) - _body_velocity(
+            engine, binding.moved_body
+        )
         data.qvel[dofs] = spread @ np.linalg.lstsq(columns, wanted, rcond=None)[0]
-        sim.physics.changed_body(STALE, binding.moved_body)
+        engine.physics.changed_body(STALE, binding.moved_body)
 
 
-def _loop_jacobian(sim: Simulation, binding: JointBinding) -> tuple[list[int], Any, Any]:
+def _loop_jacobian(engine: EngineState, binding: JointBinding) -> tuple[list[int], Any, Any]:
     """Degrees of freedom of a twin, its Jacobian (6, k) in the joint's free coordinates, and how those spread."""
-    model, data, body = sim.mj_model, sim.mj_data, binding.moved_body
+    model, data, body = engine.mj_model, engine.mj_data, binding.moved_body
     hidden = [f for f in binding.followers if model.dof_bodyid[f.dof] == body]
     dofs = [*binding.dofs, *(f.dof for f in hidden)]
     spread = np.zeros((len(dofs), len(binding.dofs)))
@@ -184,24 +193,26 @@ def _loop_jacobian(sim: Simulation, binding: JointBinding) -> tuple[list[int], A
     return dofs, jacobian[:, dofs] @ spread, spread
 
 
-def _loop_error(sim: Simulation, binding: JointBinding) -> Vector:
+def _loop_error(engine: EngineState, binding: JointBinding) -> Vector:
     """From the twin to its link: a shift [m] and a rotation vector [rad], world frame."""
-    data, link, twin = sim.mj_data, sim.names.link(binding.carried).body, binding.moved_body
+    data, link, twin = engine.mj_data, engine.names.link(binding.carried).body, binding.moved_body
     turn = np.zeros(3)
     apart = quat_multiply(data.xquat[link], quat_conjugate(data.xquat[twin]))
     mujoco.mju_quat2Vel(turn, apart, 1.0)
     return np.concatenate([data.xpos[link] - data.xpos[twin], turn])
 
 
-def _body_velocity(sim: Simulation, body: int) -> Vector:
-    model, data = sim.mj_model, sim.mj_data
+def _body_velocity(engine: EngineState, body: int) -> Vector:
+    model, data = engine.mj_model, engine.mj_data
     jacobian = np.zeros((6, model.nv))
     mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], body)
     moved: Vector = jacobian @ data.qvel
     return moved
 
 
-def transmitted_wrench(model: Any, data: Any, binding: JointBinding, point: Vector) -> tuple[Vector, Vector]:
+def transmitted_wrench(
+    model: mujoco.MjModel, data: mujoco.MjData, binding: JointBinding, point: Vector
+) -> tuple[Vector, Vector]:
     """What the parent link does to the child link through a joint, world axes.
 
     That is all that passes: what the joint holds, and along its own motions what motors, springs, dampers, friction and

@@ -1,35 +1,20 @@
-"""What the engine draws of a light whose description was changed."""
+"""Handle of a light."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import mujoco
 
-from simkit.compiler.lights import add_light
+from simkit.compiler.lights import drawn_fields, drawn_position
 from simkit.pose import IDENTITY, Pose, Vector
 from simkit.runtime.handles.handle import Handle
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneLight
-
-
-_DRAWN_FIELDS: Final = ("diffuse", "specular", "attenuation", "range", "cutoff", "exponent", "castshadow")
-
-
-def redraw_light(sim: Simulation, light: Light) -> None:
-    """Writes to the model what the compiler would have made of the light as it is described now."""
-    index = mujoco.mj_name2id(sim.mj_model, mujoco.mjtObj.mjOBJ_LIGHT, light.scoped)
-    if index < 0:
-        return
-    spec = mujoco.MjSpec()
-    add_light(spec.worldbody, light.scene, IDENTITY, sim.world.surroundings.shadows)
-    drawn = spec.worldbody.lights[0]
-    for field in _DRAWN_FIELDS:
-        sim.touch(f"light_{field}")[index] = getattr(drawn, field)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,32 +56,32 @@ class Light(Handle):
         motion: what makes it stand where it stands; another object whenever that changes.
     """
 
-    def __init__(self, sim: Simulation, scene: SceneLight) -> None:
-        super().__init__(sim, scene.name, scene.scoped)
+    def __init__(self, handles: EntityHandles, scene: SceneLight) -> None:
+        super().__init__(handles, scene.name, scene.scoped)
         self.scene = scene
         pose = scene.pose_world
         if scene.link:
-            pose = sim.scene_link(scene.link).pose_world.inverse() @ pose
+            pose = handles.scene_link(scene.link).pose_world.inverse() @ pose
         self.motion = LightMotion(LightState(pose, scene.on, scene.irradiance))
 
     @property
     def state(self) -> LightState:
         """How it stands and shines now."""
-        return self.motion.at(self._sim.time_ns)
+        return self.motion.at(self._engine.time_ns)
 
     @property
     def pose(self) -> Pose:
         """Pose in the world."""
         self._check()
         pose = self.state.pose
-        return self._sim.link(self.scene.link).pose @ pose if self.scene.link else pose
+        return self._handles.link(self.scene.link).pose @ pose if self.scene.link else pose
 
     def set_pose(self, pose: Pose) -> None:
         """Moves the light; its direction turns with it. What moved it before (a sun's course) has no say any more."""
         self._check()
-        own = self._sim.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
+        own = self._handles.link(self.scene.link).pose.inverse() @ pose if self.scene.link else pose
         self.motion = LightMotion(replace(self.state, pose=own))
-        self._sim.place_light(self)
+        self.draw()
 
     @property
     def direction(self) -> Vector:
@@ -117,22 +102,42 @@ class Light(Handle):
         """Lets `course(time_ns)`, which may depend on nothing but the time, say how it stands and shines."""
         self._check()
         self.motion = LightMotion(self.state, course)
-        self._sim.place_light(self)
+        self.draw()
 
     def change(self, scene: SceneLight) -> None:
         """Makes it shine as another description says: colours, fading, cone, direction, shadows; its place stays."""
         self._check()
-        for sensor in self._sim.structure.all_sensors():
+        for sensor in self._engine.structure.all_sensors():
             sensor.take_held()  # what waits to be looked at was lit by the old one
         self.scene = scene
-        redraw_light(self._sim, self)
-        self._sim.place_light(self)
+        self._redraw()
+        self.draw()
 
     def switch(self, on: bool) -> None:
         """Lets it shine or not; where a course says so (a sun's), that has no say any more."""
         self._check()
         self.motion = LightMotion(replace(self.state, on=on))
-        self._sim.place_light(self)
+        self.draw()
+
+    def draw(self) -> None:
+        """Writes to MuJoCo's model where the light stands and whether it shines; one far away is drawn from nearer."""
+        engine, model = self._engine, self._physics.model
+        index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_LIGHT, self.scoped)
+        if index >= 0:
+            carrier, state = engine.names.links.get(self.scene.link), self.state
+            pose = (carrier.offset if carrier else IDENTITY) @ state.pose
+            engine.touch("light_pos")[index] = drawn_position(self.scene, pose.position)
+            engine.touch("light_dir")[index] = pose.rotate(self.scene.direction)
+            if bool(model.light_active[index]) != state.on:
+                engine.touch("light_active")[index] = state.on
+        self._physics.changed_lights()
+
+    def _redraw(self) -> None:
+        """Writes to MuJoCo's model what the compiler would have made of the light as it is described now."""
+        index = mujoco.mj_name2id(self._physics.model, mujoco.mjtObj.mjOBJ_LIGHT, self.scoped)
+        if index >= 0:
+            for field, value in drawn_fields(self.scene, self._engine.world.surroundings.shadows).items():
+                self._engine.touch(f"light_{field}")[index] = value
 
     def get_state(self) -> tuple[LightMotion, SceneLight]:
         return self.motion, self.scene
@@ -141,5 +146,5 @@ class Light(Handle):
         is_another = state[1] is not self.scene
         self.motion, self.scene = state
         if is_another:
-            redraw_light(self._sim, self)
-        self._sim.place_light(self)
+            self._redraw()
+        self.draw()

@@ -10,13 +10,13 @@ import numpy as np
 
 from simkit.errors import InputError
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
-from simkit.runtime.engine.physics import CONTROL, STALE, VELOCITY
+from simkit.runtime.engine.physics_state import CONTROL, STALE, VELOCITY
 from simkit.runtime.handles.handle import Handle
 from simkit.runtime.handles.joint_mechanics import update_loop_joints
 from simkit.runtime.handles.visual import Visual
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneLink
 
 _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
@@ -25,8 +25,8 @@ _BODY = int(mujoco.mjtObj.mjOBJ_XBODY)
 class Link(Handle):
     """A link of a model. Poses and velocities are those of the link frame's origin, in the world frame."""
 
-    def __init__(self, sim: Simulation, scene: SceneLink) -> None:
-        super().__init__(sim, scene.name, scene.scoped)
+    def __init__(self, handles: EntityHandles, scene: SceneLink) -> None:
+        super().__init__(handles, scene.name, scene.scoped)
         self.scene = scene
         self._visuals: dict[str, Visual] | None = None
 
@@ -41,22 +41,22 @@ class Link(Handle):
     def pose(self) -> Pose:
         """Pose of the link frame in the world."""
         self._check()
-        data = self._sim.physics.fresh()
+        data = self._physics.fresh()
         pose = Pose(data.xpos[self._body], data.xquat[self._body])
         return pose @ self._offset if self._offset is not None else pose
 
     def root_state(self) -> tuple[float, ...] | None:
         """Of a link that moves freely its pose as x, y, z, qw, qx, qy, qz, of which the engine need compute nothing."""
         start = self._binding.root_joint_qpos
-        return tuple(self._sim.mj_data.qpos[start : start + 7].tolist()) if start >= 0 else None
+        return tuple(self._physics.data.qpos[start : start + 7].tolist()) if start >= 0 else None
 
     def _velocity(self) -> Vector:
         """Angular and linear velocity of the link origin in the world, shape (6,)."""
         self._check()
-        data = self._sim.physics.fresh()
+        data = self._physics.fresh()
         out = np.zeros(6)
         if self._body:
-            mujoco.mj_objectVelocity(self._sim.mj_model, data, _BODY, self._body, out, 0)
+            mujoco.mj_objectVelocity(self._physics.model, data, _BODY, self._body, out, 0)
         return out
 
     @property
@@ -74,13 +74,13 @@ class Link(Handle):
         """Of the link origin [m/s²], world frame, gravity not included (0 at rest), shape (3,)."""
         self._check()
         out = np.zeros(6)
-        physics = self._sim.physics
+        physics = self._physics
         # the engine leaves a sleeper's numbers at those of the last time somebody asked
         if not self._body or physics.sleep.is_asleep(self._body, physics.fresh()):
             return out[3:]
         data = physics.fresh_accelerations()
-        mujoco.mj_objectAcceleration(self._sim.mj_model, data, _BODY, self._body, out, 0)
-        linear: Vector = out[3:] + self._sim.mj_model.opt.gravity
+        mujoco.mj_objectAcceleration(self._physics.model, data, _BODY, self._body, out, 0)
+        linear: Vector = out[3:] + self._physics.model.opt.gravity
         return linear
 
     @property
@@ -104,12 +104,12 @@ class Link(Handle):
         self._check()
         if not self.is_free:
             raise self._held(f"move the model {self.scoped.rpartition('::')[0]!r}")
-        data, start = self._sim.mj_data, int(self._binding.root_joint_qpos)
+        data, start = self._physics.data, int(self._binding.root_joint_qpos)
         old = Pose(data.qpos[start : start + 3], data.qpos[start + 3 : start + 7])
         moved = pose @ self.pose.inverse() @ old
         data.qpos[start : start + 3], data.qpos[start + 3 : start + 7] = moved.position, moved.quaternion
-        update_loop_joints(self._sim)
-        self._sim.physics.changed_body(STALE, self._body)
+        update_loop_joints(self._engine)
+        self._physics.changed_body(STALE, self._body)
 
     def set_velocity(
         self, linear: Sequence[float] | Vector, angular: Sequence[float] | Vector = (0.0, 0.0, 0.0)
@@ -122,14 +122,14 @@ class Link(Handle):
         self._check()
         if not self.is_free:
             raise self._held("set the velocity of its joints")
-        data, binding = self._sim.mj_data, self._binding
+        data, binding = self._physics.data, self._binding
         start, dof = int(binding.root_joint_qpos), int(binding.root_joint_dof)
         angular = np.asarray(angular, float)
         arm = data.qpos[start : start + 3] - self.pose.position
         data.qvel[dof : dof + 3] = np.asarray(linear, float) + np.cross(angular, arm)
         data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(data.qpos[start + 3 : start + 7]), angular)
-        update_loop_joints(self._sim)
-        self._sim.physics.changed_body(VELOCITY, self._body)
+        update_loop_joints(self._engine)
+        self._physics.changed_body(VELOCITY, self._body)
 
     def _held(self, instead: str) -> InputError:
         message = f"SK-SERVICE-003 link {self.scoped!r} is held by joints or the world; {instead}"
@@ -140,7 +140,7 @@ class Link(Handle):
         self._check()
         if not self._body:
             return
-        physics = self._sim.physics
+        physics = self._physics
         row = physics.data.xfrc_applied[self._body]
         row[:3] += force
         row[3:] += torque
@@ -150,29 +150,30 @@ class Link(Handle):
     @property
     def collisions_enabled(self) -> bool:
         """Whether the link's collisions make contacts; settable."""
-        model = self._sim.mj_model
+        model = self._physics.model
         return any(model.geom_contype[g] or model.geom_conaffinity[g] for g in self._binding.geoms)
 
     @collisions_enabled.setter
     def collisions_enabled(self, enabled: bool) -> None:
         self._check()
         for field in ("geom_contype", "geom_conaffinity"):
-            values = self._sim.touch(field)
-            original = self._sim.original(field)
+            values = self._engine.touch(field)
+            original = self._engine.original(field)
             for g in self._binding.geoms:
                 values[g] = original[g] if enabled else 0
-        self._sim.physics.changed(STALE)
+        self._physics.changed(STALE)
 
     # ------------------------------------------------------------------ what hangs on it
 
     @property
     def sensors(self) -> dict[str, Any]:
         """Its sensors by name."""
-        return {s.name: self._sim.sensor(s.scoped) for s in self.scene.sensors if self._sim.has_sensor(s.scoped)}
+        there = self._handles.tables["sensor"]
+        return {s.name: there[s.scoped] for s in self.scene.sensors if s.scoped in there}
 
     @property
     def visuals(self) -> dict[str, Visual]:
         """Its visuals by name."""
         if self._visuals is None:  # a large world has thousands, and few are ever asked for
-            self._visuals = {v.name: Visual(self._sim, v, self) for v in self.scene.visuals}
+            self._visuals = {v.name: Visual(self._handles, v, self) for v in self.scene.visuals}
         return dict(self._visuals)

@@ -9,14 +9,14 @@ import numpy as np
 
 from simkit.compiler import LinkBinding
 from simkit.pose import IDENTITY, Pose, Vector, quat_conjugate, quat_rotate
-from simkit.runtime.engine.physics import STALE, VELOCITY
+from simkit.runtime.engine.physics_state import STALE, VELOCITY
 from simkit.runtime.handles.handle import Handle, look_up
 from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.joint_mechanics import update_loop_joints
 from simkit.runtime.handles.link import Link
 
 if TYPE_CHECKING:
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneModel
 
 
@@ -27,12 +27,12 @@ class Model(Handle):
         static: whether the file says that it never moves by itself.
     """
 
-    def __init__(self, sim: Simulation, scene: SceneModel) -> None:
-        super().__init__(sim, scene.name, scene.scoped)
+    def __init__(self, handles: EntityHandles, scene: SceneModel) -> None:
+        super().__init__(handles, scene.name, scene.scoped)
         self.scene, self.static = scene, scene.static
-        self.links: dict[str, Link] = {s.name: Link(sim, s) for s in scene.links}
-        self.joints: dict[str, Joint] = {s.name: Joint(sim, s) for s in scene.joints}
-        self.models: dict[str, Model] = {s.name: Model(sim, s) for s in scene.models}
+        self.links: dict[str, Link] = {s.name: Link(handles, s) for s in scene.links}
+        self.joints: dict[str, Joint] = {s.name: Joint(handles, s) for s in scene.joints}
+        self.models: dict[str, Model] = {s.name: Model(handles, s) for s in scene.models}
         self._rest = scene.pose_world
         # the model frame in its canonical link's frame: fixed for ever
         self._canonical = next((li for li in scene.all_links() if li.scoped == scene.canonical_link), None)
@@ -70,28 +70,28 @@ class Model(Handle):
         self._check()
         if self._canonical is None or self._in_canonical is None:
             return self._rest
-        pose = self._sim.link(self._canonical.scoped).pose
+        pose = self._handles.link(self._canonical.scoped).pose
         return pose if self._is_canonical else pose @ self._in_canonical
 
     def set_pose(self, pose: Pose) -> None:
         """Moves the whole model; joint positions and velocities stay. A static model may be moved too."""
         self._check()
         if self.static:
-            self._sim.make_movable(self.scoped.split("::")[0])
+            self._handles.make_movable(self.scoped.split("::")[0])
         shift = pose @ self.pose.inverse()
-        names = self._sim.names
+        names = self._engine.names
         for link in self.scene.all_links():
             binding = names.link(link.scoped)
             self._shift_link(binding, shift)
-            self._sim.physics.changed_body(STALE, binding.body)
+            self._physics.changed_body(STALE, binding.body)
         for model in self.scene.all_models():
-            handle = self._sim.model(model.scoped)
+            handle = self._handles.model(model.scoped)
             handle._rest = shift @ handle._rest
-        update_loop_joints(self._sim)
-        self._sim.physics.changed(STALE)
+        update_loop_joints(self._engine)
+        self._physics.changed(STALE)
 
     def _shift_link(self, binding: LinkBinding, shift: Pose) -> None:
-        model, data = self._sim.mj_model, self._sim.mj_data
+        model, data = self._physics.model, self._physics.data
         mocap, start, body = binding.mocap, binding.root_joint_qpos, binding.body
         if mocap >= 0:
             moved = shift @ Pose(data.mocap_pos[mocap], data.mocap_quat[mocap])
@@ -101,7 +101,7 @@ class Model(Handle):
             data.qpos[start : start + 3], data.qpos[start + 3 : start + 7] = moved.position, moved.quaternion
         elif body and model.body_parentid[body] == 0:
             # fixed or hinged to the world: the body's own place changes
-            positions, quaternions = self._sim.touch("body_pos"), self._sim.touch("body_quat")
+            positions, quaternions = self._engine.touch("body_pos"), self._engine.touch("body_quat")
             moved = shift @ Pose(positions[body], quaternions[body])
             positions[body], quaternions[body] = moved.position, moved.quaternion
 
@@ -110,7 +110,7 @@ class Model(Handle):
     ) -> None:
         """Gives every free part of the model this twist about the model's origin, world frame [m/s, rad/s]."""
         self._check()
-        data, names, origin = self._sim.mj_data, self._sim.names, self.pose.position
+        data, names, origin = self._physics.data, self._engine.names, self.pose.position
         linear, angular = np.asarray(linear, float), np.asarray(angular, float)
         for link in self.scene.all_links():
             binding = names.link(link.scoped)
@@ -121,11 +121,19 @@ class Model(Handle):
             arm = data.qpos[start : start + 3] - origin
             data.qvel[dof : dof + 3] = linear + np.cross(angular, arm)
             data.qvel[dof + 3 : dof + 6] = quat_rotate(quat_conjugate(data.qpos[start + 3 : start + 7]), angular)
-            self._sim.physics.changed_body(VELOCITY, binding.body)
-        update_loop_joints(self._sim)
+            self._physics.changed_body(VELOCITY, binding.body)
+        update_loop_joints(self._engine)
 
     def set_joint_positions(self, positions: Mapping[str, float | Sequence[float]]) -> None:
         """Puts several joints at positions, once."""
         found = [(self.joint(name), value) for name, value in positions.items()]
         for joint, value in found:
             joint.set_position(value)
+
+    def get_state(self) -> Pose:
+        """Returns the pose of a model without links, for a snapshot."""
+        return self._rest
+
+    def set_state(self, state: Pose) -> None:
+        """Goes back to a pose from `get_state`."""
+        self._rest = state

@@ -8,8 +8,8 @@ from simkit.pose import Pose
 from simkit.runtime.handles.handle import Handle
 
 if TYPE_CHECKING:
+    from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.runtime.handles.link import Link
-    from simkit.runtime.simulation import Simulation
     from simkit.scene import SceneVisual
 
 
@@ -21,8 +21,8 @@ class Visual(Handle):
         link: that carries it.
     """
 
-    def __init__(self, sim: Simulation, scene: SceneVisual, link: Link) -> None:
-        super().__init__(sim, scene.name, scene.scoped)
+    def __init__(self, handles: EntityHandles, scene: SceneVisual, link: Link) -> None:
+        super().__init__(handles, scene.name, scene.scoped)
         self.scene, self.link = scene, link
 
     def __repr__(self) -> str:
@@ -32,7 +32,7 @@ class Visual(Handle):
     def geoms(self) -> tuple[int, ...]:
         """Ids of the engine's geoms that draw it, in the present model; none for a shape that is not drawn."""
         self.link._check()
-        drawn: dict[str, tuple[int, ...]] = self._sim.names.drawn(self.link.scoped)
+        drawn: dict[str, tuple[int, ...]] = self._engine.names.drawn(self.link.scoped)
         return drawn.get(self.scoped, ())
 
     def set_colour(self, red: float, green: float, blue: float, alpha: float = 1.0) -> None:
@@ -42,7 +42,7 @@ class Visual(Handle):
             parts[0] = 0.5001  # exactly MuJoCo's default would be taken for "not given"
         geoms = list(self.geoms)
         if geoms:
-            self._sim.touch("geom_rgba")[geoms] = parts
+            self._engine.touch("geom_rgba")[geoms] = parts
 
     @property
     def pose(self) -> Pose:

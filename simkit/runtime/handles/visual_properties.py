@@ -14,7 +14,7 @@ from simkit.runtime.handles.handle import look_up
 
 if TYPE_CHECKING:
     from simkit.runtime.engine.world_structure import WorldStructure
-    from simkit.runtime.simulation import Simulation
+    from simkit.runtime.handles.entity_handles import EntityHandles
     from simkit.scene import SceneModel
 
 
@@ -36,8 +36,8 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
     wearers: ClassVar[tuple[str, ...]] = ("model",)
     read_by: ClassVar[str] = ""
 
-    def __init__(self, sim: Simulation) -> None:
-        self._sim = sim
+    def __init__(self, handles: EntityHandles) -> None:
+        self._handles = handles
         self.state: Mapping[str, Value] = MappingProxyType({})
 
     @abc.abstractmethod
@@ -78,7 +78,7 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
             nested: whether a model's also counts for the models in it.
         """
         found: dict[str, Value] = {}
-        for model in self._sim.structure.models.values() if self.state else ():
+        for model in self._handles.engine.structure.models.values() if self.state else ():
             self._collect(model, None, nested, found)
         return found
 
@@ -111,18 +111,18 @@ class VisualProperty(MutableMapping[str, Value], abc.ABC):
     # ------------------------------------------------------------------ within
 
     def _find(self, scoped: str) -> None:
-        entities = self._sim.entities
-        known = {name: handle for kind in self.wearers for name, handle in entities.tables[kind].items()}
+        handles = self._handles
+        known = {name: handle for kind in self.wearers for name, handle in handles.tables[kind].items()}
         if scoped in known:
             return
         try:
-            entities.find_visual(scoped)
+            handles.find_visual(scoped)
         except KeyError:
-            look_up({**known, **entities.visuals()}, scoped, f"{', '.join(self.wearers)} or visual")
+            look_up({**known, **handles.visuals()}, scoped, f"{', '.join(self.wearers)} or visual")
 
     def _change(self, values: dict[str, Value]) -> None:
         """Samples that wait to be looked at are measured with the values of their time."""
-        for sensor in self._sim.structure.all_sensors():
+        for sensor in self._handles.engine.structure.all_sensors():
             if getattr(sensor, self.read_by, False):
                 sensor.finish_samples()
         self.state = MappingProxyType(values)

@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simkit.params import Params
-from simkit.runtime.communication.topic_bus import Publisher
+from simkit.runtime.communication.publisher import Publisher, TopicSides
+from simkit.runtime.communication.subscription import TopicReaders
 from simkit.save_path import SAVE_PATH_VARIABLE, allowed_folder
 from simkit.sensors.cameras.image_messages import IMAGE_TYPE, pixels_of
 
@@ -69,7 +70,8 @@ class ImageSaver(Publisher):
     __slots__ = ("_count", "_far", "_folder", "_is_over", "_name", "_sensor", "_sim")
 
     def __init__(self, sim: Simulation, sensor: SceneSensor, folder: Path, name: str, far: float | None) -> None:
-        super().__init__(sim.bus, f"/{name}/saved", IMAGE_TYPE, False, None)
+        sides = TopicSides(TopicReaders(), [])  # nobody reads what is written to files
+        super().__init__(sim.communication.bus, sides, f"/{name}/saved", IMAGE_TYPE, False, None)
         self._sim, self._sensor, self._folder, self._far = sim, sensor, folder, far
         self._name = re.sub(r"[^A-Za-z0-9_.:-]", "_", name)[:_MAX_NAME_LENGTH]
         self._count, self._is_over = 0, False

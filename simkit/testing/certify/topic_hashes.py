@@ -111,7 +111,7 @@ class _TopicHash:
 def _topic_publishers(sim: Simulation) -> dict[str, str]:
     """Who publishes each topic."""
     found: dict[str, list[str]] = {}
-    for topic, end, _, does in sim.bus.ends():
+    for topic, end, _, does in sim.bus.endpoints():
         if does == "publishes" and end.owner is not None:
             found.setdefault(topic, []).append(plugin_title(end.owner))
     return {topic: " and ".join(dict.fromkeys(names)) for topic, names in found.items()}

@@ -312,7 +312,7 @@ def configured_rate(sim: Simulation, topic: str) -> float | None:
     """The rate that what publishes on a topic is set to [Hz], of several together; None where that is not known."""
     owners: list[Any] = [sensor for sensor in sim.structure.all_sensors() if topic in sensor._topics.values()]
     if not owners:
-        for _, end, _, what in sim.bus.ends(topic):
+        for _, end, _, what in sim.bus.endpoints(topic):
             if what == "publishes" and end.active:
                 owners.append(None if getattr(end, "latched", False) else end.owner)
     rates = [_publisher_rate(owner, sim.timestep) for owner in owners]

@@ -196,7 +196,7 @@ class RunRecorder:
         """
         from simkit.testing.run_record.fingerprint import fingerprint
 
-        published = {topic for topic, _, _, does in self._sim.bus.ends() if does == "publishes"}
+        published = {topic for topic, _, _, does in self._sim.bus.endpoints() if does == "publishes"}
         streams = {}
         for topic in sorted(self._streams):
             taker = self._streams[topic]

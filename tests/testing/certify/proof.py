@@ -51,7 +51,7 @@ class Runner:
         self._messages: list[tuple[int, str, int]] = []
         self._heard: set[str] = set()
         sim.bus.on_topic(self._listen)
-        takes = [(topic, types[0]) for topic, _, types, does in sim.bus.ends() if does == "takes"]
+        takes = [(topic, types[0]) for topic, _, types, does in sim.bus.endpoints() if does == "takes"]
         self._inputs = [(topic, kind) for topic, kind in takes if not topic.endswith(_NOT_SENT)]
 
     def _listen(self, topic: str, _: str) -> None:

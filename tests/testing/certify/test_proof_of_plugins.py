@@ -51,7 +51,7 @@ def has_done_something(sim, plugin: Plugin, at_first, before: proof.Seen, after:
     """Whether it came to remember something else, published, took a change of its parameters, or drives joints."""
     name = f"{plugin.scoped}::{plugin.name}"
     published = {topic for _, topic, _ in (*before.messages, *after.messages)}
-    ends = {topic for topic, end, _, does in sim.bus.ends() if does == "publishes" and end.owner is plugin}
+    ends = {topic for topic, end, _, does in sim.bus.endpoints() if does == "publishes" and end.owner is plugin}
     changed = at_first[name] != before.memory[name] or before.memory[name] != after.memory[name]
     adjustable = any(p.owner is plugin for found in sim.parameters.values() for p in found.values())
     return changed or bool(ends & published) or adjustable or bool(plugin._actuators)

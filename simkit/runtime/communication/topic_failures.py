@@ -1,0 +1,57 @@
+"""What becomes of callbacks of topics that raise, and of messages that are too many."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from simkit.errors import InputError, PluginError, SimkitError, SimulationDiverged, SubscriberError
+from simkit.runtime.communication.subscription import MAX_KEPT_MESSAGES, callback_name
+from simkit.runtime.engine.plugin_faults import is_guarded
+
+if TYPE_CHECKING:
+    from simkit.diagnostics import Diagnostics
+    from simkit.runtime.communication.publisher import Listener
+    from simkit.runtime.communication.subscription import Subscription
+
+
+class TopicFailures:
+    """Errors and warnings of the topics of a simulation.
+
+    Args:
+        reports: receives the warnings.
+        now: gives the simulated time [s].
+    """
+
+    def __init__(self, reports: Diagnostics, now: Callable[[], float]) -> None:
+        self._reports, self._now = reports, now
+
+    def subscriber_failed(self, subscription: Subscription, error: Exception) -> None:
+        """Stops the run or closes the subscription, as it asks; called while the exception is being handled."""
+        if isinstance(error, (PluginError, SimulationDiverged)) or is_guarded(subscription.callback):
+            raise error
+        topic, name = subscription.topic, callback_name(subscription.callback)
+        if subscription.on_error == "stop":
+            if isinstance(error, SimkitError) and not isinstance(error, InputError):
+                raise error  # else who publishes would be blamed for it
+            raise SubscriberError(topic, name, self._now(), repr(error)) from error
+        subscription.close()
+        message = f"subscriber {name} of {topic!r} raised at t={self._now():.6g} s and hears no more: {error!r}"
+        self._reports.warning("SK-TOPIC-003", message)
+
+    def input_error(self, listener: Listener, error: Exception) -> SimkitError:
+        """Return the error of a command input whose callback raised."""
+        owner, what = listener.owner, f"its callback for {listener.topic!r}"
+        if hasattr(owner, "where"):
+            return PluginError(str(getattr(owner, "name", owner)), what, self._now(), str(owner.where), repr(error))
+        return SubscriberError(listener.topic, callback_name(listener.callback), self._now(), repr(error))
+
+    def report_full(self, topic: str) -> None:
+        """Warns of a subscription that keeps all and has had more messages than it can keep."""
+        message = f"a subscription to {topic!r} is full: of more than {MAX_KEPT_MESSAGES} messages the newest are there"
+        self._reports.warning("SK-TOPIC-005", message, hint="subscribe with keep=, or close it once it is not needed")
+
+    def report_dropped(self, topic: str, depth: int) -> None:
+        """Warns of more messages for one step than an input takes."""
+        message = f"more than {depth} messages on {topic!r} came for one step: the oldest are dropped from now on"
+        self._reports.warning("SK-TOPIC-004", message, hint="send less often; sim.bus.dropped counts them")
