@@ -28,7 +28,7 @@ def publish_while_subscribed(
         also: another reason to call it; say `sim.on_demand.look()` where that changes.
     """
     sim = plugin.sim
-    sim.bus.on_audience(publisher.topic, sim.on_demand.look)
+    sim.bus.on_readers_change(publisher.topic, sim.on_demand.look)
     task = sim.faults.task(plugin, method)
     sim.on_demand.add(lambda: publisher.active and (publisher.wanted or also()), rate or None, task)
 
@@ -71,5 +71,5 @@ def watch_while_subscribed(plugin: Watcher, publishers: Sequence[Any], method: s
         return heard
 
     for publisher in publishers:
-        sim.bus.on_audience(publisher.topic, sim.on_demand.look)
+        sim.bus.on_readers_change(publisher.topic, sim.on_demand.look)
     sim.on_demand.add(is_heard, None, sim.faults.task(plugin, method))

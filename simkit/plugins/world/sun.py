@@ -84,7 +84,7 @@ class Sun(WorldPlugin):
 
     def before_step(self) -> None:
         if self._light is not None:
-            self.sim.place_light(self._light)
+            self._light.draw()
 
     def state(self, time_ns: int) -> LightState:
         """How the light stands and shines at a simulated time [ns]."""
