@@ -54,7 +54,6 @@ MOVED: Final = {
     "lights": "contents.lights",
     "sensors": "contents.sensors",
     "plugins": "contents.plugins",
-    "visual": "contents.visual",
     "has_sensor": "contents.has_sensor",
     "scene_link": "contents.scene_link",
     "spawn_all": "contents.spawn_all",

@@ -21,6 +21,7 @@ from simkit.runtime.handles.joint import Joint
 from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.link import Link
 from simkit.runtime.handles.model import Model
+from simkit.runtime.handles.visual import Visual
 from simkit.runtime.old_names import OldNames
 from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker
 from simkit.runtime.world_contents import WorldContents
@@ -46,8 +47,7 @@ class Simulation(OldNames):
         communication: topics, services, actions and live parameters.
         contents: models, links, joints, sensors and plugins, and how they are added and removed.
         control: pause, gravity, collisions, geographic origin, reset of models.
-        origin: how it was loaded: `simkit.load`'s arguments by name, and `folder`, where that was; None of what was
-            made otherwise.
+        origin: arguments of `simkit.load` by name, and its `folder`; None of what was made otherwise.
     """
 
     origin: Mapping[str, Any] | None = None
@@ -77,7 +77,7 @@ class Simulation(OldNames):
         self.engine.reschedule()
         self._loaded = self.snapshot()
 
-    # ------------------------------------------------------------------ time
+    # ------------------------------------------------------------------ time and steps
 
     @property
     def tick(self) -> int:
@@ -98,8 +98,6 @@ class Simulation(OldNames):
     def timestep(self) -> float:
         """Length of a step [s]."""
         return self.engine.clock.timestep
-
-    # ------------------------------------------------------------------ advancing
 
     def step(self, count: int = 1) -> None:
         """Advances `count` steps.
@@ -240,6 +238,10 @@ class Simulation(OldNames):
         """A light by scoped name; KeyError names the closest."""
         return self.contents.handles.light(name)
 
+    def visual(self, name: str) -> Visual:
+        """A visual by scoped name; KeyError names the closest."""
+        return self.contents.handles.find_visual(name)
+
     def spawn(self, source: Any, name: str | None = None, pose: Pose | None = None) -> Model:
         """Adds a model while time goes on; everything else keeps its state and its handles.
 
@@ -355,8 +357,6 @@ class Simulation(OldNames):
     def _journal(self) -> Journal | None:
         return self.communication.bus.journal
 
-    # ------------------------------------------------------------------ what was found, and MuJoCo's objects
-
     @property
     def diagnostics(self) -> list[Diagnostic]:
         """What loading approximated or ignored."""
@@ -371,8 +371,6 @@ class Simulation(OldNames):
     def mj_data(self) -> mujoco.MjData:
         """The `mujoco.MjData`; a new object after a spawn or a removal."""
         return self.engine.physics.data
-
-    # ------------------------------------------------------------------ the end
 
     def _fill(self, scheduler: Scheduler) -> None:
         """Puts every task into the scheduler."""

@@ -13,7 +13,6 @@ from simkit.runtime.engine.physics_state import STALE
 from simkit.runtime.handles.entity_handles import EntityHandles
 from simkit.runtime.handles.light import Light
 from simkit.runtime.handles.model import Model
-from simkit.runtime.handles.visual import Visual
 from simkit.runtime.handles.visual_properties import Labels, Temperatures
 from simkit.runtime.model_copy import check_model_name, copy_model
 from simkit.runtime.spawner import ModelLoader, SensorsAndPluginsMaker, Spawner
@@ -92,10 +91,6 @@ class WorldContents:
     def temperatures(self) -> Temperatures:
         """Temperatures for thermal cameras, by scoped name of a model, a link or a visual."""
         return self.handles.temperatures
-
-    def visual(self, name: str) -> Visual:
-        """A visual by scoped name; KeyError names the closest."""
-        return self.handles.find_visual(name)
 
     def has_sensor(self, name: str) -> bool:
         """Whether a sensor of that name is simulated."""
