@@ -20,7 +20,7 @@ from simkit.sensors.presets import Preset, find, presets
 from simkit.sensors.presets.preset import outline
 from simkit.sensors.presets.preset_page import describe_preset, presets_page
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "sensors" / "presets.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "sensors" / "presets.md"
 PLACE = """<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>47</latitude_deg>
   <longitude_deg>8</longitude_deg><elevation>400</elevation><heading_deg>0</heading_deg></spherical_coordinates>"""
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from sensor_worlds import sensor, world
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[4]
 CAMERA = "<camera><image><width>32</width><height>24</height></image></camera>"
 WORLD = world(sensor("camera", CAMERA, name="c") + sensor("imu", "<imu/>", name="i"))
 START = """

@@ -27,7 +27,7 @@ from simkit.sensors.cameras.rgbd_camera import RgbdCamera
 
 pytestmark = NEEDS_RENDERER
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[4]
 SCENE = "<scene><ambient>1 1 1 1</ambient><background>0.2 0.4 0.6 1</background></scene>"
 CRATE = f'<sdf version="1.9">{box("crate", "2 0.3 1 0 0 0", "0.3 0.3 0.3", colour="0 1 0")}</sdf>'
 
