@@ -35,14 +35,14 @@ def main() -> None:
     from simkit.testing.golden.compare.runs import compare
     from simkit.testing.golden.store import read_golden, write_golden
     from simkit.testing.run_record.run_recorder import run_record
-    from simkit.testing.scenarios import Scenario, Tolerance
+    from simkit.run_spec import RunSpec, Tolerance
 
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--checks", type=int, default=10_000, help="in all")
     given = parser.parse_args()
 
     noise = (Tolerance("/imu", statistics=True), Tolerance("/scan", statistics=True), Tolerance("*points", ignore=True))
-    plain, noisy = Scenario(WORLD, 0.5), Scenario(WORLD, 0.5, tolerances=noise, state=False)
+    plain, noisy = RunSpec(WORLD, 0.5), RunSpec(WORLD, 0.5, tolerances=noise, state=False)
 
     def run(scenario: Any) -> Any:
         record = run_record(scenario)

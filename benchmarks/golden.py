@@ -14,7 +14,7 @@ from measure import arguments
 
 from simkit.testing.golden.store import read_golden, write_golden
 from simkit.testing.run_record.run_recorder import run_record
-from simkit.testing.scenarios import Scenario
+from simkit.run_spec import RunSpec
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 _DURATION = 30.0  # [s] simulated
@@ -25,7 +25,7 @@ def main() -> None:
     args = arguments(__doc__, rounds=5)
     os.environ.setdefault("TURTLEBOT3_MODEL", "burger")
     drive = {"at": 0.0, "topic": "/cmd_vel", "message": {"linear": {"x": 0.1}, "angular": {"z": 0.2}}}
-    scenario = Scenario(args.world, _DURATION, commands=(drive,))
+    scenario = RunSpec(args.world, _DURATION, commands=(drive,))
     _timed(scenario, "listened")
     plain, listened, captured = (
         min(_timed(scenario, what) for _ in range(args.rounds)) for what in ("plain", "listened", "captured")
@@ -49,7 +49,7 @@ def main() -> None:
     print(f"{'size':30s} {size / 1000:7.1f} kB   aim < {_AIM / 1000:.0f} kB for lidar and IMU")
 
 
-def _timed(scenario: Scenario, what: str) -> float:
+def _timed(scenario: RunSpec, what: str) -> float:
     """Processor time of one run [s]."""
     with open_scenario(scenario) as sim:
         taps = [sim.bus.tap(topic, _nothing) for topic in sim.topics()] if what == "listened" else []

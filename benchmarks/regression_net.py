@@ -61,7 +61,7 @@ def prepare(name: str, folder: Path) -> Any:
     from simkit.build import describe
     from simkit.testing.golden.store import write_golden
     from simkit.testing.run_record.run_recorder import run_record
-    from simkit.testing.scenarios import Scenario
+    from simkit.run_spec import RunSpec
     from simkit.testing.scenarios.scenario_file import read_scenario
     from simkit.writers.vendor import vendor
 
@@ -71,7 +71,7 @@ def prepare(name: str, folder: Path) -> Any:
         scenario = replace(read_scenario(place / "workshop.yaml"), file=None)
     else:
         vendor(name, place, describe)
-        scenario = Scenario(f"{name}.sdf", folder=place, **WORLDS[name])
+        scenario = RunSpec(f"{name}.sdf", folder=place, **WORLDS[name])
     write_golden(folder / f"{name}.golden", run_record(scenario), reason="as it is")
     return scenario
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from simkit.params import Params
     from simkit.plugins.base import ModelPlugin, Plugin, SensorPlugin, VisualPlugin, WorldPlugin
     from simkit.pose import Pose
+    from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
 
 
@@ -44,6 +45,7 @@ __all__ = [
     "PluginError",
     "Pose",
     "RenderError",
+    "RunSpec",
     "SensorPlugin",
     "SimkitError",
     "Simulation",
@@ -66,6 +68,7 @@ _LAZY = {
     "Diagnostic": "simkit.diagnostics",
     "Params": "simkit.params",
     "Pose": "simkit.pose",
+    "RunSpec": "simkit.run_spec",
     "Plugin": "simkit.plugins.base",
     "WorldPlugin": "simkit.plugins.base",
     "ModelPlugin": "simkit.plugins.base",

@@ -22,6 +22,7 @@ from simkit.plugins.discovery.scene_instances import (
     report_unread,
 )
 from simkit.pose import Pose
+from simkit.run_spec import LoadOptions, RunSpec
 from simkit.scene import Mesh, Scene, SceneModel, SceneWorld
 
 if TYPE_CHECKING:
@@ -153,12 +154,15 @@ def load(
     simulation = Simulation(world, structure, diagnostics, seed, load_model, make_parts, on_error)
     simulation.control.write_sdf = _sdf_of
     simulation.engine.render_thread = usable_cores() > 1 if render_thread is None else render_thread
-    simulation.origin = {
-        "source": source, "seed": seed, "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths),
-        "plugins": tuple(plugins), "base": base, "xacro_args": dict(xacro_args or {}), "overrides": tuple(overrides),
-        "sleep": sleep, "package_paths": dict(package_paths or {}), "on_error": on_error, "spawn": tuple(spawn),
-        "is_changed": change_world is not None, "folder": Path.cwd(),
+    given_options: LoadOptions = {
+        "resource_paths": tuple(resource_paths), "plugin_paths": tuple(plugin_paths), "base": base,
+        "xacro_args": dict(xacro_args or {}), "package_paths": dict(package_paths or {}), "params_files": params_files,
+        "strict": strict, "sleep": sleep, "render_thread": render_thread, "on_error": on_error,
     }  # fmt: skip
+    simulation.run_spec = RunSpec(
+        os.fspath(source), seed=seed, overrides=tuple(overrides), spawn=tuple(spawn), plugins=tuple(plugins),
+        options=given_options, folder=Path.cwd(), change_world=change_world,
+    )  # fmt: skip
     try:
         report_unread(parts.values())
         diagnostics.raise_if_errors(strict)

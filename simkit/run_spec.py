@@ -1,11 +1,22 @@
-"""What a scenario is: plain values, made by its file, by the command line or in Python."""
+"""The description of a run: world, seed, overrides, resources, commands, limits, topics and recording.
+
+One typed, frozen and picklable `RunSpec` is made from the command line, from Python, from a scenario file and from a
+bundle; run, golden, certify, bundle, grade, plot and `Simulation.run_spec` understand it. This module imports nothing
+of simkit.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+import os
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, Protocol, TypedDict
+
+FilePath = str | os.PathLike[str]
+OnError = Literal["stop", "disable"]
+"""What becomes of a plugin that raises: the run ends, or it goes on without the plugin."""
 
 NO_FILE_POSITION: Final = ""
 """Of what was not written in a file."""
@@ -94,20 +105,80 @@ class Tolerance:
     where: str = NO_FILE_POSITION
 
 
+class SpawnRequest(Protocol):
+    """A model that comes into the world as it is loaded; `simkit.loaders.spawn_option.SpawnedModel` is one.
+
+    Attributes:
+        source: a file or a bare name.
+        place: x, y, yaw and what else is given of its pose; None for the file's own.
+        name: that it gets; None for its own.
+    """
+
+    @property
+    def source(self) -> FilePath: ...
+    @property
+    def place(self) -> Sequence[float] | None: ...
+    @property
+    def name(self) -> str | None: ...
+
+
+class SourceOptions(TypedDict, total=False):
+    """How a file is read: arguments that `simkit.load`, `check` and `describe` share."""
+
+    resource_paths: Sequence[FilePath]
+    package_paths: Mapping[str, FilePath]
+    xacro_args: Mapping[str, str]
+    base: str
+
+
+class LoadOptions(SourceOptions, total=False):
+    """Arguments of `simkit.load` that `RunSpec` has no field of its own for; only those that are given are in it."""
+
+    plugin_paths: Sequence[FilePath]
+    params_files: FilePath | Sequence[FilePath | tuple[str, FilePath]]
+    strict: bool
+    sleep: bool
+    render_thread: bool | None
+    on_error: OnError | None
+
+
+class LoadArguments(LoadOptions, total=False):
+    """All keyword arguments of `simkit.load`."""
+
+    seed: int
+    overrides: Sequence[str]
+    spawn: Sequence[Any]
+    plugins: Sequence[Any]
+    change_world: Callable[[Any], Any] | None
+
+
 @dataclass(frozen=True)
-class Scenario:
-    """A world, what is done in it, what is recorded and what must hold.
+class Recording:
+    """The bag that a run is recorded to.
+
+    Attributes:
+        path: `x.mcap` for one file, else a rosbag2 folder.
+        overwrite: whether a bag that exists is replaced.
+    """
+
+    path: Path
+    overwrite: bool = False
+
+
+@dataclass(frozen=True)
+class RunSpec:
+    """A run: a world, what is done in it, what is recorded and what must hold.
 
     Attributes:
         world: a file (relative to `folder`), a bare name, or XML text.
-        duration: longest simulated time [s].
+        duration: longest simulated time [s]; infinite for a run that somebody stops.
         seed: of all noise.
         name: what reports call it; else the world's.
         overrides: `PATH=VALUE` as of `--set`.
         spawn: models put into the world, as of `--spawn`.
         commands: what is sent while it runs: mappings as in a `--script`, each with its place under "where".
         plugins: plugins made in Python, as of `simkit.load`; from Python only.
-        topics: shell patterns of the topics that are looked at; empty for all but clocks.
+        topics: shell patterns of the topics that are recorded or compared; empty for all but clocks.
         skip: shell patterns of topics that are left out.
         tolerances: the first whose pattern fits counts, a field's before its topic's.
         state: whether the physics state itself is compared too.
@@ -117,13 +188,20 @@ class Scenario:
         timeout: simulated time [s] by which `until` must hold; None for the duration.
         wall_timeout: wall time [s] after which the run is given up.
         checks: what must hold.
-        options: further keyword arguments of `simkit.load` (`resource_paths`, `plugin_paths`, `xacro_args`, …).
+        options: how the world is loaded: resources and further arguments of `simkit.load`.
         folder: what relative paths are relative to.
         file: where it was read from; None where it was made in Python.
         test: of what only a test can do again (it made plugins, or stepped by itself): `FILE.py::NAME`.
         bits: whether bits must be equal on the same machine; else tolerances count there too. From Python only.
         play: a bag whose commands are sent again at their ticks (relative to `folder`); empty for none.
         play_topics: `TOPIC` or `OLD:=NEW`, as of `--play-topic`; empty for all that the world takes.
+        velocity: `V,W` [m/s, rad/s] that is sent once, as of `--cmd-vel`; None for none.
+        script: a file of further commands, as of `--script`.
+        recording: the bag that topics are recorded to; None for none.
+        pace: highest real-time factor; None for as fast as it goes.
+        paused: whether it begins paused.
+        steps: steps after which it is paused; None for not at all.
+        change_world: is given the resolved world and returns what is built instead. From Python only.
     """
 
     world: str
@@ -131,7 +209,7 @@ class Scenario:
     seed: int = 0
     name: str = ""
     overrides: tuple[str, ...] = ()
-    spawn: tuple[str, ...] = ()
+    spawn: tuple[str | SpawnRequest, ...] = ()
     commands: tuple[Mapping[str, Any], ...] = ()
     plugins: tuple[Any, ...] = ()
     topics: tuple[str, ...] = ()
@@ -144,16 +222,46 @@ class Scenario:
     timeout: float | None = None
     wall_timeout: float | None = None
     checks: tuple[Check, ...] = ()
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: LoadOptions = field(default_factory=LoadOptions)
     folder: Path = field(default_factory=Path)
     file: Path | None = None
     test: str = ""
     bits: bool = True
     play: str = ""
     play_topics: tuple[str, ...] = ()
+    velocity: str | None = None
+    script: Path | None = None
+    recording: Recording | None = None
+    pace: float | None = None
+    paused: bool = False
+    steps: int | None = None
+    change_world: Callable[[Any], Any] | None = None
+
+    def load_arguments(self) -> LoadArguments:
+        """Return the keyword arguments of `simkit.load` for `source`."""
+        arguments: LoadArguments = {
+            "seed": self.seed,
+            "overrides": self.overrides,
+            "spawn": self.spawn,
+            "plugins": self.plugins,
+            **self.options,
+        }
+        if self.change_world is not None:
+            arguments["change_world"] = self.change_world
+        return arguments
 
     @property
-    def recording(self) -> Path | None:
+    def longest(self) -> float:
+        """Simulated time after which the run ends at the latest [s]: its timeout, else its duration."""
+        return self.duration if self.timeout is None else self.timeout
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether the run has no duration of its own."""
+        return math.isinf(self.duration)
+
+    @property
+    def played_bag(self) -> Path | None:
         """The bag whose commands are played; None for none."""
         return self.folder / self.play if self.play else None
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal.options import (
     Base,
     CmdVel,
@@ -63,19 +63,17 @@ def bundle(
     """
     from simkit.testing.bundles import BundleRecorder, write_bundle
     from simkit.testing.bundles.manifest import failure_from_checks, failure_from_error
-    from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
+    from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands, run_scenario
 
     check_file(output, overwrite=force)
-    asked = ScenarioOptions(
-        world, duration, seed, overrides=tuple(set_), spawn=tuple(spawn), params_files=tuple(params_file),
-        cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
-        source=source_arguments(resource_path, package_path, xacro_arg, base),
+    scenario = scenario_spec(
+        world, load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path, params_file),
+        duration=duration, seed=seed, overrides=set_, spawn=spawn, cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
-    scenario = asked.scenario()
     with open_scenario(scenario) as sim:
         print_diagnostics(sim.diagnostics, verbose=False)
         keeper = BundleRecorder(sim, last, topic)
-        scenario = asked.commanded(scenario, sim.topics())
+        scenario = resolve_commands(scenario, sim.topics())
         failure = None
         try:
             ended = run_scenario(scenario, sim)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal.options import (
     Base,
     CmdVel,
@@ -76,18 +76,17 @@ def certify(
     """Runs a world in fresh processes with other surroundings, and shows that the bits are the same."""
     from simkit.testing.certify import certificate
     from simkit.testing.certify import certify as certify_scenario
-    from simkit.testing.scenarios.scenario_run import open_scenario
+    from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands
 
     check_writable(output)
-    asked = ScenarioOptions(
-        world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file),
-        cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
-        source=source_arguments(resource_path, package_path, xacro_arg, base), usual_duration=_SECONDS,
+    scenario = scenario_spec(
+        world, load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path, params_file),
+        duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn, cmd_vel=cmd_vel,
+        script=script, usual_duration=_SECONDS,
     )  # fmt: skip
-    scenario = asked.scenario()
-    if cmd_vel is not None or script is not None:
+    if scenario.velocity is not None or scenario.script is not None:
         with open_scenario(scenario) as sim:
-            scenario = asked.commanded(scenario, sim.topics())
+            scenario = resolve_commands(scenario, sim.topics())
     if not json_:
         stdout_console().print(certificate.table_header())
     made = certify_scenario(

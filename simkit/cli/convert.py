@@ -13,7 +13,7 @@ from simkit.cli.terminal.options import (
     Force,
     PackagePaths,
     ResourcePaths,
-    SourceArguments,
+    SourceOptions,
     Strict,
     Verbose,
     XacroArgs,
@@ -61,7 +61,7 @@ def convert(
     return _to_mjcf(file, output, options, strict=strict, force=force, verbose=verbose)
 
 
-def _to_mjcf(file: str, output: Path, options: SourceArguments, *, strict: bool, force: bool, verbose: bool) -> int:
+def _to_mjcf(file: str, output: Path, options: SourceOptions, *, strict: bool, force: bool, verbose: bool) -> int:
     from simkit.build import load
     from simkit.writers.mjcf import write_mjcf
 
@@ -81,7 +81,7 @@ def _to_mjcf(file: str, output: Path, options: SourceArguments, *, strict: bool,
 
 
 def _to_sdf(
-    file: str, output: Path, options: SourceArguments, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
+    file: str, output: Path, options: SourceOptions, *, keep_uris: bool, strict: bool, force: bool, verbose: bool
 ) -> int:
     from simkit.build import read_scene
     from simkit.writers.asset_folder import write_sdf

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.cli.terminal.output import print_status
 from simkit.errors import InputError, SimkitError
+from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
     from simkit.cli.run_verdict import RunVerdict
@@ -26,14 +26,14 @@ class FailureBundle:
     Args:
         folder: where bundles go; None where none is wanted.
         verdict: knows what became of the run.
-        given: `simkit.load`'s arguments, for a world that fails while it is loaded.
+        spec: what is run, for a world that fails while it is loaded.
 
     Raises:
         InputError: SK-CLI-016 nothing can be written there.
     """
 
-    def __init__(self, folder: Path | None, verdict: RunVerdict, given: Mapping[str, Any]) -> None:
-        self._folder, self._verdict, self._given = folder, verdict, given
+    def __init__(self, folder: Path | None, verdict: RunVerdict, spec: RunSpec) -> None:
+        self._folder, self._verdict, self._spec = folder, verdict, spec
         self._keeper: BundleRecorder | None = None
         if folder is not None:
             from simkit.writers.atomic_output import check_folder
@@ -79,7 +79,7 @@ class FailureBundle:
             if self._keeper is not None:
                 path = write_failed(self._keeper, folder, failure)
             else:
-                path = pack_load_failure(self._given, folder, failure)
+                path = pack_load_failure(self._spec, folder, failure)
         except (SimkitError, OSError) as error:
             print_status(f"no bundle was written: {error}")
         else:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal.options import (
     Base,
     CmdVel,
@@ -43,12 +43,12 @@ from simkit.testing.golden.parallel_check import CheckResult
 from simkit.writers.atomic_output import check_writable
 
 if TYPE_CHECKING:
-    from simkit.cli.run_options import ScenarioOptions
+    from simkit.run_spec import RunSpec
     from simkit.testing.golden.compare.difference import Verdict
     from simkit.testing.run_record.record import RunRecord
 
 
-def record_golden(asked: ScenarioOptions, folder: Path, *, force: bool = False) -> RunRecord:
+def record_golden(spec: RunSpec, folder: Path, *, force: bool = False) -> RunRecord:
     """Runs what is asked for and makes it golden.
 
     Returns:
@@ -60,7 +60,7 @@ def record_golden(asked: ScenarioOptions, folder: Path, *, force: bool = False) 
     from simkit.scene.overrides import check_used
     from simkit.testing.golden.store import MAIN_FILE, write_golden
     from simkit.testing.run_record.run_recorder import run_record
-    from simkit.testing.scenarios.scenario_run import open_scenario
+    from simkit.testing.scenarios.scenario_run import open_scenario, resolve_commands
 
     if (folder / MAIN_FILE).exists() and not force:
         raise InputError(
@@ -68,15 +68,11 @@ def record_golden(asked: ScenarioOptions, folder: Path, *, force: bool = False) 
             "    help: simkit golden check --bless 'REASON' changes it and keeps why; --force begins anew",
             "SK-GOLDEN-005",
         )
-    scenario = asked.scenario()
-    if asked.changes_scenario:  # what differs from the file is kept in the golden run itself
-        scenario = replace(scenario, file=None)
     with chdir("."):  # a plugin that goes elsewhere as it is loaded
-        sim = open_scenario(scenario)
+        sim = open_scenario(spec)
     try:
         check_used(sim.diagnostics)
-        scenario = asked.commanded(scenario, sim.topics())
-        record = run_record(scenario, sim=sim)
+        record = run_record(resolve_commands(spec, sim.topics()), sim=sim)
         if record.error is not None:
             raise record.error
         write_golden(folder, record)
@@ -248,12 +244,15 @@ def record(
     force: Force = False,
 ) -> int:
     """Runs a scenario and keeps what it gives as a golden run."""
-    asked = ScenarioOptions(
-        world, duration, seed, tuple(topic), tuple(skip), tuple(set_), tuple(spawn), tuple(params_file),
-        cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
-        source=source_arguments(resource_path, package_path, xacro_arg, base),
+    options = load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path, params_file)
+    spec = scenario_spec(
+        world, options, duration=duration, seed=seed, topics=topic, skip=skip, overrides=set_, spawn=spawn,
+        cmd_vel=cmd_vel, script=script,
     )  # fmt: skip
-    found = record_golden(asked, out_, force=force)
+    is_changed = duration is not None or seed is not None
+    if is_changed or any((topic, skip, set_, spawn, cmd_vel, script, options)):
+        spec = replace(spec, file=None)  # what differs from the file is kept in the golden run itself
+    found = record_golden(spec, out_, force=force)
     if found.simulation is not None:
         print_diagnostics(found.simulation.diagnostics, verbose=False)
         found.simulation.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +18,7 @@ from simkit.cli.plot_sources import (
     draw_chart,
     split_sources_and_fields,
 )
-from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.run_options import load_options, scenario_spec
 from simkit.cli.terminal.options import (
     Base,
     CmdVel,
@@ -66,8 +67,8 @@ def plot(
 ) -> int:
     """Draws fields of topics over time: of bags, and of worlds that are run for it."""
     sources, fields = split_sources_and_fields(words)
-    asked = ScenarioOptions(
-        "", duration, seed, overrides=tuple(set_), cmd_vel=cmd_vel, script=script, plugin_paths=tuple(plugin_path),
-        source=source_arguments(resource_path, package_path, xacro_arg, base),
-    )  # fmt: skip
-    return draw_chart(sources, fields, PlotRequest(output, against, start, end, title, asked), json_=json_)
+    options = load_options(source_arguments(resource_path, package_path, xacro_arg, base), plugin_path)
+    run = partial(
+        scenario_spec, options=options, duration=duration, seed=seed, overrides=set_, cmd_vel=cmd_vel, script=script
+    )
+    return draw_chart(sources, fields, PlotRequest(output, against, start, end, title, run), json_=json_)

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from simkit.cli.run_options import ScenarioOptions
+from simkit.cli.run_options import scenario_spec
 from simkit.cli.terminal.output import print_diagnostics, print_json, print_line, print_note
 from simkit.errors import InputError
+from simkit.run_spec import LoadOptions, RunSpec
 from simkit.writers.atomic_output import check_writable, write_atomically
 
 if TYPE_CHECKING:
@@ -38,6 +39,10 @@ _WORLDS: Final = (".sdf", ".world", ".urdf", ".xacro", ".xml", ".model", ".mjcf"
 _TOPICS_LISTED: Final = 20  # topics that are listed where no field is named
 
 
+def _world_spec(world: str) -> RunSpec:
+    return scenario_spec(world, LoadOptions())
+
+
 @dataclass(frozen=True)
 class PlotRequest:
     """Options of a plot.
@@ -55,7 +60,7 @@ class PlotRequest:
     start: float | None = None
     end: float | None = None
     title: str = ""
-    run: ScenarioOptions = field(default_factory=lambda: ScenarioOptions(""))
+    run: Callable[[str], RunSpec] = _world_spec
 
 
 def is_bag(path: Path) -> bool:
@@ -209,13 +214,12 @@ def _world_series(source: str, fields: Sequence[str], wish: PlotRequest) -> tupl
     from simkit.recording.charts.series import SeriesTap
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
-    asked = replace(wish.run, world=source)
-    scenario = asked.scenario()
+    scenario = wish.run(source)
     with ExitStack() as stack:
         sim = stack.enter_context(open_scenario(scenario))
         print_diagnostics(sim.diagnostics, verbose=False)
         topics = sim.topics()
         curves, counts = _curves(fields, topics, lambda _: msgs.type_store(), scenario.title)
         tap = stack.enter_context(SeriesTap(sim, curves))
-        run_scenario(asked.commanded(scenario, topics), sim)
+        run_scenario(scenario, sim)
         return tap.series(), counts

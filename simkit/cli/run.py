@@ -11,7 +11,8 @@ import typer
 from typer.core import TyperCommand
 
 from simkit.cli.failure_bundle import DEFAULT_FOLDER as BUNDLES
-from simkit.cli.run_options import OnError, RunOptions
+from simkit.cli.failure_bundle import FailureBundle
+from simkit.cli.run_options import RunDisplay, load_options
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.options import (
     Base,
@@ -32,6 +33,7 @@ from simkit.cli.terminal.options import (
 )
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors
 from simkit.cli.terminal.teleop import KEY_TIMEOUT
+from simkit.run_spec import Check, OnError, Recording, RunSpec
 
 _TIME = re.compile(r"(\d+\.?\d*|\.\d+)\s*(s|ms|min|)")
 _UNITS = {"": 1.0, "s": 1.0, "ms": 1e-3, "min": 60.0}
@@ -171,15 +173,41 @@ def run(
     ] = None,
 ) -> int:
     """Runs a world headless, as fast as it goes."""
-    request = RunOptions(
-        world, _finite(duration), seed, record, tuple(topic), tuple(skip), force, rtf, tuple(set_), strict,
-        view, picture, cmd_vel, script, tuple(plugin_path), _on_error(on_plugin_error), verbose, quiet, watch,
-        tuple(spawn), tuple(params_file), name, teleop, _timeout(key_timeout), paused, step,
-        _expression(until), _until_when(timeout, until), wall_timeout, tuple(assert_), junit,
-        source_arguments(resource_path, package_path, xacro_arg, base), play=play, play_topics=tuple(play_topic),
-        bundles=bundle_on_failure,
-    )  # fmt: skip
-    return execute(request)
+    spec = RunSpec(
+        world,
+        duration=duration if duration is not None and math.isfinite(duration) else math.inf,
+        seed=seed,
+        name=name or "",
+        overrides=tuple(set_),
+        spawn=tuple(spawn),
+        topics=tuple(topic),
+        skip=tuple(skip),
+        until=_expression(until),
+        timeout=_until_when(timeout, until),
+        wall_timeout=wall_timeout,
+        checks=tuple(Check("final", expression=expression, where="--assert") for expression in assert_),
+        options=load_options(
+            source_arguments(resource_path, package_path, xacro_arg, base),
+            plugin_path,
+            params_file,
+            on_error=_on_error(on_plugin_error),
+            strict=strict,
+        ),
+        play="" if play is None else str(play),
+        play_topics=tuple(play_topic),
+        velocity=cmd_vel,
+        script=script,
+        recording=None if record is None else Recording(record, overwrite=force),
+        pace=highest_pace(rtf, is_watched=view or teleop is not None),
+        paused=paused,
+        steps=step,
+    )
+    return execute(
+        spec,
+        RunDisplay(
+            view, picture, teleop, _timeout(key_timeout), verbose, quiet, watch, junit, bundles=bundle_on_failure
+        ),
+    )
 
 
 def _on_error(word: str | None) -> OnError | None:
@@ -211,52 +239,43 @@ def _until_when(timeout: float | None, until: str | None) -> float | None:
     return timeout
 
 
-def _finite(number: float | None) -> float | None:
-    """An infinite duration is none: until Ctrl-C."""
-    return number if number is None or math.isfinite(number) else None
+def highest_pace(rtf: float | None, *, is_watched: bool) -> float | None:
+    """Return the highest real-time factor, None for none: real time for those who watch or drive and say nothing."""
+    if rtf is None:
+        return 1.0 if is_watched else None
+    return rtf if math.isfinite(rtf) else None
 
 
-def execute(request: RunOptions) -> int:
-    """Does what is asked for; returns the exit code.
+def execute(spec: RunSpec, display: RunDisplay) -> int:
+    """Runs what is asked for; returns the exit code.
 
     Raises:
         SimkitError: what went wrong; the recording up to there is complete by then.
     """
     from simkit.bridges import viewer
     from simkit.build import load
-    from simkit.cli.failure_bundle import FailureBundle
     from simkit.cli.run_session import Session, check_keyboard
     from simkit.cli.run_verdict import RunVerdict
     from simkit.recording import run_picture
     from simkit.recording.bags import recorder
     from simkit.scene.overrides import check_used
 
-    if request.record is not None:
-        recorder.check_target(request.record, overwrite=request.force)
-    if request.picture is not None:
-        run_picture.check_target(request.picture)
-    if request.view:
+    if spec.recording is not None:
+        recorder.check_target(spec.recording.path, overwrite=spec.recording.overwrite)
+    if display.picture is not None:
+        run_picture.check_target(display.picture)
+    if display.view:
         viewer.check_possible()
-    check_keyboard(request)
-    given: dict[str, Any] = {
-        "source": request.world,
-        "seed": request.seed,
-        "plugin_paths": request.plugin_paths,
-        "overrides": request.overrides,
-        "on_error": request.on_plugin_error,
-        "spawn": request.spawn,
-        "params_files": request.params_files,
-        **request.source,
-    }
+    check_keyboard(display)
     with (
-        RunVerdict(request) as verdict,
+        RunVerdict(spec, display.junit) as verdict,
         BlockedPlugins(print_status) as blocked,
-        FailureBundle(request.bundles, verdict, given) as bundling,
+        FailureBundle(display.bundles, verdict, spec) as bundling,
     ):
-        sim = load(strict=request.strict, **given)
+        sim = load(spec.world, **spec.load_arguments())
         with sim:
             bundling.keep(sim)
             check_used(sim.diagnostics)
-            print_diagnostics(sim.diagnostics, verbose=request.verbose)
-            verdict.code = Session(request, sim, blocked, verdict).execute()
+            print_diagnostics(sim.diagnostics, verbose=display.verbose)
+            verdict.code = Session(spec, display, sim, blocked, verdict).execute()
     return verdict.code

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simkit.cli.run_loop import Interrupts, RunLoop
-from simkit.cli.run_options import RunOptions
+from simkit.cli.run_options import RunDisplay
 from simkit.cli.run_verdict import RunVerdict
 from simkit.cli.terminal.blocked_plugins import BlockedPlugins
 from simkit.cli.terminal.output import print_status, stderr_console, stdout_console
 from simkit.errors import InputError, RenderError
+from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from simkit.recording.bags.playback import Playback
     from simkit.recording.bags.recorder import Recorder
     from simkit.recording.topic_counts import TopicCounter
+    from simkit.runtime import Simulation
 
 
 def print_summary(sim: Any, counter: TopicCounter, recording: Recorder | None, elapsed: float, *, quiet: bool) -> None:
@@ -63,7 +65,7 @@ def draw_picture(sim: Any, path: Path, driven: Any) -> None:
         stdout_console().print(f"picture {path}")
 
 
-def check_keyboard(request: RunOptions) -> None:
+def check_keyboard(display: RunDisplay) -> None:
     """Says before a run why nobody can drive.
 
     Raises:
@@ -71,7 +73,7 @@ def check_keyboard(request: RunOptions) -> None:
     """
     from simkit.cli.terminal.keyboard import open_keyboard
 
-    if request.teleop is not None and open_keyboard(sys.stdin) is None:
+    if display.teleop is not None and open_keyboard(sys.stdin) is None:
         raise InputError(
             "SK-CLI-050 --teleop reads keys, and standard input is no terminal\n"
             "    help: --cmd-vel V,W or --script FILE.yaml drive without one, simkit topic pub from another terminal",
@@ -79,9 +81,20 @@ def check_keyboard(request: RunOptions) -> None:
         )
 
 
-def _endless_text(request: RunOptions) -> str:
+def run_length(spec: RunSpec, played: float | None = None) -> float | None:
+    """Return the simulated time [s] after which a run ends at the latest; None for until Ctrl-C.
+
+    Args:
+        spec: the run.
+        played: how long the recording is that is played, which is the run's length where nothing else is said.
+    """
+    duration = played if spec.is_endless else spec.duration
+    return min((t for t in (duration, spec.timeout) if t is not None), default=None)
+
+
+def _endless_text(spec: RunSpec) -> str:
     """What is said of a run that has no end of its own."""
-    if request.until:
+    if spec.until:
         return "running until the condition holds, or Ctrl-C (--timeout S gives up then)"
     return "running until Ctrl-C (--duration S stops by itself)"
 
@@ -97,14 +110,18 @@ class Session:
     """One run of a loaded world.
 
     Args:
-        request: what it is to do.
+        spec: what it is to do.
+        display: what the terminal shows of it.
         sim: the simulation.
         blocked: tells of plugins that keep it waiting.
         verdict: what is asked of it.
     """
 
-    def __init__(self, request: RunOptions, sim: Any, blocked: BlockedPlugins, verdict: RunVerdict) -> None:
-        self.request, self.sim, self.blocked, self.verdict = request, sim, blocked, verdict
+    def __init__(
+        self, spec: RunSpec, display: RunDisplay, sim: Simulation, blocked: BlockedPlugins, verdict: RunVerdict
+    ) -> None:
+        self.spec, self.display = spec, display
+        self.sim, self.blocked, self.verdict = sim, blocked, verdict
         self._teleop: Teleop | None = None
 
     def execute(self) -> int:
@@ -115,22 +132,23 @@ class Session:
         from simkit.recording.run_picture import DrivenPath
         from simkit.recording.topic_counts import RENDERED, TopicCounter
 
-        request, sim = self.request, self.sim
+        spec, display, sim = self.spec, self.display, self.sim
         commands, self._teleop = Commands(sim, self._commands()), self._driver()
         played = self._played()
-        duration = request.longest(played.duration if played is not None else None)
+        duration = run_length(spec, played.duration if played is not None else None)
         if duration is None:
-            print_status(_endless_text(request))
+            print_status(_endless_text(spec))
         conditions = self.verdict.watch(sim, duration)
-        driven = DrivenPath(sim) if request.picture is not None else None
+        driven = DrivenPath(sim) if display.picture is not None else None
         with ExitStack() as stack:
             if played is not None:
                 stack.enter_context(played)
             interrupts = stack.enter_context(Interrupts(self.blocked.ask))
             recording = None
-            if request.record is not None:
+            if spec.recording is not None:
+                bag = spec.recording
                 recording = stack.enter_context(
-                    Recorder(sim, request.record, overwrite=request.force, topics=request.topics, skip=request.skip)
+                    Recorder(sim, bag.path, overwrite=bag.overwrite, topics=spec.topics, skip=spec.skip)
                 )
             counter = TopicCounter(sim, RENDERED, recording.records if recording is not None else None)
             keyboard = self._keyboard()
@@ -141,10 +159,10 @@ class Session:
                 watchers.append(recording.check)
             if driven is not None:
                 watchers.append(driven.sample)
-            loop = RunLoop(sim, commands, interrupts, watchers, rtf=request.pace, follow=driven is not None)
+            loop = RunLoop(sim, commands, interrupts, watchers, rtf=spec.pace, follow=driven is not None)
             if played is not None:
                 loop.senders.append(played)
-            if request.view:
+            if display.view:
                 self._open_viewer(stack, loop, watchers)
             if keyboard is not None:
                 stack.enter_context(keyboard)
@@ -153,7 +171,7 @@ class Session:
             self._hold()
             stack.enter_context(conditions)
             loop.is_over = self.verdict.is_over
-            advance = self._watched(loop, interrupts, watchers) if request.watch else loop.run
+            advance = self._watched(loop, interrupts, watchers) if display.watch else loop.run
             try:
                 advance(duration)
             except BaseException as error:
@@ -166,10 +184,10 @@ class Session:
                 progress.__exit__(None, None, None)
                 if recording is not None:
                     recording.close()
-                print_summary(sim, counter, recording, elapsed, quiet=request.quiet)
+                print_summary(sim, counter, recording, elapsed, quiet=display.quiet)
                 self.verdict.tell()
-        if driven is not None and request.picture is not None:
-            draw_picture(sim, request.picture, driven)
+        if driven is not None and display.picture is not None:
+            draw_picture(sim, display.picture, driven)
         return interrupts.exit_code or self.verdict.code
 
     # ------------------------------------------------------------------ who drives
@@ -179,33 +197,35 @@ class Session:
 
         topics = self.sim.topics()
         found = []
-        if self.request.cmd_vel is not None:
-            found.append(steady_velocity(self.request.cmd_vel, topics))
-        if self.request.script is not None:
-            found += read_script(self.request.script, topics)
+        if self.spec.velocity is not None:
+            found.append(steady_velocity(self.spec.velocity, topics))
+        if self.spec.script is not None:
+            found += read_script(self.spec.script, topics)
         return found
 
     def _played(self) -> Playback | None:
         """The commands of the recording that is named, where one is."""
         from simkit.recording.bags.playback import Playback
 
-        if self.request.play is None:
-            if self.request.play_topics:
+        bag = self.spec.played_bag
+        if bag is None:
+            if self.spec.play_topics:
                 raise InputError("SK-CLI-018 --play-topic: found no --play BAG beside it", "SK-CLI-018")
             return None
-        played = Playback(self.sim, self.request.play, self.request.play_topics)
+        played = Playback(self.sim, bag, self.spec.play_topics)
         for note in played.notes:
             print_status(f"note: {note}")
         said = [old if old == new else f"{old} on {new}" for old, new in played.names.items()]
-        print_status(f"playing {', '.join(said)} of {self.request.play}")
+        print_status(f"playing {', '.join(said)} of {bag}")
         return played
 
     def _driver(self) -> Teleop | None:
         from simkit.cli.terminal.teleop import Teleop, find_target
 
-        if self.request.teleop is None:
+        display = self.display
+        if display.teleop is None:
             return None
-        return Teleop(self.sim, find_target(self.sim, self.request.teleop), self.request.key_timeout)
+        return Teleop(self.sim, find_target(self.sim, display.teleop), display.key_timeout)
 
     def _keyboard(self) -> Keyboard | WindowsKeyboard | None:
         """The terminal's, where somebody drives or sees what keys do: a pager that shows our output has its own."""
@@ -235,9 +255,9 @@ class Session:
 
     def _hold(self) -> None:
         """Has the run begin paused, or be so after some steps."""
-        if self.request.step is not None:
-            self.sim.pausing.step(self.request.step)
-        elif self.request.paused:
+        if self.spec.steps is not None:
+            self.sim.pausing.step(self.spec.steps)
+        elif self.spec.paused:
             self.sim.paused = True
 
     # ------------------------------------------------------------------ who looks on
@@ -253,9 +273,9 @@ class Session:
         """Lets other terminals talk to the run."""
         from simkit.bridges.live.server import serve
 
-        name = self.request.name
+        name = self.spec.name or None
         if name is None and self.sim.world.name == "default":  # a bare model's, and many a world's
-            name = Path(self.request.world).name.partition(".")[0] or None
+            name = Path(self.spec.world).name.partition(".")[0] or None
         loop.server, note = serve(self.sim, name)
         if loop.server is None:
             print_status(note)
@@ -266,7 +286,8 @@ class Session:
         """The same loop, which reloads plugins that are edited."""
         from simkit.cli.plugin_watch import PluginWatch
 
-        watch = PluginWatch(self.sim, self.request.plugin_paths, interrupts, waits=self.request.record is None)
+        folders = [Path(folder) for folder in self.spec.options.get("plugin_paths", ())]
+        watch = PluginWatch(self.sim, folders, interrupts, waits=self.spec.recording is None)
         watchers.append(watch.poll)
         loop.before_slice = watch.keep
         return partial(watch.run, loop)

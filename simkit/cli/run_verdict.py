@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
-from simkit.cli.run_options import RunOptions
 from simkit.cli.terminal.output import print_status, stdout_console
 from simkit.cli.wall_time_limit import WallTimeExceeded, WallTimeLimit
 from simkit.errors import RegressionError, SimkitError
+from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult, Watch
@@ -23,7 +24,8 @@ class RunVerdict:
     """What is asked of a run, and what became of it; a context manager around the run, loading included.
 
     Args:
-        request: what the run is to do.
+        spec: what the run is to do.
+        junit: file for the results; None for none.
 
     Attributes:
         code: the exit code.
@@ -31,21 +33,21 @@ class RunVerdict:
         results: of what was asked.
     """
 
-    def __init__(self, request: RunOptions) -> None:
+    def __init__(self, spec: RunSpec, junit: Path | None = None) -> None:
         self.code = 0
         self.reason = ""
         self.results: tuple[CheckResult, ...] = ()
-        self._request = request
-        self._name = request.world if "<" not in request.world else "world"
+        self._spec, self._junit = spec, junit
+        self._name = spec.world if "<" not in spec.world else "world"
         self._watch: Watch | None = None
         self._has_end = False
         self._begun = time.perf_counter()
-        self._wall = WallTimeLimit(request.wall_timeout, print_status, self._give_up)
+        self._wall = WallTimeLimit(spec.wall_timeout, print_status, self._give_up)
 
     def __enter__(self) -> RunVerdict:
         from simkit.writers.atomic_output import check_writable
 
-        check_writable(self._request.junit)
+        check_writable(self._junit)
         self._wall.__enter__()
         return self
 
@@ -76,12 +78,10 @@ class RunVerdict:
         Raises:
             InputError: an expression cannot be read, or names what the world does not have.
         """
-        from simkit.run_spec import Check
         from simkit.testing.conditions import Watch
 
-        request, self._has_end = self._request, longest is not None
-        checks = [Check("final", expression=expression, where="--assert") for expression in request.asserts]
-        self._watch = Watch(sim, checks, until=request.until, timeout=longest)
+        self._has_end = longest is not None
+        self._watch = Watch(sim, self._spec.checks, until=self._spec.until, timeout=longest)
         return self._watch
 
     def is_over(self) -> bool:
@@ -128,7 +128,7 @@ class RunVerdict:
             return "wall_timeout"
         if interrupted_by and self._has_end:
             return interrupted_by
-        return "timeout" if self._request.until else "duration"
+        return "timeout" if self._spec.until else "duration"
 
     def _gave_up(self) -> str:
         blocked = f", where it waited for {self._wall.blocked_by}" if self._wall.blocked_by else ""
@@ -137,10 +137,10 @@ class RunVerdict:
     # ------------------------------------------------------------------ the file
 
     def _write(self, error: BaseException | None) -> None:
-        if self._request.junit is not None:
+        if self._junit is not None:
             from simkit.testing.junit import write_junit
 
-            write_junit(self._request.junit, f"simkit run {self._name}", self._cases(error))
+            write_junit(self._junit, f"simkit run {self._name}", self._cases(error))
 
     def _cases(self, error: BaseException | None) -> Sequence[JunitCase]:
         from simkit.testing.junit import JunitCase

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from simkit.errors import InputError, SimulationDiverged
 from simkit.pose import Pose, Vector
 from simkit.runtime.communication.action_server import GoalHandle
+from simkit.run_spec import RunSpec
 from simkit.runtime.communication.communication import Communication
 from simkit.runtime.communication.journal import journaled
 from simkit.runtime.communication.service_server import Service, ServiceHandler
@@ -47,10 +48,10 @@ class Simulation(OldNames):
         communication: topics, services, actions and live parameters.
         contents: models, links, joints, sensors and plugins, and how they are added and removed.
         control: pause, gravity, collisions, geographic origin, reset of models.
-        origin: arguments of `simkit.load` by name, and its `folder`; None of what was made otherwise.
+        run_spec: description of the run that `simkit.load` made it from; None where it was made otherwise.
     """
 
-    origin: Mapping[str, Any] | None = None
+    run_spec: RunSpec | None = None
 
     def __init__(
         self,

@@ -20,7 +20,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from simkit.cli import app
-from simkit.cli.run_options import RunOptions
+from simkit.cli.run import highest_pace
 from simkit.cli.terminal.output import report_errors
 
 if sys.platform == "win32":
@@ -163,10 +163,10 @@ def test_the_topic_of_teleop_may_be_left_out_wherever_it_stands(words: list[str]
 
 
 def test_who_drives_or_looks_on_has_real_time_unless_they_say_otherwise() -> None:
-    assert RunOptions("w").pace is None
-    assert RunOptions("w", teleop="").pace == RunOptions("w", view=True).pace == 1.0
-    assert RunOptions("w", teleop="", rtf=3.0).pace == 3.0
-    assert RunOptions("w", teleop="", rtf=math.inf).pace is None
+    assert highest_pace(None, is_watched=False) is None
+    assert highest_pace(None, is_watched=True) == 1.0
+    assert highest_pace(3.0, is_watched=True) == 3.0
+    assert highest_pace(math.inf, is_watched=True) is None
 
 
 # ---------------------------------------------------------------------- a shell

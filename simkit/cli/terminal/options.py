@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, TypedDict
+from typing import Annotated
 
 import typer
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
+from simkit.run_spec import SourceOptions
 
 World = Annotated[
     str, typer.Argument(help="A file, or the bare name of a world or model that comes with simkit.", show_default=False)
@@ -100,18 +101,9 @@ def validate_base(base: str) -> str:
     return base
 
 
-class SourceArguments(TypedDict):
-    """The keyword arguments of `load`, `check` and `describe` that say how a file is read."""
-
-    resource_paths: Sequence[Path]
-    package_paths: Mapping[str, str]
-    xacro_args: Mapping[str, str]
-    base: str
-
-
 def source_arguments(
     resource_paths: Sequence[Path], package_paths: Sequence[str], xacro_args: Sequence[str], base: str = "auto"
-) -> SourceArguments:
+) -> SourceOptions:
     """The options that say how a file is read, as keyword arguments."""
     return {
         "resource_paths": resource_paths,

@@ -48,8 +48,8 @@ class BundleRecorder:
         topics: Sequence[str] = (),
         write_failed: Callable[[BundleRecorder, Exception], Path] | None = None,
     ) -> None:
-        if sim.origin is None or sim.steps or sim.bus.inbox:
-            why = "has begun already" if sim.origin is not None else "was not loaded by simkit.load"
+        if sim.run_spec is None or sim.steps or sim.bus.inbox:
+            why = "has begun already" if sim.run_spec is not None else "was not loaded by simkit.load"
             raise InputError(
                 f"{NOT_RECORDED} a bundle begins with the run, and this one {why}; keep it right after load",
                 NOT_RECORDED,

@@ -17,7 +17,7 @@ from simkit.testing.bundles.archive import Bundle, open_bundle
 from simkit.testing.bundles.journal_player import JournalPlayer
 from simkit.testing.bundles.manifest import BAG, Failure, Manifest, failure_from_error
 from simkit.testing.bundles.message_window import MessageWindow, StateHashes, WindowMessage, topic_digests
-from simkit.testing.bundles.packed_world import load_packed_world
+from simkit.testing.bundles.packed_world import load_packed_world, packed_run_spec
 from simkit.testing.run_record.fingerprint import fingerprint, fingerprint_differences
 
 if TYPE_CHECKING:
@@ -108,10 +108,9 @@ class _Replay:
         said = self._said
         numbers = sorted({int(n) for name in said.code if (n := name.split("/")[1]).isdecimal()})
         code = [self._folder / "code" / str(number) for number in numbers]
-        options = {"seed": said.seed, "overrides": said.overrides, "base": said.base, "sleep": said.sleep}
-        options |= {"on_error": said.on_error if said.on_error in ("stop", "disable") else None}
+        spec = packed_run_spec(self._folder, said.world, said.spawn, said.params, said.run_spec, code)
         try:
-            opened = load_packed_world(self._folder, said.world, said.spawn, said.params, code, options)
+            opened = load_packed_world(spec)
         except PluginError as error:
             met = failure_from_error(error)
             return ReplayResult(said, "", 0.0, met, tuple(self._failures(met)), self._machine(), (), 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 import tempfile
@@ -11,8 +12,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError, SimkitError
+from simkit.run_spec import RunSpec
 from simkit.testing.bundles.manifest import PackedModel
-from simkit.testing.bundles.packed_world import load_packed_world, model_hash
+from simkit.testing.bundles.packed_world import load_packed_world, model_hash, packed_run_spec
 
 if TYPE_CHECKING:
     from simkit.testing.bundles.bundle_recorder import BundleRecorder
@@ -36,43 +38,43 @@ class WorldStager:
     """Copies what a run was made from, so that it opens anywhere.
 
     Args:
-        origin: how it was loaded.
+        spec: what was run.
         stage: the folder that becomes the bundle.
     """
 
-    def __init__(self, origin: Any, stage: Path) -> None:
-        self._origin, self._stage = origin, stage
-        paths = [Path(p) for p in origin["resource_paths"]]
-        self._paths = [p if p.is_absolute() else origin["folder"] / p for p in paths]
-        self._folders = 0
+    def __init__(self, spec: RunSpec, stage: Path) -> None:
+        self._spec, self._stage = spec, stage
+        self._paths = [spec.folder / path for path in spec.options.get("resource_paths", ())]
 
     def world(self, keeper: BundleRecorder) -> StagedWorld:
         """Everything that was loaded, and spawned later."""
-        origin, found = self._origin, StagedWorld()
-        found.file = self._vendored(origin["source"], "world", base=origin["base"])
+        spec, found = self._spec, StagedWorld()
+        found.file = self._vendored(spec.world, "world", base=spec.options.get("base", "auto"))
         self._spawned(found)
         for given in keeper.sim._loaded.structure.builder.parameter_files:
             found.params.append((given.model, self._copied(Path(given.file.path), f"params/{len(found.params)}")))
         for source in dict.fromkeys(keeper.journal.sources):
             if "<" not in source:
                 self._later(found, source)
-        if origin["plugins"]:
+        if spec.plugins:
             kinds = ", ".join(
-                sorted({type(one[1] if isinstance(one, tuple) else one).__name__ for one in origin["plugins"]})
+                sorted({type(one[1] if isinstance(one, tuple) else one).__name__ for one in spec.plugins})
             )
             found.missing.append(f"plugins made in Python are not in it: {kinds}")
-        if origin["is_changed"]:
+        if spec.change_world is not None:
             found.missing.append(
                 "the world was changed in Python as it was loaded (change_world); it is packed without"
             )
         self._compare(found, keeper)
         return found
 
-    def unloaded(self, params_files: Any) -> StagedWorld:
+    def unloaded(self) -> StagedWorld:
         """Everything that was to be loaded."""
-        found = StagedWorld(self._vendored(self._origin["source"], "world", base=self._origin["base"]))
+        spec = self._spec
+        found = StagedWorld(self._vendored(spec.world, "world", base=spec.options.get("base", "auto")))
         self._spawned(found)
-        for one in params_files:
+        files = spec.options.get("params_files", ())
+        for one in [files] if isinstance(files, (str, os.PathLike)) else files:
             model, file = one if isinstance(one, tuple) else _split_params_file(str(one))
             found.params.append((model, self._copied(Path(file), f"params/{len(found.params)}")))
         return found
@@ -80,7 +82,7 @@ class WorldStager:
     def _spawned(self, found: StagedWorld) -> None:
         from simkit.loaders.spawn_option import parse_spawn
 
-        for number, one in enumerate(self._origin["spawn"]):
+        for number, one in enumerate(self._spec.spawn):
             spawn = parse_spawn(one, Diagnostics()) if isinstance(one, str) else one
             if spawn is not None:
                 file = self._vendored(spawn.source, f"spawn/{number}")
@@ -97,19 +99,22 @@ class WorldStager:
         from simkit.build import describe
         from simkit.writers.vendor import vendor
 
-        origin = self._origin
-        paths = self._paths
+        spec, paths = self._spec, self._paths
         with tempfile.TemporaryDirectory() as folder:
             if isinstance(source, str) and "<" in source:
                 file = Path(folder) / "world.sdf"
                 file.write_text(source, encoding="utf-8")
-                source, paths = file, [*paths, origin["folder"]]
+                source, paths = file, [*paths, spec.folder]
             elif "://" in str(source):
                 source = self._found(str(source))
-            elif not Path(source).is_absolute() and (origin["folder"] / source).exists():
-                source = origin["folder"] / source
+            elif not Path(source).is_absolute() and (spec.folder / source).exists():
+                source = spec.folder / source
             (self._stage / target).parent.mkdir(parents=True, exist_ok=True)
-            options = {"package_paths": origin["package_paths"], "xacro_args": origin["xacro_args"], "base": base}
+            options = {
+                "package_paths": spec.options.get("package_paths", {}),
+                "xacro_args": spec.options.get("xacro_args", {}),
+                "base": base,
+            }
             try:
                 main, _ = vendor(str(source), self._stage / target, describe, resource_paths=paths, **options)
             except InputError as error:
@@ -120,7 +125,7 @@ class WorldStager:
         """The file or folder of a URI."""
         from simkit.loaders import Resolver
 
-        path, _ = Resolver(self._paths, package_paths=self._origin["package_paths"]).search(uri, None)
+        path, _ = Resolver(self._paths, package_paths=self._spec.options.get("package_paths", {})).search(uri, None)
         if path is None:
             raise InputError(f"{UNPACKED} {uri} is not found any more", UNPACKED)
         return path
@@ -128,18 +133,19 @@ class WorldStager:
     def _copied(self, path: Path, target: str) -> str:
         place = self._stage / target / path.name
         place.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(path if path.is_absolute() else self._origin["folder"] / path, place)
+        shutil.copyfile(self._spec.folder / path, place)
         return f"{target}/{path.name}"
 
     def _compare(self, found: StagedWorld, keeper: BundleRecorder) -> None:
         """Whether what was packed is what was run: files may have been edited since."""
+        spec = self._spec
         try:
-            with load_packed_world(self._stage, found.file, found.spawn, found.params, (), self._origin) as sim:
+            with load_packed_world(packed_run_spec(self._stage, found.file, found.spawn, found.params, spec)) as sim:
                 same = model_hash(sim.mj_model, sim.originals) == loaded_model_hash(keeper)
         except (SimkitError, OSError) as error:
             found.missing.append(f"opening it again failed: {error!s:.300}")
             return
-        if not same and not self._origin["plugin_paths"] and not self._origin["is_changed"]:
+        if not same and not spec.options.get("plugin_paths") and spec.change_world is None:
             found.missing.append("its files have been changed since the run began; they are packed as they are now")
 
 

@@ -8,12 +8,14 @@ import shutil
 import sys
 import traceback
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import InputError
+from simkit.run_spec import RunSpec
 from simkit.testing.bundles.archive import MAX_BYTES, name_fault
 from simkit.testing.bundles.bundle_recorder import WINDOW_SECONDS, BundleRecorder, recorder_of
 from simkit.testing.bundles.bundle_staging import UNPACKED, WorldStager, copy_plugin_modules
@@ -149,21 +151,21 @@ def _write_hidden_file(folder: Path, staged: StagedFiles) -> Iterator[tuple[Path
 
 
 def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, name: str, with_code: bool) -> Manifest:
-    sim, origin, journal = keeper.sim, keeper.sim.origin, keeper.journal
-    assert origin is not None
+    sim, spec, journal = keeper.sim, keeper.sim.run_spec, keeper.journal
+    assert spec is not None
     end = keeper.end(failure)
     first = keeper.window.first
     messages = list(_encodable_messages(keeper.window.messages(first), journal.gaps))
     journal.write_to(stage / COMMANDS)
     write_bag(stage / BAG, iter(messages), sim.bus.latched())
-    world = WorldStager(origin, stage).world(keeper)
+    world = WorldStager(spec, stage).world(keeper)
     if with_code:
-        copy_plugin_modules(world, stage, origin["plugin_paths"])
+        copy_plugin_modules(world, stage, spec.options.get("plugin_paths", ()))
     if failure is not None:
         _write_error(stage, failure)
     given = sim.world.name if sim.world.name not in ("", "default") else Path(world.file).stem
     return Manifest(
-        name=name or given or "run", world=world.file, **_load_options(origin),
+        name=name or given or "run", world=world.file, **_manifest_options(spec),
         spawn=tuple(world.spawn), params=tuple(world.params), models=world.models, code=tuple(sorted(world.code)),
         missing=(*world.missing, *journal.gaps), fingerprint=fingerprint(), seconds=keeper.seconds,
         topics=keeper.topics, first=first, end=end, streams=topic_digests(iter(messages)),
@@ -171,26 +173,24 @@ def _stage_files(keeper: BundleRecorder, stage: Path, failure: Failure | None, n
     )  # fmt: skip
 
 
-def pack_load_failure(given: Mapping[str, Any], folder: Path, failure: Failure) -> Path:
+def pack_load_failure(spec: RunSpec, folder: Path, failure: Failure) -> Path:
     """Writes a bundle of a world that failed while it was loaded.
 
     Args:
-        given: `simkit.load`'s arguments.
+        spec: what was to be run.
         folder: where it goes.
         failure: what it failed with.
     """
-    said: dict[str, Any] = {"base": "auto", "overrides": (), "sleep": True, "on_error": None, "spawn": (), "seed": 0}
-    said |= {"plugins": (), "plugin_paths": (), "package_paths": {}, "xacro_args": {}, "resource_paths": ()}
-    said |= {"is_changed": False, "folder": Path.cwd(), **given}
+    spec = replace(spec, folder=spec.folder.absolute())
 
     def staged(stage: Path) -> Manifest:
         (stage / COMMANDS).touch()
         write_bag(stage / BAG, iter(()), frozenset())
-        world = WorldStager(said, stage).unloaded(said.get("params_files", ()))
-        copy_plugin_modules(world, stage, said["plugin_paths"])
+        world = WorldStager(spec, stage).unloaded()
+        copy_plugin_modules(world, stage, spec.options.get("plugin_paths", ()))
         _write_error(stage, failure)
         return Manifest(
-            name=Path(world.file).stem, world=world.file, **_load_options(said),
+            name=Path(world.file).stem, world=world.file, **_manifest_options(spec),
             spawn=tuple(world.spawn), params=tuple(world.params), models={}, code=tuple(sorted(world.code)),
             missing=tuple(world.missing), fingerprint=fingerprint(), seconds=0.0, topics=(), first=0,
             end=RunEnd(0, 0, 0, "", failure), streams={}, marks=(), commands=0, files=_file_table(stage),
@@ -199,9 +199,15 @@ def pack_load_failure(given: Mapping[str, Any], folder: Path, failure: Failure) 
     return _write_under_own_name(folder, staged)
 
 
-def _load_options(origin: Mapping[str, Any]) -> dict[str, Any]:
-    names = ("base", "seed", "sleep", "on_error")
-    return {**{name: origin[name] for name in names}, "overrides": tuple(origin["overrides"])}
+def _manifest_options(spec: RunSpec) -> dict[str, Any]:
+    """Return the fields of a manifest that a run specification gives."""
+    return {
+        "base": spec.options.get("base", "auto"),
+        "seed": spec.seed,
+        "sleep": spec.options.get("sleep", True),
+        "on_error": spec.options.get("on_error"),
+        "overrides": spec.overrides,
+    }
 
 
 def _write_error(stage: Path, failure: Failure) -> None:

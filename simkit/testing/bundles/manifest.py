@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import InputError, SimkitError
+from simkit.run_spec import LoadOptions, RunSpec
 
 if TYPE_CHECKING:
     from simkit.testing.conditions import CheckResult
@@ -132,6 +133,14 @@ class Manifest:
     marks: tuple[tuple[int, str], ...]
     commands: int
     files: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    @property
+    def run_spec(self) -> RunSpec:
+        """Seed, overrides and options of the run; its files are where the bundle is extracted."""
+        options: LoadOptions = {"base": self.base, "sleep": self.sleep}
+        if self.on_error == "stop" or self.on_error == "disable":
+            options["on_error"] = self.on_error
+        return RunSpec(self.world, seed=self.seed, name=self.name, overrides=self.overrides, options=options)
 
     def text(self) -> str:
         """As JSON; equal for equal ones."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from simkit.run_spec import LoadOptions, RunSpec
 from simkit.testing.bundles.manifest import PackedModel
 
 if TYPE_CHECKING:
@@ -23,40 +24,50 @@ _SEARCH_VARIABLES: Final = (
 )  # fmt: skip
 
 
-def load_packed_world(
+def packed_run_spec(
     folder: Path,
     world: str,
     spawn: Sequence[PackedModel],
     params: Sequence[tuple[str, str]],
-    code: Sequence[Path],
-    options: Mapping[str, Any],
-) -> Simulation:
-    """The world of a bundle at t = 0; nothing outside of its folder is searched.
+    original: RunSpec,
+    code: Sequence[Path] = (),
+) -> RunSpec:
+    """Return the description of a run whose files lie in a folder.
 
     Args:
         folder: where the files lie.
         world, spawn, params: as the manifest has them.
+        original: seed, overrides and options of the run.
         code: folders of plugins whose code may run.
-        options: `seed`, `overrides`, `base`, `sleep`, `on_error`.
+    """
+    from simkit.loaders.spawn_option import SpawnedModel
+
+    options: LoadOptions = {
+        "base": original.options.get("base", "auto"),
+        "sleep": original.options.get("sleep", True),
+        "on_error": original.options.get("on_error"),
+        "plugin_paths": tuple(code),
+        "params_files": tuple((model, folder / file) for model, file in params),
+    }
+    return RunSpec(
+        str(folder / world),
+        seed=original.seed,
+        overrides=original.overrides,
+        spawn=tuple(SpawnedModel(folder / one.file, one.place, one.name) for one in spawn),
+        options=options,
+    )
+
+
+def load_packed_world(spec: RunSpec) -> Simulation:
+    """Load the world of a bundle at t = 0; nothing outside of its folder is searched.
 
     Raises:
         LoadError, PluginError: as `simkit.load`.
     """
     from simkit.build import load
-    from simkit.loaders.spawn_option import SpawnedModel
 
     with _without_user_folders():
-        return load(
-            folder / world,
-            seed=options["seed"],
-            base=options["base"],
-            overrides=tuple(options["overrides"]),
-            sleep=options["sleep"],
-            on_error=options["on_error"],
-            plugin_paths=code,
-            spawn=[SpawnedModel(folder / one.file, one.place, one.name) for one in spawn],
-            params_files=[(model, folder / file) for model, file in params],
-        )
+        return load(spec.world, **spec.load_arguments())
 
 
 @contextmanager

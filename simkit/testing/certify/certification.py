@@ -8,13 +8,13 @@ from dataclasses import replace
 from typing import Final
 
 from simkit.errors import InputError
+from simkit.run_spec import RunSpec
 from simkit.testing.certify.certificate import Certificate, Difference, Row, streams_hash
 from simkit.testing.certify.code_hints import hints_in
 from simkit.testing.certify.outcome import RunOutcome
 from simkit.testing.certify.outcome_comparison import Culprit, differences, find_culprit, first_tick
 from simkit.testing.certify.process_runner import ProcessRunner
 from simkit.testing.certify.variations import Variation, choose_variations
-from simkit.testing.scenarios import Scenario
 
 _WATCH_ATTEMPTS: Final = 2  # looks at a difference that does not show when it is looked at
 _TICK_MARGIN: Final = 2  # ticks after the first that differs
@@ -23,7 +23,7 @@ ProgressCallback = Callable[[Row], None]
 
 
 def certify(
-    scenario: Scenario,
+    scenario: RunSpec,
     *,
     runs: int = 6,
     variations: Sequence[Variation] | None = None,

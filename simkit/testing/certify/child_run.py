@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from simkit.errors import InputError, SimkitError
+from simkit.run_spec import RunSpec
 from simkit.testing.certify.outcome import RunOutcome
 from simkit.testing.certify.plugin_calls import PluginCallRecorder, TickHashes, plugin_attributes, record_plugin_calls
 from simkit.testing.certify.topic_hashes import TopicHashes, plugin_title
 from simkit.testing.certify.value_hash import attribute_hashes, short_hash
 from simkit.testing.certify.variations import Variation
-from simkit.testing.scenarios import Scenario
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -44,7 +44,7 @@ class ChildRequest:
         limit: wall time after which it is ended [s]; None for none.
     """
 
-    scenario: Scenario
+    scenario: RunSpec
     variation: Variation
     ticks: int | None = None
     is_watched: bool = False
@@ -106,8 +106,7 @@ class _ChildRun:
         """Fills the outcome."""
         sim, outcome = self._sim, self._outcome
         self._marks = TickHashes(sim)
-        longest = self._scenario.duration if self._scenario.timeout is None else self._scenario.timeout
-        end = sim.clock.ticks(longest) if self._request.ticks is None else self._request.ticks
+        end = sim.clock.ticks(self._scenario.longest) if self._request.ticks is None else self._request.ticks
         self._end = end
         self._half = end // 2 if self._request.half is None else self._request.half
         try:

@@ -13,11 +13,11 @@ from typing import Any, Final
 
 from simkit.child_process import ChildProcesses, ProcessResult
 from simkit.errors import InputError
+from simkit.run_spec import RunSpec
 from simkit.testing.certify.child_run import ChildRequest
 from simkit.testing.certify.child_run import run_child as run_here
 from simkit.testing.certify.outcome import STACK_FILE, CodePosition, RunOutcome, read_pickle, write_pickle
 from simkit.testing.certify.variations import Variation
-from simkit.testing.scenarios import Scenario
 
 _FOLDERS: Final = ("resource_paths", "plugin_paths")
 _LEAST_LIMIT, _TIMES = 60.0, 10.0  # a run has so many seconds, or so many times as long as the first took
@@ -38,7 +38,7 @@ class ProcessRunner:
         InputError: SK-CERT-002 plugins that no other process can have.
     """
 
-    def __init__(self, scenario: Scenario, *, apart: bool, limit: float | None) -> None:
+    def __init__(self, scenario: RunSpec, *, apart: bool, limit: float | None) -> None:
         self._plugins_from, self._scenario = _plugin_file(scenario), _with_absolute_paths(scenario)
         self._processes = ChildProcesses() if apart else None
         self._limit = limit
@@ -112,18 +112,18 @@ def _signal_name(number: int) -> str:
         return str(number)
 
 
-def _plugin_file(scenario: Scenario) -> Path | None:
+def _plugin_file(scenario: RunSpec) -> Path | None:
     """The Python file that a fresh process can take the scenario's plugins from."""
     if not scenario.plugins:
         return None
     if scenario.file is not None and scenario.file.suffix.lower() == ".py":
         return scenario.file.absolute()
     message = "a fresh process cannot have plugins that were made in this one"
-    hint = "write the scenario as a Python file with `scenario = Scenario(..., plugins=(MyPlugin(),))`"
+    hint = "write the scenario as a Python file with `scenario = RunSpec(..., plugins=(MyPlugin(),))`"
     raise InputError(f"SK-CERT-002 {message}; {hint}", "SK-CERT-002")
 
 
-def _with_absolute_paths(scenario: Scenario) -> Scenario:
+def _with_absolute_paths(scenario: RunSpec) -> RunSpec:
     """The scenario with paths that mean the same in every working directory."""
     source = scenario.source
     if "<" not in source and Path(source).exists():

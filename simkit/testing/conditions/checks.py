@@ -37,7 +37,7 @@ class CheckResult:
     """What became of one check.
 
     Attributes:
-        check: a `simkit.testing.scenarios.Check`.
+        check: a `simkit.run_spec.Check`.
         passed: whether it held.
         message: in words, with the numbers found: why not, or when it was reached.
         time: when it was decided [s] of simulated time.
@@ -149,7 +149,7 @@ class RunningCheck(ABC):
     """A check of a run.
 
     Args:
-        check: a `simkit.testing.scenarios.Check`.
+        check: a `simkit.run_spec.Check`.
         view: the world.
     """
 

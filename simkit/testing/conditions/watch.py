@@ -40,7 +40,7 @@ class Watch:
 
     Args:
         sim: the simulation.
-        checks: `simkit.testing.scenarios.Check`.
+        checks: `simkit.run_spec.Check`.
         until: an expression that ends the run; empty for none.
         timeout: by when it must hold [s].
         absent: what an expression is that names a topic which nobody publishes: an "error", or one that is not known

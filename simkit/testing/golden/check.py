@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from simkit.errors import InputError, SimkitError
+from simkit.run_spec import RunSpec
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.store import golden_folder, read_golden, read_history, write_golden
 from simkit.testing.run_record.fingerprint import RENDERER
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES, run_record
-from simkit.testing.scenarios import Scenario
 
 CAUSE_BUDGET_SECONDS: Final = 60.0
 """Wall time [s] that looking for causes may take."""
@@ -29,7 +29,7 @@ _MAX_DIFFERENCES: Final = 12  # differences that a blessing lists
 def check_golden(
     folder: str | os.PathLike[str],
     *,
-    scenario: Scenario | None = None,
+    scenario: RunSpec | None = None,
     bless: str | None = None,
     other_renderer: bool = False,
     causes: bool = True,
@@ -63,7 +63,7 @@ def check_golden(
 
 
 def _verdict(
-    place: Path, golden: RunRecord, scenario: Scenario, bless: str | None, other_renderer: bool, budget_s: float | None
+    place: Path, golden: RunRecord, scenario: RunSpec, bless: str | None, other_renderer: bool, budget_s: float | None
 ) -> Verdict:
     """The verdict over a run of today."""
     started = time.perf_counter()
@@ -88,7 +88,7 @@ def _verdict(
             run.simulation = None
 
 
-def _append_world_changes(error: InputError, golden: RunRecord, scenario: Scenario) -> InputError:
+def _append_world_changes(error: InputError, golden: RunRecord, scenario: RunSpec) -> InputError:
     """Why a run was not even begun, with what has changed in its world: a topic that it needs may have gone with it."""
     from simkit.testing.golden.cause import world_changes
 
@@ -114,7 +114,7 @@ def golden_name(folder: Path) -> str:
     return folder.resolve().name
 
 
-def _current_scenario(place: Path, golden: RunRecord, given: Scenario | None) -> Scenario:
+def _current_scenario(place: Path, golden: RunRecord, given: RunSpec | None) -> RunSpec:
     """What is run: read anew from the scenario's file, for that is what somebody may have changed."""
     if given is not None:
         return given

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any, Final
 import pytest
 
 from simkit.errors import InputError
+from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Explanation, Verdict
 from simkit.testing.run_record.record import RunRecord
-from simkit.testing.scenarios import Scenario, Tolerance
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
@@ -83,7 +83,7 @@ class SensorRegression:
 
     def __call__(
         self,
-        what: Scenario | Simulation | str | os.PathLike[str],
+        what: RunSpec | Simulation | str | os.PathLike[str],
         *,
         name: str | None = None,
         duration: float | None = None,
@@ -190,31 +190,31 @@ class SensorRegression:
         self._used.add(folder)
         return self._place.folder / folder
 
-    def _scenario(self, what: Any) -> tuple[Scenario, Simulation | None]:
+    def _scenario(self, what: Any) -> tuple[RunSpec, Simulation | None]:
         """What is to be run, and the simulation where it is open already."""
-        if isinstance(what, Scenario):
+        if isinstance(what, RunSpec):
             beside = self._place.beside if what.folder == Path() and what.file is None else what.folder
             return replace(what, folder=beside), None
         if isinstance(what, (str, os.PathLike)):
             text = os.fspath(what)
             if "<" in text:
-                return Scenario(text, folder=self._place.beside), None
+                return RunSpec(text, folder=self._place.beside), None
             beside = self._place.beside / text
             if beside.suffix.lower() in _FILES:
                 from simkit.testing.scenarios.scenario_file import read_scenario
 
                 return read_scenario(beside if beside.is_file() else Path(text)), None
-            return Scenario(text, folder=self._place.beside if beside.exists() else Path.cwd()), None
+            return RunSpec(text, folder=self._place.beside if beside.exists() else Path.cwd()), None
         if not hasattr(what, "mj_model"):
             raise InputError(
                 f"SK-GOLDEN-021 sensor_regression: found {type(what).__name__}, allowed is a world, a scenario or a "
                 "simulation",
                 "SK-GOLDEN-021",
             )
-        origin = what.origin or {}
-        world = str(origin.get("source", what.world.where.file if what.world.where else "") or what.world.name)
-        folder = Path(origin.get("folder") or self._place.beside)
-        return Scenario(world, seed=what.seed, folder=folder), what
+        loaded = what.run_spec
+        world = loaded.world if loaded is not None else str(what.world.where.file if what.world.where else "")
+        folder = loaded.folder if loaded is not None else self._place.beside
+        return RunSpec(world or what.world.name, seed=what.seed, folder=folder), what
 
     def _demand_golden(self, place: Path) -> None:
         from simkit.testing.golden.store import is_golden
@@ -306,7 +306,7 @@ def _refuse_failed_checks(record: RunRecord, place: Path) -> None:
             )
 
 
-def _with_arguments(scenario: Scenario, given: dict[str, Any], is_open: bool) -> Scenario:
+def _with_arguments(scenario: RunSpec, given: dict[str, Any], is_open: bool) -> RunSpec:
     """A scenario with arguments over its own."""
     own = {key: given.pop(key) for key in ("duration", "seed", "topics", "skip", *_SCENARIO_ARGUMENTS) if key in given}
     if is_open and (given or {"seed", *_SCENARIO_ARGUMENTS} & own.keys()):
@@ -332,7 +332,7 @@ def _absolute_topic(pattern: str) -> str:
     return pattern if pattern.startswith(("/", "*")) else f"/{pattern}"
 
 
-def _with_tolerances(scenario: Scenario, given: Mapping[str, Any] | Sequence[Tolerance]) -> Scenario:
+def _with_tolerances(scenario: RunSpec, given: Mapping[str, Any] | Sequence[Tolerance]) -> RunSpec:
     """A scenario with a test's tolerances before its own: who gives numbers means them on every machine."""
     own = _parse_tolerances(given)
     if any(getattr(t, name) is not None for t in own if not t.statistics for name in _NUMBERS):

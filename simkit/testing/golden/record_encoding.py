@@ -8,13 +8,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from simkit.run_spec import RunSpec
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.scenario_encoding import is_long_text
 from simkit.testing.run_record.model_fields import ModelFields
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Array, Column, Pictures, RunRecord, States, Stream
 from simkit.testing.run_record.run_recorder import ENVIRONMENT_VARIABLES
-from simkit.testing.scenarios import Scenario
 
 _MAX_FIELDS: Final = 400_000  # numbers of the compiled model; of a larger one its fields are not kept
 _DEPTH_STEP: Final = 2.0**-10  # [m] that depths of small pictures are rounded to
@@ -48,7 +48,7 @@ def encode_record(record: RunRecord) -> tuple[dict[str, Any], bytes]:
     return about, packer.block(inner)
 
 
-def decode_record(said: Mapping[str, Any], data: bytes, scenario: Scenario) -> RunRecord:
+def decode_record(said: Mapping[str, Any], data: bytes, scenario: RunSpec) -> RunRecord:
     """The record that was written.
 
     Args:
@@ -81,7 +81,7 @@ def decode_record(said: Mapping[str, Any], data: bytes, scenario: Scenario) -> R
 # ---------------------------------------------------------------------- streams
 
 
-def _pack_stream(packer: Packer, stream: Stream, scenario: Scenario) -> dict[str, Any]:
+def _pack_stream(packer: Packer, stream: Stream, scenario: RunSpec) -> dict[str, Any]:
     from simkit.testing.golden.compare.tolerances import storage_step
 
     columns = {}

@@ -9,7 +9,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, Final
 
-from simkit.testing.scenarios import Check, Scenario, Tolerance
+from simkit.run_spec import Check, RunSpec, Tolerance
 
 _PATH_OPTIONS: Final = ("resource_paths", "plugin_paths", "params_files")
 _LONG_TEXT: Final = 2000
@@ -19,7 +19,7 @@ _PLAIN: Final = (
 )  # fmt: skip
 
 
-def encode_scenario(scenario: Scenario, folder: Path) -> dict[str, Any]:
+def encode_scenario(scenario: RunSpec, folder: Path) -> dict[str, Any]:
     """A scenario as JSON holds it.
 
     Args:
@@ -34,7 +34,7 @@ def encode_scenario(scenario: Scenario, folder: Path) -> dict[str, Any]:
     if is_long_text(scenario.world):
         text = scenario.world.encode("utf-8", "surrogatepass")
         found["world"] = {"sha256": hashlib.sha256(text).hexdigest(), "bytes": len(text)}
-    defaults = Scenario("")
+    defaults = RunSpec("")
     for name in _PLAIN:
         value = getattr(scenario, name)
         if value != getattr(defaults, name):
@@ -60,7 +60,7 @@ def encode_scenario(scenario: Scenario, folder: Path) -> dict[str, Any]:
     return found
 
 
-def decode_scenario(plain: Mapping[str, Any], folder: Path) -> Scenario:
+def decode_scenario(plain: Mapping[str, Any], folder: Path) -> RunSpec:
     """The scenario that plain data stands for; of plugins that were made in Python it has the names of their classes.
 
     Args:
@@ -99,7 +99,7 @@ def decode_scenario(plain: Mapping[str, Any], folder: Path) -> Scenario:
     given["plugins"] = tuple(map(str, plain.get("plugins", ())))
     file = Path(place(plain["file"])) if plain.get("file") else None
     world = "" if isinstance(plain["world"], Mapping) else str(plain["world"])
-    return Scenario(world, options=options, folder=folder, file=file, **given)
+    return RunSpec(world, options=options, folder=folder, file=file, **given)
 
 
 def is_long_text(world: str) -> bool:
@@ -107,7 +107,7 @@ def is_long_text(world: str) -> bool:
     return "<" in world and len(world) > _LONG_TEXT
 
 
-def relative_world(scenario: Scenario, folder: Path) -> str:
+def relative_world(scenario: RunSpec, folder: Path) -> str:
     """The world's name: a file relative to `folder`; a bare name or XML text as it is."""
     if "<" in scenario.world:
         return scenario.world

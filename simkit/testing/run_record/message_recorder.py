@@ -13,8 +13,8 @@ from simkit.testing.run_record.message_columns import MessageRows, join_arrays
 from simkit.testing.run_record.record import Array, Pictures, Stream
 
 if TYPE_CHECKING:
+    from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
-    from simkit.testing.scenarios import Scenario
 
 
 _IMAGE: Final = "sensor_msgs/msg/Image"
@@ -58,7 +58,7 @@ class MessageRecorder(Protocol):
         """Puts what was taken into a stream."""
 
 
-def message_recorder_for(scenario: Scenario, sim: Simulation, topic: str, type_name: str) -> MessageRecorder:
+def message_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> MessageRecorder:
     """What takes the messages of a topic."""
     if type_name == _IMAGE:
         return _ImageRecorder(scenario.picture)
@@ -208,7 +208,7 @@ def points_of_cloud(message: Any) -> Any:
     return np.frombuffer(data[: count * step].tobytes(), dtype=dtype)
 
 
-def noise_recorder_for(scenario: Scenario, sim: Simulation, topic: str, type_name: str) -> NoiseRecorder | None:
+def noise_recorder_for(scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> NoiseRecorder | None:
     """What keeps the statistics of a topic's noise; None where nobody asks for them, or no sensor publishes it."""
     from simkit.testing.run_record.message_columns import message_fields
 

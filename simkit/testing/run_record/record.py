@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from simkit.run_spec import RunSpec
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
-from simkit.testing.scenarios import Scenario
 
 Array = npt.NDArray[Any]
 
@@ -157,7 +157,7 @@ class RunRecord:
         environment: variables of the environment that say what the world is (`TURTLEBOT3_MODEL`); empty where not set.
     """
 
-    scenario: Scenario
+    scenario: RunSpec
     fingerprint: dict[str, str]
     streams: dict[str, Stream]
     states: States

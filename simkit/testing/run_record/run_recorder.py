@@ -21,9 +21,9 @@ from simkit.runtime.communication.topic_bus import NO_MESSAGE, LazyMessage
 from simkit.testing.run_record.record import RunRecord, Stream
 
 if TYPE_CHECKING:
+    from simkit.run_spec import RunSpec
     from simkit.runtime import Simulation
     from simkit.testing.run_record.message_recorder import MessageRecorder
-    from simkit.testing.scenarios import Scenario
 
 
 _CONTACTS: Final = "ros_gz_interfaces/msg/Contacts"
@@ -111,7 +111,7 @@ ENVIRONMENT_VARIABLES: Final = ("TURTLEBOT3_MODEL",)
 _HASH_LETTERS: Final = 16  # of the hash of a second
 
 
-def run_record(scenario: Scenario, *, sim: Simulation | None = None) -> RunRecord:
+def run_record(scenario: RunSpec, *, sim: Simulation | None = None) -> RunRecord:
     """Runs a scenario to its end and records what it gives.
 
     The record's `simulation` is left open, for further questions; whoever asked for the record closes it.
@@ -128,15 +128,14 @@ def run_record(scenario: Scenario, *, sim: Simulation | None = None) -> RunRecor
         return _run_and_record(scenario, sim)
 
 
-def _run_and_record(scenario: Scenario, sim: Simulation | None) -> RunRecord:
+def _run_and_record(scenario: RunSpec, sim: Simulation | None) -> RunRecord:
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
     opened = open_scenario(scenario) if sim is None else sim
     results: tuple[Any, ...] = ()
     failed: Exception | None = None
     try:
-        longest = scenario.duration if scenario.timeout is None else scenario.timeout
-        with RunRecorder(scenario, opened, longest) as capture:
+        with RunRecorder(scenario, opened, scenario.longest) as capture:
             try:
                 ended = run_scenario(scenario, opened)
                 end, results = ended.reason, ended.results
@@ -160,7 +159,7 @@ class RunRecorder:
         longest: how long it will run at most [s]; states are kept accordingly.
     """
 
-    def __init__(self, scenario: Scenario, sim: Simulation, longest: float) -> None:
+    def __init__(self, scenario: RunSpec, sim: Simulation, longest: float) -> None:
         from simkit.testing.run_record.model_fields import fields_of_model
         from simkit.testing.run_record.source_files import source_hashes
         from simkit.testing.run_record.state_recorder import StateRecorder
@@ -241,7 +240,7 @@ class StreamRecorder:
         topic, type_name: which.
     """
 
-    def __init__(self, scenario: Scenario, sim: Simulation, topic: str, type_name: str) -> None:
+    def __init__(self, scenario: RunSpec, sim: Simulation, topic: str, type_name: str) -> None:
         self._scenario, self._sim, self._topic, self._type_name = scenario, sim, topic, type_name
         self._taker: MessageRecorder | None = None
         self._times: list[int] = []

@@ -4,9 +4,3 @@ A scenario file enters, a `RunSpec` leaves; a `RunSpec` enters, its world and th
 problems of a file are reported at once, with file and line. What a run gave is recorded elsewhere
 (`simkit.testing.run_record`).
 """
-
-from __future__ import annotations
-
-from simkit.run_spec import NO_FILE_POSITION, Check, CheckKind, Scenario, Tolerance
-
-__all__ = ["NO_FILE_POSITION", "Check", "CheckKind", "Scenario", "Tolerance"]

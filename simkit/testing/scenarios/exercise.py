@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics
-from simkit.testing.scenarios import Scenario
+from simkit.run_spec import RunSpec
 from simkit.testing.scenarios.scenario_file import is_scalar_text, parse_scenario, yaml_value_text
 from simkit.testing.scenarios.yaml_document import Document, resolve_spawn_file, short_repr
 from simkit.yaml_reader import finite_number
@@ -29,7 +29,7 @@ class ExerciseRun:
     """
 
     name: str
-    scenario: Scenario
+    scenario: RunSpec
     parameters: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -81,7 +81,7 @@ class _ExerciseReader:
             document.error("SK-SCEN-004", "an exercise needs a block 'exercise'", hint=hint)
         self._said = {} if block is None else document.only(block, _KEYS, "an exercise", "exercise")
 
-    def exercise(self, scenario: Scenario) -> Exercise:
+    def exercise(self, scenario: RunSpec) -> Exercise:
         if not scenario.checks and not scenario.until:
             hint = "goals, limits, no_contact, rates or until say what is asked"
             self._document.error("SK-SCEN-006", "an exercise in which nothing must hold is always passed", hint=hint)
@@ -95,14 +95,14 @@ class _ExerciseReader:
             title, self._text("text"), self._text("hand_in"), self._text("robot"), self._pass_mark(), runs, file
         )
 
-    def _runs(self, scenario: Scenario, parameters: Mapping[str, Any]) -> tuple[ExerciseRun, ...]:
+    def _runs(self, scenario: RunSpec, parameters: Mapping[str, Any]) -> tuple[ExerciseRun, ...]:
         listed = self._said.get("runs", [{}])
         if not isinstance(listed, list) or not listed:
             self._wrong(listed, "a list of runs", "exercise", "runs")
             return ()
         return tuple(self._run(one, number, scenario, parameters) for number, one in enumerate(listed))
 
-    def _run(self, value: Any, number: int, scenario: Scenario, parameters: Mapping[str, Any]) -> ExerciseRun:
+    def _run(self, value: Any, number: int, scenario: RunSpec, parameters: Mapping[str, Any]) -> ExerciseRun:
         keys = ("exercise", "runs", number)
         said = self._document.only(value, _RUN_KEYS, "a run", *keys)
         seed = said.get("seed", scenario.seed)

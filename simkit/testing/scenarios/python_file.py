@@ -10,7 +10,7 @@ from typing import Any, Final, get_args
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
-from simkit.run_spec import Check, CheckKind, Scenario, Tolerance
+from simkit.run_spec import Check, CheckKind, RunSpec, Tolerance
 from simkit.testing.scenarios.yaml_document import resolve_spawn_file, short_repr
 from simkit.yaml_reader import finite_number
 
@@ -18,7 +18,7 @@ _TEXT_FIELDS: Final = ("overrides", "spawn", "topics", "skip")
 _CHECK_KINDS: Final = get_args(CheckKind)
 
 
-def validate_scenario(scenario: Scenario) -> Iterator[str]:
+def validate_scenario(scenario: RunSpec) -> Iterator[str]:
     """Each as `attribute: found …, allowed is …`."""
     if not isinstance(scenario.world, str) or not scenario.world.strip():
         yield _problem("world", scenario.world, "a file, a bare name, or XML text")
@@ -86,7 +86,7 @@ def _problem(key: str, value: Any, allowed: str) -> str:
     return f"{key}: found {value!r:.60}, allowed is {allowed}"
 
 
-def load_python_scenario(file: Path, diagnostics: Diagnostics) -> Scenario:
+def load_python_scenario(file: Path, diagnostics: Diagnostics) -> RunSpec:
     """The `scenario` of a Python file, which is run.
 
     Raises:
@@ -108,9 +108,9 @@ def load_python_scenario(file: Path, diagnostics: Diagnostics) -> Scenario:
         problem("SK-SCEN-005", f"running it failed: {type(error).__name__}: {error}", Where(str(file), line))
         raise LoadError(tuple(diagnostics)) from error
     found = getattr(module, "scenario", None)
-    if not isinstance(found, Scenario):
-        hint = "from simkit.testing.scenarios import Scenario; scenario = Scenario(world=..., duration=...)"
-        problem("SK-SCEN-005", f"'scenario' is {short_repr(found)}, allowed is a Scenario", where, hint)
+    if not isinstance(found, RunSpec):
+        hint = "from simkit import RunSpec; scenario = RunSpec(world=..., duration=...)"
+        problem("SK-SCEN-005", f"'scenario' is {short_repr(found)}, allowed is a RunSpec", where, hint)
         raise LoadError(tuple(diagnostics))
     for message in validate_scenario(found):
         problem("SK-SCEN-003", message, where)

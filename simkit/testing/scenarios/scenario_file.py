@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from simkit.diagnostics import Diagnostics, Where
 from simkit.errors import InputError, LoadError
-from simkit.run_spec import Check, CheckKind, Scenario, Tolerance
+from simkit.run_spec import Check, CheckKind, RunSpec, Tolerance
 from simkit.testing.scenarios.python_file import load_python_scenario
 from simkit.testing.scenarios.yaml_document import Document, ValueReader, resolve_spawn_file
 
@@ -53,11 +53,11 @@ def is_scenario_file(source: str | Path) -> bool:
     return Path(source).suffix.lower() in _SCENARIO_SUFFIXES
 
 
-def read_scenario(path: str | Path) -> Scenario:
+def read_scenario(path: str | Path) -> RunSpec:
     """The scenario in a file.
 
     Args:
-        path: a YAML file, or a Python file that has a `scenario = Scenario(...)`, which is run for it.
+        path: a YAML file, or a Python file that has a `scenario = RunSpec(...)`, which is run for it.
 
     Raises:
         LoadError: with every problem of the file: SK-SCEN-001 to SK-SCEN-005.
@@ -76,7 +76,7 @@ def read_scenario(path: str | Path) -> Scenario:
     return scenario
 
 
-def _check_world(scenario: Scenario, diagnostics: Diagnostics) -> None:
+def _check_world(scenario: RunSpec, diagnostics: Diagnostics) -> None:
     """What is wrong with the world of a faulty scenario: it is told in the same pass."""
     from simkit.build import read_scene
 
@@ -91,7 +91,7 @@ def _check_world(scenario: Scenario, diagnostics: Diagnostics) -> None:
         diagnostics.error(error.code, str(error).removeprefix(error.code).strip(), Where(str(scenario.file)))
 
 
-def parse_scenario(document: Document, *, also: tuple[str, ...] = ()) -> Scenario:
+def parse_scenario(document: Document, *, also: tuple[str, ...] = ()) -> RunSpec:
     """What a document says; its problems go into its diagnostics.
 
     Args:
@@ -109,7 +109,7 @@ def parse_scenario(document: Document, *, also: tuple[str, ...] = ()) -> Scenari
 class ScenarioReader(ValueReader):
     """Reads the values of a scenario."""
 
-    def scenario(self) -> Scenario:
+    def scenario(self) -> RunSpec:
         wall = self._number("wall_timeout", None, above=0.0)
         if "timeout" in self._said and "until" not in self._said:
             hint = "duration: S ends a run by itself"
@@ -117,7 +117,7 @@ class ScenarioReader(ValueReader):
         if "timeout" in self._said and "duration" in self._said:
             message = "'timeout' and 'duration' both say when a run ends; 'timeout' does where there is 'until'"
             self._document.error("SK-SCEN-003", message, "timeout", hint="leave one of them out")
-        return Scenario(
+        return RunSpec(
             world=self._text("world", ""),
             duration=self._number("duration", self._played(), least=0.0) or 0.0,
             seed=self._whole("seed", 0, 0),

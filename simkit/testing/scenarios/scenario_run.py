@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
-from simkit.run_spec import Scenario
+from simkit.run_spec import RunSpec
 
 if TYPE_CHECKING:
     from simkit.recording.bags.playback import Playback
@@ -37,7 +37,7 @@ class ScenarioResult:
         return self.reason != "wall_timeout" and all(result.passed for result in self.results)
 
 
-def open_scenario(scenario: Scenario, **more: Any) -> Simulation:
+def open_scenario(scenario: RunSpec, **more: Any) -> Simulation:
     """The world of a scenario, at t = 0.
 
     Args:
@@ -49,19 +49,11 @@ def open_scenario(scenario: Scenario, **more: Any) -> Simulation:
     """
     from simkit.build import load
 
-    options: dict[str, Any] = {
-        "seed": scenario.seed,
-        "overrides": scenario.overrides,
-        "spawn": scenario.spawn,
-        "plugins": scenario.plugins,
-        **scenario.options,
-        **more,
-    }
-    return load(scenario.source, **options)
+    return load(scenario.source, **{**scenario.load_arguments(), **more})
 
 
 def run_scenario(
-    scenario: Scenario,
+    scenario: RunSpec,
     sim: Simulation,
     on_slice: Callable[[], None] | None = None,
     *,
@@ -83,14 +75,13 @@ def run_scenario(
     """
     from simkit.testing.conditions import Watch
 
-    longest = scenario.duration if scenario.timeout is None else scenario.timeout
     given_up = None if scenario.wall_timeout is None else time.perf_counter() + scenario.wall_timeout
     with (
         ScenarioCommands(scenario, sim) as commands,
-        Watch(sim, scenario.checks, until=scenario.until, timeout=longest, absent=absent) as watch,
+        Watch(sim, scenario.checks, until=scenario.until, timeout=scenario.longest, absent=absent) as watch,
         sim.pausing.served(),
     ):
-        end = sim.steps + sim.clock.ticks(longest)
+        end = sim.steps + sim.clock.ticks(scenario.longest)
         slice_ = max(1, sim.clock.ticks(_SLICE_SECONDS))
         reason = "timeout" if scenario.until else "duration"
         while sim.steps < end and not watch.ended:
@@ -109,6 +100,27 @@ def run_scenario(
         return ScenarioResult(reason, watch.results(reason))
 
 
+def resolve_commands(spec: RunSpec, topics: Mapping[str, str]) -> RunSpec:
+    """Return the run with its `velocity` and its `script` among its commands.
+
+    Args:
+        spec: the run.
+        topics: topic -> type of its world.
+
+    Raises:
+        InputError: SK-CLI-010 no such speeds, or no topic for them; SK-CLI-011 what is wrong with the script.
+    """
+    if spec.velocity is None and spec.script is None:
+        return spec
+    from simkit.recording.commands import read_script, steady_velocity
+
+    found = [] if spec.velocity is None else [steady_velocity(spec.velocity, topics)]
+    if spec.script is not None:
+        found += read_script(spec.script, topics)
+    commands = (*spec.commands, *(command.plain() for command in found))
+    return replace(spec, commands=commands, velocity=None, script=None)
+
+
 class ScenarioCommands:
     """Sends a scenario's commands at their ticks, from the present one on; a context manager.
 
@@ -120,15 +132,16 @@ class ScenarioCommands:
         InputError: a command does not fit the world, or the recording cannot be played.
     """
 
-    def __init__(self, scenario: Scenario, sim: Simulation) -> None:
+    def __init__(self, scenario: RunSpec, sim: Simulation) -> None:
         from simkit.recording.commands import Commands, commands_of
 
-        self._commands = Commands(sim, commands_of(scenario.commands, sim.topics()))
+        topics = sim.topics()
+        self._commands = Commands(sim, commands_of(resolve_commands(scenario, topics).commands, topics))
         self._played: Playback | None = None
-        if scenario.recording is not None:
+        if scenario.played_bag is not None:
             from simkit.recording.bags.playback import Playback
 
-            self._played = Playback(sim, scenario.recording, scenario.play_topics)
+            self._played = Playback(sim, scenario.played_bag, scenario.play_topics)
 
     def __enter__(self) -> ScenarioCommands:
         return self

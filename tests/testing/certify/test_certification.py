@@ -12,13 +12,13 @@ from typer.testing import CliRunner
 from simkit.child_process import ProcessResult
 from simkit.cli import app
 from simkit.errors import InputError
+from simkit.run_spec import RunSpec
 from simkit.testing.certify import Certificate, Difference, certify
 from simkit.testing.certify.certificate import streams_hash
 from simkit.testing.certify.certification import _code_at_timeout
 from simkit.testing.certify.outcome import RunOutcome
 from simkit.testing.certify.process_runner import _outcome_of_stopped_process
 from simkit.testing.certify.variations import VARIATIONS, choose_variations
-from simkit.testing.scenarios import Scenario
 
 WORLD = """<sdf version="1.9"><world name="w"><gravity>0 0 0</gravity><model name="m"><link name="l">
 <inertial><mass>1</mass></inertial><sensor name="imu" type="imu"><update_rate>100</update_rate><imu>
@@ -57,14 +57,14 @@ def certified(folder: Path, body: str, names: str = "elsewhere", *, apart: bool 
     """A plugin with that `before_step`, run twice: as it is, and in another way."""
     (folder / "w.sdf").write_text(WORLD)
     (folder / "mine.py").write_text(HEAD + PUSH + "".join(f"        {line}\n" for line in body.splitlines()))
-    scenario = Scenario(world=str(folder / "w.sdf"), duration=0.1, options={"plugin_paths": [folder]})
+    scenario = RunSpec(world=str(folder / "w.sdf"), duration=0.1, options={"plugin_paths": [folder]})
     ways = [way for way in VARIATIONS if way.name in ("as it is", names)]
     return certify(scenario, variations=ways, apart=apart)
 
 
 def test_what_is_steady_is_the_same_in_every_surrounding(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_text(WORLD.replace('<plugin filename="mine:Mine" name="mine"/>', ""))
-    made = certify(Scenario(world=str(tmp_path / "w.sdf"), duration=0.1), runs=6, jobs=2)
+    made = certify(RunSpec(world=str(tmp_path / "w.sdf"), duration=0.1), runs=6, jobs=2)
     assert made.passed and not made.notes
     assert [row.variation.name for row in made.rows] == [v.name for v in VARIATIONS]
     assert len({row.outcome.state for row in made.rows}) == 1
@@ -212,11 +212,11 @@ def test_a_hash_of_streams_depends_on_every_message() -> None:
 
 def test_one_run_is_none() -> None:
     with pytest.raises(InputError, match="SK-CERT-001"):
-        certify(Scenario(world="empty"), runs=1)
+        certify(RunSpec(world="empty"), runs=1)
 
 
 def test_a_scenario_that_does_not_fit_its_world_is_not_certified(tmp_path: Path) -> None:
     """Every run would end at once, with the same nothing."""
     command = {"at": 0.1, "topic": "/none", "message": {}}
     with pytest.raises(InputError, match="no topic '/none'"):
-        certify(Scenario(world="empty", duration=0.2, commands=(command,)), runs=2)
+        certify(RunSpec(world="empty", duration=0.2, commands=(command,)), runs=2)

@@ -8,7 +8,7 @@ import pytest
 
 import simkit
 from simkit.errors import InputError
-from simkit.run_spec import Check, Scenario
+from simkit.run_spec import Check, RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.conditions import Watch
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
@@ -22,7 +22,7 @@ def results(sim: Any, seconds: float, *checks: Check, reason: str = "duration", 
 
 def test_a_run_ends_at_the_very_step_at_which_its_condition_holds(yard: Any) -> None:
     sim = yard(speed=1.0)
-    ended = run_scenario(Scenario("", duration=9.0, until="pose('ball').x > 1"), sim)
+    ended = run_scenario(RunSpec("", duration=9.0, until="pose('ball').x > 1"), sim)
     # rolling without slip keeps its speed: 1 m after 1 s, and one step more
     assert ended.reason == "until" and ended.passed
     assert sim.time == pytest.approx(1.0, abs=0.005)
@@ -35,14 +35,14 @@ def test_a_run_ends_at_the_very_step_at_which_its_condition_holds(yard: Any) -> 
 
 def test_a_condition_that_holds_from_the_start_ends_the_run_before_its_first_step(yard: Any) -> None:
     sim = yard()
-    assert run_scenario(Scenario("", until="pose('wall').x > 1"), sim).reason == "until"
+    assert run_scenario(RunSpec("", until="pose('wall').x > 1"), sim).reason == "until"
     assert sim.tick == 0
 
 
 def test_a_condition_that_is_not_reached_says_how_near_it_came(yard: Any) -> None:
     sim = yard()
     sim.model("ball").set_velocity((0.0, 0.0, 2.0))
-    ended = run_scenario(Scenario("", until="pose('ball').z > 1", timeout=1.0), sim)
+    ended = run_scenario(RunSpec("", until="pose('ball').z > 1", timeout=1.0), sim)
     # 0.25 + v²/2g is 0.454 m, after v/g = 0.204 s; less g·t·dt/2, which steps of 2 ms make of it
     assert ended.reason == "timeout" and not ended.passed
     message = ended.results[0].message
@@ -217,13 +217,13 @@ def test_a_count_is_right_beside_who_looks_at_the_newest_alone(yard: Any) -> Non
 
 
 def test_a_run_that_is_given_up_has_not_passed(yard: Any) -> None:
-    scenario = Scenario("", duration=1e6, wall_timeout=0.05)
+    scenario = RunSpec("", duration=1e6, wall_timeout=0.05)
     ended = run_scenario(scenario, yard())
     assert ended.reason == "wall_timeout" and not ended.passed
 
 
 def test_a_scenario_opens_and_runs_with_its_conditions() -> None:
-    scenario = Scenario("empty", duration=0.5, checks=(Check("final", expression="time == 0.5"),))
+    scenario = RunSpec("empty", duration=0.5, checks=(Check("final", expression="time == 0.5"),))
     with open_scenario(scenario) as sim:
         assert run_scenario(scenario, sim).passed
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.run_record.record import Column, Pictures, RunRecord, States, Stream
-from simkit.testing.scenarios import Scenario, Tolerance
 
 SCAN = "sensor_msgs/msg/LaserScan"
 IMU = "sensor_msgs/msg/Imu"
@@ -93,5 +93,5 @@ def record(
 ) -> RunRecord:
     """A run that gave these streams."""
     options = {key: more.pop(key) for key in ("state", "model") if key in more}
-    scenario = Scenario("world.sdf", 2.0, tolerances=tolerances, **options)
+    scenario = RunSpec("world.sdf", 2.0, tolerances=tolerances, **options)
     return RunRecord(scenario, dict(machine), {s.topic: s for s in streams}, more.pop("states", states()), **more)

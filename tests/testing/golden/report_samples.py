@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from simkit.run_spec import Check, RunSpec
 from simkit.testing.conditions import CheckResult
 from simkit.testing.golden.compare.difference import Cause, Comparison, Difference, Explanation, Verdict
 from simkit.testing.run_record.noise_statistics import NoiseStatistics
 from simkit.testing.run_record.record import Column, Pictures, RunRecord, States, Stream
-from simkit.testing.scenarios import Check, Scenario
 
 SCAN, ODOM, IMU, CAMERA, DEPTH = "/scan", "/odom", "/imu", "/camera/image", "/camera/depth"
 
@@ -34,7 +34,7 @@ def record(shift: float = 0.0, *, seconds: float = 4.0, extra: int = 0) -> RunRe
         empty,
         "ab",
     )
-    scenario = Scenario("worlds/drive.sdf", 4.0, 3, overrides=("model::link.mass=2",))
+    scenario = RunSpec("worlds/drive.sdf", 4.0, 3, overrides=("model::link.mass=2",))
     printed = {"simkit": "0.9", "mujoco": "4.0.0" if not shift else "4.0.1"}
     return RunRecord(scenario, printed, streams, states, diagnostics={"SK-SDF-001": 1 + (shift != 0)})
 

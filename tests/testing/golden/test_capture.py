@@ -11,16 +11,16 @@ from falling import ball
 
 import simkit
 from simkit.errors import InputError
+from simkit.run_spec import RunSpec
 from simkit.runtime.engine.snapshot import state_hash
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import run_record
-from simkit.testing.scenarios import Scenario
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 
 @pytest.fixture(scope="module")
 def record(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
-    scenario = Scenario(str(ball(tmp_path_factory.mktemp("ball"))), duration=1.0)
+    scenario = RunSpec(str(ball(tmp_path_factory.mktemp("ball"))), duration=1.0)
     found = run_record(scenario)
     found.simulation.close()
     return found
@@ -48,7 +48,7 @@ def test_a_digest_is_that_of_the_messages_that_a_subscriber_gets(tmp_path: Path,
 
 
 def test_recording_changes_nothing_of_the_run(tmp_path: Path, record: RunRecord) -> None:
-    scenario = Scenario(str(ball(tmp_path)), duration=1.0)
+    scenario = RunSpec(str(ball(tmp_path)), duration=1.0)
     with open_scenario(scenario) as sim:
         run_scenario(scenario, sim)
         assert state_hash(sim) == record.states.digest
@@ -69,7 +69,7 @@ def test_there_is_a_mark_for_every_tick_and_a_state_now_and_then(record: RunReco
 
 def test_a_push_shows_in_the_inputs_at_its_tick_and_not_before(tmp_path: Path) -> None:
     def inputs(push: bool) -> np.ndarray:
-        scenario = Scenario(str(ball(tmp_path)), duration=0.1, plugins=(_Pusher(push),))
+        scenario = RunSpec(str(ball(tmp_path)), duration=0.1, plugins=(_Pusher(push),))
         found = run_record(scenario)
         found.simulation.close()
         return found.states.inputs
@@ -97,7 +97,7 @@ def test_the_order_of_models_in_a_file_shows_nowhere(tmp_path: Path, record: Run
     wall = text[start:stop]
     text = text.replace(wall, "").replace('<model name="floor">', wall + '<model name="floor">')
     (tmp_path / "other.sdf").write_text(text)
-    other = run_record(Scenario(str(tmp_path / "other.sdf"), duration=1.0))
+    other = run_record(RunSpec(str(tmp_path / "other.sdf"), duration=1.0))
     other.simulation.close()
     assert other.leaves == record.leaves
     assert other.states.named_digest == record.states.named_digest
@@ -108,8 +108,8 @@ def test_the_order_of_models_in_a_file_shows_nowhere(tmp_path: Path, record: Run
 def test_patterns_choose_topics(tmp_path: Path) -> None:
     path = str(ball(tmp_path))
     for scenario, wanted in (
-        (Scenario(path, duration=0.1, topics=("*imu*",)), 1),
-        (Scenario(path, duration=0.1, skip=("*imu*", "/tf*")), 2),
+        (RunSpec(path, duration=0.1, topics=("*imu*",)), 1),
+        (RunSpec(path, duration=0.1, skip=("*imu*", "/tf*")), 2),
     ):
         found = run_record(scenario)
         found.simulation.close()
@@ -125,7 +125,7 @@ def test_a_run_that_fails_is_a_record_that_says_so(tmp_path: Path) -> None:
             if self.sim.tick == 20:
                 raise ValueError("the wheel fell off")
 
-    found = run_record(Scenario(str(ball(tmp_path)), duration=0.1, plugins=(Faulty(),)))
+    found = run_record(RunSpec(str(ball(tmp_path)), duration=0.1, plugins=(Faulty(),)))
     found.simulation.close()
     assert "the wheel fell off" in found.end
     assert isinstance(found.error, simkit.PluginError)
@@ -134,4 +134,4 @@ def test_a_run_that_fails_is_a_record_that_says_so(tmp_path: Path) -> None:
 
 def test_a_world_that_is_not_there_is_said(tmp_path: Path) -> None:
     with pytest.raises(InputError):
-        run_record(Scenario(str(tmp_path / "none.sdf")))
+        run_record(RunSpec(str(tmp_path / "none.sdf")))

@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
+from simkit.run_spec import RunSpec
 from simkit.testing.golden.cause import explain
 from simkit.testing.golden.compare.difference import Explanation
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import run_record
-from simkit.testing.scenarios import Scenario
 
 WORLD = """<sdf version="1.12"><world name="w">
   <physics name="p" type="x"><max_step_size>0.002</max_step_size></physics>
@@ -53,12 +53,12 @@ WORLD = """<sdf version="1.12"><world name="w">
 """
 
 
-def scenario(folder: Path, text: str, **more: Any) -> Scenario:
+def scenario(folder: Path, text: str, **more: Any) -> RunSpec:
     (folder / "w.sdf").write_text(text)
-    return replace(Scenario("w.sdf", duration=0.5, folder=folder), **more)
+    return replace(RunSpec("w.sdf", duration=0.5, folder=folder), **more)
 
 
-def recorded(what: Scenario) -> RunRecord:
+def recorded(what: RunSpec) -> RunRecord:
     record = run_record(what)
     record.simulation.close()
     record.simulation = None

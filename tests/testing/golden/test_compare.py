@@ -23,9 +23,9 @@ from made_up import (
     times,
 )
 
+from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.run_record.record import Column, Stream
-from simkit.testing.scenarios import Tolerance
 
 STEP = 2.0**-15
 

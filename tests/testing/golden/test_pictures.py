@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from made_up import IMAGE, OTHER_MACHINE, hashed, record, stream, times
 
+from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Verdict
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.golden.report.image_figure import image_figure
 from simkit.testing.run_record.pictures import TILE, shrink, structural_similarity, tile_hashes
 from simkit.testing.run_record.record import Pictures, Stream
-from simkit.testing.scenarios import Tolerance
 
 
 def scene(shift: int = 0, brighter: int = 0, *, width: int = 160, height: int = 96) -> Any:

@@ -9,11 +9,11 @@ import pytest
 from falling import ball
 
 from simkit import msgs
+from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.store import read_golden, write_golden
 from simkit.testing.run_record.message_recorder import message_recorder_for, pixels_of_image, points_of_cloud
 from simkit.testing.run_record.record import Stream
 from simkit.testing.run_record.run_recorder import run_record
-from simkit.testing.scenarios import Scenario, Tolerance
 
 
 def picture(number: int) -> object:
@@ -25,7 +25,7 @@ def picture(number: int) -> object:
 
 @pytest.mark.parametrize(("count", "every"), [(5, 1), (32, 1), (33, 2), (100, 4)])
 def test_of_many_pictures_every_second_or_fourth_is_kept(count: int, every: int) -> None:
-    taker = message_recorder_for(Scenario("", picture=16), None, "/image", "sensor_msgs/msg/Image")  # type: ignore[arg-type]
+    taker = message_recorder_for(RunSpec("", picture=16), None, "/image", "sensor_msgs/msg/Image")  # type: ignore[arg-type]
     for number in range(count):
         taker.take(picture(number))
     stream = Stream("/image", "sensor_msgs/msg/Image", np.arange(count))
@@ -61,7 +61,7 @@ def test_points_are_read_by_their_fields() -> None:
 
 
 def test_statistics_stand_in_the_place_of_samples(tmp_path: Path) -> None:
-    scenario = Scenario(
+    scenario = RunSpec(
         str(ball(tmp_path)), duration=3.0, topics=("*imu*",),
         tolerances=(Tolerance("*imu.linear_acceleration.x", statistics=True),),
     )  # fmt: skip

@@ -14,10 +14,10 @@ import pytest
 
 import simkit
 from simkit.errors import InputError
+from simkit.run_spec import RunSpec, Tolerance
 from simkit.runtime import Simulation
 from simkit.testing.golden.pytest_fixture import GoldenLocation, SensorRegression, safe_name
 from simkit.testing.golden.store import read_golden
-from simkit.testing.scenarios import Scenario, Tolerance
 
 ROOT = Path(__file__).parents[3]
 PUCK = """<sdf version="1.9"><world name="slide">
@@ -31,7 +31,7 @@ PUCK = """<sdf version="1.9"><world name="slide">
 TESTS = """
 import pytest
 from simkit import WorldPlugin
-from simkit.testing.scenarios import Scenario
+from simkit import RunSpec
 
 
 class Push(WorldPlugin):
@@ -57,7 +57,7 @@ def test_a_plugin(sensor_regression, force):
 
 class TestInAClass:
     def test_a_world(self, sensor_regression):
-        sensor_regression(Scenario("puck.sdf", duration=0.05, seed=3))
+        sensor_regression(RunSpec("puck.sdf", duration=0.05, seed=3))
 
     def test_two(self, sensor_regression):
         sensor_regression("puck.sdf", duration=0.05)
@@ -209,7 +209,7 @@ def regression(tmp_path: Path) -> SensorRegression:
 def test_tolerances_are_given_in_one_argument(
     regression: SensorRegression, pattern: str, given: object, expected: Tolerance
 ) -> None:
-    verdict = regression(Scenario("puck.sdf", duration=0.02), tolerances={pattern: given})
+    verdict = regression(RunSpec("puck.sdf", duration=0.02), tolerances={pattern: given})
     assert verdict.run.scenario.tolerances == (expected,)
 
 
@@ -218,7 +218,7 @@ def test_a_tolerance_in_numbers_counts_on_the_same_machine_too(tmp_path: Path) -
         (tmp_path / "puck.sdf").write_text(PUCK.replace("<mass>1</mass>", f"<mass>{mass}</mass>"))
         place = GoldenLocation(tmp_path / "golden" / "test_x", "test_y", tmp_path, "test_x.py::test_y", reason=reason)
         regression = SensorRegression(place, lambda sim, label: sim.close())
-        scenario = Scenario("puck.sdf", duration=0.05)
+        scenario = RunSpec("puck.sdf", duration=0.05)
         with simkit.load(tmp_path / "puck.sdf", plugins=[_Push()]) as sim, regression.of(sim, **more):
             sim.run(scenario.duration)
 
@@ -263,7 +263,7 @@ def test_a_tolerance_that_is_none_says_what_is_allowed(regression: SensorRegress
 
 
 def test_an_argument_of_the_call_goes_over_the_scenarios_own(regression: SensorRegression) -> None:
-    verdict = regression(Scenario("puck.sdf", duration=5.0, seed=1, topics=("/none",)), duration=0.02, topics="imu")
+    verdict = regression(RunSpec("puck.sdf", duration=5.0, seed=1, topics=("/none",)), duration=0.02, topics="imu")
     scenario = verdict.run.scenario
     assert (scenario.duration, scenario.seed, scenario.topics) == (0.02, 1, ("/imu",))
     assert list(verdict.run.streams) == ["/imu"]

@@ -17,17 +17,17 @@ import pytest
 from falling import ball
 
 from simkit.errors import InputError
+from simkit.run_spec import Check, RunSpec, Tolerance
 from simkit.testing.golden.array_packing import Packer, PackingError, Unpacker
 from simkit.testing.golden.scenario_encoding import decode_scenario, encode_scenario
 from simkit.testing.golden.store import find_goldens, read_golden, read_history, write_golden
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.run_recorder import run_record
-from simkit.testing.scenarios import Check, Scenario, Tolerance
 
 
 @pytest.fixture(scope="module")
 def record(tmp_path_factory: pytest.TempPathFactory) -> RunRecord:
-    found = run_record(Scenario(str(ball(tmp_path_factory.mktemp("ball"))), duration=0.5))
+    found = run_record(RunSpec(str(ball(tmp_path_factory.mktemp("ball"))), duration=0.5))
     found.simulation.close()
     return found
 
@@ -71,7 +71,7 @@ def test_recording_twice_gives_the_same_bytes(tmp_path: Path, record: RunRecord)
 def test_a_checkout_elsewhere_finds_its_world(tmp_path: Path, record: RunRecord) -> None:
     (tmp_path / "a" / "worlds").mkdir(parents=True)
     world = shutil.copy(record.scenario.world, tmp_path / "a" / "worlds")
-    write_golden(tmp_path / "a" / "golden" / "ball", replace(record, scenario=Scenario(str(world))))
+    write_golden(tmp_path / "a" / "golden" / "ball", replace(record, scenario=RunSpec(str(world))))
     shutil.move(tmp_path / "a", tmp_path / "b")
     source = Path(read_golden(tmp_path / "b" / "golden" / "ball").scenario.source)
     assert source.resolve() == tmp_path / "b" / "worlds" / "ball.sdf"
@@ -79,7 +79,7 @@ def test_a_checkout_elsewhere_finds_its_world(tmp_path: Path, record: RunRecord)
 
 def test_a_scenario_comes_back_as_it_was(tmp_path: Path) -> None:
     ball(tmp_path)
-    scenario = Scenario(
+    scenario = RunSpec(
         "ball.sdf", 3.0, 4, "falls", ("gravity=0 0 -1",), topics=("/imu",), skip=("/tf*",),
         commands=({"at": 1.0, "topic": "/cmd_vel", "message": {"linear": {"x": 0.5}}, "where": "x.yaml:3"},),
         tolerances=(Tolerance("/imu", absolute=0.1),), checks=(Check("apart", models=("a", "b")),),
@@ -292,6 +292,6 @@ def test_four_who_write_and_one_who_reads_at_the_same_time_see_whole_golden_runs
 
 def test_a_long_world_of_xml_is_kept_with_the_data(tmp_path: Path, record: RunRecord) -> None:
     text = "<sdf>" + "<!-- Größe -->" * 500 + "</sdf>"
-    write_golden(tmp_path / "g", replace(record, scenario=Scenario(text)))
+    write_golden(tmp_path / "g", replace(record, scenario=RunSpec(text)))
     assert (tmp_path / "g" / "golden.json").stat().st_size < 3000
     assert read_golden(tmp_path / "g").scenario.world == text

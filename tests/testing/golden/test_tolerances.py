@@ -6,9 +6,9 @@ import math
 
 import pytest
 
+from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.tolerances import Allowed, default_tolerance, storage_step, tolerance_of
 from simkit.testing.golden.compare.units import item_name, period_of, quantity_text, time_text, unit_of
-from simkit.testing.scenarios import Scenario, Tolerance
 
 FIELDS = [
     ("sensor_msgs/msg/LaserScan", "ranges", "m", "rays"),
@@ -73,7 +73,7 @@ def test_two_millimetres_and_one_degree_are_more_than_any_default_allows() -> No
 
 
 def test_a_scenarios_numbers_go_over_the_defaults_each_for_itself() -> None:
-    scenario = Scenario(
+    scenario = RunSpec(
         "w.sdf",
         tolerances=(
             Tolerance("/scan", share=0.5),
@@ -90,7 +90,7 @@ def test_a_scenarios_numbers_go_over_the_defaults_each_for_itself() -> None:
 
 
 def test_a_wider_tolerance_is_stored_coarser_and_an_exact_one_exactly() -> None:
-    scenario = Scenario("w.sdf", tolerances=(Tolerance("/a", absolute=1.0), Tolerance("/b", exact=True)))
+    scenario = RunSpec("w.sdf", tolerances=(Tolerance("/a", absolute=1.0), Tolerance("/b", exact=True)))
     assert storage_step("std_msgs/msg/Float64", "data", scenario, "/a") == 1 / 8
     assert storage_step("std_msgs/msg/Float64", "data", scenario, "/b") == 0.0
     assert storage_step("sensor_msgs/msg/PointCloud2", "points.rgb") == 0.0  # four bytes in the shape of a float

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from made_up import IMU, record, stream, times
 
+from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.runs import compare
 from simkit.testing.run_record.noise_statistics import (
     NoiseStatistics,
@@ -15,7 +16,6 @@ from simkit.testing.run_record.noise_statistics import (
     noise_statistics,
     statistic_differences,
 )
-from simkit.testing.scenarios import Tolerance
 
 PERIOD = 0.005
 

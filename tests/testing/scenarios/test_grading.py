@@ -10,7 +10,6 @@ from typer.testing import CliRunner
 
 from simkit import LoadError
 from simkit.cli import app
-
 from simkit.testing.scenarios.exercise import read_exercise
 from simkit.testing.scenarios.grading import grade, grade_all, short_labels
 from simkit.testing.scenarios.grading_report import grade_json, grade_text, junit_cases
@@ -137,7 +136,7 @@ HOSTILE = {
     "raise simkit.InputError('mine', 'SK-X-001')": "push.py:",
     "self.advertise('/out', 'std_msgs/msg/String')": "a text is compared with a number",
     "import json; json.dumps = lambda found: '{}'": "its process ended with 0 in the middle of the run",
-    "import simkit.testing.conditions.watch as w; w.Watch.results = lambda self, reason: ()": "its process ended with 0",
+    "from simkit.testing.conditions import Watch; Watch.results = lambda self, reason: ()": "its process ended with 0",
 }
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from simkit import LoadError
-from simkit.testing.scenarios import Check, Scenario, Tolerance
+from simkit.run_spec import Check, RunSpec, Tolerance
 from simkit.testing.scenarios.scenario_file import is_scenario_file, read_scenario
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
@@ -16,7 +16,7 @@ BALL = """<sdf version="1.9"><world name="default"><model name="ball"><pose>0 0 
 <sensor name="imu" type="imu"><update_rate>100</update_rate><topic>imu</topic></sensor></link></model></world></sdf>"""
 
 
-def scenario(tmp_path: Path, text: str, name: str = "drop.yaml") -> Scenario:
+def scenario(tmp_path: Path, text: str, name: str = "drop.yaml") -> RunSpec:
     (tmp_path / "ball.sdf").write_text(BALL)
     file = tmp_path / name
     file.write_text(text)
@@ -215,8 +215,8 @@ def test_a_file_that_is_not_there_says_so(tmp_path):
 def test_a_python_file_has_a_scenario(tmp_path):
     found = scenario(
         tmp_path,
-        "from simkit.testing.scenarios import Check, Scenario\n"
-        "scenario = Scenario('ball.sdf', 0.2, checks=(Check('goal', expression='time > 0.1'),))\n",
+        "from simkit.run_spec import Check, RunSpec\n"
+        "scenario = RunSpec('ball.sdf', 0.2, checks=(Check('goal', expression='time > 0.1'),))\n",
         "drop.py",
     )
     assert found.source == str(tmp_path / "ball.sdf")
@@ -254,7 +254,7 @@ def test_what_is_played_is_sent_at_its_ticks_and_says_how_long_the_run_is(tmp_pa
     (tmp_path / "ice.sdf").write_text(SLED)
     topic = "/model/sled/cmd_vel"
     commands = [{"at": at, "topic": topic, "message": {"linear": {"x": at}}} for at in (0.05, 0.133)]
-    driven = Scenario("ice.sdf", duration=0.2, commands=tuple(commands), folder=tmp_path)
+    driven = RunSpec("ice.sdf", duration=0.2, commands=tuple(commands), folder=tmp_path)
     with open_scenario(driven) as sim:
         with Recorder(sim, tmp_path / "drive.mcap"):
             run_scenario(driven, sim)
@@ -309,14 +309,14 @@ def test_a_spawned_file_is_looked_for_beside_the_scenario(tmp_path):
     (tmp_path / "box.sdf").write_text("<sdf/>")
     found = scenario(tmp_path, "world: ball.sdf\nspawn: ['box.sdf:1,2,0', 'tiago:0,0,0']\n")
     assert found.spawn == (f"{tmp_path / 'box.sdf'}:1,2,0", "tiago:0,0,0")
-    text = "from simkit.testing.scenarios import Scenario\nscenario = Scenario('ball.sdf', spawn=('box.sdf:1,2,0',))\n"
+    text = "from simkit import RunSpec\nscenario = RunSpec('ball.sdf', spawn=('box.sdf:1,2,0',))\n"
     assert scenario(tmp_path, text, "drop.py").spawn == (f"{tmp_path / 'box.sdf'}:1,2,0",)
 
 
 def test_a_scenario_made_in_python_is_looked_at_too(tmp_path):
     text = """
-from simkit.testing.scenarios import Check, Scenario
-scenario = Scenario(
+from simkit.run_spec import Check, RunSpec
+scenario = RunSpec(
     3, float("nan"), seed=-1, topics="imu", spawn=[1], until=None, commands=({"topic": "/x"},), tolerances=(1,),
     checks=(Check("gaol", by="now"), Check("apart", models="ball")),
 )

@@ -156,7 +156,7 @@ def _prove(
     proof.until = again.horizon
     if proof.found.needed and again.go_on():
         _explain_whole_run(proof, again)
-    proof.is_whole = proof.until >= (run.scenario.timeout or run.scenario.duration)
+    proof.is_whole = proof.until >= run.scenario.longest
     if parted is not None and parted.tick and proof.found.needed and parted.time <= again.horizon:
         at = parted.tick * run.states.timestep
         mine = again.record(frozenset(), at)

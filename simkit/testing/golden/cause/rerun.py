@@ -12,21 +12,21 @@ from typing import Any
 
 import numpy as np
 
+from simkit.run_spec import RunSpec
 from simkit.scene import SceneWorld
 from simkit.testing.golden.cause.changes import Change
 from simkit.testing.golden.cause.world_patch import patch_world
 from simkit.testing.golden.compare.difference import Comparison
 from simkit.testing.golden.compare.world_edits import ABSENT
 from simkit.testing.run_record.record import Column, RunRecord, Stream
-from simkit.testing.scenarios import Scenario
 
 ChangeWorld = Callable[[SceneWorld], SceneWorld]
-RunChangedWorld = Callable[[Scenario, ChangeWorld | None], RunRecord]
+RunChangedWorld = Callable[[RunSpec, ChangeWorld | None], RunRecord]
 
 _NOTHING = hashlib.sha256().hexdigest()
 
 
-def rerun_scenario(scenario: Scenario, change_world: ChangeWorld | None) -> RunRecord:
+def rerun_scenario(scenario: RunSpec, change_world: ChangeWorld | None) -> RunRecord:
     """Runs a scenario from the beginning in a changed world; nothing of it is left open.
 
     Args:
@@ -107,7 +107,7 @@ class ScenarioRerun:
 
     def go_on(self) -> bool:
         """Has the whole run count from now on, where it did not; what was found so far is forgotten."""
-        whole = self._run.scenario.timeout or self._run.scenario.duration
+        whole = self._run.scenario.longest
         if self.horizon >= whole:
             return False
         self._pace = max(self._pace, self._begin / self.horizon)
@@ -120,7 +120,7 @@ class ScenarioRerun:
 
     def _first_horizon(self) -> float:
         """Up to where it is run [s]: the end of the second in which the first difference is."""
-        whole = self._run.scenario.timeout or self._run.scenario.duration
+        whole = self._run.scenario.longest
         differences = self._comparison.differences
         if any(d.kind == "statistics" for d in differences) or not differences:
             return whole

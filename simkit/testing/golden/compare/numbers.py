@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, FlatValues
 from simkit.testing.golden.compare.units import is_colour, item_name, period_of, quantity_text, time_text, value_text
 from simkit.testing.run_record.record import Array, Column
-from simkit.testing.scenarios import Tolerance
 
 FloatValues = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

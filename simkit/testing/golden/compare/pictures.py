@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from simkit.run_spec import Tolerance
 from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.numbers import compare_column
 from simkit.testing.golden.compare.tolerances import FieldTerms
 from simkit.testing.golden.compare.units import time_text
 from simkit.testing.run_record.pictures import TILE, structural_similarity
 from simkit.testing.run_record.record import Array, Column, Pictures, Stream
-from simkit.testing.scenarios import Tolerance
 
 _DEPTH = 2.0**-10  # [m]
 Ranked = list[tuple[float, Difference]]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from simkit.diagnostics import shorten
+from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference, DifferenceKind
 from simkit.testing.golden.compare.numbers import compare_column
 from simkit.testing.golden.compare.orientations import compare_orientation, quaternion_paths
@@ -17,7 +18,6 @@ from simkit.testing.golden.compare.tolerances import FieldFinding, FieldTerms, t
 from simkit.testing.golden.compare.units import joint_unit, quantity_text, time_text, unit_of, value_text
 from simkit.testing.run_record.noise_statistics import NoiseStatistics, StatisticDifference
 from simkit.testing.run_record.record import Column, Stream
-from simkit.testing.scenarios import Scenario, Tolerance
 
 
 def difference_in_bits(golden: Stream, run: Stream) -> Difference:
@@ -81,7 +81,7 @@ class StreamPair:
 
     golden: Stream
     run: Stream
-    scenario: Scenario
+    scenario: RunSpec
     is_exact: bool
     timestep: float
     joints: Mapping[str, str] = field(default_factory=dict)
@@ -249,7 +249,7 @@ def _compare_statistics(pair: StreamPair, found: StreamComparison) -> Ranked:
     return ranked
 
 
-def _allowed_by_scenario(scenario: Scenario, topic: str, path: str) -> tuple[float, float]:
+def _allowed_by_scenario(scenario: RunSpec, topic: str, path: str) -> tuple[float, float]:
     """What a scenario itself allows beside chance."""
     said = [t for t in scenario.tolerance(topic, path) if t.absolute is not None or t.relative is not None]
     return (said[0].absolute or 0.0, said[0].relative or 0.0) if said else (0.0, 0.0)

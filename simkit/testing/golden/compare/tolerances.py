@@ -11,10 +11,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from simkit.run_spec import RunSpec, Tolerance
 from simkit.testing.golden.compare.difference import Difference
 from simkit.testing.golden.compare.units import is_colour, plain_path, quantity_text, unit_of
 from simkit.testing.run_record.record import Array, Column, Stream
-from simkit.testing.scenarios import Scenario, Tolerance
 
 _STEPS_PER_TOLERANCE = 8  # of a tolerance that a stored number is rounded to
 
@@ -83,7 +83,7 @@ def default_tolerance(type_name: str, field: str) -> Tolerance:
     return Tolerance(field, absolute=absolute, relative=relative, share=share, image=IMAGE, ssim=SSIM, statistics=False)
 
 
-def tolerance_of(scenario: Scenario, topic: str, type_name: str, field: str) -> Tolerance:
+def tolerance_of(scenario: RunSpec, topic: str, type_name: str, field: str) -> Tolerance:
     """What a scenario allows a field of a topic: of each number the first tolerance that names it, or the default.
 
     A scenario that gives an absolute tolerance means that alone: no relative one is added, and the other way round.
@@ -112,7 +112,7 @@ def tolerance_of(scenario: Scenario, topic: str, type_name: str, field: str) -> 
     )
 
 
-def storage_step(type_name: str, field: str, scenario: Scenario | None = None, topic: str = "") -> float:
+def storage_step(type_name: str, field: str, scenario: RunSpec | None = None, topic: str = "") -> float:
     """What numbers of a field are rounded to in a golden: a power of two; 0 where they are kept exactly.
 
     Args:

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from simkit.run_spec import RunSpec
 from simkit.testing.golden.compare.difference import CauseKind
 from simkit.testing.run_record.record import RunRecord
 from simkit.testing.run_record.world_values import split_path
-from simkit.testing.scenarios import Scenario
 
 _ENTITY_FIELDS = frozenset(
     ("models", "links", "joints", "collisions", "visuals", "sensors", "lights", "frames", "plugins", "actors", "files")
@@ -170,9 +170,9 @@ def _is_equal(a: Any, b: Any) -> bool:
     return bool(np.array_equal(x, y))
 
 
-def _scenario(golden: Scenario, run: Scenario) -> dict[str, tuple[Any, Any]]:
+def _scenario(golden: RunSpec, run: RunSpec) -> dict[str, tuple[Any, Any]]:
     found: dict[str, tuple[Any, Any]] = {}
-    for one in fields(Scenario):
+    for one in fields(RunSpec):
         if one.name in _REPORT_FIELDS:
             continue
         a, b = getattr(golden, one.name), getattr(run, one.name)
