@@ -260,7 +260,7 @@ def name_everything(spec: mujoco.MjSpec) -> None:
         _name_elements(getattr(spec, kind), lambda _, i, word=word: f"{word}{i}")
 
 
-def _name_elements(elements: Iterable[Any], make_name: Callable[[Any, int], str]) -> None:
+def _name_elements(elements: Iterable[Any], make_name: Callable[..., str]) -> None:
     elements = list(elements)
     taken = {e.name for e in elements if e.name}
     for i, element in enumerate(elements):

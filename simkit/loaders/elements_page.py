@@ -5,17 +5,13 @@
 
 from __future__ import annotations
 
+import csv
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from pathlib import Path
 
-from simkit.loaders.sdf.elements import TABLES, Row, Table, Use
+from simkit.loaders.sdf.element_table import Row, Table, sdf_elements
 
-_SIGNS = {
-    Use.USED: "used",
-    Use.APPROXIMATED: "approximated",
-    Use.IGNORED: "ignored",
-    Use.NOT_SIMULATED: "not simulated",
-}
 _INTRODUCTION = """# What each element becomes
 
 Written from the tables in `simkit/loaders`; do not edit. Attributes begin with `@`.
@@ -36,7 +32,7 @@ def page() -> str:
 
 
 def _sdf() -> Iterator[str]:
-    for one in TABLES:
+    for one in sdf_elements().tables:
         yield from _section(one)
 
 
@@ -46,7 +42,7 @@ def _section(one: Table) -> Iterator[str]:
     yield from _head("element", "is", "becomes")
     for row in one.rows:
         path = row.path.replace("#text", "(text)")
-        yield f"| `{path}` | {_SIGNS[row.use]} | {_cell(row.becomes)}{_link(row)} |"
+        yield f"| `{path}` | {row.use.value} | {_cell(row.becomes)}{_link(row)} |"
     yield ""
 
 
@@ -57,14 +53,20 @@ def _link(row: Row) -> str:
     return f" ([{row.like}](#{anchor}))"
 
 
-def _urdf() -> Iterator[str]:
-    """URDF's own table, of pairs of a path and what it becomes."""
-    from simkit.loaders.urdf.elements import ELEMENTS
+def urdf_elements() -> list[tuple[str, str]]:
+    """URDF's own table: each path, and what it becomes.
 
-    rows: Iterable[tuple[str, str]] = ELEMENTS
+    A path is element names from `<robot>` down, `@name` an attribute. `gazebo[link]`, `gazebo[joint]` and
+    `gazebo[robot]` are the extensions whose reference names a link, a joint, or nothing.
+    """
+    with Path(__file__).with_name("urdf").joinpath("elements.csv").open(encoding="utf-8", newline="") as file:
+        return [(line["path"], line["becomes"]) for line in csv.DictReader(file)]
+
+
+def _urdf() -> Iterator[str]:
     yield from ("## URDF", "")
     yield from _head("element", "becomes")
-    for path, becomes in rows:
+    for path, becomes in urdf_elements():
         yield f"| `{path}` | {_cell(becomes)} |"
     yield ""
 

@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 from wide_sdf import BARE, BARE_INCLUDE, BOX, WORLD
 
-from simkit.loaders.sdf.elements import ELEMENTS, TABLES
+from simkit.loaders.sdf.element_table import sdf_elements
 from simkit.loaders.sdf.loader import SdfLoader
 from simkit.loaders.sdf.workspace import Workspace
 from simkit.params import Params
 
+ELEMENTS = sdf_elements()
 DOCS = Path(__file__).parents[2] / "docs"
 
 
@@ -51,7 +52,7 @@ def asked(load, write, monkeypatch) -> dict[str, set[str]]:
     return found
 
 
-@pytest.mark.parametrize("table", TABLES, ids=lambda t: t.element)
+@pytest.mark.parametrize("table", ELEMENTS.tables, ids=lambda t: t.element)
 def test_a_table_has_the_names_that_its_readers_ask_for(asked, table):
     for place in [p for p in {table.element, *asked} if p.split("/")[0] == table.element]:
         rows = {*ELEMENTS.elements(place), *(f"@{a}" for a in ELEMENTS.attributes(place))}
@@ -75,7 +76,7 @@ def test_the_page_is_what_the_tables_say():
     assert (DOCS / "elements.md").read_text() == page(), hint
 
 
-@pytest.mark.parametrize("table", TABLES, ids=lambda t: t.element)
+@pytest.mark.parametrize("table", ELEMENTS.tables, ids=lambda t: t.element)
 def test_every_reference_from_a_table_leads_to_one(table):
-    names = {t.element for t in TABLES}
+    names = {t.element for t in ELEMENTS.tables}
     assert {row.like for row in table.rows if row.like} <= names

@@ -13,11 +13,12 @@ import pytest
 import simkit
 from simkit.diagnostics import Diagnostics
 from simkit.loaders import Resolver, load_scene
+from simkit.loaders.elements_page import urdf_elements
 from simkit.loaders.resources.xml_reader import parse_text
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
-from simkit.loaders.urdf import ELEMENTS
 from simkit.loaders.urdf.robot import build_robot, declare_robot
 
+ELEMENTS = urdf_elements()
 _ORIGIN = '<origin xyz="0 0 1" rpy="0 0 0" quat_xyzw="0 0 0 1"/>'
 _SHAPES = (
     '<box size="1 1 1"/>',

@@ -58,10 +58,17 @@ class CompiledMjcf(Protocol):
         document: makes a fresh `mujoco.MjSpec` of the same content.
     """
 
-    spec: Any
-    model: Any
-    data: Any
-    document: Callable[[], Any]
+    @property
+    def spec(self) -> Any: ...
+
+    @property
+    def model(self) -> Any: ...
+
+    @property
+    def data(self) -> Any: ...
+
+    @property
+    def document(self) -> Callable[[], Any]: ...
 
     @property
     def is_aligned(self) -> bool:

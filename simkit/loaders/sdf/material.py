@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from simkit.diagnostics import closest, did_you_mean
-from simkit.loaders.sdf.gazebo_materials import GAZEBO_COLOURS, gazebo_material
+from simkit.loaders.sdf.gazebo_materials import gazebo_material, gazebo_materials
 from simkit.loaders.sdf.material_script import OgreMaterial, find_material, find_texture
 from simkit.loaders.sdf.workspace import SdfFile, Workspace
 from simkit.params import Params
@@ -15,8 +15,6 @@ from simkit.scene.model import Colour
 
 _WHITE: Colour = (1.0, 1.0, 1.0, 1.0)
 _BLACK: Colour = (0.0, 0.0, 0.0, 1.0)
-
-__all__ = ["GAZEBO_COLOURS", "read_colour", "read_material"]
 
 
 def read_material(visual: Params, file: SdfFile, workspace: Workspace) -> Material | None:
@@ -92,7 +90,7 @@ def _report_unknown_script(name: str, script: Params, workspace: Workspace) -> N
     """One note for each name, however often it is used."""
     if name not in workspace.unknown_materials:
         workspace.unknown_materials.add(name)
-        near = closest(name.removeprefix("Gazebo/"), GAZEBO_COLOURS)
+        near = closest(name.removeprefix("Gazebo/"), gazebo_materials())
         hint = did_you_mean(name, [f"Gazebo/{near}"]) if near else ""
         workspace.diagnostics.note("SK-SDF-021", f"material {name!r} is not known and drawn white", script.where, hint)
 

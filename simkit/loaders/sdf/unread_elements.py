@@ -1,6 +1,6 @@
 """What of a file has no effect: names that the format does not have, and those that mean nothing here.
 
-What is known, and what becomes of it, is the tables' (`simkit.loaders.sdf.elements`) to say.
+What is known, and what becomes of it, is the tables' (`simkit.loaders.sdf.element_table`) to say.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.loaders.sdf.elements import ELEMENTS, Use
+from simkit.loaders.sdf.element_table import Use, sdf_elements
 from simkit.params import Params
 
 # Programs that write SDF give every joint axes; that of a fixed or ball joint says nothing about it.
@@ -56,16 +56,17 @@ class _UnreadReport:
 
     def visit(self, element: Params, place: str, above: tuple[str, ...]) -> None:
         """Everything inside an element that a reader has read."""
-        if not ELEMENTS.is_open(place):
+        elements = sdf_elements()
+        if not elements.is_open(place):
             if element.attributes:
                 self._attributes(element, place)
-            if element.value and ELEMENTS.elements(place) and not ELEMENTS.has_text(place):
+            if element.value and elements.elements(place) and not elements.has_text(place):
                 self.warn("SK-SDF-038", element.where, partial(_of_text, element, place))
-        read, inside = ELEMENTS.read_at(place), (*above, place)
+        read, inside = elements.read_at(place), (*above, place)
         for child in element.children:
             known = read.get(child.name)
             if known is not None and child.was_read:
-                if child.children or child.attributes or ELEMENTS.elements(known):
+                if child.children or child.attributes or elements.elements(known):
                     self.visit(child, known, inside)
             elif ":" not in child.name:
                 self._child(child, element, place, above)
@@ -74,9 +75,9 @@ class _UnreadReport:
 
     def _child(self, child: Params, element: Params, place: str, above: tuple[str, ...]) -> None:
         """An element that nobody has read."""
-        row = ELEMENTS.row(place, child.name)
+        row = sdf_elements().row(place, child.name)
         if row is None:
-            if not ELEMENTS.is_open(place):
+            if not sdf_elements().is_open(place):
                 self.warn("SK-SDF-011", child.where, partial(_of_unknown, child, element, place, above))
         elif row.use is Use.IGNORED:
             self.quiet.setdefault(child.name, child.where)
@@ -89,7 +90,7 @@ class _UnreadReport:
 
     def _attributes(self, element: Params, place: str) -> None:
         for name in element.attributes:
-            if ":" not in name and name != "xmlns" and ELEMENTS.row(place, f"@{name}") is None:
+            if ":" not in name and name != "xmlns" and sdf_elements().row(place, f"@{name}") is None:
                 self.warn("SK-SDF-037", element.where, partial(_of_attribute, name, element, place))
 
 
@@ -106,8 +107,8 @@ def _of_unused(child: Params, element: Params) -> tuple[str, str]:
 
 
 def _of_attribute(name: str, element: Params, place: str) -> tuple[str, str]:
-    hint = did_you_mean(name, ELEMENTS.attributes(place))
-    if name in ELEMENTS.elements(place):
+    hint = did_you_mean(name, sdf_elements().attributes(place))
+    if name in sdf_elements().elements(place):
         hint = f"it is an element: <{name}>{element.attributes[name]}</{name}>"
     return f"{name}= of <{element.name}> is not known and not used", hint
 
@@ -115,7 +116,7 @@ def _of_attribute(name: str, element: Params, place: str) -> tuple[str, str]:
 def _of_text(element: Params, place: str) -> tuple[str, str]:
     """Text between elements, where a file means a value and nobody reads one."""
     shown = element.value if len(element.value) <= 40 else element.value[:40] + "..."
-    names = ", ".join(f"<{name}>" for name in ELEMENTS.elements(place)[:6])
+    names = ", ".join(f"<{name}>" for name in sdf_elements().elements(place)[:6])
     return f"the text {shown!r} in <{element.name}> is not used", f"it holds elements: {names}, ..."
 
 
@@ -125,14 +126,14 @@ def _of_xinclude(child: Params) -> tuple[str, str]:
 
 def _hint(child: Params, element: Params, place: str, above: Iterable[str]) -> str:
     """Where an unknown element belongs, or which name was meant."""
-    if child.name in ELEMENTS.attributes(place):
+    if child.name in sdf_elements().attributes(place):
         return f"it is an attribute: <{element.name} {child.name}={child.value!r}>"
-    homes = [h for h in ELEMENTS.homes(child.name) if (row := ELEMENTS.row(h, child.name)) and row.use.read]
+    homes = [h for h in sdf_elements().homes(child.name) if (row := sdf_elements().row(h, child.name)) and row.use.read]
     inside = [home for home in homes if home.rpartition("/")[0] == place or home in _content(place)]
     outside = [home for home in homes if home in above]
     for home in (*inside, *reversed(outside)):
         return f"move it inside <{_tag(home)}>"
-    near = did_you_mean(child.name, ELEMENTS.elements(place))
+    near = did_you_mean(child.name, sdf_elements().elements(place))
     if near or not homes or len(homes) > 6:
         return near
     return "it belongs inside " + " or ".join(f"<{_tag(home)}>" for home in homes[:3])
@@ -140,7 +141,7 @@ def _hint(child: Params, element: Params, place: str, above: Iterable[str]) -> s
 
 def _content(place: str) -> set[str]:
     """The tables that describe an element's children."""
-    rows = (ELEMENTS.row(place, name) for name in ELEMENTS.elements(place))
+    rows = (sdf_elements().row(place, name) for name in sdf_elements().elements(place))
     return {row.like for row in rows if row is not None and row.like}
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from simkit.diagnostics import did_you_mean
-from simkit.loaders.sdf.material import GAZEBO_COLOURS, read_material
+from simkit.loaders.sdf.gazebo_materials import gazebo_material, gazebo_materials
+from simkit.loaders.sdf.material import read_material
 from simkit.loaders.urdf.attributes import (
     extension_text,
     leading_numbers,
@@ -61,14 +62,13 @@ class Materials:
             return own
         if name in self.named:
             return self.named[name]
-        colour = GAZEBO_COLOURS.get(name.removeprefix("Gazebo/"))
-        if name.startswith("Gazebo/") and colour is not None:
-            return _plain(colour)
+        if name.startswith("Gazebo/") and (known := gazebo_material(name)) is not None:
+            return _plain(known.diffuse)
         if name and name not in self._unknown and name not in self._lines:
             self._unknown.add(name)
             message = f"material {name!r} is not defined; a mesh keeps its own colours, a shape is drawn white"
             self.draft.diagnostics.warning(
-                "SK-URDF-026", message, element.where, did_you_mean(name, [*self.named, *GAZEBO_COLOURS])
+                "SK-URDF-026", message, element.where, did_you_mean(name, [*self.named, *gazebo_materials()])
             )
         return None
 

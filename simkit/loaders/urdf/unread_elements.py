@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from simkit.diagnostics import Diagnostics, Where, did_you_mean
-from simkit.loaders.sdf.elements import ELEMENTS as SDF_ELEMENTS
+from simkit.loaders.sdf.element_table import sdf_elements
 from simkit.loaders.sdf.unread_elements import report_unread as report_sdf
 from simkit.loaders.urdf.gazebo_extensions import GazeboExtensions
 from simkit.params import Params
@@ -83,8 +83,8 @@ def _report_extensions(robot: Params, extensions: GazeboExtensions, loud: _Loud,
                 if not child.was_read and ":" not in child.name:
                     message = f"<{child.name}> has no meaning for a {place if name else 'robot'} and is not used"
                     loud.setdefault((message, "SK-URDF-010", ""), []).append(child.where)
-            elif SDF_ELEMENTS.row(place, child.name) is None:
-                hint = did_you_mean(child.name, [*block.asked, *SDF_ELEMENTS.elements(place)])
+            elif sdf_elements().row(place, child.name) is None:
+                hint = did_you_mean(child.name, [*block.asked, *sdf_elements().elements(place)])
                 message = f"<{child.name}> in <gazebo> is not known and not used"
                 loud.setdefault((message, "SK-URDF-010", hint), []).append(child.where)
             else:

@@ -1,18 +1,29 @@
-"""The form of the tables: rows of text, and the schema that they make together."""
+"""What each element and attribute of SDF becomes here: the list `elements.csv`.
+
+The report of unread names and `docs/elements.md` come from it.
+
+A table belongs to one element (`link`); a row's path goes on from there (`velocity_decay/linear`, `@name`), and a row
+may say that its element is described `like` another table's. A row `*` says that other names are somebody else's to
+know. A test loads a file that has everything and compares the names that the readers asked for with these rows.
+"""
 
 from __future__ import annotations
 
+import csv
+import functools
+import itertools
 from dataclasses import dataclass, field
 from enum import Enum
+from pathlib import Path
 
 
 class Use(Enum):
-    """What becomes of an element; the sign stands for it in a table's text."""
+    """What becomes of an element, in the words of the file and of the page."""
 
-    USED = "="
-    APPROXIMATED = "~"
-    IGNORED = "-"
-    NOT_SIMULATED = "!"
+    USED = "used"
+    APPROXIMATED = "approximated"
+    IGNORED = "ignored"
+    NOT_SIMULATED = "not simulated"
 
     @property
     def read(self) -> bool:
@@ -50,16 +61,6 @@ class Table:
     element: str
     rows: tuple[Row, ...]
     open: bool = False
-
-
-def table(element: str, text: str, open_: bool = False) -> Table:
-    """A table from lines `path sign what it becomes > other table`; the sign is that of a `Use`."""
-    rows = []
-    for line in text.strip().splitlines():
-        left, _, like = line.partition(" > ")
-        path, sign, becomes = left.split(None, 2)
-        rows.append(Row(path, Use(sign), becomes.strip(), like.strip()))
-    return Table(element, tuple(rows), open_)
 
 
 @dataclass
@@ -126,3 +127,17 @@ class Schema:
     def homes(self, name: str) -> list[str]:
         """Places that have an element of this name."""
         return [place for place, names in self._children.items() if name in names]
+
+
+@functools.cache
+def sdf_elements() -> Schema:
+    """The tables of SDF, read once."""
+    rows: dict[str, list[Row]] = {}
+    open_tables = set()
+    with Path(__file__).with_name("elements.csv").open(encoding="utf-8", newline="") as file:
+        for table, path, use, becomes, like in itertools.islice(csv.reader(file), 1, None):
+            if path == "*":
+                open_tables.add(table)
+            else:
+                rows.setdefault(table, []).append(Row(path, Use(use), becomes, like))
+    return Schema(tuple(Table(name, tuple(found), name in open_tables) for name, found in rows.items()))
