@@ -1,4 +1,4 @@
-"""What loading found: one record per problem, collected in one pass."""
+"""Collect what loading found: one record per problem, in one pass; and find the closest of several names."""
 
 from __future__ import annotations
 
@@ -6,63 +6,27 @@ import difflib
 import functools
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
 
+from simkit.diagnostic_record import NOWHERE, Diagnostic, Severity, Where
 from simkit.errors import LoadError
 
-Severity = Literal["error", "warning", "note"]
+__all__ = [
+    "NOWHERE",
+    "Diagnostic",
+    "Diagnostics",
+    "Severity",
+    "Where",
+    "closest",
+    "did_you_mean",
+    "follows_from",
+    "shorten",
+]
 
-
-@dataclass(frozen=True, slots=True)
-class Where:
-    """A place in an input file; `file` is None for XML given as text.
-
-    Attributes:
-        serial: which element of the file it is, counted from the top: of two on one line the first is still the first.
-    """
-
-    file: str | None = None
-    line: int | None = None
-    serial: int = field(default=0, compare=False, repr=False)
-
-    def __str__(self) -> str:
-        return f"{self.file or '<text>'}:{self.line}" if self.line else (self.file or "<text>")
-
-
-NOWHERE = Where()
 MOST_ERRORS = 1000
 LONGEST_MESSAGE = 4000  # characters
 _MOST_NAMES = 5000  # that one is compared with; among more the nearest one is chance
 _LONGEST_NAME = 200
 _QUOTED = re.compile(r"'([^']+)'")
-
-
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
-    """One problem of an input.
-
-    Attributes:
-        code: `SK-AREA-NNN`; never renumbered.
-        severity: "error" stops the load, "warning" may change the meaning, "note" is a standing conversion.
-        message: what was found and what is allowed.
-        hint: what helps; may be empty.
-    """
-
-    code: str
-    severity: Severity
-    message: str
-    file: str | None = None
-    line: int | None = None
-    hint: str = ""
-
-    def __str__(self) -> str:
-        text = f"{Where(self.file, self.line)}: {self.severity} {self.code}: {self.message}"
-        return f"{text}\n    help: {self.hint}" if self.hint else text
-
-    def as_dict(self) -> dict[str, Any]:
-        """The record as plain data, as `inspect --json` prints it."""
-        return asdict(self)
 
 
 class Diagnostics:

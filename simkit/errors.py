@@ -17,10 +17,9 @@ SimkitError                 exit 1
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
-if TYPE_CHECKING:
-    from simkit.diagnostics import Diagnostic
+from simkit.diagnostic_record import Diagnostic
 
 
 class SimkitError(Exception):

@@ -1,0 +1,54 @@
+"""One problem of an input: its code, severity, message and place."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+Severity = Literal["error", "warning", "note"]
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A place in an input file; `file` is None for XML given as text.
+
+    Attributes:
+        serial: which element of the file it is, counted from the top: of two on one line the first is still the first.
+    """
+
+    file: str | None = None
+    line: int | None = None
+    serial: int = field(default=0, compare=False, repr=False)
+
+    def __str__(self) -> str:
+        return f"{self.file or '<text>'}:{self.line}" if self.line else (self.file or "<text>")
+
+
+NOWHERE = Where()
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One problem of an input.
+
+    Attributes:
+        code: `SK-AREA-NNN`; never renumbered.
+        severity: "error" stops the load, "warning" may change the meaning, "note" is a standing conversion.
+        message: what was found and what is allowed.
+        hint: what helps; may be empty.
+    """
+
+    code: str
+    severity: Severity
+    message: str
+    file: str | None = None
+    line: int | None = None
+    hint: str = ""
+
+    def __str__(self) -> str:
+        text = f"{Where(self.file, self.line)}: {self.severity} {self.code}: {self.message}"
+        return f"{text}\n    help: {self.hint}" if self.hint else text
+
+    def as_dict(self) -> dict[str, Any]:
+        """The record as plain data, as `inspect --json` prints it."""
+        return asdict(self)
