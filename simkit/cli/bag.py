@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -36,7 +36,8 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.live import Client
+    from simkit.live import Client, LivePublisher
+    from simkit.recording.bags.reader import BagReader
 
 
 @report_errors_quietly
@@ -181,7 +182,9 @@ def _input_topics(client: Client, topics: list[str], names: dict[str, str]) -> l
     return [t for t in topics if names.get(t, t) in inputs]
 
 
-def _play_once(client: Client, reader: Any, publishers: dict[str, Any], rate: float, start: float) -> int:
+def _play_once(
+    client: Client, reader: BagReader, publishers: dict[str, LivePublisher], rate: float, start: float
+) -> int:
     """Plays the bag once; how many messages that was."""
     clock = SimClock(client)
     first_ns = reader.start + round(start * 1e9)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,7 +20,7 @@ from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
-    from simkit.cli.terminal.topic_sources import LiveFeed
+    from simkit.cli.terminal.topic_sources import LiveFeed, ReceivedMessage
     from simkit.recording.bags.writer import McapBag
 
 _DEPTH = 20_000  # messages of a topic that wait while the disk is busy
@@ -165,7 +165,7 @@ class _Recording:
     def _now_ns(self) -> int:
         return int(self._source.client.state()["time_ns"])
 
-    def _write(self, bag: McapBag, came: list[Any]) -> bool:
+    def _write(self, bag: McapBag, came: list[ReceivedMessage]) -> bool:
         """Writes messages; whether one is behind the end of what was asked for."""
         for received in came:
             time_ns = int(received.time_ns)
@@ -176,12 +176,12 @@ class _Recording:
             bag.write_raw(channel, received.data, time_ns)
         return False
 
-    def _take_messages(self, wait: float = _LOOK) -> list[Any]:
+    def _take_messages(self, wait: float = _LOOK) -> list[ReceivedMessage]:
         """Return received messages in the order of times; wait where there are none [s, wall time]."""
         if not self._feeds:
             time.sleep(wait)
             return []
-        found: list[Any] = []
+        found: list[ReceivedMessage] = []
         for number, feed in enumerate(self._feeds):
             while (received := feed.take(wait if number == 0 and not found else 0.0)) is not None:
                 found.append(received)

@@ -159,7 +159,7 @@ class HandWrittenLoop(BareEngine):
         super().__init__(sim)
         self._integrate = mujoco.mj_Euler if self.model.opt.integrator in _EULER else mujoco.mj_implicit
         self._random = np.random.default_rng(0)
-        self.latest: dict[str, Any] = {}
+        self.latest: dict[str, object] = {}
         types = sim.topics()
         sensors = {sensor.topic: sensor for sensor in sim.sensors.values()}
         self._sim = sim

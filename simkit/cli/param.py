@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -26,6 +26,7 @@ from simkit.errors import InputError
 
 if TYPE_CHECKING:
     from simkit.live import Client
+    from simkit.msgs import ParameterValue
 
 param = typer.Typer(help="Live parameters of a running simulation.", no_args_is_help=True)
 Node = Annotated[
@@ -143,7 +144,7 @@ def set_(
         return _set_values(client, _resolve_node(client, node), values, atomic, json_)
 
 
-def _set_values(client: Client, node: str, values: list[tuple[str, Any]], atomic: bool, json_: bool) -> int:
+def _set_values(client: Client, node: str, values: list[tuple[str, JsonObject]], atomic: bool, json_: bool) -> int:
     request = {"parameters": [{"name": n, "value": v} for n, v in values]}
     if atomic:
         results = [client.call(f"{node}/set_parameters_atomically", request).result]
@@ -265,7 +266,7 @@ def _resolve_node(client: Client, name: str) -> str:
     return wanted
 
 
-def _existing_values(client: Client, node: str, names: list[str]) -> list[Any]:
+def _existing_values(client: Client, node: str, names: list[str]) -> list[ParameterValue]:
     """The values of parameters, which are there."""
     values = list(client.call(f"{node}/get_parameters", {"names": names}).values)
     for name, value in zip(names, values, strict=True):

@@ -173,7 +173,7 @@ def _wait_matching(client: Client, topic: str, number: int, tell: Callable[[str]
         time.sleep(0.1)
 
 
-def _subscribers(client: Client, topic: str) -> list[Any]:
+def _subscribers(client: Client, topic: str) -> list[JsonObject]:
     return next((list(row["subscribers"]) for row in client.topics() if row["name"] == topic), [])
 
 

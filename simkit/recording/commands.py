@@ -22,6 +22,8 @@ from simkit.yaml_reader import NotYaml, compose_nodes, finite_number, node_value
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
 
+JsonObject = dict[str, Any]
+JsonMapping = Mapping[str, Any]
 _KEYS = ("at", "topic", "message", "until", "rate")
 _RATE = 10.0  # [Hz] of a command that is repeated without saying how often
 _TWISTS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
@@ -40,7 +42,7 @@ class Command:
 
     at: float
     topic: str
-    message: Any
+    message: object
     until: float | None = None
     rate: float = _RATE
     where: str = ""
@@ -54,7 +56,7 @@ class Command:
         time = self.at + index / self.rate
         return time if time <= self.until else None
 
-    def plain(self) -> dict[str, Any]:
+    def plain(self) -> JsonObject:
         """Return the command as a mapping, as a scenario file holds it."""
         found = {"at": self.at, "topic": self.topic, "message": self.message, "where": self.where}
         return found if self.until is None else {**found, "until": self.until, "rate": self.rate}
@@ -141,7 +143,7 @@ def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
     return commands_of(script_items(path), topics)
 
 
-def script_items(path: Path) -> list[dict[str, Any]]:
+def script_items(path: Path) -> list[JsonObject]:
     """Return the items of a YAML script, each with its place under "where"; `commands_of` validates them for a world.
 
     Raises:
@@ -173,7 +175,7 @@ def script_items(path: Path) -> list[dict[str, Any]]:
     return placed_items(found)
 
 
-def placed_items(items: Iterable[tuple[Any, str]]) -> list[dict[str, Any]]:
+def placed_items(items: Iterable[tuple[object, str]]) -> list[JsonObject]:
     """The mappings of commands, each with its place under "where"; what is wrong in any world is told.
 
     Args:
@@ -185,7 +187,7 @@ def placed_items(items: Iterable[tuple[Any, str]]) -> list[dict[str, Any]]:
     return _collect(_with_places, items)
 
 
-def _with_places(written: tuple[Any, str]) -> dict[str, Any]:
+def _with_places(written: tuple[object, str]) -> JsonObject:
     item, where = written
     if not isinstance(item, dict):
         raise _script_error(where, f"found {item!r:.60}, allowed is {{at, topic, message}}")
@@ -193,14 +195,14 @@ def _with_places(written: tuple[Any, str]) -> dict[str, Any]:
     return {**item, "where": where}
 
 
-def commands_of(items: Iterable[Mapping[str, Any]], topics: dict[str, str]) -> list[Command]:
+def commands_of(items: Iterable[JsonMapping], topics: dict[str, str]) -> list[Command]:
     """The commands that mappings stand for: those of a script, each with its place under "where".
 
     Raises:
         InputError: SK-CLI-011 with a line for every one that does not fit.
     """
 
-    def command(item: Mapping[str, Any]) -> Command:
+    def command(item: JsonMapping) -> Command:
         where = str(item.get("where", "commands"))
         return _command({key: value for key, value in item.items() if key != "where"}, where, topics)
 
@@ -220,7 +222,7 @@ def _collect(make: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
     return found
 
 
-def _command(item: Mapping[str, Any], where: str, topics: dict[str, str] | None) -> Command:
+def _command(item: JsonMapping, where: str, topics: dict[str, str] | None) -> Command:
     """A command; whether its topic is there is seen where topics are given."""
     for key in item:
         if key not in _KEYS:
@@ -248,7 +250,7 @@ def _command(item: Mapping[str, Any], where: str, topics: dict[str, str] | None)
     return Command(at, topic, message, until, rate, where)
 
 
-def _number(value: Any, key: str, where: str, minimum: float) -> float:
+def _number(value: object, key: str, where: str, minimum: float) -> float:
     number = finite_number(value)
     if number is None or number < minimum:
         raise _script_error(where, f"{key}: found {value!r:.60}, allowed is a number of at least {minimum:g}")

@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,11 @@ from simkit.pose import Pose
 if TYPE_CHECKING:
     import mujoco
 
+    from simkit.msgs import LaserScan
     from simkit.runtime import Simulation
 
 Points = NDArray[np.float64]
-Render = Callable[..., Any]
+Render = Callable[..., NDArray[np.uint8]]
 
 _SIZE = (1280, 800)  # [px]
 _OVERSAMPLED = 2
@@ -50,7 +51,7 @@ class DrivenPath:
                 track.append(place)
 
 
-def scan_points(message: Any, pose: Pose) -> Points:
+def scan_points(message: LaserScan, pose: Pose) -> Points:
     """The points [m] in the world that a `LaserScan` hit, shape (n, 3), for a scanner at `pose`."""
     ranges = np.asarray(message.ranges, dtype=np.float64)
     angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
@@ -117,7 +118,7 @@ def check_target(path: Path) -> None:
         raise InputError(f"SK-CLI-013 --picture {path}: there is no folder {path.absolute().parent}", "SK-CLI-013")
 
 
-def _last_scans(sim: Simulation) -> list[tuple[Any, Pose]]:
+def _last_scans(sim: Simulation) -> list[tuple[LaserScan, Pose]]:
     """The newest planar scan of each scanner, with the scanner's pose."""
     found = []
     for sensor in sim.sensors.values():

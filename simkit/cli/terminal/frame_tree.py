@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit.cli.terminal.output import not_found_error
 from simkit.cli.terminal.topic_sources import ReceivedMessage, Source
 from simkit.errors import InputError
 
 if TYPE_CHECKING:
+    from simkit.msgs import TFMessage
     from simkit.pose import Pose
 
 _TOPICS = ("/tf", "/tf_static")
@@ -34,7 +35,7 @@ class FrameTree:
     def __init__(self) -> None:
         self.edges: dict[str, FrameTransform] = {}
 
-    def take(self, message: Any, *, static: bool) -> None:
+    def take(self, message: TFMessage, *, static: bool) -> None:
         """Takes in a `tf2_msgs/msg/TFMessage`."""
         from simkit import msgs  # NumPy and rosbags, which completing a word does not wait for
         from simkit.pose import Pose

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from simkit.cli.terminal.output import JsonObject
 from simkit.errors import InputError
 from simkit.yaml_reader import NotYaml, read_yaml
+
+if TYPE_CHECKING:
+    from simkit.msgs import ParameterValue
 
 KINDS: Final = (
     "not set",
@@ -36,7 +39,7 @@ _FIELDS = (
 _KIND_BY_TYPE: Final[dict[type, int]] = {bool: 1, int: 2, float: 3, str: 4}
 
 
-def plain_value(parameter: Any) -> Any:
+def plain_value(parameter: ParameterValue) -> Any:
     """The value in a ParameterValue, as plain Python."""
     field = _FIELDS[int(parameter.type)]
     found: Any = getattr(parameter, field, None)

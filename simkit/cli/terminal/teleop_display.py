@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from simkit.pose import Pose, quat_rotate
 
 if TYPE_CHECKING:
     from simkit.runtime import Link, Model, Simulation
+    from simkit.sensors.base import Sensor
 
 Vector = npt.NDArray[np.float64]
 _DRIVE_HELP: Final = "w/x faster/slower   a/d left/right   s stop   q/z all speeds ±10 %"
@@ -91,7 +92,7 @@ class DriverLine:
         return f"nearest {distance:.2f} m, {where}"
 
 
-def nearest_reading(sensor: Any) -> tuple[float, float, Pose, float] | None:
+def nearest_reading(sensor: Sensor) -> tuple[float, float, Pose, float] | None:
     """The shortest reading of a lidar [m] (infinite for nothing in reach, minus infinite for something too near), its
     angle about the sensor's z [rad], the sensor's pose and its shortest range [m]; None of other sensors, or before
     the first scan."""

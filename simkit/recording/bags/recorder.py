@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from simkit import msgs
 from simkit.errors import InputError, SimkitError
@@ -179,7 +179,7 @@ class Recorder:
         """Check whether the options select the topic."""
         return topic in self._taps
 
-    def _take(self, topic: str, message: Any) -> None:
+    def _take(self, topic: str, message: object) -> None:
         """A message that was published now."""
         now, waiting = self._sim.time_ns, self._waiting
         if waiting or (type(message) is LazyMessage and not message.is_ready):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from html import escape
-from typing import Any, Final, Literal, Protocol
+from typing import Final, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,8 +100,8 @@ class PngCanvas:
         from PIL import Image, ImageDraw
 
         self._scale = _PNG_SCALE * _SUBPIXEL_BITS
-        self._image: Any = Image.new("RGB", (width * self._scale, height * self._scale), "#ffffff")
-        self._draw: Any = ImageDraw.Draw(self._image)
+        self._image = Image.new("RGB", (width * self._scale, height * self._scale), "#ffffff")
+        self._draw = ImageDraw.Draw(self._image)
 
     def line(self, points: Points, colour: str, width: float = 1.0, dash: tuple[float, ...] = ()) -> None:
         """A line through points, shape (n, 2)."""
@@ -123,7 +123,7 @@ class PngCanvas:
         from PIL import Image, ImageDraw, ImageFont
 
         font = ImageFont.load_default(size * self._scale)
-        where: Any = {"start": "ls", "middle": "ms", "end": "rs"}[anchor]
+        where = {"start": "ls", "middle": "ms", "end": "rs"}[anchor]
         text = text.translate(_UNPRINTABLE | str.maketrans(_NO_LETTER))
         if not upright:
             self._draw.text((x * self._scale, y * self._scale), text, fill=_INK, font=font, anchor=where)

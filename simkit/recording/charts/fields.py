@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -24,7 +24,13 @@ from simkit.msgs.message_types import ARRAY, BASE, NAME, SEQUENCE
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
+    from simkit.msgs import Quaternion, Time
+
 Number = Callable[[Any], float]
+Reader = Callable[[Any], Any]
+"""Reads a value of a message."""
+FieldNode = tuple[int, Any]
+"""Kind of a field, and what it is of, as in the type store."""
 Unit = Callable[[str, str], str]
 
 MOST_CURVES: Final = 64
@@ -67,11 +73,11 @@ class Curve:
 class _PathStep:
     """One step of a path: the type at its end and a function that reads it; `before` reads the message around it."""
 
-    node: Any
-    read: Callable[[Any], Any]
+    node: FieldNode
+    read: Reader
     path: str
     owner: str
-    before: Callable[[Any], Any]
+    before: Reader
 
 
 def _no_unit(_type_name: str, _path: str) -> str:
@@ -155,7 +161,7 @@ class _FieldPath:
         self._count(curves)
         return curves
 
-    def _count(self, found: list[Any]) -> None:
+    def _count(self, found: Sequence[object]) -> None:
         if len(found) > MOST_CURVES:
             raise self._path_error(f"stands for {len(found)} numbers, allowed are {MOST_CURVES}")
 
@@ -197,7 +203,7 @@ class _FieldPath:
                     raise self._field_error(f"{place.path} has {size} items, found [{number}]")
         return [self._item(place, inner, partial(_item, number), str(number)) for number in numbers]
 
-    def _item(self, place: _PathStep, inner: Any, take: Callable[[Any], Any], said: str) -> _PathStep:
+    def _item(self, place: _PathStep, inner: FieldNode, take: Reader, said: str) -> _PathStep:
         path = f"{place.path}[{said}]"
         return _PathStep(inner, _compose(place.read, take), path, place.owner, place.read)
 
@@ -271,7 +277,7 @@ class _FieldPath:
             found = ("norm",)
         return tuple(name for name in found if name not in fields)
 
-    def _is_quaternion(self, node: Any) -> bool:
+    def _is_quaternion(self, node: FieldNode) -> bool:
         return int(node[0]) == NAME and [n for n, _ in field_nodes(node[1], self._store)] == ["x", "y", "z", "w"]
 
     def _orientation_field(self, place: _PathStep) -> str | None:
@@ -281,9 +287,7 @@ class _FieldPath:
                 return name
         return None
 
-    def _curve(
-        self, place: _PathStep, read: Callable[[Any], Any], path: str, unit: str = "", *, is_angle: bool = False
-    ) -> Curve:
+    def _curve(self, place: _PathStep, read: Reader, path: str, unit: str = "", *, is_angle: bool = False) -> Curve:
         return Curve("", path, partial(_number, read), unit, is_angle)
 
     def _hint(self, place: _PathStep) -> str:
@@ -307,11 +311,11 @@ class _FieldPath:
 # ---------------------------------------------------------------------- out of messages
 
 
-def _identity(value: Any) -> Any:
+def _identity(value: object) -> object:
     return value
 
 
-def _compose(first: Callable[[Any], Any], second: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _compose(first: Reader, second: Reader) -> Reader:
     return second if first is _identity else lambda message: second(first(message))
 
 
@@ -331,19 +335,19 @@ def _item_with_name(key: str, name: str, items: Any) -> Any:
     raise LookupError(name)
 
 
-def _item_at_name(before: Callable[[Any], Any], key: str, name: str, read: Callable[[Any], Any], message: Any) -> Any:
+def _item_at_name(before: Reader, key: str, name: str, read: Reader, message: Any) -> Any:
     names = field_value(before(message), key)
     return read(message)[list(names).index(name)]
 
 
-def _number(read: Callable[[Any], Any], message: Any) -> float:
+def _number(read: Reader, message: Any) -> float:
     try:
         return float(read(message))
     except (LookupError, ValueError):
         return math.nan
 
 
-def _seconds(stamp: Any) -> float:
+def _seconds(stamp: Time) -> float:
     return float(int(stamp.sec) + int(stamp.nanosec) * 1e-9)
 
 
@@ -360,7 +364,7 @@ def _array_statistic(what: str, value: Any) -> float:
     return float(getattr(numbers, what)()) if numbers.size else math.nan
 
 
-def _angle(name: str, q: Any) -> float:
+def _angle(name: str, q: Quaternion) -> float:
     """Roll, pitch or yaw [rad] about fixed axes x, y, z (REP 103) of a quaternion that need not be of unit length."""
     x, y, z, w = float(q.x), float(q.y), float(q.z), float(q.w)
     size = x * x + y * y + z * z + w * w
@@ -373,11 +377,11 @@ def _angle(name: str, q: Any) -> float:
     return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
-def _is_text(node: Any) -> bool:
+def _is_text(node: FieldNode) -> bool:
     return int(node[0]) == BASE and node[1][0] not in NUMBER_CODES and node[1][0] not in ("bool", "byte")
 
 
-def _kind_in_words(node: Any) -> str:
+def _kind_in_words(node: FieldNode) -> str:
     kind = int(node[0])
     if kind == BASE:
         return "a text" if _is_text(node) else "a number"

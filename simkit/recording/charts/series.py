@@ -92,7 +92,7 @@ class SeriesTap:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _take(self, topic: str, message: Any) -> None:
+    def _take(self, topic: str, message: object) -> None:
         self._collector.take(topic, self._sim.time, message)
 
     def close(self) -> None:

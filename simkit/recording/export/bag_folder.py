@@ -10,13 +10,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.diagnostics import did_you_mean
 from simkit.errors import InputError
 from simkit.recording.bags.reader import BagTopic, open_bag_to_read
 from simkit.recording.bags.recorder import matches_topic
-from simkit.recording.export.images import NpzFile, PngFiles, VideoFile
+from simkit.recording.export.images import MessageWriter, NpzFile, PngFiles, VideoFile
 from simkit.recording.export.point_clouds import CloudFiles
 from simkit.recording.export.tables import TEXT, WRITERS, Column, check_parquet, columns_of
 from simkit.writers.atomic_output import abandoned_folders, current_umask, unfinished_folder, write_obstacle
@@ -107,6 +107,7 @@ def _folder_error(text: str) -> InputError:
     return InputError(f"SK-BAG-013 {text}", "SK-BAG-013")
 
 
+WriterFactory = Callable[[], MessageWriter]
 FORMATS: Final = ("csv", "npz", "parquet")
 IMAGES: Final = ("png", "mp4", "npz", "none")
 CLOUDS: Final = ("npz", "ply", "none")
@@ -253,16 +254,17 @@ class _TopicExport:
         self._name, self._folder, self._format = name, folder, wish.format
         self._result = ExportedTopic(topic.name, topic.type_name)
         self._times = array("q")
-        self._writer = self._file_writer(topic.type_name, wish)
+        self._make_writer = self._writer_factory(topic.type_name, wish)
+        self._writer: MessageWriter | None = None
         without = frozenset({"data"}) if topic.type_name in (*_IMAGE_TYPES, _CLOUD_TYPE) else frozenset[str]()
         self._columns = columns_of(topic.type_name, bag.store_of(topic.type_name), without)
         self._files: list[str] = []
         self._is_bad = False
 
-    def _file_writer(self, type_name: str, wish: ExportOptions) -> Any:
+    def _writer_factory(self, type_name: str, wish: ExportOptions) -> WriterFactory | None:
         """Return what makes the writer of images or clouds when the first one comes; None for other types."""
         target = self._folder / self._name
-        makers: dict[str, Callable[[], Any]] = {}
+        makers: dict[str, WriterFactory] = {}
         if type_name in _IMAGE_TYPES:
             film = target.with_name(f"{self._name}.mp4")
             makers = {"png": lambda: PngFiles(target), "npz": lambda: NpzFile(target), "mp4": lambda: VideoFile(film)}
@@ -271,15 +273,15 @@ class _TopicExport:
             return lambda: CloudFiles(target, wish.clouds)
         return None
 
-    def take(self, time_ns: int, message: Any) -> None:
+    def take(self, time_ns: int, message: object) -> None:
         """Adds a message."""
         self._times.append(time_ns)
         for column in self._columns:
             column.take(message)
-        if self._writer is None:
+        if self._make_writer is None:
             return
-        if callable(self._writer):
-            self._writer = self._writer()
+        if self._writer is None:
+            self._writer = self._make_writer()
         try:
             self._files.append(self._writer.take(time_ns, message))
         except ValueError as error:
@@ -290,14 +292,14 @@ class _TopicExport:
 
     def close(self) -> None:
         """No more comes."""
-        if self._writer is not None and not callable(self._writer):
+        if self._writer is not None:
             self._writer.close()
 
     def write(self) -> ExportedTopic:
         """Writes the table."""
         told, columns = self._result, self._columns
         told.count = len(self._times)
-        if self._writer is not None and not callable(self._writer):
+        if self._writer is not None:
             told.notes += self._writer.notes
             told.beside = next((f.partition("/")[0] for f in self._files if f), "")
             files = Column("file", TEXT, False, lambda message: message)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
 from simkit.errors import InputError
+
+if TYPE_CHECKING:
+    from simkit.msgs import CompressedImage
+    from simkit.msgs import Image as ImageMessage
 
 Pixels = np.ndarray[Any, Any]
 _ENCODINGS: Final = {
@@ -31,8 +35,8 @@ _LONGEST_STILL: Final = 600  # times that a picture is repeated at most where no
 _CODECS: Final = ("vp09", "mp4v")  # the first plays in browsers, the second is built in nearly everywhere
 
 
-class ImageWriter(Protocol):
-    """Writes the pictures of one topic.
+class MessageWriter(Protocol):
+    """Writes the images or point clouds of one topic.
 
     Attributes:
         notes: what is other than one would think, in words.
@@ -47,7 +51,7 @@ class ImageWriter(Protocol):
         """Behind the last."""
 
 
-def read_pixels(message: Any) -> tuple[Pixels, str]:
+def read_pixels(message: ImageMessage) -> tuple[Pixels, str]:
     """The values of an image, shape (height, width) or (height, width, channels), and their order: gray, rgb or bgr.
 
     Raises:
@@ -79,7 +83,7 @@ def _layout(encoding: str) -> tuple[str, int]:
     raise ValueError(f"the encoding {encoding!r} is not known")
 
 
-def png_pixels(message: Any) -> Pixels:
+def png_pixels(message: ImageMessage) -> Pixels:
     """The picture as PNG holds it, blue first: numbers of 8 or 16 bits; a depth [m] becomes millimetres (REP 118).
 
     Raises:
@@ -100,7 +104,7 @@ def png_pixels(message: Any) -> Pixels:
     return np.ascontiguousarray(values)
 
 
-def is_depth(message: Any) -> bool:
+def is_depth(message: ImageMessage) -> bool:
     """Check whether the values of an image are lengths."""
     return str(getattr(message, "encoding", "")) in ("32FC1", "64FC1")
 
@@ -235,7 +239,7 @@ class VideoFile:
         self._last = frame
 
 
-def _decode_compressed(message: Any) -> Pixels:
+def _decode_compressed(message: CompressedImage) -> Pixels:
     """The pixels of a compressed picture, blue first.
 
     Raises:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from simkit.msgs import PointCloud2
 
 PointArray = np.ndarray[Any, Any]
 """Structured array with the fields of a cloud."""
@@ -22,7 +25,7 @@ _PLY: Final = {
 }
 
 
-def read_points(message: Any) -> PointArray:
+def read_points(message: PointCloud2) -> PointArray:
     """The points of a cloud, those that are nowhere too, as a structured array with the cloud's fields.
 
     Raises:
@@ -71,7 +74,7 @@ class CloudFiles:
         self.notes: list[str] = []
         folder.mkdir()
 
-    def take(self, time_ns: int, message: Any) -> str:
+    def take(self, time_ns: int, message: PointCloud2) -> str:
         """Writes one; the name of its file, relative to the export."""
         target = self._folder / f"{self._count:06d}.{self._ending}"
         found = read_points(message)

@@ -32,6 +32,10 @@ _DTYPES: Final = {
 }
 _CODES: Final = {"?": "b", "f4": "f", "f8": "d", "i1": "b", "u1": "B", "i2": "h", "u2": "H", "i4": "i", "u4": "I"}
 TEXT: Final = "text"
+Reader = Callable[[Any], Any]
+"""Reads a value of a message."""
+FieldNode = tuple[int, Any]
+"""Kind of a field, and what it is of, as in the type store."""
 
 
 @dataclass
@@ -49,7 +53,7 @@ class Column:
     path: str
     kind: str
     is_list: bool
-    read: Callable[[Any], Any]
+    read: Reader
     values: Any = field(default_factory=list)
     counts: list[int] = field(default_factory=list)
 
@@ -57,7 +61,7 @@ class Column:
         if self.kind != TEXT:
             self.values = array(_CODES.get(self.kind) or {"i8": "q", "u8": "Q"}[self.kind])
 
-    def take(self, message: Any) -> None:
+    def take(self, message: object) -> None:
         """Adds what a message has."""
         found = self.read(message)
         if not self.is_list:
@@ -113,7 +117,7 @@ def columns_of(type_name: str, store: Typestore, without: frozenset[str] = froze
 
 
 def _message_columns(
-    type_name: str, store: Typestore, path: str, read: Callable[[Any], Any], without: frozenset[str]
+    type_name: str, store: Typestore, path: str, read: Reader, without: frozenset[str]
 ) -> Iterator[Column]:
     for name, node in field_nodes(type_name, store):
         below = f"{path}.{name}" if path else name
@@ -122,7 +126,7 @@ def _message_columns(
 
 
 def _field_columns(
-    node: Any, store: Typestore, path: str, read: Callable[[Any], Any], without: frozenset[str]
+    node: FieldNode, store: Typestore, path: str, read: Reader, without: frozenset[str]
 ) -> Iterator[Column]:
     kind = int(node[0])
     if kind == BASE:
@@ -145,18 +149,18 @@ def _identity(value: object) -> object:
     return value
 
 
-def _field_of(read: Callable[[Any], Any], name: str) -> Callable[[Any], Any]:
+def _field_of(read: Reader, name: str) -> Reader:
     return lambda message: field_value(read(message), name)
 
 
-def _each_item(read: Callable[[Any], Any], column: Column) -> Callable[[Any], Any]:
+def _each_item(read: Reader, column: Column) -> Reader:
     inner = column.read
     if column.is_list:
         return lambda message: [value for item in read(message) for value in inner(item)]
     return lambda message: [inner(item) for item in read(message)]
 
 
-def _lengths(read: Callable[[Any], Any], inner: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _lengths(read: Reader, inner: Reader) -> Reader:
     return lambda message: [len(inner(item)) for item in read(message)]
 
 
@@ -202,7 +206,7 @@ def _column_name(column: Column, number: int) -> str:
     return f"{column.path}[{number}]"
 
 
-def _cells(column: Column) -> Iterator[list[Any]]:
+def _cells(column: Column) -> Iterator[list[object]]:
     """The cells of each message."""
     most, as_text = column.most, _text_writer(column.kind)
     for row in column.rows():
