@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -135,9 +135,9 @@ class _GoalRun:
 
     def __init__(self, client: Client, json_: bool, feedback: bool) -> None:
         self._client, self._json, self._feedback = client, json_, feedback
-        self._early: list[Any] | None = []  # feedback that came before it was said that the goal is accepted
+        self._early: list[object] | None = []  # feedback that came before it was said that the goal is accepted
 
-    def send(self, name: str, goal: Any, timeout: float | None) -> None:
+    def send(self, name: str, goal: object, timeout: float | None) -> None:
         self._print_line("Waiting for an action server to become available...")
         self._print_line(f"Sending goal:\n     {_yaml_text(goal)}")
         handle = self._client.send_goal(name, goal, self._on_feedback if self._feedback else None)
@@ -177,7 +177,7 @@ class _GoalRun:
             print_line(f"Result:\n    {_yaml_text(result)}")
             print_line(f"Goal finished with status: {handle.status.name}")
 
-    def _on_feedback(self, message: Any) -> None:
+    def _on_feedback(self, message: object) -> None:
         from simkit.msgs.message_text import message_to_dict
 
         if self._early is not None:
@@ -192,7 +192,7 @@ class _GoalRun:
             print_line(text)
 
 
-def _yaml_text(message: Any) -> str:
+def _yaml_text(message: object) -> str:
     from simkit.msgs.message_text import message_to_yaml
 
     return message_to_yaml(message)

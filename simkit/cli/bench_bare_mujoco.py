@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import copy
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -20,6 +20,8 @@ from simkit.sensors.rays.lidar import Lidar
 
 if TYPE_CHECKING:
     from simkit.runtime import Simulation
+    from simkit.sensors.base import Sensor
+    from simkit.sensors.cameras.rendering.renderer import Renderer
 
 _ALL_GEOMS = int(mujoco.mjtCatBit.mjCAT_ALL)
 Numbers = npt.NDArray[np.float64]
@@ -118,7 +120,7 @@ class BareCamera:
             self._context.free()
 
 
-def _upload(model: mujoco.MjModel, renderer: Any) -> Any:
+def _upload(model: mujoco.MjModel, renderer: Renderer) -> mujoco.MjrContext:
     """The engine's context with as many samples and as large a shadow map as the simulation's cameras have."""
     own, wanted = model.vis.quality, renderer._appearance.quality
     kept = own.offsamples, own.shadowsize
@@ -195,7 +197,7 @@ class HandWrittenLoop(BareEngine):
             at = tick
         return plan
 
-    def _reader(self, type_name: str, sensor: Any) -> Callable[[], object]:
+    def _reader(self, type_name: str, sensor: Sensor | None) -> Callable[[], object]:
         kind = type_name.rsplit("/", 1)[-1]
         if kind == "Imu" and sensor is not None:
             return self._imu(sensor)
@@ -211,7 +213,7 @@ class HandWrittenLoop(BareEngine):
             return lambda: self.data.xquat[self._root].copy()
         return lambda: (self.data.time, self.data.xpos[self._root].copy(), self.data.xquat[self._root].copy())
 
-    def _imu(self, sensor: Any) -> Callable[[], object]:
+    def _imu(self, sensor: Sensor) -> Callable[[], object]:
         model, data, body = self.model, self.data, sensor._body
         twist, change = np.zeros(6), np.zeros(6)
         object_type = mujoco.mjtObj.mjOBJ_XBODY

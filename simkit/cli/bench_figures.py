@@ -20,7 +20,8 @@ from simkit.sensors.cameras.rendered_camera import RenderedCamera
 from simkit.sensors.rays.lidar import Lidar
 
 if TYPE_CHECKING:
-    from simkit.runtime import Simulation
+    from simkit.runtime import Simulation, Subscription
+    from simkit.sensors.base import Sensor
 
 _CHUNK = 500  # steps a round
 _CAMERAS = frozenset({"sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"})
@@ -51,7 +52,7 @@ class Figure:
 class EveryStepPlugin(WorldPlugin):
     """The least that a plugin can do: it is called after every step."""
 
-    def load(self, parent: Any, params: Any) -> None:
+    def load(self, parent: object, params: object) -> None:
         self.calls = 0
 
     def after_step(self) -> None:
@@ -221,7 +222,7 @@ def _compare_hand_written(
     return Figure(name, "step", ours / second, theirs / second, aim)
 
 
-def compare_sensor(sim: Simulation, sensor: Any, rounds: int) -> Figure:
+def compare_sensor(sim: Simulation, sensor: Sensor, rounds: int) -> Figure:
     """A whole sample with its message, of data that are up to date; a scan beside its bare rays, a picture beside one
     bare pass. Pictures are without noise, and clouds are not made."""
     clouds = [p for p, product in sensor._products.items() if product.type_name == "sensor_msgs/msg/PointCloud2"]
@@ -240,7 +241,12 @@ def compare_sensor(sim: Simulation, sensor: Any, rounds: int) -> Figure:
     elif isinstance(sensor, Lidar):
         bare, aim = cast_bare_scan(sensor, sim.mj_model, sim.mj_data), 1.15
     tick = sim.tick
-    sides: list[Callable[[], object]] = [lambda: [sensor.sample(tick) for _ in range(count)]]
+
+    def sample_all() -> None:
+        for _ in range(count):
+            sensor.sample(tick)
+
+    sides: list[Callable[[], object]] = [sample_all]
     if one_pass is not None:
         bare = functools.partial(one_pass.draw_many, count)
         sides.append(bare)
@@ -256,7 +262,7 @@ def compare_sensor(sim: Simulation, sensor: Any, rounds: int) -> Figure:
     return Figure(name, "sample", times[0] / count, times[1] / count if bare is not None else None, aim, most)
 
 
-def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], list[Any]]:
+def _count_messages(sim: Simulation, topics: set[str]) -> tuple[dict[str, int], list[Subscription]]:
     """Reads these topics; gives how many messages came, by topic, and the subscriptions."""
     counts: dict[str, int] = {}
 

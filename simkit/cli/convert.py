@@ -13,7 +13,6 @@ from simkit.cli.terminal.options import (
     Force,
     PackagePaths,
     ResourcePaths,
-    SourceOptions,
     Strict,
     Verbose,
     XacroArgs,
@@ -22,6 +21,7 @@ from simkit.cli.terminal.options import (
 from simkit.cli.terminal.output import print_diagnostics, print_status, report_errors, stdout_console
 from simkit.diagnostics import Diagnostics
 from simkit.errors import InputError
+from simkit.run_spec import SourceOptions
 from simkit.writers.atomic_output import check_target
 
 

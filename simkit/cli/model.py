@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -56,7 +57,7 @@ def list_(
     return 0
 
 
-def _count_text(found: Any, what: str) -> str:
+def _count_text(found: Sequence[object], what: str) -> str:
     return f"{len(found)} {what}{'' if len(found) == 1 else 's'}"
 
 
@@ -92,7 +93,7 @@ def pose(
     return 0
 
 
-def _pose_text(pose: Any) -> str:
+def _pose_text(pose: JsonObject) -> str:
     numbers = [*pose["position"], *pose["rpy"]]
     x, y, z, roll, pitch, yaw = (f"{n + 0.0:.6f}" for n in numbers)
     return f"xyz {x} {y} {z} rpy {roll} {pitch} {yaw}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -159,7 +159,7 @@ def call(
             time.sleep(max(0.0, begun + 1.0 / rate - time.monotonic()))
 
 
-def _call_once(client: Client, name: str, request: Any, json_: bool) -> None:
+def _call_once(client: Client, name: str, request: object, json_: bool) -> None:
     from simkit.msgs.message_text import message_to_dict, to_python
 
     if not json_:

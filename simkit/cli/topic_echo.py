@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from simkit.msgs.message_text import TextStyle
 
 TRUNCATE = 128
+MessageFilter = Callable[[Any], bool]
 _SEPARATOR = "---"
 
 
@@ -95,7 +96,7 @@ def _echo_field(feed: Feed, show: _MessagePrinter, *, once: bool, until: float |
             lost = feed.lost
 
 
-def compile_filter(expression: str | None) -> Callable[[Any], bool] | None:
+def compile_filter(expression: str | None) -> MessageFilter | None:
     """Compile `--filter`, a Python expression of the message `m` as with ROS 2, to a function.
 
     Raises:
@@ -132,7 +133,7 @@ class _MessagePrinter:
         raw: bool,
         json_: bool,
         info: bool,
-        wanted: Callable[[Any], bool] | None,
+        wanted: MessageFilter | None,
     ) -> None:
         self._source, self._style, self._field, self._wanted = source, style, field, wanted
         self._csv, self._raw, self._json, self._info = csv, raw, json_, info

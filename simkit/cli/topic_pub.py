@@ -131,11 +131,11 @@ def _full_type_name(client: Client, topic: str, type_name: str | None) -> str:
         raise InputError(f"SK-CLI-032 {error}", "SK-CLI-032") from None
 
 
-def _message_factory(type_name: str, fields: JsonObject) -> Any:
+def _message_factory(type_name: str, fields: JsonObject) -> Callable[[int], object]:
     """Makes the message of a time [ns]; where nothing in it depends on that, it is always the same."""
     is_stamped = fields.get("header") == "auto" or _uses_time(fields)
 
-    def at(now_ns: int) -> Any:
+    def at(now_ns: int) -> object:
         return make_message(type_name, _with_time(fields, now_ns))
 
     if is_stamped:
@@ -191,7 +191,7 @@ def _times(client: Client, rate: float, number: int, by_wall: bool) -> Iterator[
         due = max(due + period, clock.now_ns() - period)  # one that came too late is not made up for many times
 
 
-def _print(message: Any, count: int, json_: bool) -> None:
+def _print(message: object, count: int, json_: bool) -> None:
     from simkit.msgs.message_text import message_to_dict, to_python
 
     if json_:

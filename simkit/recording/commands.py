@@ -105,7 +105,7 @@ class Commands:
             heapq.heappush(self._queue, (tick, number, index))
 
 
-def steady_velocity(text: str, topics: dict[str, str]) -> Command:
+def steady_velocity(text: str, topics: Mapping[str, str]) -> Command:
     """The command of `--cmd-vel LINEAR,ANGULAR`: a Twist on `/cmd_vel`, or on the one topic that takes one.
 
     Args:
@@ -134,7 +134,7 @@ def steady_velocity(text: str, topics: dict[str, str]) -> Command:
     return Command(0.0, topic, message, where="--cmd-vel")
 
 
-def read_script(path: Path, topics: dict[str, str]) -> list[Command]:
+def read_script(path: Path, topics: Mapping[str, str]) -> list[Command]:
     """The commands of a YAML script.
 
     Raises:
@@ -195,7 +195,7 @@ def _with_places(written: tuple[object, str]) -> JsonObject:
     return {**item, "where": where}
 
 
-def commands_of(items: Iterable[JsonMapping], topics: dict[str, str]) -> list[Command]:
+def commands_of(items: Iterable[JsonMapping], topics: Mapping[str, str]) -> list[Command]:
     """The commands that mappings stand for: those of a script, each with its place under "where".
 
     Raises:
@@ -222,7 +222,7 @@ def _collect(make: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
     return found
 
 
-def _command(item: JsonMapping, where: str, topics: dict[str, str] | None) -> Command:
+def _command(item: JsonMapping, where: str, topics: Mapping[str, str] | None) -> Command:
     """A command; whether its topic is there is seen where topics are given."""
     for key in item:
         if key not in _KEYS:

@@ -42,7 +42,7 @@ _PACKAGE_FOLDERS = {
 _FILE_SUFFIX = re.compile(r"\.[A-Za-z0-9]{2,8}$")
 
 
-class Vendor:
+class WorldCollector:
     """Collects what one world needs.
 
     Args:
@@ -57,8 +57,8 @@ class Vendor:
         self._roots: dict[Path, PurePosixPath] = {}
         self._done: dict[Path, PurePosixPath] = {}
 
-    def take(self, document: Document, expanded: bool) -> PurePosixPath:
-        """Takes the outermost file; returns its path in the folder.
+    def collect(self, document: Document, expanded: bool) -> PurePosixPath:
+        """Collect the outermost file; return its path in the folder.
 
         Args:
             expanded: the tree is not what the file says (xacro), so it is written anew.
@@ -70,64 +70,64 @@ class Vendor:
         self.resolver = self.resolver.around(self.home)
         target = PurePosixPath(name)
         self._done[path] = target
-        self._licences(self.home, PurePosixPath())
-        self._write(target, document, path, expanded)
+        self._copy_licences(self.home, PurePosixPath())
+        self._write_document(target, document, path, expanded)
         return target
 
     # ------------------------------------------------------------------ files
 
-    def _write(self, target: PurePosixPath, document: Document, path: Path, expanded: bool = False) -> None:
-        """A file with the URIs in it changed."""
+    def _write_document(self, target: PurePosixPath, document: Document, path: Path, expanded: bool = False) -> None:
+        """Write a file with its URIs changed."""
         if document.root.name == "mujoco":
-            self._mujoco(document.root, path.parent, target.parent)
-            self._put(target, document.text)
+            self._mjcf_files(document.root, path.parent, target.parent)
+            self._write_bytes(target, document.text)
             return
-        changes = dict(self._changes(document.root, path.parent, target.parent))
+        changes = dict(self._uri_changes(document.root, path.parent, target.parent))
         if expanded:
-            self._put(target, xml_text(_replace_in_tree(document.root, changes)).encode())
+            self._write_bytes(target, xml_text(_replace_in_tree(document.root, changes)).encode())
         else:
-            self._put(target, _replace_uris(document.text, changes))
+            self._write_bytes(target, _replace_uris(document.text, changes))
 
-    def _file(self, path: Path) -> PurePosixPath:
-        """Takes a file of any kind with what it names; returns its place."""
+    def _collect_file(self, path: Path) -> PurePosixPath:
+        """Collect a file of any kind with the files that it names; return its path in the folder."""
         path = _absolute(path)
         if path in self._done:
             return self._done[path]
-        target = self._place(path)
+        target = self._target_path(path)
         self._done[path] = target
         if path.suffix.lower() in (".sdf", ".world", ".urdf", ".xml", ".model"):
             document = parse_file(path, Diagnostics())
             if document is not None:
-                self._write(target, document, path)
+                self._write_document(target, document, path)
                 return target
         self._copy(path, target)
         for other in companion_files(path):
             self._copy(other, target.parent / _relative(other, path.parent))
         return target
 
-    def _model(self, folder: Path, file: Path) -> PurePosixPath:
-        """Takes a model's folder: its file, its manifest and licence; returns the folder's place."""
-        self._file(file)
+    def _collect_model(self, folder: Path, file: Path) -> PurePosixPath:
+        """Collect a model's folder: its file, manifest and licence; return the folder's path."""
+        self._collect_file(file)
         folder = _absolute(folder)
-        place = self._place(folder / file.name).parent
-        self._licences(folder, place)
+        place = self._target_path(folder / file.name).parent
+        self._copy_licences(folder, place)
         return place
 
-    def _folder(self, path: Path) -> PurePosixPath:
-        """Takes a folder as it is, as one of material scripts."""
+    def _collect_folder(self, path: Path) -> PurePosixPath:
+        """Collect a whole folder, such as one of material scripts."""
         path = _absolute(path)
-        target = self._place(path)
+        target = self._target_path(path)
         for source in sorted(p for p in path.rglob("*") if p.is_file() and not p.is_symlink()):
             self._copy(source, target / source.relative_to(path).as_posix())
         return target
 
-    def _licences(self, folder: Path, place: PurePosixPath) -> None:
+    def _copy_licences(self, folder: Path, place: PurePosixPath) -> None:
         for source in sorted(folder.iterdir()) if folder.is_dir() else ():
             if source.is_file() and (source.name in _COPIED_FILES or _LICENCES.match(source.name)):
                 self._copy(source, place / source.name)
 
-    def _place(self, path: Path) -> PurePosixPath:
-        """Where a file goes: at its place below the world's folder, else in that of its model or package."""
+    def _target_path(self, path: Path) -> PurePosixPath:
+        """Return the path of a file: as below the world's folder, else in the folder of its model or package."""
         if path.is_relative_to(self.home):
             return PurePosixPath(path.relative_to(self.home).as_posix())
         known = next((root for root in self._roots if path.is_relative_to(root)), None)
@@ -136,8 +136,8 @@ class Vendor:
             self._add_root(known, known.name)
         return self._roots[known] / path.relative_to(known).as_posix()
 
-    def _know_root(self, uri: str, path: Path) -> None:
-        """The folder that `model://NAME/...` or `package://NAME/...` stands for keeps that name."""
+    def _register_root(self, uri: str, path: Path) -> None:
+        """Keep the name of a folder that `model://NAME/...` or `package://NAME/...` stands for."""
         scheme, _, rest = uri.partition("://")
         name, _, inside = rest.strip("/").partition("/")
         if scheme not in ("model", "package") or path.is_relative_to(self.home):
@@ -152,19 +152,19 @@ class Vendor:
         while PurePosixPath("models", stem if k == 1 else f"{stem}_{k}") in self._roots.values():
             k += 1
         self._roots[root] = PurePosixPath("models", stem if k == 1 else f"{stem}_{k}")
-        self._licences(root, self._roots[root])
+        self._copy_licences(root, self._roots[root])
 
     def _copy(self, source: Path, target: PurePosixPath) -> None:
         if not (self.folder / target).exists():
             self._count(source.stat().st_size)
-            place = self._ready(target)
+            place = self._prepare_target(target)
             shutil.copyfile(source, place)
 
-    def _put(self, target: PurePosixPath, content: bytes) -> None:
+    def _write_bytes(self, target: PurePosixPath, content: bytes) -> None:
         self._count(len(content))
-        self._ready(target).write_bytes(content)
+        self._prepare_target(target).write_bytes(content)
 
-    def _ready(self, target: PurePosixPath) -> Path:
+    def _prepare_target(self, target: PurePosixPath) -> Path:
         place = Path(os.path.abspath(self.folder / target))  # noqa: PTH100 - without `..`
         if not place.is_relative_to(self.folder):
             raise OSError(f"{target} would lie outside of the folder")
@@ -178,51 +178,51 @@ class Vendor:
 
     # ------------------------------------------------------------------ what a file names
 
-    def _changes(self, root: Params, folder: Path, here: PurePosixPath) -> Iterator[tuple[str, str]]:
-        """Each URI of a file with the path that it becomes, seen from `here`."""
+    def _uri_changes(self, root: Params, folder: Path, here: PurePosixPath) -> Iterator[tuple[str, str]]:
+        """Yield each URI of a file with the path that it becomes, relative to `here`."""
         seen: set[str] = set()
         for element, parent in _elements(root):
-            for said in _file_references(element, parent):
-                if said in seen:
+            for reference in _file_references(element, parent):
+                if reference in seen:
                     continue
-                place = self._taken(said, element, parent, folder)
+                place = self._collected_path(reference, element, parent, folder)
                 if place is not None:
-                    seen.add(said)
+                    seen.add(reference)
                     new = _relative(place, here)
-                    if new != said:
-                        yield said, new
+                    if new != reference:
+                        yield reference, new
 
-    def _taken(self, said: str, element: Params, parent: str, folder: Path) -> PurePosixPath | None:
-        """The place of what a text names; None where it names no file that is here."""
-        uri = turtlebot3_uri(said, element.where, Diagnostics()) or said
+    def _collected_path(self, reference: str, element: Params, parent: str, folder: Path) -> PurePosixPath | None:
+        """Collect what a text names and return its path; None where it names no file that exists."""
+        uri = turtlebot3_uri(reference, element.where, Diagnostics()) or reference
         path, _ = self.resolver.search(uri, folder)
         if path is None:
             return None
-        self._know_root(uri, _absolute(path))
+        self._register_root(uri, _absolute(path))
         if not path.is_dir():
-            return self._file(path)
+            return self._collect_file(path)
         if parent == "include" or element.name == "include":
             file = self.resolver.model_file(path, element.where, self.diagnostics)
-            return None if file is None else self._model(path, file)
-        return self._folder(path) if "://" in said or "/" in said else None
+            return None if file is None else self._collect_model(path, file)
+        return self._collect_folder(path) if "://" in reference or "/" in reference else None
 
-    def _mujoco(self, root: Params, folder: Path, here: PurePosixPath) -> None:
-        """What a file in MuJoCo's format names keeps its place beside it."""
+    def _mjcf_files(self, root: Params, folder: Path, here: PurePosixPath) -> None:
+        """Collect the files that a file in MuJoCo's format names; they keep their places beside it."""
         below: dict[str, str] = {}
         for compiler in root.all("compiler"):
             below |= {k: v for k, v in compiler.attributes.items() if k in ("meshdir", "texturedir", "assetdir")}
         folders = ["", below.get("assetdir", ""), below.get("meshdir", ""), below.get("texturedir", "")]
         for element, _ in _elements(root):
-            for key, said in element.attributes.items():
+            for key, reference in element.attributes.items():
                 if not key.startswith("file"):
                     continue
                 for inside in folders:
-                    source = _absolute(folder / inside / said)
+                    source = _absolute(folder / inside / reference)
                     if source.is_file() and source.is_relative_to(folder):
-                        target = here / inside / said
+                        target = here / inside / reference
                         document = parse_file(source, Diagnostics()) if source.suffix == ".xml" else None
                         if document is not None:
-                            self._write(target, document, source)
+                            self._write_document(target, document, source)
                         else:
                             self._copy(source, target)
 
@@ -232,8 +232,8 @@ def vendor(
     target: Path,
     describe: Callable[..., dict[str, Any]],
     *,
-    resource_paths: Sequence[Path] = (),
-    package_paths: Mapping[str, str] | None = None,
+    resource_paths: Sequence[str | os.PathLike[str]] = (),
+    package_paths: Mapping[str, str | os.PathLike[str]] | None = None,
     xacro_args: Mapping[str, str] | None = None,
     base: str = "auto",
 ) -> tuple[PurePosixPath, int]:
@@ -256,7 +256,7 @@ def vendor(
     options = {"resource_paths": resource_paths, "package_paths": package_paths, "base": base}
     before = describe(source, xacro_args=xacro_args, **options)
     diagnostics = Diagnostics()
-    resolver = Resolver(list(resource_paths), missing_meshes=True, package_paths=package_paths)
+    resolver = Resolver([Path(path) for path in resource_paths], missing_meshes=True, package_paths=package_paths)
     document, expanded = find_document(source, resolver, diagnostics, xacro_args)
     diagnostics.raise_if_errors()
     if document is None or document.path is None:
@@ -267,8 +267,8 @@ def vendor(
     except OSError as error:
         raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
     try:
-        taking = Vendor(resolver, stage, diagnostics)
-        main = taking.take(document, expanded)
+        collector = WorldCollector(resolver, stage, diagnostics)
+        main = collector.collect(document, expanded)
         after = describe(stage / main, base=base)
         differs = _difference(before, after) or _file_outside(after, stage)
         if differs:
@@ -281,7 +281,7 @@ def vendor(
         raise InputError(f"SK-CLI-016 cannot write {target}: {error.strerror or error}", "SK-CLI-016") from None
     finally:
         shutil.rmtree(stage, ignore_errors=True)
-    return main, taking.count
+    return main, collector.count
 
 
 def _elements(root: Params) -> Iterator[tuple[Params, str]]:

@@ -9,13 +9,15 @@ import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
 from simkit.cli.terminal.output import absolute_name
 
 if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
     from simkit.cli.terminal.topic_sources import Source
     from simkit.live import Client
 
@@ -136,7 +138,7 @@ def fields(ctx: typer.Context) -> Iterable[str]:
     return [f"{before}.{name}" if before else name for name, _ in found]
 
 
-def _full_type_name(type_name: str, store: Any) -> str:
+def _full_type_name(type_name: str, store: Typestore | None) -> str:
     from simkit.msgs import full_name
 
     return type_name if store is not None else full_name(type_name)

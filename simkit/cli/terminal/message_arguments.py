@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Any, Final
+from typing import Final
 
 from simkit.cli.terminal.output import JsonObject
 from simkit.errors import InputError, MessageError
@@ -57,7 +57,7 @@ def check_type(said: str | None, types: Iterable[str], name: str) -> None:
         raise InputError(f"SK-CLI-032 {name} is of type {', '.join(types)}, found {said!r}", "SK-CLI-032")
 
 
-def make_message(type_name: str, fields: JsonObject) -> Any:
+def make_message(type_name: str, fields: JsonObject) -> object:
     """A message of the fields that were given.
 
     Raises:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from simkit.cli.terminal.keyboard import DOWN, LEFT, RIGHT, UP
 from simkit.diagnostics import did_you_mean
@@ -59,7 +59,7 @@ def find_target(sim: Simulation, wanted: str = "") -> TeleopTarget:
     Raises:
         InputError: SK-CLI-051 nobody takes velocities there, or several do.
     """
-    takers: dict[str, Any] = {}
+    takers: dict[str, object] = {}
     for topic, end, types, does in sim.bus.endpoints():
         if does == "takes" and end.active and any(one in TWISTS for one in types):
             takers.setdefault(topic, end.owner)
@@ -73,7 +73,7 @@ def find_target(sim: Simulation, wanted: str = "") -> TeleopTarget:
     return _describe_target(sim, topic, takers[topic])
 
 
-def _choose_topic(takers: dict[str, Any]) -> str:
+def _choose_topic(takers: dict[str, object]) -> str:
     if "/cmd_vel" in takers:
         return "/cmd_vel"
     if not takers:
@@ -88,7 +88,7 @@ def _choose_topic(takers: dict[str, Any]) -> str:
     return next(iter(takers))  # one drive, whatever its topics
 
 
-def _describe_target(sim: Simulation, topic: str, owner: Any) -> TeleopTarget:
+def _describe_target(sim: Simulation, topic: str, owner: object) -> TeleopTarget:
     scoped = getattr(owner, "scoped", "")
     try:
         model = sim.model(scoped) if scoped else None
@@ -107,7 +107,7 @@ def _describe_target(sim: Simulation, topic: str, owner: Any) -> TeleopTarget:
     )
 
 
-def _speed_limits(model: Model | None, topic: str, owner: Any) -> tuple[Bounds, Bounds]:
+def _speed_limits(model: Model | None, topic: str, owner: object) -> tuple[Bounds, Bounds]:
     """Return the speed limits of the drive where it has some, else of the robot where it is known."""
     asked = getattr(owner, "speed_bounds", None)
     found: tuple[Bounds, Bounds] | None = None if asked is None else asked(topic)

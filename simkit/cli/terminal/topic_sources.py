@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
     from simkit.live import Client
-    from simkit.recording.bags.reader import BagReader
+    from simkit.recording.bags.reader import BagReader, BagTopic
 
 LIST_PARAMETERS = "/list_parameters"
 """What follows the name of a node in that of the service that lists its parameters."""
@@ -222,7 +222,7 @@ class BagSource:
 
     def topics(self) -> dict[str, TopicEntry]:
         """Topics by name, sorted; one that was recorded had a publisher."""
-        rows: dict[str, list[Any]] = {}
+        rows: dict[str, list[BagTopic]] = {}
         for topic in self.bag.topics:
             rows.setdefault(topic.name, []).append(topic)
         return {
