@@ -32,10 +32,10 @@ WORLD = f"""<sdf version="1.9"><world name="w">
 
 
 def main() -> None:
+    from simkit.run_spec import RunSpec, Tolerance
     from simkit.testing.golden.compare.runs import compare
     from simkit.testing.golden.store import read_golden, write_golden
     from simkit.testing.run_record.run_recorder import run_record
-    from simkit.run_spec import RunSpec, Tolerance
 
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--checks", type=int, default=10_000, help="in all")

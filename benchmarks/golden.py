@@ -12,9 +12,9 @@ from pathlib import Path
 
 from measure import arguments
 
+from simkit.run_spec import RunSpec
 from simkit.testing.golden.store import read_golden, write_golden
 from simkit.testing.run_record.run_recorder import run_record
-from simkit.run_spec import RunSpec
 from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
 _DURATION = 30.0  # [s] simulated

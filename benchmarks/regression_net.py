@@ -59,9 +59,9 @@ class Result:
 def prepare(name: str, folder: Path) -> Any:
     """A copy of a world with all that it needs, as a scenario, and its golden run beside it."""
     from simkit.build import describe
+    from simkit.run_spec import RunSpec
     from simkit.testing.golden.store import write_golden
     from simkit.testing.run_record.run_recorder import run_record
-    from simkit.run_spec import RunSpec
     from simkit.testing.scenarios.scenario_file import read_scenario
     from simkit.writers.vendor import vendor
 
