@@ -385,7 +385,7 @@ def test_json_of_answers_has_infinity_and_arrays() -> None:
 
 def test_topics_that_nobody_has_any_more_are_forgotten(court: simkit.Simulation) -> None:
     bus = court.bus
-    before = len(bus._audiences), len(bus._publishers), len(bus._listeners)
+    before = len(bus._readers), len(bus._publishers), len(bus._listeners)
     with Server(court) as server:
         caller = Caller(server)
         for n in range(50):
@@ -393,7 +393,7 @@ def test_topics_that_nobody_has_any_more_are_forgotten(court: simkit.Simulation)
             caller.ask("advertise", number=n, topic=f"/said_{n}", type="std_msgs/msg/Empty")
         while not server.peers or len(next(iter(server.peers.values())).publishers) < 50:
             server.poll(0.1)
-        assert len(bus._audiences) == before[0] + 100
+        assert len(bus._readers) == before[0] + 100
         caller.socket.close()
         server.poll(0.1)
-    assert (len(bus._audiences), len(bus._publishers), len(bus._listeners)) == before
+    assert (len(bus._readers), len(bus._publishers), len(bus._listeners)) == before
