@@ -103,8 +103,8 @@ def export(
             text = f"SK-CLI-018 {option}: found {word!r}, allowed is {', '.join(allowed)}"
             raise InputError(text + (f"; {hint}" if hint else ""), "SK-CLI-018")
     target = output or Path(f"{recording.resolve().stem}_export")
-    wish = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
-    found = export_bag(recording, target, wish)
+    options = ExportOptions(tuple(topic), tuple(skip), format_, images, clouds, start, end, force)
+    found = export_bag(recording, target, options)
     if json_:
         print_json({"output": str(target), "topics": [asdict(one) for one in found]})
         return 0

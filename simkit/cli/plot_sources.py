@@ -82,7 +82,7 @@ def split_sources_and_fields(words: Sequence[str]) -> tuple[list[str], list[str]
     return sources, fields
 
 
-def draw_chart(sources: Sequence[str], fields: Sequence[str], wish: PlotRequest, *, json_: bool) -> int:
+def draw_chart(sources: Sequence[str], fields: Sequence[str], request: PlotRequest, *, json_: bool) -> int:
     """Draws fields of sources to a file.
 
     Raises:
@@ -90,20 +90,20 @@ def draw_chart(sources: Sequence[str], fields: Sequence[str], wish: PlotRequest,
     """
     from simkit.recording.charts.chart import check_suffix, render_chart
 
-    check_suffix(wish.output.name)
-    check_writable(wish.output)
+    check_suffix(request.output.name)
+    check_writable(request.output)
     named = _source_labels(sources)
     found: list[tuple[Series, Style]] = []
     for number, source in enumerate(sources):
         prefix = f"{named[number]}: " if len(sources) > 1 else ""
-        found += _with_styles(_series(source, fields, wish), number, prefix, alone=len(sources) == 1)
+        found += _with_styles(_series(source, fields, request), number, prefix, alone=len(sources) == 1)
     found = [(one, style) for one, style in found if _has_numbers(one)]
     if not found:
         raise InputError("SK-BAG-011 there is nothing to draw: no number came", "SK-BAG-011")
     if len(sources) > 1:
         found.sort(key=lambda pair: pair[1].colour)
-    write_atomically(wish.output, render_chart(_chart(found, wish), wish.output.suffix))
-    _summary(wish.output, [one for one, _ in found], json_=json_)
+    write_atomically(request.output, render_chart(_chart(found, request), request.output.suffix))
+    _summary(request.output, [one for one, _ in found], json_=json_)
     return 0
 
 
@@ -129,17 +129,17 @@ def _has_numbers(one: Series) -> bool:
     return bool(one.count)
 
 
-def _chart(found: list[tuple[Series, Style]], wish: PlotRequest) -> Chart:
+def _chart(found: list[tuple[Series, Style]], request: PlotRequest) -> Chart:
     from simkit.recording.charts.chart import Chart
 
     series = [one for one, _ in found]
     # one source draws each curve in a colour of its own; with several, equal fields are equal in colour
     label, is_plane = "time [s]", False
-    if wish.against is not None:
+    if request.against is not None:
         unit = series[0].base_unit
-        label = wish.against + (f" [{unit}]" if unit else "")
+        label = request.against + (f" [{unit}]" if unit else "")
         is_plane = unit == "m" and {one.unit for one in series} == {"m"}
-    return Chart(series, [style for _, style in found], wish.title, label, is_plane)
+    return Chart(series, [style for _, style in found], request.title, label, is_plane)
 
 
 def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
@@ -158,20 +158,20 @@ def _summary(output: Path, series: list[Series], *, json_: bool) -> None:
 # ---------------------------------------------------------------------- numbers of a source
 
 
-def _series(source: str, fields: Sequence[str], wish: PlotRequest) -> list[Series]:
+def _series(source: str, fields: Sequence[str], request: PlotRequest) -> list[Series]:
     from simkit.recording.charts.series import series_over
 
     path = Path(source)
     take = _bag_series if is_bag(path) else _world_series
-    wanted = list(fields) if wish.against is None else [*fields, wish.against]
-    found, counts = take(source, wanted, wish)
-    if wish.start is not None or wish.end is not None:
-        found = [one.between(wish.start, wish.end) for one in found]
-    if wish.against is None:
+    wanted = list(fields) if request.against is None else [*fields, request.against]
+    found, counts = take(source, wanted, request)
+    if request.start is not None or request.end is not None:
+        found = [one.between(request.start, request.end) for one in found]
+    if request.against is None:
         return found
     base = found[-counts[-1] :]
     if len(base) != 1:
-        raise InputError(f"SK-BAG-010 --against {wish.against}: stands for {len(base)} numbers", "SK-BAG-010")
+        raise InputError(f"SK-BAG-010 --against {request.against}: stands for {len(base)} numbers", "SK-BAG-010")
     return series_over(found[: -counts[-1]], base[0])
 
 
@@ -209,12 +209,12 @@ def _bag_series(source: str, fields: Sequence[str], _: PlotRequest) -> tuple[lis
         return bag_series(bag, curves), counts
 
 
-def _world_series(source: str, fields: Sequence[str], wish: PlotRequest) -> tuple[list[Series], list[int]]:
+def _world_series(source: str, fields: Sequence[str], request: PlotRequest) -> tuple[list[Series], list[int]]:
     from simkit import msgs
     from simkit.recording.charts.series import SeriesTap
     from simkit.testing.scenarios.scenario_run import open_scenario, run_scenario
 
-    scenario = wish.run(source)
+    scenario = request.run(source)
     with ExitStack() as stack:
         sim = stack.enter_context(open_scenario(scenario))
         print_diagnostics(sim.diagnostics, verbose=False)

@@ -159,7 +159,7 @@ class ExportedTopic:
     notes: list[str] = field(default_factory=list)
 
 
-def export_bag(path: Path, target: Path, wish: ExportOptions) -> list[ExportedTopic]:
+def export_bag(path: Path, target: Path, options: ExportOptions) -> list[ExportedTopic]:
     """Writes a bag to a folder, which is there as a whole at the end or not at all.
 
     Raises:
@@ -167,13 +167,13 @@ def export_bag(path: Path, target: Path, wish: ExportOptions) -> list[ExportedTo
             format needs what is not installed; SK-CLI-030 there is no such topic; SK-CLI-035 the bag cannot be read;
             SK-CLI-036 a message is not of its type.
     """
-    check_folder(target, overwrite=wish.overwrite)
-    if wish.format == "parquet":
+    check_folder(target, overwrite=options.overwrite)
+    if options.format == "parquet":
         check_parquet()
     with open_bag_to_read(path) as bag:
-        topics = _selected_topics(bag, wish)
-        with export_folder(target, overwrite=wish.overwrite) as folder:
-            found = _write_topics(bag, topics, folder, wish)
+        topics = _selected_topics(bag, options)
+        with export_folder(target, overwrite=options.overwrite) as folder:
+            found = _write_topics(bag, topics, folder, options)
             write_index(
                 folder,
                 {
@@ -197,28 +197,25 @@ def export_bag(path: Path, target: Path, wish: ExportOptions) -> list[ExportedTo
     return found
 
 
-def _selected_topics(bag: BagReader, wish: ExportOptions) -> list[BagTopic]:
+def _selected_topics(bag: BagReader, options: ExportOptions) -> list[BagTopic]:
     names = [topic.name for topic in bag.topics]
-    for pattern in wish.topics:
+    for pattern in options.topics:
         if not any(matches_topic(name, [pattern]) for name in names):
             hint = did_you_mean(pattern, names) or "there is " + (", ".join(sorted(set(names))) or "none")
             raise InputError(f"SK-CLI-030 no topic {pattern!r} in {bag.path}; {hint}", "SK-CLI-030")
-    found = [
-        topic
-        for topic in bag.topics
-        if (not wish.topics or matches_topic(topic.name, wish.topics)) and not matches_topic(topic.name, wish.skip)
-    ]
+    chosen = [topic for topic in bag.topics if not options.topics or matches_topic(topic.name, options.topics)]
+    found = [topic for topic in chosen if not matches_topic(topic.name, options.skip)]
     if not found:
         raise InputError(f"SK-BAG-011 nothing is wanted of {bag.path}, which has {len(names)} topics", "SK-BAG-011")
     return found
 
 
-def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, wish: ExportOptions) -> list[ExportedTopic]:
+def _write_topics(bag: BagReader, topics: list[BagTopic], folder: Path, options: ExportOptions) -> list[ExportedTopic]:
     names = _file_names(topics)
-    takers = {(t.name, t.type_name): _TopicExport(bag, t, names[t.name, t.type_name], folder, wish) for t in topics}
+    takers = {(t.name, t.type_name): _TopicExport(bag, t, names[t.name, t.type_name], folder, options) for t in topics}
     origin = bag.time_origin
-    start = None if wish.start is None else origin + round(wish.start * _NS)
-    end = None if wish.end is None else origin + round(wish.end * _NS)
+    start = None if options.start is None else origin + round(options.start * _NS)
+    end = None if options.end is None else origin + round(options.end * _NS)
     try:
         for message in bag.messages(list(dict.fromkeys(t.name for t in topics)), start):
             if end is not None and message.time_ns > end:
@@ -250,27 +247,27 @@ def _file_names(topics: list[BagTopic]) -> dict[tuple[str, str], str]:
 class _TopicExport:
     """Gathers one topic."""
 
-    def __init__(self, bag: BagReader, topic: BagTopic, name: str, folder: Path, wish: ExportOptions) -> None:
-        self._name, self._folder, self._format = name, folder, wish.format
+    def __init__(self, bag: BagReader, topic: BagTopic, name: str, folder: Path, options: ExportOptions) -> None:
+        self._name, self._folder, self._format = name, folder, options.format
         self._result = ExportedTopic(topic.name, topic.type_name)
         self._times = array("q")
-        self._make_writer = self._writer_factory(topic.type_name, wish)
+        self._make_writer = self._writer_factory(topic.type_name, options)
         self._writer: MessageWriter | None = None
         without = frozenset({"data"}) if topic.type_name in (*_IMAGE_TYPES, _CLOUD_TYPE) else frozenset[str]()
         self._columns = columns_of(topic.type_name, bag.store_of(topic.type_name), without)
         self._files: list[str] = []
         self._is_bad = False
 
-    def _writer_factory(self, type_name: str, wish: ExportOptions) -> WriterFactory | None:
+    def _writer_factory(self, type_name: str, options: ExportOptions) -> WriterFactory | None:
         """Return what makes the writer of images or clouds when the first one comes; None for other types."""
         target = self._folder / self._name
         makers: dict[str, WriterFactory] = {}
         if type_name in _IMAGE_TYPES:
             film = target.with_name(f"{self._name}.mp4")
             makers = {"png": lambda: PngFiles(target), "npz": lambda: NpzFile(target), "mp4": lambda: VideoFile(film)}
-            return makers.get(wish.images)
-        if type_name == _CLOUD_TYPE and wish.clouds != "none":
-            return lambda: CloudFiles(target, wish.clouds)
+            return makers.get(options.images)
+        if type_name == _CLOUD_TYPE and options.clouds != "none":
+            return lambda: CloudFiles(target, options.clouds)
         return None
 
     def take(self, time_ns: int, message: object) -> None:
